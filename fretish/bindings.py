@@ -1,0 +1,409 @@
+"""Read `bindings.toml`: every field is checked, every mistake has its place."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from enum import StrEnum
+from math import isfinite
+from typing import Any, TypeVar
+
+from fretish import binding, units
+from fretish import expressions as e
+from fretish.clock import Clock, End, Rounding, TimeSource
+from fretish.declarations import (
+    REP_117,
+    Aggregate,
+    Declarations,
+    Invalid,
+    Path,
+    Proposition,
+    Reading,
+    Reduce,
+    Role,
+    Signal,
+    path,
+)
+from fretish.diagnostic import Code, Diagnostic
+from fretish.source import Source, Span
+from fretish.tables import Tables, read, unknown_key
+
+_CLOCK = ("time", "tick", "end", "rounding")
+_SIGNAL = (
+    "path", "type", "reduce", "unit", "valid", "invalid", "max_age", "footprint", "sensor",
+)  # fmt: skip
+_PROPOSITION = ("text", "expr", "role", "agg", "on_unknown", "kind")
+_INVALID = {
+    "nan": "nan",
+    "+inf": "positive_infinity",
+    "-inf": "negative_infinity",
+    "other": "other",
+}
+_KINDS = ("belief", "command", "physical")
+
+T = TypeVar("T")
+Choice = TypeVar("Choice", bound=StrEnum)
+
+
+def read_bindings(source: Source) -> tuple[Declarations | None, tuple[Diagnostic, ...]]:
+    """Read the text of a `bindings.toml`.
+
+    Returns:
+        The declarations, or None where there is an error; and all that there is to say.
+    """
+    tables = read(source.span(), Code.BAD_BINDINGS, "the bindings file")
+    if isinstance(tables, Diagnostic):
+        return None, (tables,)
+    reader = _Reader(tables)
+    declarations = reader.declarations()
+    return (None if reader.wrong else declarations), tuple(reader.wrong)
+
+
+class _Reader:
+    """Walks the tables once and keeps every mistake it meets."""
+
+    def __init__(self, tables: Tables) -> None:
+        self.tables = tables
+        self.wrong: list[Diagnostic] = []
+        self.assumptions: list[str] = []
+
+    def declarations(self) -> Declarations:
+        data = self.tables.data
+        self._known(data, ("clock", "signal", "proposition"), "the bindings")
+        signals = {
+            name: self._signal(name, fields) for name, fields in self._tables("signal").items()
+        }
+        read = {name: signal for name, signal in signals.items() if signal is not None}
+        propositions = {
+            name: self._proposition(name, fields, read)
+            for name, fields in self._tables("proposition").items()
+        }
+        return Declarations(
+            self.tables.text.source,
+            self._clock(),
+            read,
+            {name: value for name, value in propositions.items() if value is not None},
+            tuple(self.assumptions),
+        )
+
+    # Fields
+
+    def _say(self, code: Code, message: str, span: Span, mend: str | None = None) -> None:
+        self.wrong.append(Diagnostic(code, message, span, mend))
+
+    def _known(
+        self, table: Mapping[str, Any], known: tuple[str, ...], where: str, *at: str
+    ) -> None:
+        for key in table:
+            if key not in known:
+                span = self.tables.place(*at, key)
+                self.wrong.append(unknown_key(Code.UNKNOWN_BINDING_FIELD, key, known, span, where))
+
+    def _tables(self, kind: str) -> dict[str, Mapping[str, Any]]:
+        tables = self.tables.data.get(kind, {})
+        if not isinstance(tables, dict) or not all(isinstance(t, dict) for t in tables.values()):
+            self._say(
+                Code.BAD_BINDING_FIELD,
+                f"`{kind}` must hold tables",
+                self.tables.place(kind),
+                f"write `[{kind}.NAME]`",
+            )
+            return {}
+        return tables
+
+    def _field(
+        self, table: Mapping[str, Any], at: tuple[str, ...], kind: type[T], what: str
+    ) -> T | None:
+        """The field at the path, if it is there and of that type."""
+        value = table.get(at[-1])
+        if value is None or (isinstance(value, kind) and not (kind is int and value is True)):
+            return value
+        self._say(Code.BAD_BINDING_FIELD, f"`{at[-1]}` must be {what}", self.tables.value(*at))
+        return None
+
+    def _choice(
+        self, table: Mapping[str, Any], at: tuple[str, ...], kind: type[Choice], default: Choice
+    ) -> Choice:
+        value = table.get(at[-1])
+        if value is None:
+            return default
+        values = [str(choice) for choice in kind]
+        if value in values:
+            return kind(value)
+        self._say(
+            Code.BAD_BINDING_FIELD,
+            f"`{at[-1]}` cannot be `{value}`",
+            self.tables.value(*at),
+            f"it may be {', '.join(values)}",
+        )
+        return default
+
+    def _expression(self, table: Mapping[str, Any], at: tuple[str, ...]) -> e.Expression | None:
+        text = self._field(table, at, str, 'an expression in quotes: `"min_range < 5 cm"`')
+        if text is None:
+            return None
+        parsed = binding.parse(self._inside(at, text))
+        if isinstance(parsed, Diagnostic):
+            self.wrong.append(parsed)
+            return None
+        return parsed
+
+    def _inside(self, at: tuple[str, ...], text: str) -> Span:
+        """The characters between the quotes, so that mistakes point into the file."""
+        value = self.tables.value(*at)
+        start = value.text.find(text)
+        if start < 0:  # written with escapes: the text stands for itself
+            return Source(f"{value.source.name} ({'.'.join(at)})", text).span()
+        return value.part(start, start + len(text))
+
+    # Clock
+
+    def _clock(self) -> Clock:
+        table = self.tables.data.get("clock")
+        if not isinstance(table, dict):
+            self._say(
+                Code.BAD_BINDING_FIELD,
+                "the bindings declare no clock",
+                self.tables.text.part(0, 0),
+                'add `[clock]` with `tick = "100 ms"`',
+            )
+            return Clock(10**9)
+        self._known(table, _CLOCK, "[clock]", "clock")
+        for name, default in (("time", TimeSource.LOG_TIME), ("end", End.INCONCLUSIVE)):
+            if name not in table:
+                self.assumptions.append(f"clock: {name} is {default}, the default")
+        period, topic = self._tick(table)
+        return Clock(
+            period,
+            topic,
+            self._choice(table, ("clock", "time"), TimeSource, TimeSource.LOG_TIME),
+            self._choice(table, ("clock", "end"), End, End.INCONCLUSIVE),
+            self._choice(table, ("clock", "rounding"), Rounding, Rounding.EXACT),
+        )
+
+    def _tick(self, table: Mapping[str, Any]) -> tuple[int | None, str | None]:
+        tick = table.get("tick")
+        if isinstance(tick, str) and tick.startswith("/"):
+            return None, tick
+        period = units.nanoseconds(tick) if isinstance(tick, str) else None
+        if not period:
+            self._say(
+                Code.BAD_BINDING_FIELD,
+                "`tick` must be a duration above 0, or a topic",
+                self.tables.value("clock", "tick"),
+                'write `tick = "100 ms"`, or `tick = "/scan"` for a tick with each message',
+            )
+            return 10**9, None
+        return period, None
+
+    # Signals
+
+    def _signal(self, name: str, table: Mapping[str, Any]) -> Signal | None:
+        at = ("signal", name)
+        self._known(table, _SIGNAL, f"[signal.{name}]", *at)
+        where = self._path(table, (*at, "path"))
+        unit_name = self._field(table, (*at, "unit"), str, "a unit in quotes") or "1"
+        unit = units.unit(unit_name)
+        if unit is None:
+            self.wrong.append(binding.unknown_unit(unit_name, self.tables.value(*at, "unit")))
+        reduce = self._reduce(table, at, where)
+        valid = self._expression(table, (*at, "valid"))
+        footprint = self._footprint(table, at, reduce)
+        if where is None or unit is None:
+            return None
+        type_ = self._field(table, (*at, "type"), str, "a message type in quotes")
+        return Signal(
+            name,
+            where,
+            unit,
+            "" if unit_name == "1" else unit_name,
+            type=type_,
+            reduce=reduce,
+            valid=valid,
+            invalid=self._invalid(table, at, type_),
+            max_age=self._max_age(table, at),
+            footprint=footprint,
+            sensor=self._sensor(table, at),
+            span=self.tables.value(*at, "path"),
+        )
+
+    def _path(self, table: Mapping[str, Any], at: tuple[str, ...]) -> Path | None:
+        text = table.get("path")
+        read = path(text) if isinstance(text, str) else None
+        if read is None:
+            self._say(
+                Code.BAD_BINDING_FIELD,
+                "`path` must name a topic and a field" if text else "the signal has no `path`",
+                self.tables.value(*at),
+                'write `path = "/scan.ranges[:]"` or `path = "/odom.twist.twist.linear.x"`',
+            )
+        return read
+
+    def _reduce(
+        self, table: Mapping[str, Any], at: tuple[str, ...], where: Path | None
+    ) -> Reduce | None:
+        each = where is not None and where.each
+        if "reduce" in table and not each and where is not None:
+            self._say(
+                Code.BAD_BINDING_FIELD,
+                "`reduce` needs a path that ends with `[:]`",
+                self.tables.value(*at, "reduce"),
+            )
+        if "reduce" not in table and each:
+            self._say(
+                Code.BAD_BINDING_FIELD,
+                "a path that ends with `[:]` needs `reduce`",
+                self.tables.value(*at, "path"),
+                'add `reduce = "min"`',
+            )
+        if "reduce" not in table:
+            return None
+        return self._choice(table, (*at, "reduce"), Reduce, Reduce.MIN)
+
+    def _invalid(self, table: Mapping[str, Any], at: tuple[str, ...], type_: str | None) -> Invalid:
+        scan = type_ is not None and type_.endswith("/LaserScan")
+        default = REP_117 if scan else Invalid()
+        fields = self._field(table, (*at, "invalid"), dict, "a table of readings")
+        if fields is None:
+            words = "as REP 117 says" if scan else "unknown"
+            self.assumptions.append(f"signal {at[1]}: readings that are no measurement are {words}")
+            return default
+        self._known(fields, (*_INVALID, "empty"), "`invalid`", *at, "invalid")
+        place = (*at, "invalid")
+        if fields.get("empty", "unknown") != "unknown":
+            self._say(
+                Code.BAD_BINDING_FIELD,
+                "`empty` can only be `unknown`: no reading is no evidence",
+                self.tables.value(*place),
+            )
+        values = {
+            attribute: self._choice(fields, (*place, key), Reading, getattr(default, attribute))
+            for key, attribute in _INVALID.items()
+        }
+        return Invalid(**values)
+
+    def _max_age(self, table: Mapping[str, Any], at: tuple[str, ...]) -> int | None:
+        text = self._field(table, (*at, "max_age"), str, 'a duration: `"300 ms"`')
+        if "max_age" not in table:
+            self.assumptions.append(f"signal {at[1]}: a sample never grows too old (no max_age)")
+        age = units.nanoseconds(text) if text is not None else None
+        if text is not None and not age:
+            self._say(
+                Code.BAD_BINDING_FIELD,
+                "`max_age` must be a duration above 0",
+                self.tables.value(*at, "max_age"),
+                'write `max_age = "300 ms"`',
+            )
+        return age
+
+    def _footprint(
+        self, table: Mapping[str, Any], at: tuple[str, ...], reduce: Reduce | None
+    ) -> tuple[tuple[float, float], ...]:
+        corners = table.get("footprint", [])
+        good = isinstance(corners, list) and all(_is_numbers(c, 2) for c in corners)
+        if reduce is Reduce.OUTLINE and (not good or len(corners) < 3):
+            self._say(
+                Code.BAD_BINDING_FIELD,
+                '`reduce = "outline"` needs `footprint`: three corners or more, in metres',
+                self.tables.value(*at, "footprint"),
+                "write `footprint = [[0.3, 0.3], [-0.3, 0.3], [-0.3, -0.3], [0.3, -0.3]]`",
+            )
+            return ()
+        return tuple((float(x), float(y)) for x, y in corners) if good else ()
+
+    def _sensor(self, table: Mapping[str, Any], at: tuple[str, ...]) -> tuple[float, float, float]:
+        pose = table.get("sensor", [0.0, 0.0, 0.0])
+        if not _is_numbers(pose, 3):
+            self._say(
+                Code.BAD_BINDING_FIELD,
+                "`sensor` must be the sensor's pose: x and y in metres, yaw in radians",
+                self.tables.value(*at, "sensor"),
+                "write `sensor = [0.0, 0.0, 0.0]`",
+            )
+            return 0.0, 0.0, 0.0
+        return float(pose[0]), float(pose[1]), float(pose[2])
+
+    # Propositions
+
+    def _proposition(
+        self, name: str, table: Mapping[str, Any], signals: Mapping[str, Signal]
+    ) -> Proposition | None:
+        at = ("proposition", name)
+        self._known(table, _PROPOSITION, f"[proposition.{name}]", *at)
+        if "expr" not in table:
+            self._say(
+                Code.BAD_BINDING_FIELD,
+                f"the proposition `{name}` has no `expr`",
+                self.tables.place(*at),
+                'add `expr = "min_range < 5 cm"`',
+            )
+        expression = self._expression(table, (*at, "expr"))
+        if expression is None or not self._is_truth(expression, at, signals):
+            return None
+        if "agg" not in table:
+            self.assumptions.append(f"proposition {name}: the last sample of a tick counts")
+        return Proposition(
+            name,
+            expression,
+            text=self._field(table, (*at, "text"), str, "a text in quotes") or "",
+            role=self._choice(table, (*at, "role"), Role, Role.INTERNAL),
+            kind=self._kind(table, at),
+            aggregate=self._choice(table, (*at, "agg"), Aggregate, Aggregate.LAST),
+            on_unknown=self._on_unknown(table, at),
+            span=self.tables.value(*at, "expr"),
+        )
+
+    def _is_truth(
+        self, expression: e.Expression, at: tuple[str, ...], signals: Mapping[str, Signal]
+    ) -> bool:
+        place = self.tables.value(*at, "expr")
+        unread = self._tables("signal").keys() - signals.keys()
+        if any(name.id in unread for name in e.names(expression)):
+            return False  # the signal's own mistake has been told
+        kinds = {name: signal.unit.dimension for name, signal in signals.items()}
+        kind = binding.dimension(expression, kinds, place)
+        if isinstance(kind, Diagnostic):
+            self.wrong.append(kind)
+        elif kind is not None:
+            self._say(
+                Code.BAD_EXPRESSION,
+                "a proposition must be true or false, and this is a number",
+                place,
+                "compare it: `min_range < 5 cm`",
+            )
+        return kind is None
+
+    def _kind(self, table: Mapping[str, Any], at: tuple[str, ...]) -> str:
+        kind = table.get("kind", "")
+        if kind not in (*_KINDS, ""):
+            self._say(
+                Code.BAD_BINDING_FIELD,
+                f"`kind` cannot be `{kind}`",
+                self.tables.value(*at, "kind"),
+                f"it may be {', '.join(_KINDS)}",
+            )
+        return str(kind)
+
+    def _on_unknown(self, table: Mapping[str, Any], at: tuple[str, ...]) -> bool | None:
+        value = table.get("on_unknown", "unknown")
+        if value == "unknown":
+            return None
+        if isinstance(value, bool):
+            self.assumptions.append(
+                f"proposition {at[1]}: where its signals are unknown it counts as "
+                f"{str(value).lower()}"
+            )
+            return value
+        self._say(
+            Code.BAD_BINDING_FIELD,
+            "`on_unknown` must be true, false or `unknown`",
+            self.tables.value(*at, "on_unknown"),
+        )
+        return None
+
+
+def _is_numbers(value: object, count: int) -> bool:
+    return (
+        isinstance(value, list)
+        and len(value) == count
+        and all(isinstance(n, int | float) and isfinite(n) for n in value)
+    )

@@ -1,0 +1,127 @@
+"""What the grammar cannot say: which words are reserved, and what is a number or a truth value."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import assert_never
+
+from fretish import expressions as e
+from fretish.diagnostic import Code, Diagnostic
+from fretish.source import Span
+from fretish.syntax import Before, Sentence, Until
+
+RESERVED = frozenset(
+    "A E F G H O R S T U V X Y Z AF AG AX EF EG EX ABF ABG EBF EBG BU "
+    "ASSIGN COMPASSION COMPUTE CONSTANTS CONSTRAINT CTLSPEC CTLWFF DEFINE FAIRNESS FROZENVAR "
+    "FTSPEC FUN IN INIT INPUT INVAR INVARSPEC ISA ITYPE IVAR JUSTICE LTLSPEC LTLWFF MAX MDEFINE "
+    "MIN MIRROR MODULE NAME NEXTWFF PRED PREDICATES PSLSPEC PTSPEC ENUM PTWFF SIMPWFF STRUCT "
+    "TRANS VAR FALSE TRUE LAST what "
+    "abs array bool boolean case count esac extend float init int integer max min process real "
+    "resize self signed sizeof swconst union unsigned uwconst word word1 xnor".split()
+)
+"""Words that the languages FRET exports to keep for themselves; not allowed but as component."""
+
+_NUMERIC_PREDICATES = frozenset({"preInt", "preReal"})
+_NUMERIC_FUNCTIONS = frozenset({"absReal", "absInt", "maxReal", "maxInt", "minReal", "minInt"})
+
+
+def conditions(sentence: Sentence) -> Iterator[e.Expression]:
+    """Every Boolean expression of the sentence: scope, condition, stop condition, response."""
+    if sentence.scope is not None:
+        yield sentence.scope.mode
+    if sentence.condition is not None:
+        yield sentence.condition.expression
+    if isinstance(sentence.timing, Until | Before):
+        yield sentence.timing.stop
+    yield sentence.response
+
+
+def check_names(sentence: Sentence) -> Diagnostic | None:
+    """F109 for the first name that is a reserved word."""
+    for expression in conditions(sentence):
+        for id, span in _named(expression):
+            if id in RESERVED:
+                return Diagnostic(
+                    Code.RESERVED,
+                    f"`{id}` is reserved by the languages that requirements are exported to",
+                    span,
+                    help=f"choose another name, such as `{id}_`",
+                )
+    return None
+
+
+def _named(expression: e.Expression) -> Iterator[tuple[str, Span | None]]:
+    waiting = [expression]
+    while waiting:
+        part = waiting.pop()
+        if isinstance(part, e.Name | e.Call):
+            yield (part.id if isinstance(part, e.Name) else part.name), part.span
+        waiting.extend(reversed(e.children(part)))
+
+
+def check_response_kinds(sentence: Sentence) -> Diagnostic | None:
+    """F112 for the first place where a number meets a truth value."""
+    for expression in conditions(sentence):
+        wrong = _check_kinds(expression)
+        if wrong is not None:
+            return wrong
+    return None
+
+
+def _check_kinds(whole: e.Expression) -> Diagnostic | None:
+    """A name may be either: its kind is what its place asks for."""
+    waiting: list[tuple[e.Expression, bool, Span | None]] = [(whole, True, None)]
+    while waiting:
+        part, boolean, near = waiting.pop()
+        here = getattr(part, "span", None) or near
+        if boolean is not _is_boolean(part, boolean):
+            return _wrong_kind(boolean, here)
+        waiting.extend((child, kind, here) for child, kind in _expected(part))
+    return None
+
+
+def _is_boolean(part: e.Expression, expected: bool) -> bool:
+    match part:
+        case e.Name():
+            return expected
+        case e.Call(name):
+            return expected and name not in _NUMERIC_PREDICATES | _NUMERIC_FUNCTIONS
+        case e.Number() | e.Quantity() | e.Negation() | e.Arithmetic():
+            return False
+        case (
+            e.Truth()
+            | e.Comparison()
+            | e.Not()
+            | e.And()
+            | e.Or()
+            | e.Xor()
+            | e.Implies()
+            | e.Iff()
+            | e.Held()
+        ):
+            return True
+        case _:
+            assert_never(part)
+
+
+def _expected(part: e.Expression) -> list[tuple[e.Expression, bool]]:
+    """The parts, each with whether it must be Boolean; a call's arguments may be anything."""
+    match part:
+        case e.Call():
+            return [(arg, _is_boolean(arg, expected=True)) for arg in part.args]
+        case e.Comparison() | e.Arithmetic() | e.Negation():
+            return [(child, False) for child in e.children(part)]
+        case _:
+            return [(child, True) for child in e.children(part)]
+
+
+def _wrong_kind(boolean: bool, span: Span | None) -> Diagnostic:
+    wanted, found = ("truth value", "number") if boolean else ("number", "truth value")
+    return Diagnostic(
+        Code.WRONG_KIND,
+        f"a {wanted} is needed here, and this is a {found}",
+        span,
+        help="compare a number: `x > 3`"
+        if boolean
+        else "truth values are joined by `<->`, `&`, `|`; only numbers are compared",
+    )

@@ -1,0 +1,128 @@
+"""The declared clock: what a tick is, and how many of them a duration counts."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import StrEnum
+from fractions import Fraction
+
+from fretish.diagnostic import Code, Diagnostic, Severity
+from fretish.syntax import Duration, Sentence, TimeUnit, Timing, Within, duration
+
+NANOSECONDS: dict[TimeUnit, int] = {
+    "microsecond": 10**3,
+    "millisecond": 10**6,
+    "second": 10**9,
+    "minute": 60 * 10**9,
+    "hour": 3600 * 10**9,
+}
+
+
+class TimeSource(StrEnum):
+    """Which of a message's times places it on the clock."""
+
+    LOG_TIME = "log_time"
+    PUBLISH_TIME = "publish_time"
+    HEADER_STAMP = "header.stamp"
+
+
+class End(StrEnum):
+    """What an obligation is that is open when the log ends."""
+
+    INCONCLUSIVE = "inconclusive"
+    VIOLATED = "violated"
+
+
+class Rounding(StrEnum):
+    """What happens to a duration that is not a whole number of ticks."""
+
+    EXACT = "exact"
+    """It is an error."""
+    CONSERVATIVE = "conservative"
+    """It is rounded to the stricter side: `within` down, `for` and `after` up; never to 0."""
+
+
+@dataclass(frozen=True, slots=True)
+class Clock:
+    """A tick every `period` nanoseconds, or one for each message of `topic`."""
+
+    period: int | None
+    topic: str | None = None
+    time: TimeSource = TimeSource.LOG_TIME
+    end: End = End.INCONCLUSIVE
+    rounding: Rounding = Rounding.EXACT
+
+    def __str__(self) -> str:
+        """`100 ms` or `each message of /scan`."""
+        return f"each message of {self.topic}" if self.period is None else milliseconds(self.period)
+
+
+def milliseconds(period: int) -> str:
+    """Nanoseconds as `100 ms`, `2 s` or `1.5 ms`."""
+    if period % 10**9 == 0:
+        return f"{period // 10**9} s"
+    return f"{float(Fraction(period, 10**6)):g} ms"
+
+
+def in_ticks(timing: Timing, clock: Clock | None) -> int | Diagnostic | None:
+    """How many ticks the timing counts.
+
+    Without a clock a unit counts ticks, whatever its name: that is how FRET reads it
+    (`assumed_ticks` then has a warning to give).
+
+    Returns:
+        Ticks, or None for a timing that counts none, or what keeps the duration from being
+        a whole number of ticks.
+    """
+    counted = duration(timing)
+    if counted is None or clock is None or counted.unit == "tick":
+        return counted.amount if counted else None
+    if clock.period is None:
+        return _no_time(counted, clock)
+    exact = Fraction(counted.amount * NANOSECONDS[counted.unit], clock.period)
+    if exact.denominator == 1:
+        return int(exact)
+    if clock.rounding is Rounding.EXACT:
+        return _inexact(counted, clock, exact)
+    ticks = int(exact) if isinstance(timing, Within) else int(exact) + 1
+    return ticks or _inexact(counted, clock, exact)
+
+
+def assumed_ticks(sentence: Sentence, clock: Clock | None) -> Diagnostic | None:
+    """F312: the sentence counts seconds and no clock says how long a tick is."""
+    counted = duration(sentence.timing)
+    if clock is not None or counted is None or counted.unit == "tick":
+        return None
+    return Diagnostic(
+        Code.NO_CLOCK,
+        f"no clock says what a tick is: `{written(counted)}` is read as {counted.amount} ticks, "
+        "as FRET does",
+        counted.span,
+        help='declare `[clock]` with `tick = "100 ms"` in bindings.toml, or write ticks',
+        severity=Severity.WARNING,
+    )
+
+
+def written(counted: Duration) -> str:
+    """`1 tick`, `3 seconds`."""
+    return f"{counted.amount} {counted.unit}{'' if counted.amount == 1 else 's'}"
+
+
+def _inexact(counted: Duration, clock: Clock, exact: Fraction) -> Diagnostic:
+    assert clock.period is not None
+    return Diagnostic(
+        Code.INEXACT_DURATION,
+        f"{written(counted)} is {float(exact):g} ticks of {milliseconds(clock.period)}",
+        counted.span,
+        help="use a whole number of ticks, a finer `tick`, or "
+        '`rounding = "conservative"` under `[clock]`',
+    )
+
+
+def _no_time(counted: Duration, clock: Clock) -> Diagnostic:
+    return Diagnostic(
+        Code.MESSAGE_CLOCK,
+        f"the clock ticks with {clock}: it cannot count {counted.unit}s",
+        counted.span,
+        help='count ticks, or declare a period: `tick = "100 ms"`',
+    )

@@ -1,0 +1,160 @@
+"""`bindings.toml` → clock, signals and propositions.
+
+Two layers: signals (numbers with units, read from messages) feed propositions (truth values,
+what a sentence names).
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from enum import StrEnum
+
+from fretish.clock import Clock
+from fretish.expressions import Expression
+from fretish.source import Source, Span
+from fretish.units import Unit
+
+
+class Reduce(StrEnum):
+    """How a signal's array becomes one number."""
+
+    MIN = "min"
+    MAX = "max"
+    MEAN = "mean"
+    OUTLINE = "outline"
+    """Least distance from the robot's outline to the points of a laser scan."""
+
+
+class Reading(StrEnum):
+    """What an element outside of the valid range means."""
+
+    DROP = "drop"
+    """The element says nothing; the others decide."""
+    FAR = "far"
+    """Nothing is there: +inf."""
+    NEAR = "near"
+    """Something is there, too near to measure: -inf, or no distance at all."""
+    UNKNOWN = "unknown"
+    """The whole sample is unknown."""
+
+
+@dataclass(frozen=True, slots=True)
+class Invalid:
+    """What readings that are no measurement mean (REP 117)."""
+
+    nan: Reading = Reading.UNKNOWN
+    positive_infinity: Reading = Reading.UNKNOWN
+    negative_infinity: Reading = Reading.UNKNOWN
+    other: Reading = Reading.UNKNOWN
+    """A finite number outside of `valid`."""
+
+
+REP_117 = Invalid(Reading.DROP, Reading.FAR, Reading.NEAR, Reading.DROP)
+"""ROS Enhancement Proposal 117: -inf is too near, +inf is nothing in range, NaN is an error."""
+
+
+@dataclass(frozen=True, slots=True)
+class Path:
+    """`/scan.ranges[:]`: a topic and a field of its messages."""
+
+    topic: str
+    fields: tuple[str, ...]
+    index: int | None = None
+    each: bool = False
+    """True for `[:]`: all elements of the array."""
+
+    def __str__(self) -> str:
+        """As it is written in the bindings."""
+        index = "[:]" if self.each else "" if self.index is None else f"[{self.index}]"
+        return ".".join((self.topic, *self.fields)) + index
+
+
+_PATH = re.compile(
+    r"(?P<topic>/?[A-Za-z_~][\w/~-]*)(?P<fields>(?:\.[A-Za-z_]\w*)+)(?:\[(?P<index>:|\d+)\])?"
+)
+
+
+def path(text: str) -> Path | None:
+    """Read `/scan.ranges[:]`, `/odom.twist.twist.linear.x`, `/joints.position[3]`."""
+    match = _PATH.fullmatch(text)
+    if match is None:
+        return None
+    index = match["index"]
+    return Path(
+        match["topic"],
+        tuple(match["fields"][1:].split(".")),
+        int(index) if index and index != ":" else None,
+        index == ":",
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class Signal:
+    """A number over time, read from one field of one topic.
+
+    `footprint` are the corners of the robot's outline and `sensor` is the pose of the sensor
+    (x, y in metres, yaw in radians), both in the robot's frame; for `Reduce.OUTLINE` only.
+    `max_age` is in nanoseconds; None: a sample counts until the next one.
+    """
+
+    name: str
+    path: Path
+    unit: Unit
+    unit_name: str
+    type: str | None = None
+    reduce: Reduce | None = None
+    valid: Expression | None = None
+    invalid: Invalid = Invalid()
+    max_age: int | None = None
+    footprint: tuple[tuple[float, float], ...] = ()
+    sensor: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+class Role(StrEnum):
+    """FRET's types of variable."""
+
+    INPUT = "input"
+    OUTPUT = "output"
+    INTERNAL = "internal"
+    MODE = "mode"
+
+
+class Aggregate(StrEnum):
+    """How several samples within one tick combine."""
+
+    ANY = "any"
+    ALL = "all"
+    LAST = "last"
+
+
+@dataclass(frozen=True, slots=True)
+class Proposition:
+    """A truth value over time: an expression over signals.
+
+    `on_unknown` is what the proposition is taken to be where its signals are unknown: None
+    (it stays unknown), or a truth value, which is then an assumption of every verdict.
+    """
+
+    name: str
+    expression: Expression
+    text: str = ""
+    role: Role = Role.INTERNAL
+    kind: str = ""
+    aggregate: Aggregate = Aggregate.LAST
+    on_unknown: bool | None = None
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Declarations:
+    """Everything that the bindings declare."""
+
+    source: Source
+    clock: Clock
+    signals: Mapping[str, Signal]
+    propositions: Mapping[str, Proposition]
+    assumptions: tuple[str, ...] = ()
+    """Defaults that were taken, in words, for the report."""

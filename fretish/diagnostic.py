@@ -1,0 +1,137 @@
+"""Everything fretc can say about its input: a code, a place, a way out.
+
+A user's mistake is a `Diagnostic`, returned. One function per message lives beside the check
+that needs it; the codes live here, because a number is for life: never moved, never reused.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from difflib import get_close_matches
+from enum import Enum, StrEnum
+
+from fretish.source import Span
+
+
+class Severity(StrEnum):
+    """An error stops the command with exit status 2; a warning and a note do not."""
+
+    ERROR = "error"
+    WARNING = "warning"
+    NOTE = "note"
+
+
+class Code(Enum):
+    """Every message that fretc can give: its stable number and what it is about.
+
+    F1 syntax, F2 meaning, F3 bindings, units and clock, F4 logs, F5 traceability,
+    F6 targets, F9 use of the command.
+    """
+
+    NOT_FRETISH = ("F101", "the sentence is not FRETish")
+    BAD_HEADER = ("F102", "the header is not TOML")
+    UNKNOWN_FIELD = ("F103", "the header has a field that fretc does not know")
+    MISSING_SATISFY = ("F104", "`satisfy` is missing before the response")
+    BAD_FIELD = ("F105", "a header field has a value of the wrong kind")
+    NO_SENTENCE = ("F106", "there is no sentence")
+    MISSPELT = ("F107", "a key word of FRETish is misspelt")
+    BAD_DURATION = ("F108", "a duration is not a whole number of a known unit")
+    RESERVED = ("F109", "a reserved word stands where a name should")
+    BAD_PROBABILITY = ("F110", "the probability is out of range")
+    MISSING_COMPONENT = ("F111", "the component is missing")
+    WRONG_KIND = ("F112", "a number stands where a truth value should, or the other way round")
+    UNCLOSED_HEADER = ("F113", "the header has no closing `+++`")
+
+    DUPLICATE_ID = ("F201", "two requirements have the same id")
+    PREDICATE_NOT_FORMALIZED = ("F202", "a temporal predicate is left uninterpreted")
+    NEVER_DECIDED = ("F203", "no run can ever decide the requirement")
+
+    BAD_BINDINGS = ("F301", "the bindings are not TOML")
+    UNKNOWN_BINDING_FIELD = ("F302", "the bindings have a field that fretc does not know")
+    BAD_BINDING_FIELD = ("F303", "a field of the bindings has a value of the wrong kind")
+    UNBOUND = ("F304", "a proposition of the sentence has no binding")
+    UNIT_MISMATCH = ("F305", "two quantities have different dimensions")
+    UNKNOWN_UNIT = ("F306", "the unit is not known")
+    INEXACT_DURATION = ("F307", "the duration is not a whole number of ticks")
+    BAD_EXPRESSION = ("F308", "the expression of a binding cannot be read")
+    UNKNOWN_NAME = ("F309", "an expression names something that is not declared")
+    PARAMETER_DRIFT = ("F310", "the requirement and its binding state different numbers")
+    BLIND_ZONE = ("F311", "the bound lies where the sensor cannot see")
+    NO_CLOCK = ("F312", "the sentence names a unit of time, but no clock says what a tick is")
+    MESSAGE_CLOCK = ("F313", "a clock that ticks by message cannot count seconds")
+
+    UNREADABLE_LOG = ("F401", "the log cannot be read")
+    NOT_A_LOG = ("F402", "the file is not an MCAP log")
+    TRUNCATED_LOG = ("F403", "the log ends in the middle")
+    DAMAGED_CHUNK = ("F404", "a part of the log is damaged")
+    NO_TOPIC = ("F405", "a topic of the bindings is not in the log")
+    NO_FIELD = ("F406", "a field of the bindings is not in the message")
+    EMPTY_LOG = ("F407", "the log holds no message")
+    UNKNOWN_ENCODING = ("F408", "the encoding of a topic cannot be read")
+    WRONG_TYPE = ("F409", "a topic has another type than the bindings say")
+    COUNT_MISMATCH = ("F410", "the log holds another number of messages than it states")
+    OUT_OF_ORDER = ("F411", "the messages of a topic are not in order of time")
+    BAD_MESSAGE = ("F412", "a message cannot be decoded")
+
+    UNKNOWN_PARENT = ("F501", "a parent is not declared")
+    BAD_HAZARDS = ("F502", "the hazards cannot be read")
+    BAD_EVIDENCE = ("F503", "the evidence cannot be read")
+    STALE_EVIDENCE = ("F504", "the evidence is about another requirement, binding or log")
+
+    NOT_EXPRESSIBLE = ("F601", "the target cannot express the requirement")
+
+    NO_SUCH_FILE = ("F901", "there is no such file")
+    IS_A_DIRECTORY = ("F902", "the file is a directory")
+    UNREADABLE = ("F903", "the file cannot be read")
+    NOT_TEXT = ("F904", "the file is not UTF-8 text")
+    NOT_WRITTEN = ("F905", "the output cannot be written")
+    UNKNOWN_COMMAND = ("F906", "there is no such command")
+    BAD_USAGE = ("F907", "the command is used in a wrong way")
+    MISSING_EXTRA = ("F908", "an optional part of fretc is not installed")
+    NOTHING_TO_DO = ("F909", "nothing was given to work on")
+    INTERNAL = ("F999", "fretc itself is at fault")
+
+    @property
+    def number(self) -> str:
+        """`F104`: stable for life."""
+        return str(self.value[0])
+
+    @property
+    def summary(self) -> str:
+        """What the code is about, in one phrase."""
+        return str(self.value[1])
+
+
+@dataclass(frozen=True, slots=True)
+class Diagnostic:
+    """One thing to say: what is wrong, where, and what to do."""
+
+    code: Code
+    message: str
+    span: Span | None = None
+    help: str | None = None
+    severity: Severity = Severity.ERROR
+
+    @property
+    def is_error(self) -> bool:
+        """Whether it stops the command."""
+        return self.severity is Severity.ERROR
+
+
+def has_errors(diagnostics: Iterable[Diagnostic]) -> bool:
+    """Whether any of them is an error."""
+    return any(diagnostic.is_error for diagnostic in diagnostics)
+
+
+def suggestion(word: str, known: Iterable[str], cutoff: float = 0.6) -> str | None:
+    """The known word that is nearest to a misspelt one, if one is near.
+
+    Args:
+        word: what was written.
+        known: what may be written.
+        cutoff: how near, from 0 (anything) to 1 (equal), as `difflib` measures it.
+    """
+    by_folded = {name.casefold(): name for name in known}
+    near = get_close_matches(word.casefold(), by_folded, n=1, cutoff=cutoff)
+    return by_folded[near[0]] if near else None

@@ -1,0 +1,166 @@
+"""`.fret` files: TOML headers between `+++` lines, each followed by one bare sentence."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from pathlib import PurePath
+from typing import Any
+
+from fretish.diagnostic import Code, Diagnostic
+from fretish.source import Source, Span
+from fretish.tables import Tables, read, unknown_key
+
+FIELDS = ("id", "title", "text", "parents", "rationale", "status", "verify", "params")
+STATUSES = ("draft", "approved", "retired")
+_ID = re.compile(r"[A-Za-z0-9][A-Za-z0-9_.-]*")
+_FENCE = re.compile(r"^\+\+\+[ \t]*(?:\r?\n|\Z)", re.MULTILINE)
+
+
+@dataclass(frozen=True, slots=True)
+class Requirement:
+    """One requirement as it was written; its sentence is not parsed yet."""
+
+    id: str
+    wording: Span
+    """The bare FRETish sentence, without the white space around it."""
+    title: str = ""
+    text: str = ""
+    """The requirement in natural language."""
+    parents: tuple[str, ...] = ()
+    """Ids of hazards and of the requirements above this one."""
+    rationale: str = ""
+    status: str = "draft"
+    verify: tuple[str, ...] = ()
+    """The planned methods of verification."""
+    params: Mapping[str, str] = field(default_factory=dict)
+    """Numbers that the requirement states, by the proposition they belong to."""
+    header: Tables | None = field(default=None, compare=False, repr=False)
+
+    def place(self, *path: str) -> Span:
+        """Where a header field stands; the sentence where there is no header."""
+        return self.header.value(*path) if self.header else self.wording
+
+
+def requirements(source: Source) -> tuple[tuple[Requirement, ...], tuple[Diagnostic, ...]]:
+    """Read every requirement of a `.fret` text; those with a mistake in the header are left out."""
+    found: list[Requirement] = []
+    wrong: list[Diagnostic] = []
+    pairs = _pairs(source)
+    if isinstance(pairs, Diagnostic):
+        return (), (pairs,)
+    for header, wording in pairs:
+        requirement, mistakes = _requirement(source, header, wording, alone=len(pairs) == 1)
+        wrong.extend(mistakes)
+        if requirement is not None:
+            found.append(requirement)
+    return tuple(found), tuple(wrong)
+
+
+def _pairs(source: Source) -> list[tuple[Span | None, Span]] | Diagnostic:
+    """Header (None: there is none) and sentence, in the order of the file."""
+    fences = list(_FENCE.finditer(source.text))
+    if len(fences) % 2:
+        return _unclosed(source, fences[-1])
+    ends = [*(match.start() for match in fences), len(source.text)]
+    pairs: list[tuple[Span | None, Span]] = []
+    first = _stripped(source.span(0, ends[0]))
+    if first.text or not fences:
+        pairs.append((None, first))
+    for i in range(0, len(fences), 2):
+        header = source.span(fences[i].end(), fences[i + 1].start())
+        pairs.append((header, _stripped(source.span(fences[i + 1].end(), ends[i + 2]))))
+    return pairs
+
+
+def _stripped(span: Span) -> Span:
+    text = span.text
+    start = len(text) - len(text.lstrip("\ufeff \t\r\n"))
+    return span.part(start, max(start, len(text.rstrip())))
+
+
+def _requirement(
+    source: Source, header: Span | None, wording: Span, *, alone: bool
+) -> tuple[Requirement | None, tuple[Diagnostic, ...]]:
+    stem = PurePath(source.name).stem.strip("<>") or "requirement"
+    if header is None:
+        return Requirement(stem, wording), ()
+    tables = read(header, Code.BAD_HEADER, "the header")
+    if isinstance(tables, Diagnostic):
+        return None, (tables,)
+    wrong = tuple(_mistakes(tables, alone=alone))
+    if wrong:
+        return None, wrong
+    data = tables.data
+    return (
+        Requirement(
+            id=data.get("id", stem),
+            wording=wording,
+            title=data.get("title", ""),
+            text=data.get("text", ""),
+            parents=tuple(data.get("parents", ())),
+            rationale=data.get("rationale", ""),
+            status=data.get("status", "draft"),
+            verify=tuple(data.get("verify", ())),
+            params=dict(data.get("params", {})),
+            header=tables,
+        ),
+        (),
+    )
+
+
+def _mistakes(tables: Tables, *, alone: bool) -> Iterator[Diagnostic]:
+    for key, value in tables.data.items():
+        if key not in FIELDS:
+            yield unknown_key(
+                Code.UNKNOWN_FIELD, key, FIELDS, tables.place(key), "a requirement's header"
+            )
+        elif not _fits(key, value):
+            yield _bad_field(tables, key)
+    if "id" not in tables.data and not alone:
+        yield Diagnostic(
+            Code.BAD_FIELD,
+            "each requirement needs an `id` where a file holds several",
+            tables.text.part(0, 0),
+            help='add `id = "R1"`',
+        )
+
+
+def _fits(key: str, value: Any) -> bool:
+    match key:
+        case "parents" | "verify":
+            return isinstance(value, list) and all(isinstance(item, str) for item in value)
+        case "params":
+            return isinstance(value, dict) and all(isinstance(v, str) for v in value.values())
+        case "id":
+            return isinstance(value, str) and _ID.fullmatch(value) is not None
+        case "status":
+            return value in STATUSES
+        case _:
+            return isinstance(value, str)
+
+
+def _bad_field(tables: Tables, key: str) -> Diagnostic:
+    wanted = {
+        "parents": 'a list of ids: `["HAZ-003"]`',
+        "verify": 'a list of methods: `["audit", "ajpf"]`',
+        "params": 'a table of quantities in quotes: `{ too_close = "5 cm" }`',
+        "id": "letters, digits, `_`, `-` and `.` in quotes, beginning with a letter or digit",
+        "status": f"one of {', '.join(STATUSES)}",
+    }
+    return Diagnostic(
+        Code.BAD_FIELD,
+        f"`{key}` has a value of the wrong kind",
+        tables.value(key),
+        help=f"write {wanted.get(key, 'a text in quotes')}",
+    )
+
+
+def _unclosed(source: Source, fence: re.Match[str]) -> Diagnostic:
+    return Diagnostic(
+        Code.UNCLOSED_HEADER,
+        "a header begins here and does not end",
+        source.span(fence.start(), fence.start() + 3),
+        help="close the header with a line `+++` before the sentence",
+    )

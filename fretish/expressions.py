@@ -1,0 +1,199 @@
+"""Boolean and arithmetic expressions: the same tree in sentences and in bindings.
+
+A sentence never holds a `Quantity` or a `Held`; a binding never holds a temporal predicate.
+Spans do not compare: two expressions are equal when they say the same, wherever they stand.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from typing import Literal
+
+from fretish.source import Span
+
+ComparisonOperator = Literal["<", "<=", ">", ">=", "=", "!="]
+ArithmeticOperator = Literal["+", "-", "*", "/", "mod", "^"]
+
+
+@dataclass(frozen=True, slots=True)
+class Truth:
+    """`true` or `false`."""
+
+    value: bool
+
+
+@dataclass(frozen=True, slots=True)
+class Name:
+    """A variable, as the user spells it (without the quotes of a quoted identifier)."""
+
+    id: str
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Number:
+    """A number without a unit, digits as written; never signed."""
+
+    digits: str
+
+
+@dataclass(frozen=True, slots=True)
+class Quantity:
+    """A number with a unit: `5 cm`, `0.01 m/s`."""
+
+    digits: str
+    unit: str
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Negation:
+    """Arithmetic minus: `-x`."""
+
+    arg: Expression
+
+
+@dataclass(frozen=True, slots=True)
+class Arithmetic:
+    """`left op right`, both numbers."""
+
+    op: ArithmeticOperator
+    left: Expression
+    right: Expression
+
+
+@dataclass(frozen=True, slots=True)
+class Comparison:
+    """`left op right`, both numbers; the whole is Boolean."""
+
+    op: ComparisonOperator
+    left: Expression
+    right: Expression
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Not:
+    """`! arg`."""
+
+    arg: Expression
+
+
+@dataclass(frozen=True, slots=True)
+class And:
+    """`a & b & ...`, at least two."""
+
+    args: tuple[Expression, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Or:
+    """`a | b | ...`, at least two."""
+
+    args: tuple[Expression, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Xor:
+    """`left xor right`."""
+
+    left: Expression
+    right: Expression
+
+
+@dataclass(frozen=True, slots=True)
+class Implies:
+    """`left -> right`, also written `left => right` and `if left then right`."""
+
+    left: Expression
+    right: Expression
+
+
+@dataclass(frozen=True, slots=True)
+class Iff:
+    """`left <-> right`, also written `left <=> right`."""
+
+    left: Expression
+    right: Expression
+
+
+@dataclass(frozen=True, slots=True)
+class Call:
+    """`name(arg, ...)`: a function, or one of FRETish's temporal predicates."""
+
+    name: str
+    args: tuple[Expression, ...]
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Held:
+    """`arg for 200 ms`: arg has been true, without a break, for that long (nanoseconds)."""
+
+    arg: Expression
+    duration: int
+
+
+Expression = (
+    Truth
+    | Name
+    | Number
+    | Quantity
+    | Negation
+    | Arithmetic
+    | Comparison
+    | Not
+    | And
+    | Or
+    | Xor
+    | Implies
+    | Iff
+    | Call
+    | Held
+)
+
+
+def both(left: Expression, right: Expression) -> And:
+    """`left & right`, flat."""
+    return And((*_flat(And, left), *_flat(And, right)))
+
+
+def either(left: Expression, right: Expression) -> Or:
+    """`left | right`, flat."""
+    return Or((*_flat(Or, left), *_flat(Or, right)))
+
+
+def _flat(kind: type[And] | type[Or], arg: Expression) -> tuple[Expression, ...]:
+    return arg.args if isinstance(arg, kind) else (arg,)
+
+
+def children(expression: Expression) -> tuple[Expression, ...]:
+    """The direct parts, left to right."""
+    match expression:
+        case Truth() | Name() | Number() | Quantity():
+            return ()
+        case Not(arg) | Negation(arg) | Held(arg):
+            return (arg,)
+        case And(args) | Or(args):
+            return args
+        case Call(_, args):
+            return args
+        case (
+            Xor(left, right)
+            | Implies(left, right)
+            | Iff(left, right)
+            | Arithmetic(_, left, right)
+            | Comparison(_, left, right)
+        ):
+            return (left, right)
+
+
+def names(expression: Expression) -> Iterator[Name]:
+    """Every `Name` in it, left to right, with repetitions."""
+    waiting = [expression]
+    while waiting:
+        part = waiting.pop()
+        if isinstance(part, Name):
+            yield part
+        waiting.extend(reversed(children(part)))

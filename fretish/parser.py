@@ -1,0 +1,472 @@
+"""FRETish text → `Sentence`; the only module that knows the parser library.
+
+The grammar is `grammar.lark`, one LALR(1) pass with a lexer that reserves every key word.
+All of the input is read, and every operator of it reaches the tree.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from contextvars import ContextVar
+from fractions import Fraction
+from functools import cache
+from importlib.resources import files
+from typing import Any, cast
+
+from lark import Lark, Token, v_args
+from lark.exceptions import UnexpectedCharacters, UnexpectedToken, VisitError
+from lark.visitors import Transformer_NonRecursive
+
+from fretish import expressions as e
+from fretish import syntax as s
+from fretish.checking import check_names, check_response_kinds
+from fretish.diagnostic import Code, Diagnostic, suggestion
+from fretish.source import Span
+
+_UNITS: dict[str, s.TimeUnit] = {
+    "TICK": "tick",
+    "MICROSECOND": "microsecond",
+    "MILLISECOND": "millisecond",
+    "SECOND": "second",
+    "MINUTE": "minute",
+    "HOUR": "hour",
+}
+
+KEYWORDS = (
+    "after always and at before during eventually except finally first for if immediately in "
+    "initially is last mod mode never next not occurrence of only or previous probability same "
+    "satisfy shall the then timepoint unless until upon when whenever where while with within xor "
+    "tick ticks microsecond microseconds millisecond milliseconds second seconds minute minutes "
+    "hour hours"
+).split()
+"""The words of the grammar, for suggestions."""
+
+
+def parse(text: Span) -> s.Sentence | Diagnostic:
+    """Read one sentence, all of it.
+
+    Args:
+        text: the sentence, somewhere in a source; spans of the tree point into that source.
+
+    Returns:
+        The tree, or the first thing that keeps the text from being a sentence.
+    """
+    if not text.text.strip():
+        return Diagnostic(
+            Code.NO_SENTENCE,
+            "there is no sentence here",
+            text.part(0, 0),
+            help="write `the COMPONENT shall eventually satisfy CONDITION`",
+        )
+    try:
+        with _places_in(text):
+            sentence = cast(s.Sentence, _Build().transform(_lark().parse(text.text)))
+    except UnexpectedToken as error:
+        return _unexpected(error, text)
+    except UnexpectedCharacters as error:
+        return _unknown_character(error, text)
+    except VisitError as error:
+        if isinstance(error.orig_exc, _MistakeError):
+            return error.orig_exc.diagnostic
+        raise
+    return check_names(sentence) or check_response_kinds(sentence) or sentence
+
+
+class _MistakeError(Exception):
+    """Carries a diagnostic out of the parser's callbacks."""
+
+    def __init__(self, diagnostic: Diagnostic) -> None:
+        super().__init__(diagnostic.message)
+        self.diagnostic = diagnostic
+
+
+_text: ContextVar[Span] = ContextVar("_text")
+"""The sentence being parsed: the grammar's callbacks turn token positions into spans of it."""
+
+
+@contextmanager
+def _places_in(text: Span) -> Iterator[None]:
+    token = _text.set(text)
+    try:
+        yield
+    finally:
+        _text.reset(token)
+
+
+def _span(first: Token, last: Token | None = None) -> Span:
+    start, end = first.start_pos, (last or first).end_pos
+    assert start is not None
+    assert end is not None
+    return _text.get().part(start, end)
+
+
+@cache
+def _lark() -> Lark:
+    grammar = files("fretish").joinpath("grammar.lark").read_text(encoding="utf-8")
+    return Lark(
+        grammar,
+        parser="lalr",
+        lexer="basic",
+        propagate_positions=True,
+        maybe_placeholders=False,
+    )
+
+
+def _meta_span(meta: Any) -> Span:
+    return _text.get().part(meta.start_pos, meta.end_pos)
+
+
+def _parts(children: list[Any]) -> list[Any]:
+    """The trees among the children: key words have done their work."""
+    return [child for child in children if not isinstance(child, Token)]
+
+
+def _scoped(kind: s.ScopeKind) -> Callable[..., s.Scope]:
+    def build(self: object, meta: Any, children: list[Any]) -> s.Scope:
+        (mode,) = _parts(children)
+        return s.Scope(kind, mode, _meta_span(meta))
+
+    return build
+
+
+def _timed(kind: Callable[..., s.Timing]) -> Callable[..., _Timed]:
+    def build(self: object, meta: Any, children: list[Any]) -> _Timed:
+        return _Timed((kind(*_parts(children)), _meta_span(meta)))
+
+    return build
+
+
+class _Timed(tuple[s.Timing, Span]):
+    """A timing with its place, on the way to the sentence."""
+
+    __slots__ = ()
+
+
+class _Component(tuple[str, Span]):
+    """The component's name with its place, on the way to the sentence."""
+
+    __slots__ = ()
+
+
+@v_args(meta=True)
+class _Build(Transformer_NonRecursive[Token, Any]):
+    """Parse tree → `Sentence`, without recursion: a sentence may nest as deep as it likes."""
+
+    # Names and operands
+
+    def identifier(self, meta: Any, children: list[Token]) -> e.Name:
+        (token,) = children
+        text = str(token)
+        return e.Name(text[1:-1] if text.startswith('"') else text, _span(token))
+
+    def name(self, meta: Any, children: list[e.Name]) -> e.Name:
+        return children[0]
+
+    def named_mode(self, meta: Any, children: list[Any]) -> e.Name:
+        return cast(e.Name, _parts(children)[0])
+
+    def number(self, meta: Any, children: list[Token]) -> e.Number:
+        return e.Number(str(children[0]))
+
+    def truth(self, meta: Any, children: list[Token]) -> e.Truth:
+        return e.Truth(children[0] == "true")
+
+    def call(self, meta: Any, children: list[Any]) -> e.Call:
+        name, *args = children
+        return e.Call(name.id, tuple(args), _meta_span(meta))
+
+    def occurrence(self, meta: Any, children: list[Any]) -> e.Call:
+        past = any(isinstance(c, Token) and c.type == "PREVIOUS" for c in children)
+        return e.Call("prevOcc" if past else "nextOcc", tuple(_parts(children)), _meta_span(meta))
+
+    # Operators
+
+    def not_(self, meta: Any, children: list[e.Expression]) -> e.Expression:
+        return e.Not(children[0])
+
+    def both(self, meta: Any, children: list[e.Expression]) -> e.Expression:
+        return e.both(*children)
+
+    def either(self, meta: Any, children: list[e.Expression]) -> e.Expression:
+        return e.either(*children)
+
+    def xor(self, meta: Any, children: list[Any]) -> e.Expression:
+        return e.Xor(*_parts(children))
+
+    def implies(self, meta: Any, children: list[e.Expression]) -> e.Expression:
+        return e.Implies(*children)
+
+    def iff(self, meta: Any, children: list[e.Expression]) -> e.Expression:
+        return e.Iff(*children)
+
+    def if_then(self, meta: Any, children: list[Any]) -> e.Expression:
+        return e.Implies(*_parts(children))
+
+    def compare(self, meta: Any, children: list[Token]) -> str:
+        return str(children[0])
+
+    def comparison(self, meta: Any, children: list[Any]) -> e.Expression:
+        left, op, right = children
+        return e.Comparison(op, left, right, _meta_span(meta))
+
+    def arithmetic(self, meta: Any, children: list[Any]) -> e.Expression:
+        left, op, right = children
+        return e.Arithmetic(cast(e.ArithmeticOperator, str(op).lower()), left, right)
+
+    def negation(self, meta: Any, children: list[Any]) -> e.Expression:
+        return e.Negation(_parts(children)[0])
+
+    # Parts of the sentence
+
+    scope_in = _scoped(s.ScopeKind.IN)
+    scope_not_in = _scoped(s.ScopeKind.NOT_IN)
+    scope_before = _scoped(s.ScopeKind.BEFORE)
+    scope_after = _scoped(s.ScopeKind.AFTER)
+    scope_only_in = _scoped(s.ScopeKind.ONLY_IN)
+    scope_only_before = _scoped(s.ScopeKind.ONLY_BEFORE)
+    scope_only_after = _scoped(s.ScopeKind.ONLY_AFTER)
+
+    immediately = _timed(s.Immediately)
+    next = _timed(s.Next)
+    finally_ = _timed(s.Finally)
+    eventually = _timed(s.Eventually)
+    always = _timed(s.Always)
+    never = _timed(s.Never)
+    within = _timed(s.Within)
+    for_ = _timed(s.For)
+    after = _timed(s.After)
+    until = _timed(s.Until)
+    before = _timed(s.Before)
+
+    def item(self, meta: Any, children: list[Any]) -> s.Condition:
+        word, expression, *truth = children[0], children[1], *children[2:]
+        negated = (word.type == "UNLESS") != any(token.type == "IS_FALSE" for token in truth)
+        kind = s.ConditionKind.HOLDING if word.type == "WHENEVER" else s.ConditionKind.TRIGGER
+        return s.Condition(
+            kind, e.Not(expression) if negated else expression, word.lower(), _meta_span(meta)
+        )
+
+    def joined(self, meta: Any, children: list[Any]) -> tuple[bool, s.Condition]:
+        return (children[0] != children[-1] and children[0].type == "OR", children[-1])
+
+    def condition(self, meta: Any, children: list[Any]) -> s.Condition:
+        """`and` and `or` associate to the left with equal rank; one trigger makes all a trigger."""
+        first, *rest = _parts(children)
+        expression, kind = first.expression, first.kind
+        for disjoined, item in rest:
+            join = e.either if disjoined else e.both
+            expression = join(expression, item.expression)
+            kind = kind if item.kind is s.ConditionKind.HOLDING else item.kind
+        return s.Condition(kind, expression, first.word, _meta_span(meta))
+
+    def component(self, meta: Any, children: list[Any]) -> _Component:
+        (name,) = _parts(children)
+        return _Component((name.id, name.span))
+
+    def probability(self, meta: Any, children: list[Any]) -> s.Probability:
+        _, _, op, *digits = children
+        text = "".join(digits)
+        bound = Fraction(text)
+        if not 0 <= bound <= 1 or (op == "<" and bound == 0) or (op == ">" and bound == 1):
+            raise _MistakeError(_bad_probability(text, _meta_span(meta)))
+        return s.Probability(op, bound, text)
+
+    def duration(self, meta: Any, children: list[Token]) -> s.Duration:
+        *digits, unit = children
+        text = "".join(digits)
+        if not text.isdigit():
+            raise _MistakeError(_bad_duration(text, _span(children[0], digits[-1])))
+        return s.Duration(int(text), _UNITS[unit.type], _meta_span(meta))
+
+    def start(self, meta: Any, children: list[Any]) -> s.Sentence:
+        *parts, response = _parts(children)
+        found = {type(part): part for part in parts}
+        timing, timing_span = found.get(_Timed, (s.Eventually(written=False), None))
+        component, component_span = found[_Component]
+        return s.Sentence(
+            scope=found.get(s.Scope),
+            condition=found.get(s.Condition),
+            component=component,
+            probability=found.get(s.Probability),
+            timing=timing,
+            response=response,
+            span=_meta_span(meta),
+            component_span=component_span,
+            timing_span=timing_span,
+        )
+
+
+# What went wrong ---------------------------------------------------------------------------
+
+_GROUPS: tuple[tuple[str, frozenset[str]], ...] = (
+    ("a scope (`in m`, `before m`, ...)", frozenset({"DURING", "EXCEPT", "ONLY", "WHILE"})),
+    ("a condition (`whenever p`, `when p`, ...)", frozenset({"WHENEVER", "UPON"})),
+    ("`shall`", frozenset({"SHALL"})),
+    ("a timing (`eventually`, `within 3 seconds`, ...)", frozenset({"EVENTUALLY", "WITHIN"})),
+    ("`satisfy`", frozenset({"SATISFY"})),
+    ("a unit (`ticks`, `milliseconds`, `seconds`, ...)", frozenset({"TICK", "SECOND"})),
+    ("a name", frozenset({"ID"})),
+    ("a number", frozenset({"NUMBER"})),
+    ("a comparison (`<`, `>=`, ...)", frozenset({"LESS"})),
+    ("an operator (`&`, `|`, `->`, ...)", frozenset({"_AMPERSAND", "_IMPLIES"})),
+    ("`then`", frozenset({"THEN"})),
+    ("`TRUE` or `FALSE` in capitals", frozenset({"IS_TRUE"})),
+    ("`timepoint`", frozenset({"TIMEPOINT"})),
+    ("`mode`", frozenset({"MODE"})),
+    ("`probability`", frozenset({"PROBABILITY"})),
+    ("`occurrence of`", frozenset({"OCCURRENCE"})),
+    ("`,`", frozenset({"_COMMA"})),
+    ("`)`", frozenset({"RPAR"})),
+    ("the end of the sentence", frozenset({"$END"})),
+)
+"""What the grammar may expect, in the words of a reader, in the order of a sentence."""
+
+_UNIT_TERMINALS = frozenset(_UNITS)
+_STARTS_EXPRESSION = frozenset(
+    {"ID", "QUOTED", "NUMBER", "TRUE", "FALSE", "_BANG", "LPAR", "MINUS"}
+)
+
+
+def _unexpected(error: UnexpectedToken, text: Span) -> Diagnostic:
+    token: Token = error.token
+    accepts = frozenset(error.accepts or error.expected)
+    at_end = token.type == "$END"
+    place = text.part(len(text.text.rstrip()), len(text.text.rstrip())) if at_end else None
+    span = place or _token_span(token, text)
+    before = error.token_history[-1] if error.token_history else None
+    return (
+        _missing_unit(token, accepts, span, at_end)
+        or _misspelt(token, before, accepts, text)
+        or _missing_satisfy(token, accepts, span, text)
+        or _missing_component(token, accepts, span)
+        or _key_word_as_name(token, accepts, span)
+        or _not_fretish(token, accepts, span, at_end)
+    )
+
+
+def _token_span(token: Token, text: Span) -> Span:
+    assert token.start_pos is not None
+    assert token.end_pos is not None
+    return text.part(token.start_pos, token.end_pos)
+
+
+def _misspelt(
+    token: Token, before: Token | None, accepts: frozenset[str], text: Span
+) -> Diagnostic | None:
+    """A name stands where only a key word fits, and one key word is near."""
+    suspects = [token] if "ID" not in accepts else []
+    if before is not None and "SHALL" in accepts:
+        suspects.append(before)
+    for suspect in suspects:
+        near = suggestion(str(suspect), KEYWORDS, cutoff=0.72)
+        if suspect.type == "ID" and near is not None:
+            return Diagnostic(
+                Code.MISSPELT,
+                f"`{suspect}` is no word of FRETish here",
+                _token_span(suspect, text),
+                help=f"did you mean `{near}`?",
+            )
+    return None
+
+
+def _missing_unit(
+    token: Token, accepts: frozenset[str], span: Span, at_end: bool
+) -> Diagnostic | None:
+    if not accepts & _UNIT_TERMINALS:
+        return None
+    found = "" if at_end or token.type == "SATISFY" else f", and `{token}` is none"
+    return Diagnostic(
+        Code.BAD_DURATION,
+        f"a duration needs a unit{found}",
+        span,
+        help="write ticks, microseconds, milliseconds, seconds, minutes or hours: "
+        "`within 3 seconds`",
+    )
+
+
+def _missing_satisfy(
+    token: Token, accepts: frozenset[str], span: Span, text: Span
+) -> Diagnostic | None:
+    if "SATISFY" not in accepts or token.type not in _STARTS_EXPRESSION:
+        return None
+    end = len(text.text.rstrip().rstrip("."))
+    response = text.source.span(span.start, max(span.end, text.start + end))
+    return Diagnostic(
+        Code.MISSING_SATISFY,
+        f"missing `satisfy` before `{response.text}`",
+        response,
+        help=f"write `satisfy {response.text}`",
+    )
+
+
+def _missing_component(token: Token, accepts: frozenset[str], span: Span) -> Diagnostic | None:
+    if token.type != "SHALL" or "ID" not in accepts:
+        return None
+    return Diagnostic(
+        Code.MISSING_COMPONENT,
+        "there is no component before `shall`",
+        span,
+        help="name what must satisfy the requirement: `the rover shall ...`",
+    )
+
+
+def _key_word_as_name(token: Token, accepts: frozenset[str], span: Span) -> Diagnostic | None:
+    if "ID" not in accepts or str(token).lower() not in KEYWORDS:
+        return None
+    return Diagnostic(
+        Code.RESERVED,
+        f"`{token}` is a key word of FRETish and cannot be a name",
+        span,
+        help=f'choose another name, or quote it: `"{token}"`',
+    )
+
+
+def _not_fretish(token: Token, accepts: frozenset[str], span: Span, at_end: bool) -> Diagnostic:
+    expected = [words for words, terminals in _GROUPS if accepts & terminals]
+    what = "the sentence ends too early" if at_end else f"`{token}` does not fit here"
+    return Diagnostic(
+        Code.NOT_FRETISH,
+        what,
+        span,
+        help=f"expected {_one_of(expected)}" if expected else None,
+    )
+
+
+def _one_of(words: list[str]) -> str:
+    return words[0] if len(words) == 1 else f"{', '.join(words[:-1])} or {words[-1]}"
+
+
+def _unknown_character(error: UnexpectedCharacters, text: Span) -> Diagnostic:
+    at = error.pos_in_stream or 0
+    span = text.part(at, at + 1)
+    mends = {
+        "[": 'quote a name with brackets: `"a[3]"`',
+        "_": "a name begins with a letter",
+        '"': "close the quotes",
+        "\N{LEFT DOUBLE QUOTATION MARK}": 'use straight quotes: `"`',
+    }
+    return Diagnostic(
+        Code.NOT_FRETISH,
+        f"`{span.text}` is no character of FRETish",
+        span,
+        help=mends.get(span.text, "names are letters, digits, `_`, `.` and `%`"),
+    )
+
+
+def _bad_duration(digits: str, span: Span) -> Diagnostic:
+    return Diagnostic(
+        Code.BAD_DURATION,
+        f"a duration counts whole units, and `{digits}` is no whole number",
+        span,
+        help="use a smaller unit: `within 2500 milliseconds`",
+    )
+
+
+def _bad_probability(digits: str, span: Span) -> Diagnostic:
+    return Diagnostic(
+        Code.BAD_PROBABILITY,
+        f"no run can have the probability `{span.text}`",
+        span,
+        help="a probability lies between 0 and 1; `> 1` and `< 0` can never hold",
+    )

@@ -1,0 +1,143 @@
+"""Tree → text: the canonical sentence, and expressions with as few parentheses as may be."""
+
+from __future__ import annotations
+
+import re
+from typing import assert_never
+
+from fretish import expressions as e
+from fretish import syntax as s
+from fretish.clock import written
+
+_IFF, _IMPLIES, _XOR, _OR, _AND, _NOT, _COMPARE, _SUM, _PRODUCT, _SIGN, _POWER, _OPERAND = range(12)
+_PLAIN = re.compile(r"[A-Za-z](?:[A-Za-z0-9_.%]*[A-Za-z0-9_%])?")
+_RANK = {"+": _SUM, "-": _SUM, "*": _PRODUCT, "/": _PRODUCT, "mod": _PRODUCT, "^": _POWER}
+
+_SCOPES = {
+    s.ScopeKind.IN: "while {}",
+    s.ScopeKind.NOT_IN: "except while {}",
+    s.ScopeKind.BEFORE: "before {}",
+    s.ScopeKind.AFTER: "after {}",
+    s.ScopeKind.ONLY_IN: "only while {}",
+    s.ScopeKind.ONLY_BEFORE: "only before {}",
+    s.ScopeKind.ONLY_AFTER: "only after {}",
+}
+
+
+def sentence(tree: s.Sentence) -> str:
+    """The canonical wording: parsing it gives an equal tree."""
+    parts = [
+        _scope(tree.scope) if tree.scope else "",
+        _condition(tree.condition) if tree.condition else "",
+        f"the {identifier(tree.component)} shall",
+        f"with probability {tree.probability.op} {tree.probability.digits}"
+        if tree.probability
+        else "",
+        timing(tree.timing),
+        f"satisfy {expression(tree.response)}",
+    ]
+    text = " ".join(part for part in parts if part)
+    return text[0].upper() + text[1:] if text.startswith("the ") else text
+
+
+def _scope(scope: s.Scope) -> str:
+    return _SCOPES[scope.kind].format(expression(scope.mode)) + ","
+
+
+def _condition(condition: s.Condition) -> str:
+    if condition.kind is s.ConditionKind.HOLDING:
+        return f"whenever {expression(condition.expression)}"
+    word = condition.word if condition.word in ("when", "if", "where") else "upon"
+    return f"{word} {expression(condition.expression)}"
+
+
+def timing(tree: s.Timing) -> str:
+    """`within 3 seconds`; empty where the sentence gives no timing."""
+    match tree:
+        case s.Immediately():
+            return "immediately"
+        case s.Next():
+            return "at the next timepoint"
+        case s.Finally():
+            return "finally"
+        case s.Eventually(stated):
+            return "eventually" if stated else ""
+        case s.Always():
+            return "always"
+        case s.Never():
+            return "never"
+        case s.Within(duration):
+            return f"within {written(duration)}"
+        case s.For(duration):
+            return f"for {written(duration)}"
+        case s.After(duration):
+            return f"after {written(duration)}"
+        case s.Until(stop):
+            return f"until {expression(stop)}"
+        case s.Before(stop):
+            return f"before {expression(stop)}"
+        case _:
+            assert_never(tree)
+
+
+def identifier(id: str) -> str:
+    """The name, in quotes where it needs them."""
+    return id if _PLAIN.fullmatch(id) else f'"{id}"'
+
+
+def expression(tree: e.Expression) -> str:
+    """FRETish, or the language of bindings for what only they can say."""
+    return _at(tree, _IFF)
+
+
+def _at(tree: e.Expression, loosest: int) -> str:
+    """The text, in parentheses where its operator binds looser than its place allows."""
+    rank, text = _ranked(tree)
+    return text if rank >= loosest else f"({text})"
+
+
+def _ranked(tree: e.Expression) -> tuple[int, str]:
+    match tree:
+        case e.Truth(value):
+            return _OPERAND, str(value).lower()
+        case e.Name(id):
+            return _OPERAND, identifier(id)
+        case e.Number(digits):
+            return _OPERAND, digits
+        case e.Quantity(digits, unit):
+            return _OPERAND, f"{digits} {unit}"
+        case e.Call(name, args):
+            return _OPERAND, f"{identifier(name)}({', '.join(expression(arg) for arg in args)})"
+        case e.Negation(arg):
+            return _SIGN, f"-{_at(arg, _SIGN)}"
+        case e.Not(arg):
+            return _NOT, f"!{_at(arg, _OPERAND)}"
+        case e.Held(arg, duration):
+            return _IFF, f"{_at(arg, _OR)} for {duration} ns"
+        case e.And(args):
+            return _AND, " & ".join(_at(arg, _NOT) for arg in args)
+        case e.Or(args):
+            return _OR, " | ".join(_at(arg, _AND) for arg in args)
+        case _:
+            return _binary(tree)
+
+
+def _binary(
+    tree: e.Xor | e.Implies | e.Iff | e.Comparison | e.Arithmetic,
+) -> tuple[int, str]:
+    match tree:
+        case e.Xor(left, right):
+            return _XOR, f"{_at(left, _XOR)} xor {_at(right, _OR)}"
+        case e.Implies(left, right):
+            return _IMPLIES, f"{_at(left, _XOR)} -> {_at(right, _IMPLIES)}"
+        case e.Iff(left, right):
+            return _IFF, f"{_at(left, _IFF)} <-> {_at(right, _IMPLIES)}"
+        case e.Comparison(op, left, right):
+            return _COMPARE, f"{_at(left, _SUM)} {op} {_at(right, _SUM)}"
+        case e.Arithmetic("^", left, right):
+            return _POWER, f"{_at(left, _OPERAND)} ^ {_at(right, _SIGN)}"
+        case e.Arithmetic(op, left, right):
+            rank = _RANK[op]
+            return rank, f"{_at(left, rank)} {op} {_at(right, rank + 1)}"
+        case _:
+            assert_never(tree)

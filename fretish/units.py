@@ -1,0 +1,117 @@
+"""Physical units: what bindings may say after a number, and exact conversion between them.
+
+Seven base dimensions; angles count as one, so that radians never pass for plain numbers.
+Source of the factors: The International System of Units (SI Brochure, 9th edition), tables 2-8.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from dataclasses import dataclass
+from fractions import Fraction
+
+_BASES = ("m", "kg", "s", "A", "K", "rad")
+Dimension = tuple[int, ...]
+"""Exponents of metre, kilogram, second, ampere, kelvin, radian."""
+
+DIMENSIONLESS: Dimension = (0,) * len(_BASES)
+
+
+@dataclass(frozen=True, slots=True)
+class Unit:
+    """A product of powers of the bases, times a factor; 1 km is 1000 times the base unit m."""
+
+    dimension: Dimension
+    factor: Fraction
+
+    def __str__(self) -> str:
+        """The base unit of the dimension: `m/s`, `rad`, or nothing for a plain number."""
+        return base_name(self.dimension)
+
+
+def _base(name: str, factor: Fraction | int = 1) -> Unit:
+    return Unit(tuple(int(name == base) for base in _BASES), Fraction(factor))
+
+
+def _times(left: Unit, right: Unit, power: int = 1) -> Unit:
+    dimension = tuple(a + power * b for a, b in zip(left.dimension, right.dimension, strict=True))
+    return Unit(dimension, left.factor * right.factor**power)
+
+
+ONE = Unit(DIMENSIONLESS, Fraction(1))
+_METRE, _KILOGRAM, _SECOND = _base("m"), _base("kg"), _base("s")
+_NEWTON = Unit((1, 1, -2, 0, 0, 0), Fraction(1))
+_VOLT = Unit((2, 1, -3, -1, 0, 0), Fraction(1))
+
+_UNITS: dict[str, Unit] = {
+    "1": ONE,
+    "%": Unit(DIMENSIONLESS, Fraction(1, 100)),
+    "m": _METRE,
+    "km": _base("m", 1000),
+    "dm": _base("m", Fraction(1, 10)),
+    "cm": _base("m", Fraction(1, 100)),
+    "mm": _base("m", Fraction(1, 1000)),
+    "um": _base("m", Fraction(1, 10**6)),
+    "s": _SECOND,
+    "ms": _base("s", Fraction(1, 1000)),
+    "us": _base("s", Fraction(1, 10**6)),
+    "ns": _base("s", Fraction(1, 10**9)),
+    "min": _base("s", 60),
+    "h": _base("s", 3600),
+    "rad": _base("rad"),
+    "mrad": _base("rad", Fraction(1, 1000)),
+    "deg": _base("rad", Fraction(math.pi) / 180),
+    "kg": _KILOGRAM,
+    "g": _base("kg", Fraction(1, 1000)),
+    "A": _base("A"),
+    "mA": _base("A", Fraction(1, 1000)),
+    "K": _base("K"),
+    "N": _NEWTON,
+    "Nm": _times(_NEWTON, _METRE),
+    "Pa": _times(_NEWTON, _METRE, -2),
+    "kPa": Unit((-1, 1, -2, 0, 0, 0), Fraction(1000)),
+    "bar": Unit((-1, 1, -2, 0, 0, 0), Fraction(10**5)),
+    "V": _VOLT,
+    "mV": Unit(_VOLT.dimension, Fraction(1, 1000)),
+    "W": _times(_VOLT, _base("A")),
+    "Hz": Unit((0, 0, -1, 0, 0, 0), Fraction(1)),
+}
+NAMES = tuple(_UNITS)
+_FACTOR = re.compile(r"([A-Za-z%]+|1)(?:\^?(-?\d+))?")
+
+
+def unit(text: str) -> Unit | None:
+    """Read `m`, `m/s`, `m/s^2`, `kg*m/s2`; None where a part is not known."""
+    result = ONE
+    for position, factors in enumerate(text.replace(" ", "").split("/")):
+        for factor in factors.split("*"):
+            match = _FACTOR.fullmatch(factor)
+            if match is None or match[1] not in _UNITS:
+                return None
+            power = int(match[2] or 1) * (1 if position == 0 else -1)
+            result = _times(result, _UNITS[match[1]], power)
+    return result
+
+
+def base_name(dimension: Dimension) -> str:
+    """`m/s` for (1, 0, -1, 0, 0, 0); empty for a plain number."""
+    above = [_power(b, n) for b, n in zip(_BASES, dimension, strict=True) if n > 0]
+    below = [_power(b, -n) for b, n in zip(_BASES, dimension, strict=True) if n < 0]
+    return "/".join(["*".join(above) or ("1" if below else ""), *below])
+
+
+def _power(base: str, exponent: int) -> str:
+    return base if exponent == 1 else f"{base}^{exponent}"
+
+
+_DURATION = re.compile(r"\s*(\d+(?:\.\d+)?)\s*(ns|us|ms|s|min|h)\s*")
+
+
+def nanoseconds(text: str) -> int | None:
+    """`100 ms` → 100 000 000; None where it is no whole number of nanoseconds."""
+    match = _DURATION.fullmatch(text)
+    if match is None:
+        return None
+    exact = Fraction(match[1]) * _UNITS[match[2]].factor * 10**9
+    return int(exact) if exact.denominator == 1 else None
