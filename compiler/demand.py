@@ -1,0 +1,190 @@
+"""What a sentence demands at each trigger, as formulas without any time in them.
+
+Between the tree and the temporal formulas: expressions have become Boolean formulas, durations
+ticks, and the `only` scopes their negated timing (SEMANTICS: the negated forms are duals).
+Source: Giannakopoulou, Pressburger, Mavridou, Schumann, Automated formalization of structured
+natural language requirements, IST 137 (2021), section 4.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import Enum, auto
+from typing import assert_never
+
+from compiler import formula as f
+from fretish import expressions as e
+from fretish import syntax as s
+from fretish.printer import identifier
+
+
+class Kind(Enum):
+    """The timings, after `never` has become `always not` and a missing one `eventually`."""
+
+    IMMEDIATELY = auto()
+    NEXT = auto()
+    FINALLY = auto()
+    EVENTUALLY = auto()
+    ALWAYS = auto()
+    WITHIN = auto()
+    FOR = auto()
+    AFTER = auto()
+    NOT_AFTER = auto()
+    """The dual of `AFTER`: the response comes too early, or not right after."""
+    UNTIL = auto()
+    BEFORE = auto()
+
+
+@dataclass(frozen=True, slots=True)
+class Demand:
+    """At each trigger: `response`, as `kind` says, counting `ticks` or watching for `stop`."""
+
+    kind: Kind
+    response: f.Formula
+    ticks: int = 0
+    stop: f.Formula = f.FALSE
+
+
+@dataclass(frozen=True, slots=True)
+class Obligation:
+    """A whole sentence: where (scope), when (condition), what (demand).
+
+    `scope` None is the whole trace, `condition` None triggers once, at the start of the scope.
+    """
+
+    scope: s.ScopeKind | None
+    mode: f.Formula
+    condition: s.ConditionKind | None
+    trigger: f.Formula
+    demand: Demand
+
+
+def obligation(sentence: s.Sentence, ticks: int) -> Obligation:
+    """The sentence without its words.
+
+    Args:
+        sentence: a checked sentence.
+        ticks: what its duration counts; 0 where it has none.
+    """
+    scope, condition = sentence.scope, sentence.condition
+    demand = _demand(sentence.timing, boolean(sentence.response), ticks)
+    return Obligation(
+        scope.kind if scope else None,
+        boolean(scope.mode) if scope else f.TRUE,
+        condition.kind if condition else None,
+        boolean(condition.expression) if condition else f.TRUE,
+        dual(demand) if scope and scope.kind.negates else demand,
+    )
+
+
+def _demand(timing: s.Timing, response: f.Formula, ticks: int) -> Demand:
+    match timing:
+        case s.Immediately():
+            return Demand(Kind.IMMEDIATELY, response)
+        case s.Next():
+            return Demand(Kind.NEXT, response)
+        case s.Finally():
+            return Demand(Kind.FINALLY, response)
+        case s.Eventually():
+            return Demand(Kind.EVENTUALLY, response)
+        case s.Always():
+            return Demand(Kind.ALWAYS, response)
+        case s.Never():
+            return Demand(Kind.ALWAYS, f.not_(response))
+        case s.Within():
+            return Demand(Kind.WITHIN, response, ticks)
+        case s.For():
+            return Demand(Kind.FOR, response, ticks)
+        case s.After():
+            return Demand(Kind.AFTER, response, ticks)
+        case s.Until(stop):
+            return Demand(Kind.UNTIL, response, stop=boolean(stop))
+        case s.Before(stop):
+            return Demand(Kind.BEFORE, response, stop=boolean(stop))
+        case _:
+            assert_never(timing)
+
+
+_DUALS = {
+    Kind.IMMEDIATELY: Kind.IMMEDIATELY,
+    Kind.NEXT: Kind.NEXT,
+    Kind.FINALLY: Kind.FINALLY,
+    Kind.EVENTUALLY: Kind.ALWAYS,
+    Kind.ALWAYS: Kind.EVENTUALLY,
+    Kind.WITHIN: Kind.FOR,
+    Kind.FOR: Kind.WITHIN,
+    Kind.UNTIL: Kind.BEFORE,
+    Kind.BEFORE: Kind.UNTIL,
+}
+
+
+def dual(demand: Demand) -> Demand:
+    """The negated timing: what an `only` scope demands outside of itself."""
+    if demand.kind is Kind.AFTER:
+        return Demand(Kind.NOT_AFTER, demand.response, demand.ticks)
+    return Demand(_DUALS[demand.kind], f.not_(demand.response), demand.ticks, demand.stop)
+
+
+def boolean(expression: e.Expression) -> f.Formula:
+    """A Boolean expression as a formula; comparisons and calls become atoms."""
+    match expression:
+        case e.Truth(value):
+            return f.Const(value)
+        case e.Name(id):
+            return f.Atom(id)
+        case e.Comparison() | e.Call():
+            return f.Atom(_atom(expression))
+        case e.Not(arg):
+            return f.not_(boolean(arg))
+        case e.And(args):
+            return f.and_(*map(boolean, args))
+        case e.Or(args):
+            return f.or_(*map(boolean, args))
+        case e.Xor(left, right):
+            return f.xor(boolean(left), boolean(right))
+        case e.Implies(left, right):
+            return f.implies(boolean(left), boolean(right))
+        case e.Iff(left, right):
+            return f.iff(boolean(left), boolean(right))
+        case e.Number() | e.Quantity() | e.Negation() | e.Arithmetic() | e.Held():
+            raise AssertionError(f"not a truth value of a sentence: {expression}")
+        case _:
+            assert_never(expression)
+
+
+def _atom(expression: e.Expression) -> str:
+    """FRET's text of an atom: every operator in parentheses, `(x + (2 * y))`."""
+    match expression:
+        case e.Comparison(op, left, right) | e.Arithmetic(op, left, right):
+            return f"({_atom(left)} {op} {_atom(right)})"
+        case e.Negation(arg):
+            return f"(- {_atom(arg)})"
+        case e.Call(name, args):
+            return f"{identifier(name)}({','.join(_atom(arg) for arg in args)})"
+        case e.Name(id):
+            return identifier(id)
+        case e.Number(digits):
+            return digits
+        case e.Truth(value):
+            return str(value).upper()
+        case _:
+            return f"({_boolean_atom(expression)})"
+
+
+def _boolean_atom(expression: e.Expression) -> str:
+    """A Boolean argument of a call."""
+    match expression:
+        case e.Not(arg):
+            return f"! {_atom(arg)}"
+        case e.And(args):
+            return " & ".join(map(_atom, args))
+        case e.Or(args):
+            return " | ".join(map(_atom, args))
+        case e.Xor(left, right):
+            return f"{_atom(left)} xor {_atom(right)}"
+        case e.Implies(left, right):
+            return f"{_atom(left)} -> {_atom(right)}"
+        case e.Iff(left, right):
+            return f"{_atom(left)} <-> {_atom(right)}"
+        case _:
+            raise AssertionError(f"not an argument: {expression}")

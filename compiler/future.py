@@ -1,0 +1,130 @@
+"""Future-time logic: what a sentence says about the ticks ahead of tick 0.
+
+One construction serves both kinds of trace: the formula about finite traces mentions `LAST`; on
+infinite traces `LAST` is false, and the same formula folds to the other (`formula.endless`).
+
+An interval [L, R] is a stretch of ticks on which the scope is active. Inside of it `end` is true
+at R and not before, so that `end R x` says x on all of the interval from here on, and `!end U x`
+says x somewhere on it. Source: SEMANTICS of FRETish, scopes and timings; the shapes follow
+Giannakopoulou et al., IST 137 (2021), section 5, rebuilt from the meaning.
+"""
+
+from __future__ import annotations
+
+from typing import assert_never
+
+from compiler.demand import Demand, Kind, Obligation
+from compiler.formula import (
+    FALSE,
+    LAST,
+    Formula,
+    Interval,
+    and_,
+    eventually,
+    globally,
+    implies,
+    next_,
+    not_,
+    or_,
+    release,
+    until,
+)
+from fretish.syntax import ConditionKind, ScopeKind
+
+
+def future(obligation: Obligation) -> Formula:
+    """The formula about finite traces, evaluated at tick 0."""
+    m, condition = obligation.mode, obligation
+    match obligation.scope:
+        case None:
+            return _enforced(condition, LAST)
+        case ScopeKind.IN:
+            return _on_runs(m, _enforced(condition, _leaves(m)))
+        case ScopeKind.NOT_IN | ScopeKind.ONLY_IN:
+            return _on_runs(not_(m), _enforced(condition, _leaves(not_(m))))
+        case ScopeKind.BEFORE:
+            return or_(m, _enforced(condition, _leaves(not_(m))))
+        case ScopeKind.AFTER:
+            # left: the last tick of the first run of m; the interval begins one tick later.
+            left = and_(m, not_(LAST), next_(not_(m)))
+            return release(or_(left, LAST), implies(left, next_(_enforced(condition, LAST))))
+        case ScopeKind.ONLY_BEFORE:
+            return release(or_(m, LAST), implies(m, _enforced(condition, LAST)))
+        case ScopeKind.ONLY_AFTER:
+            return _enforced(condition, or_(LAST, and_(m, next_(not_(m)))))
+        case _:
+            assert_never(obligation.scope)
+
+
+def _leaves(inside: Formula) -> Formula:
+    """The last tick of a run, seen from within the run."""
+    return or_(LAST, next_(not_(inside)))
+
+
+def _on_runs(inside: Formula, enforced: Formula) -> Formula:
+    """`enforced` at the first tick of every maximal run of `inside`."""
+    enters = and_(not_(LAST), not_(inside), next_(inside))
+    return and_(
+        release(LAST, implies(enters, next_(enforced))),
+        implies(inside, enforced),
+    )
+
+
+def _enforced(obligation: Obligation, end: Formula) -> Formula:
+    """At the first tick of an interval: the demand at every trigger of the interval."""
+    demanded = _demanded(obligation.demand, end)
+    p = obligation.trigger
+    match obligation.condition:
+        case None:
+            return demanded
+        case ConditionKind.HOLDING:
+            return release(end, implies(p, demanded))
+        case ConditionKind.TRIGGER:
+            rises = and_(not_(p), not_(end), next_(p))
+            return and_(
+                release(end, implies(rises, next_(demanded))),
+                implies(p, demanded),
+            )
+        case _:
+            assert_never(obligation.condition)
+
+
+def _demanded(demand: Demand, end: Formula) -> Formula:
+    """The demand at a trigger, here and now."""
+    q, s, n = demand.response, demand.stop, demand.ticks
+    match demand.kind:
+        case Kind.IMMEDIATELY:
+            return q
+        case Kind.NEXT:
+            return or_(end, next_(q))
+        case Kind.FINALLY:
+            return release(end, implies(end, q))
+        case Kind.EVENTUALLY:
+            return until(not_(end), q)
+        case Kind.ALWAYS:
+            return release(end, q)
+        case Kind.WITHIN:
+            return _within(q, n, end)
+        case Kind.FOR:
+            return _for(q, n, end)
+        case Kind.AFTER:
+            return and_(_for(not_(q), n, end), _within(q, n + 1, end))
+        case Kind.NOT_AFTER:
+            return or_(_within(q, n, end), _for(not_(q), n + 1, end))
+        case Kind.UNTIL:
+            return release(or_(s, end), or_(s, q))
+        case Kind.BEFORE:
+            return release(or_(q, end), not_(s))
+        case _:
+            assert_never(demand.kind)
+
+
+def _within(q: Formula, n: int, end: Formula) -> Formula:
+    """Q within n ticks, or the interval ends before the n-th."""
+    ends = eventually(end, Interval(0, n - 1)) if n > 0 else FALSE
+    return or_(eventually(q, Interval(0, n)), ends)
+
+
+def _for(q: Formula, n: int, end: Formula) -> Formula:
+    """Q for n ticks and the present one, or up to the end of the interval."""
+    return or_(globally(q, Interval(0, n)), release(end, q)) if n else q

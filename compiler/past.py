@@ -1,0 +1,299 @@
+"""Past-time logic: what a sentence says about the ticks up to now.
+
+`past` is true at the last tick of a finite trace exactly when the trace satisfies the sentence,
+and at every tick before it for the trace up to there. `watch` says the same as signals that a
+monitor steps: where a demand is triggered, broken and still owed.
+
+Source: SEMANTICS of FRETish, section 3; the shapes follow Giannakopoulou et al., IST 137 (2021),
+section 5, rebuilt from the meaning.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import assert_never
+
+from compiler.demand import Demand, Kind, Obligation
+from compiler.formula import (
+    EVER,
+    FALSE,
+    FIRST,
+    TRUE,
+    And,
+    Formula,
+    Historically,
+    Implies,
+    Interval,
+    Not,
+    Or,
+    and_,
+    historically,
+    implies,
+    not_,
+    once,
+    or_,
+    previous,
+    since,
+    weak_previous,
+)
+from fretish.syntax import ConditionKind, ScopeKind
+
+
+@dataclass(frozen=True, slots=True)
+class Watch:
+    """One sentence as signals over past-time formulas, for a monitor.
+
+    The trace up to a tick satisfies the sentence, as FRET's finite semantics has it, when
+    `breach` was true at no tick up to there and `fails` is not true there.
+    """
+
+    trigger: Formula
+    """A demand begins here."""
+    breach: Formula
+    """A demand is broken here: nothing that follows can repair it."""
+    owed: Formula
+    """A demand is open here: what follows decides it."""
+    fails: Formula
+    """The trace would violate the sentence if it ended here, though it is not lost yet."""
+    answer: Formula | None
+    """The response that settles a demand, where a demand waits for one."""
+    horizon: int | None
+    """Ticks from a trigger to its deadline; None: there is no deadline."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Stage:
+    """Where a sentence is enforced, and where its demands begin."""
+
+    inside: Formula
+    """The present tick lies in an interval of the scope."""
+    left: Formula
+    """It is the first of its interval."""
+    trigger: Formula
+    """A demand begins here (and the tick lies inside)."""
+    leaves: Formula
+    """It is the first tick after an interval."""
+
+    def open(self, kept: Formula, ago: Interval = EVER) -> Formula:
+        """A trigger of this interval, `ago` ticks back, since which `kept` has held."""
+        if and_(self.inside, self.trigger) == FIRST and ago == EVER:
+            return historically(kept)
+        return since(and_(kept, self.inside), and_(self.trigger, kept), ago)
+
+
+def past(obligation: Obligation) -> Formula:
+    """The formula about the trace up to now, with the operators that FRET has."""
+    stage, demand = _stage(obligation), obligation.demand
+    broken = or_(_broken_plainly(demand, stage), _broken_at_end(demand, stage))
+    return and_(historically(_unless(broken)), _unless(_fails(demand, stage)))
+
+
+def watch(obligation: Obligation) -> Watch:
+    """The signals of a monitor; counting operators look back from now, never from a deadline."""
+    stage, demand = _stage(obligation), obligation.demand
+    waits = demand.kind in (Kind.EVENTUALLY, Kind.WITHIN, Kind.AFTER)
+    return Watch(
+        trigger=stage.trigger,
+        breach=or_(_broken(demand, stage), _broken_at_end(demand, stage)),
+        owed=_owed(demand, stage),
+        fails=_fails(demand, stage),
+        answer=demand.response if waits else None,
+        horizon=_horizon(demand),
+    )
+
+
+# Scope and condition -----------------------------------------------------------------------
+
+
+def _stage(obligation: Obligation) -> _Stage:
+    inside, left, leaves = _interval(obligation.scope, obligation.mode)
+    p = obligation.trigger
+    match obligation.condition:
+        case None:
+            trigger = left
+        case ConditionKind.HOLDING:
+            trigger = and_(inside, p)
+        case ConditionKind.TRIGGER:
+            # p rises, or is true as the interval begins.
+            enters = weak_previous(not_(p)) if left == FIRST else or_(left, previous(not_(p)))
+            trigger = and_(inside, p, enters)
+        case _:
+            assert_never(obligation.condition)
+    return _Stage(inside, left, trigger, leaves)
+
+
+def _interval(scope: ScopeKind | None, m: Formula) -> tuple[Formula, Formula, Formula]:
+    """Inside an interval; at its first tick; at the first tick after it."""
+    first_run_over = and_(not_(m), previous(m))
+    match scope:
+        case None:
+            return TRUE, FIRST, FALSE
+        case ScopeKind.IN:
+            return m, and_(m, weak_previous(not_(m))), and_(not_(m), previous(m))
+        case ScopeKind.NOT_IN | ScopeKind.ONLY_IN:
+            return not_(m), and_(not_(m), weak_previous(m)), and_(m, previous(not_(m)))
+        case ScopeKind.BEFORE:
+            before = historically(not_(m))
+            return before, and_(not_(m), FIRST), and_(m, previous(before))
+        case ScopeKind.AFTER:
+            after = once(first_run_over)
+            return after, and_(first_run_over, not_(previous(after))), FALSE
+        case ScopeKind.ONLY_BEFORE:
+            return once(m), and_(m, not_(previous(once(m)))), FALSE
+        case ScopeKind.ONLY_AFTER:
+            until = not_(once(first_run_over))
+            return until, FIRST, and_(first_run_over, previous(until))
+        case _:
+            assert_never(scope)
+
+
+# Demands -----------------------------------------------------------------------------------
+
+
+def _broken(demand: Demand, stage: _Stage) -> Formula:
+    """A demand is broken here; a missed deadline stays broken until the answer comes."""
+    q, n = demand.response, demand.ticks
+    match demand.kind:
+        case Kind.WITHIN:
+            return _overdue(q, n, stage)
+        case Kind.FOR:
+            return and_(stage.open(TRUE, Interval(0, n)), not_(q))
+        case Kind.AFTER:
+            early = and_(stage.open(TRUE, Interval(0, n)), q)
+            return or_(early, _overdue(q, n + 1, stage))
+        case Kind.NOT_AFTER:
+            silent = previous(stage.open(not_(q), Interval(n, n)))
+            return and_(stage.inside, silent, q)
+        case _:
+            return _broken_plainly(demand, stage)
+
+
+def _overdue(q: Formula, n: int, stage: _Stage) -> Formula:
+    """A trigger n ticks ago or more has had no answer yet."""
+    return stage.open(not_(q), Interval(n, None))
+
+
+def _broken_plainly(demand: Demand, stage: _Stage) -> Formula:
+    """As `_broken`, with the operators of FRET: a deadline is missed at one tick."""
+    q, s, n = demand.response, demand.stop, demand.ticks
+    match demand.kind:
+        case Kind.IMMEDIATELY:
+            return and_(stage.trigger, not_(q))
+        case Kind.NEXT:
+            return and_(stage.inside, previous(stage.trigger), not_(q))
+        case Kind.FINALLY | Kind.EVENTUALLY:
+            return FALSE
+        case Kind.ALWAYS:
+            return and_(stage.open(TRUE), not_(q))
+        case Kind.WITHIN:
+            return _missed(q, n, stage)
+        case Kind.FOR:
+            return and_(_recent(n, stage), not_(q))
+        case Kind.AFTER:
+            return or_(and_(_recent(n, stage), q), _missed(q, n + 1, stage))
+        case Kind.NOT_AFTER:
+            asked = once(and_(stage.trigger, not_(q)), Interval(n + 1, n + 1))
+            answered = once(q, Interval(1, n)) if n else FALSE
+            return and_(stage.inside, asked, not_(or_(_began(n, stage), answered)), q)
+        case Kind.UNTIL:
+            return and_(stage.open(not_(s)), not_(q))
+        case Kind.BEFORE:
+            unanswered = and_(stage.inside, previous(stage.open(not_(q))))
+            return and_(s, or_(stage.trigger, unanswered))
+        case _:
+            assert_never(demand.kind)
+
+
+def _missed(q: Formula, n: int, stage: _Stage) -> Formula:
+    """A trigger exactly n ticks ago, in this interval, has had no answer up to now."""
+    asked = once(and_(stage.trigger, not_(q)), Interval(n, n))
+    answered = once(or_(stage.left, q), Interval(0, n - 1)) if n else FALSE
+    return and_(stage.inside, asked, not_(answered))
+
+
+def _recent(n: int, stage: _Stage) -> Formula:
+    """A trigger of this interval lies no more than n ticks back."""
+    recently = once(stage.trigger, Interval(0, n))
+    return recently if stage.inside == TRUE else and_(recently, stage.open(TRUE))
+
+
+def _began(n: int, stage: _Stage) -> Formula:
+    """The interval began no more than n ticks ago."""
+    return once(stage.left, Interval(0, n))
+
+
+def _broken_at_end(demand: Demand, stage: _Stage) -> Formula:
+    """The interval is over, and its last tick left a demand unmet."""
+    if stage.leaves == FALSE:
+        return FALSE
+    return and_(stage.leaves, previous(_fails(demand, stage)))
+
+
+def _fails(demand: Demand, stage: _Stage) -> Formula:
+    """The interval may not end here."""
+    match demand.kind:
+        case Kind.FINALLY:
+            return and_(stage.open(TRUE), not_(demand.response))
+        case Kind.EVENTUALLY:
+            return stage.open(not_(demand.response))
+        case _:
+            return FALSE
+
+
+def _owed(demand: Demand, stage: _Stage) -> Formula:
+    """A demand waits for what follows.
+
+    Demands without a deadline that only forbid (`always`, `until`, `before`) wait for nothing:
+    they are kept as long as they are not broken.
+    """
+    q, n = demand.response, demand.ticks
+    match demand.kind:
+        case Kind.NEXT:
+            return stage.trigger
+        case Kind.FINALLY:
+            return stage.open(TRUE)
+        case Kind.EVENTUALLY:
+            return stage.open(not_(q))
+        case Kind.WITHIN:
+            return stage.open(not_(q), Interval(0, n - 1)) if n else FALSE
+        case Kind.FOR:
+            return stage.open(TRUE, Interval(0, n - 1)) if n else FALSE
+        case Kind.AFTER | Kind.NOT_AFTER:
+            return stage.open(not_(q), Interval(0, n))
+        case Kind.IMMEDIATELY | Kind.ALWAYS | Kind.UNTIL | Kind.BEFORE:
+            return FALSE
+        case _:
+            assert_never(demand.kind)
+
+
+def _horizon(demand: Demand) -> int | None:
+    match demand.kind:
+        case Kind.IMMEDIATELY:
+            return 0
+        case Kind.NEXT:
+            return 1
+        case Kind.WITHIN | Kind.FOR:
+            return demand.ticks
+        case Kind.AFTER | Kind.NOT_AFTER:
+            return demand.ticks + 1
+        case Kind.FINALLY | Kind.EVENTUALLY | Kind.ALWAYS | Kind.UNTIL | Kind.BEFORE:
+            return None
+        case _:
+            assert_never(demand.kind)
+
+
+def _unless(broken: Formula) -> Formula:
+    """`! broken`, as a reader would write it: `a & !b` becomes `a -> b`."""
+    match broken:
+        case And(args):
+            return implies(and_(*args[:-1]), _unless(args[-1]))
+        case Or(args):
+            return and_(*map(_unless, args))
+        case Historically(arg, ago):
+            return once(_unless(arg), ago)
+        case Implies(left, right):
+            return and_(left, _unless(right))
+        case Not(arg):
+            return arg
+        case _:
+            return not_(broken)
