@@ -106,7 +106,7 @@ def _operator(formula: f.Formula, colon: str) -> tuple[str, tuple[f.Formula, ...
 def _bounds(interval: f.Interval, colon: str) -> str:
     if interval == f.EVER:
         return ""
-    return f"[{interval.lo}{colon}{'' if interval.hi is None else interval.hi}]"
+    return f"[{interval.lo}{colon}{'inf' if interval.hi is None else interval.hi}]"
 
 
 # For machines --------------------------------------------------------------------------------

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from typing import assert_never
 
 from fretish import expressions as e
-from fretish.diagnostic import Code, Diagnostic
+from fretish.diagnostic import Code, Diagnostic, Severity
 from fretish.source import Span
 from fretish.syntax import Before, Sentence, Until
 
@@ -125,3 +125,22 @@ def _wrong_kind(boolean: bool, span: Span | None) -> Diagnostic:
         if boolean
         else "truth values are joined by `<->`, `&`, `|`; only numbers are compared",
     )
+
+
+TEMPORAL_PREDICATES = frozenset(
+    "preBool preInt preReal persisted occurred prevOcc persists occurs nextOcc".split()
+)
+
+
+def temporal_predicates(sentence: Sentence) -> Iterator[Diagnostic]:
+    """F202 for each temporal predicate: it stays an uninterpreted proposition."""
+    for expression in conditions(sentence):
+        for id, span in _named(expression):
+            if id in TEMPORAL_PREDICATES or id == "FTP":
+                yield Diagnostic(
+                    Code.PREDICATE_NOT_FORMALIZED,
+                    f"`{id}` is left in the formulas as a proposition",
+                    span,
+                    help="a trace must give its value; fretc does not formalize it yet",
+                    severity=Severity.WARNING,
+                )

@@ -40,7 +40,8 @@ def _times(left: Unit, right: Unit, power: int = 1) -> Unit:
 
 
 ONE = Unit(DIMENSIONLESS, Fraction(1))
-_METRE, _KILOGRAM, _SECOND = _base("m"), _base("kg"), _base("s")
+SECOND = _base("s")
+_METRE, _KILOGRAM = _base("m"), _base("kg")
 _NEWTON = Unit((1, 1, -2, 0, 0, 0), Fraction(1))
 _VOLT = Unit((2, 1, -3, -1, 0, 0), Fraction(1))
 
@@ -53,7 +54,7 @@ _UNITS: dict[str, Unit] = {
     "cm": _base("m", Fraction(1, 100)),
     "mm": _base("m", Fraction(1, 1000)),
     "um": _base("m", Fraction(1, 10**6)),
-    "s": _SECOND,
+    "s": SECOND,
     "ms": _base("s", Fraction(1, 1000)),
     "us": _base("s", Fraction(1, 10**6)),
     "ns": _base("s", Fraction(1, 10**9)),

@@ -1,0 +1,167 @@
+"""From a project and logs to verdicts: compile the monitors, read each log, run them over it."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from compiler import __version__
+from compiler.files import sha256
+from compiler.pipeline import unbound
+from compiler.project import Project, fingerprint
+from compiler.record import wording
+from compiler.rule import Rule
+from compiler.targets import monitor as monitors
+from compiler.templating import to_json
+from fretish.declarations import Declarations
+from fretish.diagnostic import Code, Diagnostic
+from monitors import kernel
+from monitors.audit import Watched, audit, examined, signals_of
+from monitors.evidence import SCHEMA, as_record, unread
+from monitors.loading import load
+from monitors.recordings import read
+
+GLYPHS: Mapping[str, tuple[str, str]] = {
+    kernel.SATISFIED: ("✔", "green"),
+    kernel.VIOLATED: ("✘", "red"),
+    kernel.INCONCLUSIVE: ("◔", "yellow"),
+    kernel.VACUOUS: ("∅", "bright_black"),
+    kernel.NO_DATA: ("?", "magenta"),
+}
+"""Verdict → its sign and its colour."""
+
+
+@dataclass(frozen=True, slots=True)
+class Audit:
+    """What an audit has shown: one result for each run and requirement, runs in their order."""
+
+    results: tuple[Mapping[str, Any], ...]
+    evidence: str
+    """The text of the evidence file."""
+    diagnostics: tuple[Diagnostic, ...]
+
+    @property
+    def violated(self) -> bool:
+        """Whether any requirement is violated in any run."""
+        return any(result["verdict"] == kernel.VIOLATED for result in self.results)
+
+    @property
+    def shown(self) -> bool:
+        """Whether every requirement is satisfied in every run."""
+        return all(result["verdict"] == kernel.SATISFIED for result in self.results)
+
+    @property
+    def as_json(self) -> str:
+        """One JSON array, an object per run and requirement."""
+        return f"{json.dumps(list(self.results), indent=2, allow_nan=False)}\n"
+
+    @property
+    def text(self) -> tuple[tuple[str, str | None], ...]:
+        """Lines for a person, each with its colour."""
+        lines: list[tuple[str, str | None]] = []
+        width = max((len(result["requirement"]) for result in self.results), default=0)
+        run = None
+        for result in self.results:
+            if result["run"] != run:
+                run = result["run"]
+                lines.append((str(run), None))
+            glyph, colour = GLYPHS[result["verdict"]]
+            name = f"{result['requirement']:<{width}}"
+            lines.append((f"  {glyph} {name}  {result['verdict']:<12}  {result['reason']}", colour))
+        return tuple(lines)
+
+
+def audit_logs(project: Project, logs: Sequence[str]) -> Audit:
+    """Audit every log against every requirement that is not retired.
+
+    Args:
+        project: read without errors.
+        logs: paths of MCAP files.
+    """
+    rules = [rule for rule in project.rules if rule.requirement.status != "retired"]
+    declarations = project.declarations
+    wrong = _not_auditable(rules, declarations)
+    if wrong or declarations is None:
+        return Audit((), "", tuple(wrong))
+    watched = [_watched(rule, declarations) for rule in rules]
+    results: list[Mapping[str, Any]] = []
+    said: list[Diagnostic] = []
+    for log in dict.fromkeys(logs):
+        found, told = _audit_log(log, declarations, watched)
+        results.extend(found)
+        said.extend(told)
+    return Audit(tuple(results), _evidence(rules, declarations, results), tuple(said))
+
+
+def _not_auditable(rules: Sequence[Rule], declarations: Declarations | None) -> list[Diagnostic]:
+    if not rules:
+        return [Diagnostic(Code.NOTHING_TO_DO, "there is no requirement to audit")]
+    if declarations is None:
+        return [
+            Diagnostic(
+                Code.UNBOUND,
+                "no bindings say what the propositions mean in the messages",
+                rules[0].requirement.wording,
+                help="write `bindings.toml` beside the requirements, or name it with `--bindings`",
+            )
+        ]
+    refused = [monitors.refuse(rule) for rule in rules]
+    missing = [diagnostic for rule in rules for diagnostic in unbound(rule, declarations)]
+    return [*(diagnostic for diagnostic in refused if diagnostic), *missing]
+
+
+def _watched(rule: Rule, declarations: Declarations) -> Watched:
+    text = monitors.text(rule)
+    return Watched(
+        load(f"{rule.id}_monitor", text),
+        {
+            "sentence": rule.fingerprint,
+            "bindings": fingerprint(declarations),
+            "monitor": sha256(text),
+        },
+    )
+
+
+def _audit_log(
+    log: str, declarations: Declarations, watched: Sequence[Watched]
+) -> tuple[list[dict[str, Any]], list[Diagnostic]]:
+    names = tuple(dict.fromkeys(name for w in watched for name in w.monitor.PROPOSITIONS))
+    recording = read(log, declarations, signals_of(declarations, names))
+    if isinstance(recording, Diagnostic):
+        hashes = _hash_of(log)
+        return [
+            unread(log, w.monitor.REQUIREMENT, recording, {**hashes, **w.hashes}) for w in watched
+        ], [recording]
+    recording = examined(recording, declarations, names)
+    evidence = audit(recording, declarations, watched)
+    return [as_record(e) for e in evidence], list(recording.findings)
+
+
+def _hash_of(log: str) -> dict[str, str]:
+    """SHA-256 of a log that could not be read as one, where its bytes can be."""
+    try:
+        with Path(log).open("rb") as file:
+            return {"log": hashlib.file_digest(file, "sha256").hexdigest()}
+    except OSError:
+        return {}
+
+
+def _evidence(
+    rules: Sequence[Rule], declarations: Declarations, results: Sequence[Mapping[str, Any]]
+) -> str:
+    """The evidence file: the same inputs give the same bytes."""
+    content = {
+        "schema": SCHEMA,
+        "fretc": __version__,
+        "bindings": {"file": declarations.source.name, "sha256": fingerprint(declarations)},
+        "requirements": [
+            {"id": rule.id, "sentence": wording(rule.requirement), "sha256": rule.fingerprint}
+            for rule in rules
+        ],
+        "results": list(results),
+    }
+    return f"{to_json(content)}\n"

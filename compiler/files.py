@@ -1,0 +1,113 @@
+"""Files in and out: text read with its mistakes told, output written whole or not at all."""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import tempfile
+from collections.abc import Iterable
+from pathlib import Path
+
+from compiler.targets.target import Artifact
+from fretish.diagnostic import Code, Diagnostic, suggestion
+from fretish.source import Source
+
+
+def read(path: str) -> Source | Diagnostic:
+    """The text of a file (`-`: standard input), or what keeps it from being read."""
+    try:
+        if path == "-":
+            with open(0, "rb", closefd=False) as stdin:
+                return Source("<stdin>", stdin.read().decode("utf-8-sig"))
+        return Source(path, Path(path).read_bytes().decode("utf-8-sig"))
+    except UnicodeDecodeError as error:
+        return not_text(path, error.start)
+    except OSError as error:
+        return unreadable(path, error)
+
+
+def not_text(path: str, at: int) -> Diagnostic:
+    """F904."""
+    return Diagnostic(
+        Code.NOT_TEXT,
+        f"`{path}` is not UTF-8 text: byte {at} does not fit",
+        Source(path, "").span(),
+        help="requirements and bindings are plain text in UTF-8",
+    )
+
+
+def unreadable(path: str, error: OSError) -> Diagnostic:
+    """F901, F902 or F903, as the operating system says."""
+    span = Source(path, "").span()
+    if isinstance(error, FileNotFoundError):
+        return Diagnostic(Code.NO_SUCH_FILE, f"there is no file `{path}`", span, _nearest(path))
+    if isinstance(error, IsADirectoryError):
+        return Diagnostic(
+            Code.IS_A_DIRECTORY,
+            f"`{path}` is a directory",
+            span,
+            help=f"name the files in it: `{path.rstrip('/')}/*`",
+        )
+    return Diagnostic(
+        Code.UNREADABLE,
+        f"`{path}` cannot be read: {error.strerror or error}",
+        span,
+        help="check its permissions",
+    )
+
+
+def _nearest(path: str) -> str:
+    folder = Path(path).parent
+    try:
+        near = suggestion(Path(path).name, (entry.name for entry in folder.iterdir()))
+    except OSError:
+        return f"there is no folder `{folder}` either"
+    return f"did you mean `{folder / near}`?" if near else "check the name and the folder"
+
+
+def write(artifacts: Iterable[Artifact], folder: Path) -> Diagnostic | None:
+    """Write all of them below the folder: each under a temporary name first, then renamed.
+
+    Nothing half-written stays behind: when one cannot be written, none is put in place.
+    """
+    waiting: list[tuple[Path, Path]] = []
+    path = folder
+    try:
+        for artifact in artifacts:
+            path = folder / artifact.path
+            path.parent.mkdir(parents=True, exist_ok=True)
+            if path.is_dir():
+                raise IsADirectoryError(None, "there is a directory of that name")
+            waiting.append((_temporary(path, artifact.text), path))
+        for temporary, path in waiting:
+            temporary.replace(path)
+    except OSError as error:
+        return Diagnostic(
+            Code.NOT_WRITTEN,
+            f"`{path}` cannot be written: {error.strerror or error}",
+            help="name another place with `-o`, or mend this one",
+        )
+    finally:
+        for temporary, _ in waiting:
+            temporary.unlink(missing_ok=True)
+    return None
+
+
+def _temporary(path: Path, text: str) -> Path:
+    handle, name = tempfile.mkstemp(prefix=f".{path.name}.", suffix=".tmp", dir=path.parent)
+    temporary = Path(name)
+    try:
+        with os.fdopen(handle, "w", encoding="utf-8", newline="\n") as file:
+            file.write(text)
+        mask = os.umask(0)
+        os.umask(mask)
+        temporary.chmod(0o666 & ~mask)
+    except BaseException:
+        temporary.unlink(missing_ok=True)
+        raise
+    return temporary
+
+
+def sha256(text: str) -> str:
+    """Of the text in UTF-8, in hexadecimal."""
+    return hashlib.sha256(text.encode()).hexdigest()

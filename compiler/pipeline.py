@@ -1,0 +1,168 @@
+"""The order of everything: from a requirement as written to a rule, by way of its tree."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from fractions import Fraction
+
+from compiler.demand import obligation
+from compiler.formula import endless
+from compiler.future import future
+from compiler.past import past, watch
+from compiler.rule import Rule
+from fretish import expressions as e
+from fretish import units
+from fretish.checking import conditions, temporal_predicates
+from fretish.clock import assumed_ticks, in_ticks
+from fretish.declarations import Declarations
+from fretish.diagnostic import Code, Diagnostic, Severity, suggestion
+from fretish.documents import Requirement
+from fretish.parser import parse
+from fretish.source import Span
+from fretish.syntax import Sentence
+
+
+def formalize(
+    requirement: Requirement, declarations: Declarations | None
+) -> tuple[Rule | None, tuple[Diagnostic, ...]]:
+    """Parse, check and formalize one requirement.
+
+    Returns:
+        The rule, or None where there is an error; and all that there is to say.
+    """
+    sentence = parse(requirement.wording)
+    if isinstance(sentence, Diagnostic):
+        return None, (sentence,)
+    clock = declarations.clock if declarations else None
+    ticks = in_ticks(sentence.timing, clock)
+    if isinstance(ticks, Diagnostic):
+        return None, (ticks,)
+    said = tuple(_remarks(requirement, sentence, declarations))
+    meant = obligation(sentence, ticks or 0)
+    finite = future(meant)
+    rule = Rule(
+        requirement=requirement,
+        sentence=sentence,
+        ticks=ticks,
+        clock=clock,
+        ft_infinite=endless(finite),
+        ft_finite=finite,
+        pt=past(meant),
+        watch=watch(meant),
+    )
+    return rule, said
+
+
+def _remarks(
+    requirement: Requirement, sentence: Sentence, declarations: Declarations | None
+) -> Iterator[Diagnostic]:
+    clock = declarations.clock if declarations else None
+    assumed = assumed_ticks(sentence, clock)
+    if assumed is not None:
+        yield assumed
+    yield from temporal_predicates(sentence)
+    if declarations is not None:
+        yield from drift(requirement, declarations)
+
+
+def drift(requirement: Requirement, declarations: Declarations) -> Iterator[Diagnostic]:
+    """F310: a number that the requirement states is not the one its binding compares with."""
+    for name, text in requirement.params.items():
+        place = requirement.place("params", name)
+        proposition = declarations.propositions.get(name)
+        if proposition is None:
+            near = suggestion(name, declarations.propositions)
+            yield Diagnostic(
+                Code.UNKNOWN_NAME,
+                f"`params` states a number for `{name}`, which has no binding",
+                place,
+                help=f"did you mean `{near}`?" if near else "name a proposition of the bindings",
+            )
+            continue
+        stated = _quantity(text)
+        if stated is None:
+            yield Diagnostic(
+                Code.BAD_FIELD,
+                f"`{text}` is no quantity",
+                place,
+                help='write a number and a unit: `"5 cm"`',
+            )
+        elif stated not in _constants(proposition.expression):
+            yield Diagnostic(
+                Code.PARAMETER_DRIFT,
+                f"the requirement states {text} for `{name}`, and its binding has another number",
+                proposition.span,
+                help="make the binding or `params` say what is meant",
+                severity=Severity.WARNING,
+            )
+
+
+_Exact = tuple[units.Dimension, Fraction]
+
+
+def _quantity(text: str) -> _Exact | None:
+    digits, _, name = text.strip().partition(" ")
+    unit = units.unit(name) if name else units.ONE
+    try:
+        return None if unit is None else (unit.dimension, Fraction(digits) * unit.factor)
+    except ValueError:
+        return None
+
+
+def _constants(expression: e.Expression) -> set[_Exact]:
+    """Every number in the expression, exactly, in base units."""
+    found: set[_Exact] = set()
+    waiting = [expression]
+    while waiting:
+        part = waiting.pop()
+        match part:
+            case e.Quantity(digits, name):
+                unit = units.unit(name)
+                assert unit is not None
+                found.add((unit.dimension, Fraction(digits) * unit.factor))
+            case e.Number(digits):
+                found.add((units.DIMENSIONLESS, Fraction(digits)))
+            case e.Held(_, duration):
+                found.add((units.SECOND.dimension, Fraction(duration, 10**9)))
+            case _:
+                pass
+        waiting.extend(e.children(part))
+    return found
+
+
+def unbound(rule: Rule, declarations: Declarations) -> Iterator[Diagnostic]:
+    """F304 for every proposition of the sentence that the bindings do not have."""
+    for name in rule.propositions:
+        if name in declarations.propositions:
+            continue
+        near = suggestion(name, declarations.propositions)
+        yield Diagnostic(
+            Code.UNBOUND,
+            f"`{name}` of {rule.id} has no binding in {declarations.source.name}",
+            _place(rule, name),
+            help=f"did you mean `{near}`?" if near else f"add `[proposition.{name}]` there",
+        )
+
+
+def _place(rule: Rule, name: str) -> Span:
+    """Where the sentence names it first; the whole sentence for a comparison."""
+    for expression in conditions(rule.sentence):
+        for variable in e.names(expression):
+            if variable.id == name and variable.span is not None:
+                return variable.span
+    return rule.requirement.wording
+
+
+def duplicates(requirements: Sequence[Requirement]) -> Iterator[Diagnostic]:
+    """F201 for every id that comes again; ids differ by more than capitals: they name files."""
+    first: dict[str, Requirement] = {}
+    for requirement in requirements:
+        earlier = first.setdefault(requirement.id.lower(), requirement)
+        if earlier is not requirement:
+            place = earlier.place("id")
+            yield Diagnostic(
+                Code.DUPLICATE_ID,
+                f"the id `{requirement.id}` is taken: {place.source.name}:{place.line}",
+                requirement.place("id"),
+                help="give each requirement an id of its own (capitals do not tell ids apart)",
+            )

@@ -1,0 +1,189 @@
+"""A requirements folder as one thing: the rules, the declarations and the hazards in it."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import tomllib
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from compiler.files import read
+from compiler.pipeline import duplicates, formalize
+from compiler.rule import Rule
+from fretish.bindings import read_bindings
+from fretish.declarations import Declarations
+from fretish.diagnostic import Code, Diagnostic, Severity, has_errors, suggestion
+from fretish.documents import Requirement, requirements
+from fretish.source import Source
+from fretish.tables import Tables
+from fretish.tables import read as read_tables
+
+BINDINGS = "bindings.toml"
+HAZARDS = "hazards.toml"
+_HAZARD_FIELDS = ("title", "text", "severity", "source")
+
+
+@dataclass(frozen=True, slots=True)
+class Hazard:
+    """What a requirement is there to prevent."""
+
+    id: str
+    title: str
+    text: str = ""
+    severity: str = ""
+    source: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Failed:
+    """A requirement that could not be formalized, and why."""
+
+    requirement: Requirement
+    diagnostic: Diagnostic
+
+
+@dataclass(frozen=True, slots=True)
+class Project:
+    """What was read, and all that there is to say of it."""
+
+    requirements: tuple[Requirement, ...]
+    """As written, in the order of the files."""
+    rules: tuple[Rule, ...]
+    failed: tuple[Failed, ...]
+    declarations: Declarations | None
+    hazards: Mapping[str, Hazard]
+    diagnostics: tuple[Diagnostic, ...]
+
+
+def load(paths: Sequence[str], bindings: str | None = None, hazards: str | None = None) -> Project:
+    """Read requirements, and what stands beside them.
+
+    Args:
+        paths: `.fret` files; `-` is standard input.
+        bindings: their `bindings.toml`; None: the one in the folder of the first file, if any.
+        hazards: their `hazards.toml`; None: no hazards are read.
+    """
+    declarations, said = _declarations(bindings or _beside(paths, BINDINGS))
+    known, told = _hazards(hazards) if hazards else ({}, ())
+    written: list[Requirement] = []
+    diagnostics = [*said, *told]
+    for path in paths:
+        source = read(path)
+        found, wrong = ((), (source,)) if isinstance(source, Diagnostic) else requirements(source)
+        written.extend(found)
+        diagnostics.extend(wrong)
+    diagnostics.extend(duplicates(written))
+    rules, failed = [], []
+    for requirement in written:
+        rule, remarks = formalize(requirement, declarations)
+        diagnostics.extend(remarks)
+        if rule is not None:
+            rules.append(rule)
+        else:
+            failed.append(Failed(requirement, next(d for d in remarks if d.is_error)))
+    if hazards:
+        diagnostics.extend(_unknown_parents(written, known))
+    return Project(
+        tuple(written), tuple(rules), tuple(failed), declarations, known, tuple(diagnostics)
+    )
+
+
+def requirement_files(folder: str) -> list[str] | Diagnostic:
+    """The `.fret` files of a folder, sorted; or the one file, where it is a file."""
+    place = Path(folder)
+    if place.is_file():
+        return [folder]
+    files = sorted(str(path) for path in place.glob("*.fret"))
+    if files:
+        return files
+    what = "no requirement (`*.fret`) is in" if place.is_dir() else "there is no folder"
+    return Diagnostic(
+        Code.NO_SUCH_FILE,
+        f"{what} `{folder}`",
+        Source(folder, "").span(),
+        help="name the folder with `--requirements`",
+    )
+
+
+def beside(folder: str, name: str) -> str | None:
+    """The path of a file in the requirements folder, where it is there."""
+    return _beside([folder if Path(folder).is_file() else str(Path(folder) / "any")], name)
+
+
+def _beside(paths: Sequence[str], name: str) -> str | None:
+    first = next((path for path in paths if path != "-"), None)
+    path = Path(first).parent / name if first else None
+    return str(path) if path is not None and path.is_file() else None
+
+
+def _declarations(
+    path: str | None,
+) -> tuple[Declarations | None, tuple[Diagnostic, ...]]:
+    if path is None:
+        return None, ()
+    source = read(path)
+    return (None, (source,)) if isinstance(source, Diagnostic) else read_bindings(source)
+
+
+def fingerprint(declarations: Declarations) -> str:
+    """SHA-256 of what the bindings say: comments, order and white space do not count."""
+    data = tomllib.loads(declarations.source.text)
+    return hashlib.sha256(json.dumps(data, sort_keys=True).encode()).hexdigest()
+
+
+def _hazards(path: str) -> tuple[dict[str, Hazard], tuple[Diagnostic, ...]]:
+    """`[HAZ-001]` tables with `title`, and perhaps `text`, `severity`, `source`."""
+    source = read(path)
+    if isinstance(source, Diagnostic):
+        return {}, (source,)
+    tables = read_tables(source.span(), Code.BAD_HAZARDS, "the hazards file")
+    if isinstance(tables, Diagnostic):
+        return {}, (tables,)
+    wrong = [d for id, fields in tables.data.items() for d in _hazard_mistakes(tables, id, fields)]
+    if has_errors(wrong):
+        return {}, tuple(wrong)
+    return {id: Hazard(id, **fields) for id, fields in tables.data.items()}, ()
+
+
+def _hazard_mistakes(tables: Tables, id: str, fields: Any) -> list[Diagnostic]:
+    def wrong(message: str, mend: str, *path: str) -> Diagnostic:
+        return Diagnostic(Code.BAD_HAZARDS, message, tables.place(*path), help=mend)
+
+    if not isinstance(fields, dict):
+        return [wrong(f"`{id}` is no hazard", f'write `[{id}]`, then `title = "..."`', id)]
+    found = []
+    for key, value in fields.items():
+        if key not in _HAZARD_FIELDS:
+            known = ", ".join(_HAZARD_FIELDS)
+            found.append(wrong(f"`{key}` is no field of a hazard", f"it may have {known}", id, key))
+        elif not isinstance(value, str):
+            found.append(wrong(f"`{key}` must be a text", "write it in quotes", id, key))
+    if "title" not in fields:
+        found.append(wrong(f"the hazard {id} has no title", 'add `title = "..."`', id))
+    return found
+
+
+def _unknown_parents(
+    written: Sequence[Requirement], hazards: Mapping[str, Hazard]
+) -> list[Diagnostic]:
+    """F501: a parent is neither a hazard nor a requirement."""
+    known = [*hazards, *(requirement.id for requirement in written)]
+    found = []
+    for requirement in written:
+        for parent in requirement.parents:
+            if parent in known:
+                continue
+            near = suggestion(parent, known)
+            found.append(
+                Diagnostic(
+                    Code.UNKNOWN_PARENT,
+                    f"{requirement.id} names the parent `{parent}`, which is not declared",
+                    requirement.place("parents"),
+                    help=f"did you mean `{near}`?" if near else f"declare it in {HAZARDS}",
+                    severity=Severity.WARNING,
+                )
+            )
+    return found

@@ -1,0 +1,48 @@
+"""One requirement with everything that is known of its meaning."""
+
+from __future__ import annotations
+
+import hashlib
+from dataclasses import dataclass
+
+from compiler.formula import Formula, atoms
+from compiler.past import Watch
+from fretish.clock import Clock
+from fretish.documents import Requirement
+from fretish.printer import sentence as canonical
+from fretish.syntax import Sentence
+
+
+@dataclass(frozen=True, slots=True)
+class Rule:
+    """A requirement, formalized: one meaning in three formulas, and as signals to watch."""
+
+    requirement: Requirement
+    sentence: Sentence
+    ticks: int | None
+    """What the duration counts; None where the sentence has none."""
+    clock: Clock | None
+    """None where no bindings are at hand."""
+    ft_infinite: Formula
+    """Future-time, on infinite traces."""
+    ft_finite: Formula
+    """Future-time, on finite traces, with `LAST`; at the first tick."""
+    pt: Formula
+    """Past-time; at the last tick."""
+    watch: Watch
+
+    @property
+    def id(self) -> str:
+        """The requirement's id."""
+        return self.requirement.id
+
+    @property
+    def propositions(self) -> tuple[str, ...]:
+        """The atoms of the sentence, in the order of the future-time formula."""
+        both = dict.fromkeys((*atoms(self.ft_infinite), *atoms(self.ft_finite)))
+        return tuple(both)
+
+    @property
+    def fingerprint(self) -> str:
+        """SHA-256 of the canonical sentence: white space and wording of key words do not count."""
+        return hashlib.sha256(canonical(self.sentence).encode()).hexdigest()

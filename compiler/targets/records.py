@@ -1,0 +1,25 @@
+"""`--emit json`: everything that is known of a requirement, for other programs."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import PurePosixPath
+
+from compiler.record import record
+from compiler.rule import Rule
+from compiler.targets.target import Artifact, Target, stem
+from compiler.templating import render
+
+
+def emit(rules: Sequence[Rule]) -> tuple[Artifact, ...]:
+    """`<id>.json` for each rule."""
+    return tuple(
+        Artifact(
+            PurePosixPath(f"{stem(rule)}.json"),
+            render("json/requirement.json.j2", requirement=record(rule)),
+        )
+        for rule in rules
+    )
+
+
+TARGET = Target("json", "everything known of the requirement, for programs", emit)

@@ -1,0 +1,68 @@
+"""Templates: where they live, and how text from outside is quoted in them.
+
+The only module that imports jinja2.
+"""
+
+from __future__ import annotations
+
+import json
+from functools import cache
+from importlib.resources import files
+from pathlib import Path
+from typing import Any
+
+from jinja2 import Environment, FileSystemLoader, StrictUndefined, select_autoescape
+
+
+def template_root() -> Path:
+    """`compiler/templates` in an installed wheel, `templates` beside us in a checkout."""
+    package = Path(str(files("compiler")))
+    installed = package / "templates"
+    return installed if installed.is_dir() else package.parent / "templates"
+
+
+def render(name: str, **values: Any) -> str:
+    """Render one template; a name that it uses and does not get is a mistake, never an empty text.
+
+    Args:
+        name: its path below the templates; `.html.j2` is autoescaped.
+        values: what it places.
+    """
+    return _environment().get_template(name).render(**values)
+
+
+@cache
+def _environment() -> Environment:
+    environment = Environment(
+        loader=FileSystemLoader(template_root()),
+        undefined=StrictUndefined,
+        autoescape=select_autoescape(enabled_extensions=("html.j2",), default=False),
+        trim_blocks=True,
+        lstrip_blocks=True,
+        keep_trailing_newline=True,
+    )
+    environment.filters["python"] = python
+    environment.filters["comment"] = comment
+    environment.filters["json"] = to_json
+    return environment
+
+
+def python(value: object) -> str:
+    """The value as a Python literal, in ASCII."""
+    if isinstance(value, str):
+        return json.dumps(value)
+    return ascii(value)
+
+
+def comment(text: str, mark: str = "#") -> str:
+    """One line that cannot end the comment it stands in, in printable ASCII."""
+    flat = " ".join(text.split())
+    safe = "".join(
+        c if c.isascii() and c.isprintable() else c.encode("unicode_escape").decode() for c in flat
+    )
+    return f"{mark} {safe}"
+
+
+def to_json(value: object) -> str:
+    """Indented JSON with a fixed order of keys, in ASCII."""
+    return json.dumps(value, indent=2, allow_nan=False)

@@ -1,0 +1,1 @@
+"""The run time: operators with memory, recorded logs, propositions on a clock, audits, evidence."""
