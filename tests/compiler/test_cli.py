@@ -1,0 +1,301 @@
+"""The command as its users meet it: what it prints, writes and exits with."""
+
+import json
+import subprocess
+import sys
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+import pytest
+
+from compiler import cli
+
+ROOT = Path(__file__).parent.parent.parent
+R1 = "whenever too_close agilex_agent shall eventually satisfy stopped"
+
+
+@dataclass(frozen=True)
+class Run:
+    status: int
+    out: str
+    err: str
+
+
+Fretc = Callable[..., Run]
+
+
+@pytest.fixture
+def fretc(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> Fretc:
+    """Run the command in an empty folder."""
+    monkeypatch.chdir(tmp_path)
+
+    def run(*arguments: str) -> Run:
+        monkeypatch.setattr(sys, "argv", ["fretc", *arguments])
+        with pytest.raises(SystemExit) as exit_:
+            cli.main()
+        printed = capsys.readouterr()
+        assert "Traceback" not in printed.err
+        return Run(int(str(exit_.value.code or 0)), printed.out, printed.err)
+
+    return run
+
+
+def write(path: str, text: str) -> str:
+    Path(path).parent.mkdir(parents=True, exist_ok=True)
+    Path(path).write_text(text, encoding="utf-8")
+    return path
+
+
+# Formulas ------------------------------------------------------------------------------------
+
+
+def test_a_requirement_alone_shows_its_meaning_and_its_formulas(fretc: Fretc) -> None:
+    assert fretc(write("r1.fret", R1)) == Run(
+        0,
+        "r1\n"
+        "  whenever too_close agilex_agent shall eventually satisfy stopped\n"
+        "\n"
+        "  meaning      Over the whole run: at every tick at which `too_close` is true, `stopped` "
+        "must be true at that tick or at a later one before the run ends.\n"
+        "  FT           G(too_close -> F stopped)\n"
+        "  FT, finite   LAST R (too_close -> !LAST U stopped)\n"
+        "  PT           !(!stopped S (too_close & !stopped))\n",
+        "",
+    )
+
+
+def test_when_in_place_of_whenever_is_another_formula(fretc: Fretc) -> None:
+    shown = fretc(write("r1.fret", R1.replace("whenever", "when"))).out
+    assert (
+        "FT           G(!too_close & X too_close -> X F stopped) & (too_close -> F stopped)"
+        in shown
+    )
+
+
+def test_the_formulas_as_json_are_an_array_on_standard_output(fretc: Fretc) -> None:
+    run = fretc(write("r1.fret", R1), "--emit", "ltl", "--format", "json", "-o", "-")
+    assert json.loads(run.out) == [
+        {
+            "id": "r1",
+            "sentence": R1,
+            "component": "agilex_agent",
+            "scope": "null",
+            "condition": "holding",
+            "timing": "eventually",
+            "variables": ["too_close", "stopped"],
+            "durations": [],
+            "ft_infinite": "(G (too_close -> (F stopped)))",
+            "ft_finite": "(LAST R (too_close -> ((! LAST) U stopped)))",
+            "pt": "(! ((! stopped) S (too_close & (! stopped))))",
+            "pctl": None,
+        }
+    ]
+
+
+def test_one_bad_sentence_among_several_is_an_error_object_in_the_array(fretc: Fretc) -> None:
+    text = f'+++\nid = "A"\n+++\n{R1}\n+++\nid = "B"\n+++\nthe sw shall stopped\n'
+    run = fretc(write("two.fret", text), "--emit", "ltl", "--format", "json", "-o", "-")
+    good, bad = json.loads(run.out)
+    assert (run.status, good["id"], good["ft_infinite"]) == (
+        2,
+        "A",
+        "(G (too_close -> (F stopped)))",
+    )
+    assert bad == {
+        "id": "B",
+        "sentence": "the sw shall stopped",
+        "error": {
+            "code": "F104",
+            "severity": "error",
+            "message": "missing `satisfy` before `stopped`",
+            "file": "two.fret",
+            "line": 8,
+            "column": 14,
+            "help": "write `satisfy stopped`",
+        },
+    }
+
+
+# Files -----------------------------------------------------------------------------------------
+
+
+def test_emitted_files_go_to_build_and_are_named(fretc: Fretc) -> None:
+    run = fretc(write("r1.fret", R1), "--emit", "monitor", "--emit", "ajpf")
+    assert run == Run(0, "", "wrote build/r1_monitor.py\nwrote build/r1.psl\n")
+    assert sorted(path.name for path in Path("build").iterdir()) == ["r1.psl", "r1_monitor.py"]
+
+
+def test_minus_prints_in_place_of_writing(fretc: Fretc) -> None:
+    run = fretc(write("r1.fret", R1), "--emit", "ajpf", "-o", "-")
+    assert run.out == (
+        f"# r1 {R1}\nr1: [] ((B(agilex_agent,too_close)) -> (<> (B(agilex_agent,stopped))))\n"
+    )
+    assert not Path("build").exists()
+
+
+def test_one_target_that_refuses_keeps_every_file_from_being_written(fretc: Fretc) -> None:
+    sentence = "whenever p the rover shall within 3 ticks satisfy q"
+    run = fretc(write("r.fret", sentence), "--emit", "monitor", "--emit", "ajpf")
+    assert run.status == 2
+    assert run.err.startswith("F601 AJPF cannot express a bound in ticks of r\n  --> r.fret:1:1\n")
+    assert not Path("build").exists()
+
+
+def test_an_output_that_cannot_be_written_leaves_nothing_behind(fretc: Fretc) -> None:
+    write("build/r1.psl/in_the_way", "")
+    run = fretc(write("r1.fret", R1), "--emit", "monitor", "--emit", "ajpf")
+    assert run.status == 2
+    assert run.err.startswith("F905 `build/r1.psl` cannot be written: there is a directory")
+    assert [path.name for path in Path("build").iterdir()] == ["r1.psl"]
+
+
+def test_requirements_are_read_from_standard_input() -> None:
+    run = subprocess.run(
+        [sys.executable, "-c", "from compiler.cli import main; main()", "-", "--emit", "ajpf"]
+        + ["-o", "-"],
+        cwd=ROOT,
+        input=R1,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert (run.returncode, run.stdout.splitlines()[1].partition(":")[0]) == (0, "stdin")
+
+
+# Mistakes --------------------------------------------------------------------------------------
+
+
+def test_a_mistyped_command_gets_a_suggestion(fretc: Fretc) -> None:
+    assert fretc("audti", "x.mcap") == Run(
+        2,
+        "",
+        "F906 `audti` is no command of fretc, and no file\nhelp: did you mean `fretc audit`?\n",
+    )
+
+
+def test_a_missing_file_is_named_with_its_neighbour(fretc: Fretc) -> None:
+    write("r1.fret", R1)
+    assert fretc("r2.fret") == Run(
+        2, "", "F901 there is no file `r2.fret`\n  --> r2.fret\nhelp: did you mean `r1.fret`?\n"
+    )
+
+
+def test_a_directory_is_no_requirement(fretc: Fretc) -> None:
+    write("folder/r1.fret", R1)
+    assert fretc("folder/") == Run(
+        2,
+        "",
+        "F902 `folder/` is a directory\n  --> folder/\nhelp: name the files in it: `folder/*`\n",
+    )
+
+
+def test_a_file_that_is_not_text_is_refused(fretc: Fretc) -> None:
+    Path("r1.fret").write_bytes(b"the sw \xff shall")
+    assert fretc("r1.fret") == Run(
+        2,
+        "",
+        "F904 `r1.fret` is not UTF-8 text: byte 7 does not fit\n  --> r1.fret\n"
+        "help: requirements and bindings are plain text in UTF-8\n",
+    )
+
+
+def test_a_bad_header_points_at_its_place(fretc: Fretc) -> None:
+    assert fretc(write("r1.fret", f'+++\nid = "R1"\ntitel = "x"\n+++\n{R1}\n')) == Run(
+        2,
+        "",
+        "F103 `titel` is no field of a requirement's header\n"
+        "  --> r1.fret:3:1\n"
+        '   | titel = "x"\n'
+        "   | ^^^^^\n"
+        "help: did you mean `title`?\n",
+    )
+
+
+def test_a_bad_option_is_explained_without_a_traceback(fretc: Fretc) -> None:
+    run = fretc(write("r1.fret", R1), "--emit", "monitr")
+    assert run.status == 2
+    assert run.err.startswith("F907 invalid value for '--emit': 'monitr' is not one of")
+
+
+def test_an_unexpected_fault_of_our_own_is_told_as_such(
+    fretc: Fretc, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def broken(*_: object) -> None:
+        raise ZeroDivisionError("by purpose")
+
+    monkeypatch.setattr("compiler.project.load", broken)
+    run = fretc(write("r1.fret", R1))
+    assert run.status == 2
+    assert run.err.startswith("F999 fretc itself is at fault: ZeroDivisionError in test_cli.py:")
+
+
+def test_two_requirements_with_one_id_are_refused(fretc: Fretc) -> None:
+    text = f'+++\nid = "A"\n+++\n{R1}\n+++\nid = "a"\n+++\n{R1}\n'
+    run = fretc(write("two.fret", text))
+    assert run.status == 2
+    assert run.err.startswith("F201 the id `a` is taken: two.fret:2\n  --> two.fret:6:6\n")
+
+
+# Bindings and clock ------------------------------------------------------------------------------
+
+
+def test_a_duration_in_seconds_without_a_clock_is_told_in_formulas_and_refused_in_monitors(
+    fretc: Fretc,
+) -> None:
+    sentence = "whenever p the rover shall within 3 seconds satisfy q"
+    formulas = fretc(write("r.fret", sentence))
+    assert formulas.status == 0
+    assert "FT           G(p -> F[0,3] q)\n" in formulas.out
+    assert formulas.err.startswith(
+        "F312 warning: no clock says what a tick is: `3 seconds` is read"
+    )
+    monitor = fretc("r.fret", "--emit", "monitor")
+    assert monitor.status == 2
+    assert "F312 no clock says how many ticks the duration of r is" in monitor.err
+    assert not Path("build").exists()
+
+
+def test_the_clock_beside_the_requirement_counts_its_seconds(fretc: Fretc) -> None:
+    write("bindings.toml", '[clock]\ntick = "100 ms"\n')
+    run = fretc(write("r.fret", "whenever p the rover shall within 3 seconds satisfy q"))
+    assert (run.status, run.err) == (0, "")
+    assert "FT           G(p -> F[0,30] q)\n" in run.out
+    assert "within the next 30 ticks (3 s)" in run.out
+
+
+def test_a_number_of_the_requirement_that_its_binding_does_not_have_is_drift(fretc: Fretc) -> None:
+    write(
+        "bindings.toml",
+        '[clock]\ntick = "100 ms"\n[signal.d]\npath = "/scan.d"\nunit = "m"\n'
+        '[proposition.too_close]\nexpr = "d < 0.9 m"\n',
+    )
+    header = '+++\nid = "R1"\nparams = { too_close = "5 cm" }\n+++\n'
+    run = fretc(write("r1.fret", header + R1))
+    assert run.err == (
+        "F310 warning: the requirement states 5 cm for `too_close`, and its binding has another "
+        "number\n"
+        "  --> bindings.toml:7:8\n"
+        '   | expr = "d < 0.9 m"\n'
+        "   |        ^^^^^^^^^^^\n"
+        "help: make the binding or `params` say what is meant\n"
+    )
+
+
+# Speed, as what is not imported -------------------------------------------------------------------
+
+
+def test_the_version_needs_nothing_heavy() -> None:
+    code = (
+        "import sys\nsys.argv = ['fretc', '--version']\n"
+        "from compiler.cli import main\n"
+        "try:\n    main()\nexcept SystemExit:\n    pass\n"
+        "heavy = {'lark', 'jinja2', 'spot', 'numpy', 'mcap', 'mujoco'} & sys.modules.keys()\n"
+        "print(sorted(heavy))"
+    )
+    run = subprocess.run(
+        [sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=True
+    )
+    assert run.stdout == "fretc 0.1.0\n[]\n"

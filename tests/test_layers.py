@@ -1,0 +1,76 @@
+"""Imports point one way, and each library comes in through its own door."""
+
+import ast
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parent.parent
+ROOMS = ("fretish", "monitors", "compiler", "simulation")
+MAY_IMPORT = {
+    "fretish": {"fretish"},
+    "monitors": {"fretish", "monitors"},
+    "compiler": {"fretish", "monitors", "compiler", "simulation"},
+    "simulation": {"simulation"},
+}
+DOORS = {
+    "lark": {"fretish/parser.py", "fretish/binding.py"},
+    "spot": {"compiler/automata.py"},
+    "buddy": {"compiler/automata.py"},
+    "jinja2": {"compiler/templating.py"},
+    "click": {"compiler/cli.py"},
+    "mujoco": {"simulation/robot.py"},
+    "rosbags": {"simulation/recording.py"},
+    "mcap": {"monitors/recordings.py", "simulation/recording.py"},
+    "mcap_ros1": {"monitors/recordings.py"},
+    "mcap_ros2": {"monitors/recordings.py"},
+}
+
+
+def modules() -> list[Path]:
+    return [path for room in ROOMS for path in sorted((ROOT / room).rglob("*.py"))]
+
+
+def imported(module: Path) -> set[str]:
+    """The top-level names of everything that the module imports, wherever in it."""
+    names: set[str] = set()
+    for node in ast.walk(ast.parse(module.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.Import):
+            names |= {alias.name.partition(".")[0] for alias in node.names}
+        elif isinstance(node, ast.ImportFrom):
+            assert node.level == 0, f"{module}: imports are absolute"
+            names.add((node.module or "").partition(".")[0])
+    return names
+
+
+@pytest.mark.parametrize("module", modules(), ids=lambda path: str(path.relative_to(ROOT)))
+def test_a_module_imports_only_from_its_left(module: Path) -> None:
+    room = module.relative_to(ROOT).parts[0]
+    assert imported(module) & set(ROOMS) <= MAY_IMPORT[room]
+
+
+@pytest.mark.parametrize("module", modules(), ids=lambda path: str(path.relative_to(ROOT)))
+def test_a_library_comes_in_through_its_door(module: Path) -> None:
+    name = str(module.relative_to(ROOT))
+    for library in imported(module) & DOORS.keys():
+        assert name in DOORS[library], f"{name} imports {library}"
+
+
+def test_only_the_command_imports_the_simulation() -> None:
+    users = {str(m.relative_to(ROOT)) for m in modules() if "simulation" in imported(m)}
+    assert {user for user in users if not user.startswith("simulation/")} == {"compiler/cli.py"}
+
+
+def test_the_kernel_needs_the_standard_library_only() -> None:
+    assert imported(ROOT / "monitors/kernel.py") == {
+        "__future__",
+        "argparse",
+        "collections",
+        "csv",
+        "dataclasses",
+        "itertools",
+        "json",
+        "os",
+        "sys",
+        "typing",
+    }
