@@ -22,11 +22,11 @@ def meaning(sentence: s.Sentence, ticks: int | None, clock: Clock | None) -> str
         clock: what a tick is, None where no clock is declared.
     """
     where, close = _where(sentence.scope)
+    q = f"`{expression(sentence.response)}`"
     negated = sentence.scope is not None and sentence.scope.kind.negates
-    demand = _demand(sentence.timing, expression(sentence.response), ticks, clock, close)
-    if negated:
-        demand = f"it must not be that {demand.replace(' must be ', ' is ')}"
-    parts = f"{where}: {_when(sentence.condition, sentence.scope)}, {demand}."
+    say = _forbidden if negated else _demanded
+    counted = (span(ticks or 0, clock), span((ticks or 0) + 1, clock))
+    parts = f"{where}: {_when(sentence.condition)}, {say(sentence.timing, q, close, counted)}."
     return parts + _odds(sentence.probability)
 
 
@@ -54,9 +54,9 @@ def _where(scope: s.Scope | None) -> tuple[str, str]:
             assert_never(scope.kind)
 
 
-def _when(condition: s.Condition | None, scope: s.Scope | None) -> str:
+def _when(condition: s.Condition | None) -> str:
     if condition is None:
-        return "from its first tick on" if scope else "from the first tick on"
+        return "from its first tick on"
     p = f"`{expression(condition.expression)}`"
     match condition.kind:
         case s.ConditionKind.HOLDING:
@@ -67,10 +67,11 @@ def _when(condition: s.Condition | None, scope: s.Scope | None) -> str:
             assert_never(condition.kind)
 
 
-def _demand(
-    timing: s.Timing, response: str, ticks: int | None, clock: Clock | None, close: str
-) -> str:
-    q = f"`{response}`"
+_Counted = tuple[str, str]
+"""The duration, and one tick more, in words."""
+
+
+def _demanded(timing: s.Timing, q: str, close: str, counted: _Counted) -> str:
     match timing:
         case s.Immediately():
             return f"{q} must be true at that same tick"
@@ -79,41 +80,91 @@ def _demand(
         case s.Finally():
             return f"{q} must be true at the last tick of {close}"
         case s.Eventually():
-            return f"{q} must be true at that tick or at a later one before {close} ends"
+            return _at_some(q, "true", close)
         case s.Always():
-            return f"{q} must be true at that tick and at every later one until {close} ends"
+            return _at_all(q, "true", close)
         case s.Never():
-            return f"{q} must be false at that tick and at every later one until {close} ends"
-        case s.Until(stop):
-            return (
-                f"{q} must be true from that tick on, up to the tick before `{expression(stop)}` "
-                f"becomes true or until {close} ends"
-            )
-        case s.Before(stop):
-            return f"{q} must be true at some tick before `{expression(stop)}` is, if it ever is"
-        case _:
-            return _counted(timing, q, ticks or 0, clock, close)
-
-
-def _counted(
-    timing: s.Within | s.For | s.After, q: str, ticks: int, clock: Clock | None, close: str
-) -> str:
-    n = span(ticks, clock)
-    match timing:
+            return _at_all(q, "false", close)
         case s.Within():
-            return (
-                f"{q} must be true at that tick or within the next {n} "
-                f"(nothing is required if {close} ends before that)"
-            )
+            return _soon(q, "true", close, counted[0])
         case s.For():
-            return f"{q} must be true at that tick and for the next {n}, or until {close} ends"
+            return _for(q, "true", close, counted[0])
         case s.After():
             return (
-                f"{q} must be false at that tick and for the next {n}, and true at the tick "
-                f"after those, unless {close} ends before"
+                f"{q} must be false at that tick and for the next {counted[0]}, and true at the "
+                f"tick after those, unless {close} ends before"
             )
+        case s.Until(stop):
+            return _up_to(q, "true", close, expression(stop))
+        case s.Before(stop):
+            return _ahead_of(q, "true", close, expression(stop))
         case _:
             assert_never(timing)
+
+
+def _forbidden(timing: s.Timing, q: str, close: str, counted: _Counted) -> str:
+    """The negated timing, which `only` scopes demand; its forms are duals."""
+    match timing:
+        case s.Immediately():
+            return f"{q} must be false at that same tick"
+        case s.Next():
+            return f"{q} must be false at the next tick, if {close} has one"
+        case s.Finally():
+            return f"{q} must be false at the last tick of {close}"
+        case s.Eventually():
+            return _at_all(q, "false", close)
+        case s.Always():
+            return _at_some(q, "false", close)
+        case s.Never():
+            return _at_some(q, "true", close)
+        case s.Within():
+            return _for(q, "false", close, counted[0])
+        case s.For():
+            return _soon(q, "false", close, counted[0])
+        case s.After():
+            return (
+                f"{q} must be true at that tick or within the next {counted[0]}, or else be false "
+                f"for the next {counted[1]} (nothing is required if {close} ends before that)"
+            )
+        case s.Until(stop):
+            return _ahead_of(q, "false", close, expression(stop))
+        case s.Before(stop):
+            return _up_to(q, "false", close, expression(stop))
+        case _:
+            assert_never(timing)
+
+
+def _at_some(q: str, value: str, close: str) -> str:
+    return f"{q} must be {value} at that tick or at a later one before {close} ends"
+
+
+def _at_all(q: str, value: str, close: str) -> str:
+    return f"{q} must be {value} at that tick and at every later one until {close} ends"
+
+
+def _soon(q: str, value: str, close: str, ticks: str) -> str:
+    return (
+        f"{q} must be {value} at that tick or within the next {ticks} "
+        f"(nothing is required if {close} ends before that)"
+    )
+
+
+def _for(q: str, value: str, close: str, ticks: str) -> str:
+    return f"{q} must be {value} at that tick and for the next {ticks}, or until {close} ends"
+
+
+def _up_to(q: str, value: str, close: str, stop: str) -> str:
+    return (
+        f"{q} must be {value} from that tick on, up to the tick before `{stop}` becomes true "
+        f"or until {close} ends"
+    )
+
+
+def _ahead_of(q: str, value: str, close: str, stop: str) -> str:
+    return (
+        f"if `{stop}` becomes true before {close} ends, {q} must be {value} at some tick "
+        "from that tick on and before it"
+    )
 
 
 def span(ticks: int, clock: Clock | None) -> str:
