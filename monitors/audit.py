@@ -1,0 +1,198 @@
+"""Run generated monitors over one recorded log and say what was shown."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import partial
+from statistics import median
+
+import numpy as np
+
+from fretish import expressions as e
+from fretish.declarations import Declarations
+from fretish.units import base_name
+from monitors import kernel
+from monitors.evidence import Evidence, Moment, Violation, health
+from monitors.recordings import Recording
+from monitors.signals import blind_zones
+from monitors.traces import Timeline, Trace, trace
+
+
+@dataclass(frozen=True, slots=True)
+class Watched:
+    """A requirement's monitor, with the hashes of what it was made from."""
+
+    monitor: kernel.Monitor
+    hashes: Mapping[str, str]
+
+
+def signals_of(declarations: Declarations, propositions: Sequence[str]) -> tuple[str, ...]:
+    """The names of the signals that the propositions read, in the order of their first use."""
+    return tuple(
+        dict.fromkeys(
+            name.id
+            for proposition in propositions
+            for name in e.names(declarations.propositions[proposition].expression)
+        )
+    )
+
+
+def examined(
+    recording: Recording, declarations: Declarations, propositions: Sequence[str]
+) -> Recording:
+    """The recording, with a finding for each bound that the sensors of this log cannot see."""
+    blind = (
+        finding
+        for name in propositions
+        for finding in blind_zones(declarations.propositions[name], declarations, recording.nearest)
+    )
+    return replace(recording, findings=(*recording.findings, *blind))
+
+
+def audit(
+    recording: Recording, declarations: Declarations, watched: Sequence[Watched]
+) -> tuple[Evidence, ...]:
+    """The evidence of one run for each monitor, in their order.
+
+    Args:
+        recording: read with all signals of all the monitors' propositions.
+        declarations: every proposition of the monitors is declared.
+        watched: the monitors.
+    """
+    names = dict.fromkeys(name for w in watched for name in w.monitor.PROPOSITIONS)
+    seen = trace(declarations, recording, tuple(names))
+    return tuple(_evidence(recording, declarations, seen, w) for w in watched)
+
+
+def _evidence(
+    recording: Recording, declarations: Declarations, seen: Trace, watched: Watched
+) -> Evidence:
+    monitor = watched.monitor
+    columns = {name: seen.columns[name] for name in monitor.PROPOSITIONS}
+    count = len(seen.timeline.times)
+    rows = ({name: column[i] for name, column in columns.items()} for i in range(count))
+    outcome = kernel.run(monitor, rows, str(declarations.clock.end))
+    at = partial(_moment, seen.timeline)
+    signals = signals_of(declarations, tuple(monitor.PROPOSITIONS))
+    verdict = _weakened(outcome.verdict, recording)
+    latencies = tuple(at(k).seconds - at(t).seconds for t, k in outcome.answers)
+    evidence = Evidence(
+        run=recording.name,
+        requirement=monitor.REQUIREMENT,
+        verdict=verdict,
+        reason="",
+        outcome=outcome,
+        start_ns=recording.start_ns,
+        end_ns=recording.end_ns,
+        clock=f"{declarations.clock}, by {declarations.clock.time}",
+        triggers=tuple(at(t) for t in outcome.triggers),
+        violations=tuple(
+            _violation(run, outcome, at, recording, signals) for run in outcome.violations
+        ),
+        open=tuple(at(t) for t, _ in outcome.open),
+        latencies=tuple(round(latency, 9) for latency in latencies),
+        units={name: base_name(declarations.signals[name].unit.dimension) for name in signals},
+        hashes={"log": recording.sha256, **watched.hashes},
+        health=health(recording),
+        assumptions=declarations.assumptions,
+    )
+    return replace(evidence, reason=_reason(evidence, recording))
+
+
+def _weakened(verdict: str, recording: Recording) -> str:
+    """A damaged log can show a violation, and nothing else."""
+    shown = verdict in (kernel.SATISFIED, kernel.VACUOUS)
+    return kernel.NO_DATA if shown and not recording.intact else verdict
+
+
+def _moment(timeline: Timeline, tick: int) -> Moment:
+    ns = int(timeline.times[tick])
+    return Moment(tick, ns, round((ns - int(timeline.times[0])) / 1e9, 9))
+
+
+def _violation(
+    run: tuple[int, int],
+    outcome: kernel.Outcome,
+    at: Callable[[int], Moment],
+    recording: Recording,
+    signals: Sequence[str],
+) -> Violation:
+    first, last = run
+    before = [trigger for trigger in outcome.triggers if trigger <= first]
+    return Violation(
+        at(first),
+        at(last),
+        at(before[-1]) if before else None,
+        {name: value_at(recording, name, at(first).ns) for name in signals},
+    )
+
+
+def value_at(recording: Recording, signal: str, ns: int) -> float | None:
+    """The last sample of a signal at or before a time; None where there is none or it is unknown.
+
+    Infinite values (nothing in range) are None too: JSON has no word for them.
+    """
+    samples = recording.samples.get(signal)
+    if samples is None:
+        return None
+    i = int(np.searchsorted(samples.times, ns, "right")) - 1
+    value = float(samples.values[i]) if i >= 0 else float("nan")
+    return value if np.isfinite(value) else None
+
+
+def _reason(evidence: Evidence, recording: Recording) -> str:
+    """Why the verdict is what it is, in one sentence."""
+    outcome = evidence.outcome
+    match evidence.verdict:
+        case kernel.VIOLATED:
+            return _broken(evidence)
+        case kernel.NO_DATA:
+            return _unknown(evidence, recording)
+        case kernel.INCONCLUSIVE:
+            last = evidence.open[-1] if evidence.open else None
+            since = f" since {last.seconds:.1f} s" if last else ""
+            return f"{_times(len(evidence.open), 'demand')} open at the end of the log{since}"
+        case kernel.VACUOUS:
+            return f"never triggered in {outcome.ticks} ticks"
+        case _:
+            return f"held, {_times(len(evidence.triggers), 'trigger')}{_latency(evidence)}"
+
+
+def _broken(evidence: Evidence) -> str:
+    first = evidence.violations[0]
+    trigger = f", triggered at {first.trigger.seconds:.1f} s" if first.trigger else ""
+    return (
+        f"broken from {first.first.seconds:.1f} s to {first.last.seconds:.1f} s{trigger}"
+        f"{_more(len(evidence.violations))}"
+    )
+
+
+def _more(count: int) -> str:
+    return f", and {_times(count - 1, 'more stretch', 'more stretches')}" if count > 1 else ""
+
+
+def _unknown(evidence: Evidence, recording: Recording) -> str:
+    errors = [finding.message for finding in recording.findings if finding.is_error]
+    if errors:
+        return errors[0]
+    if not recording.intact:
+        return "the log is damaged: what is lost could hold a violation"
+    runs = evidence.outcome.unknown
+    ticks = sum(last - first + 1 for first, last in runs)
+    if not runs:
+        return "the propositions are unknown where it matters"
+    return f"unknown at {_times(ticks, 'tick')}, first at tick {runs[0][0]}"
+
+
+def _latency(evidence: Evidence) -> str:
+    if not evidence.latencies:
+        return ""
+    return (
+        f", answered after {median(evidence.latencies):.2f} s (median), "
+        f"{max(evidence.latencies):.2f} s (longest)"
+    )
+
+
+def _times(count: int, one: str, many: str = "") -> str:
+    return f"{count} {one if count == 1 else many or one + 's'}"

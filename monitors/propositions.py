@@ -1,0 +1,379 @@
+"""Propositions over samples: three-valued step functions of time.
+
+Kleene's logic: a proposition is true, false or unknown, and what is unknown stays unknown until
+the rest decides. Times are nanoseconds, numbers are in the base unit of their dimension.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import reduce
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fretish import expressions as e
+from fretish.declarations import Declarations, Proposition, Signal
+from fretish.units import ONE, Unit, unit
+
+if TYPE_CHECKING:
+    from monitors.recordings import Recording
+
+Times = NDArray[np.int64]
+Numbers = NDArray[np.float64]
+States = NDArray[np.int8]
+"""One of `FALSE`, `UNKNOWN`, `TRUE` each: `and` is the least of them, `or` the greatest."""
+
+FALSE, UNKNOWN, TRUE = 0, 1, 2
+_VALUES: tuple[bool | None, ...] = (False, None, True)
+_FOREVER = 2**62
+"""Later than any time of a log, and far enough from the end of int64 to add a duration."""
+
+_COMPARE: dict[str, Callable[[Numbers, Numbers], NDArray[np.bool_]]] = {
+    "<": np.less,
+    "<=": np.less_equal,
+    ">": np.greater,
+    ">=": np.greater_equal,
+    "=": np.equal,
+    "!=": np.not_equal,
+}
+
+
+class ExpressionError(ValueError):
+    """The expression cannot be evaluated where it stands; the text says why."""
+
+
+@dataclass(frozen=True, slots=True)
+class Steps:
+    """A step function: `states[i]` from `times[i]` on, until `times[i + 1]`.
+
+    Both have shape (n,), n >= 1. Times do not decrease; of several steps at one time each was
+    seen and the last one stays.
+    """
+
+    times: Times
+    states: States
+
+    @property
+    def values(self) -> list[bool | None]:
+        """The states as truth values; None is unknown."""
+        return truth_values(self.states)
+
+
+def truth_values(states: States) -> list[bool | None]:
+    """`FALSE`, `UNKNOWN`, `TRUE` as False, None, True."""
+    return [_VALUES[state] for state in states.tolist()]
+
+
+def evaluate(proposition: Proposition, declarations: Declarations, recording: Recording) -> Steps:
+    """The proposition's truth over the time of the recording.
+
+    A step is taken at the start of the recording, at each sample of each signal that the
+    proposition names, where a sample grows too old (`max_age` and one nanosecond after it), at
+    both ends of each gap of the recording, and where `... for 200 ms` is fulfilled. Samples with
+    the same time are taken in their order: the first of each signal together, then the second.
+
+    A signal is unknown before its first sample, after its last one has grown too old, within a
+    gap and from there to the next sample, and where a sample is unknown. Numbers are compared
+    as they were recorded: 0.9 as a 32-bit float is 0.89999998, and that is below 0.9.
+
+    Returns:
+        Steps from `recording.start_ns` on; the later ones up to `recording.end_ns`.
+    """
+    signals = {
+        name: declarations.signals[name]
+        for name in sorted({name.id for name in e.names(proposition.expression)})
+    }
+    history = _history(signals, recording)
+    steps = _steps(proposition.expression, history)
+    kept = steps.times <= max(recording.end_ns, recording.start_ns)
+    return Steps(steps.times[kept], steps.states[kept])
+
+
+# Numbers and truth at given points
+
+
+@dataclass(frozen=True, slots=True)
+class Scope:
+    """What the names of an expression stand for, at `length` points.
+
+    `numbers` have shape (length,), or one element for all points; NaN is unknown. Quantities are
+    read in `unit`; `single` says that numbers are compared as 32-bit floats.
+    """
+
+    length: int
+    numbers: Mapping[str, Numbers]
+    unit: Unit = ONE
+    single: bool = False
+    held: Mapping[e.Held, States] = field(default_factory=dict)
+
+
+def truth(expression: e.Expression, scope: Scope) -> States:
+    """Kleene's truth of the expression at each point, shape (scope.length,).
+
+    Raises:
+        ExpressionError: the expression is a number, or names what the scope does not hold.
+    """
+    match expression:
+        case e.Truth(value):
+            return np.full(scope.length, TRUE if value else FALSE, np.int8)
+        case e.Comparison(op, left, right):
+            return _compared(op, number(left, scope), number(right, scope), scope)
+        case e.Not(arg):
+            return _not(truth(arg, scope))
+        case e.And(args):
+            return reduce(np.minimum, (truth(arg, scope) for arg in args))
+        case e.Or(args):
+            return reduce(np.maximum, (truth(arg, scope) for arg in args))
+        case e.Implies(left, right):
+            return np.maximum(_not(truth(left, scope)), truth(right, scope))
+        case e.Iff(left, right):
+            return _same(truth(left, scope), truth(right, scope))
+        case e.Xor(left, right):
+            return _not(_same(truth(left, scope), truth(right, scope)))
+        case e.Held():
+            if expression not in scope.held:
+                raise ExpressionError("`for` needs a proposition: a single message has no duration")
+            return scope.held[expression]
+        case _:
+            raise ExpressionError("a truth value is needed, and this is a number")
+
+
+def number(expression: e.Expression, scope: Scope) -> Numbers:
+    """The number at each point, shape (scope.length,) or (1,); NaN where it is unknown.
+
+    What divides by zero is unknown. Infinity is a number: `1 / inf` is 0, `inf - inf` unknown.
+
+    Raises:
+        ExpressionError: the expression is a truth value, or names what the scope does not hold.
+    """
+    match expression:
+        case e.Number(digits):
+            return _constant(float(digits), scope)
+        case e.Quantity(digits, name, _):
+            known = unit(name)
+            assert known is not None, "the parser refuses unknown units"
+            return _constant(float(digits) * float(known.factor / scope.unit.factor), scope)
+        case e.Name(id):
+            if id not in scope.numbers:
+                raise ExpressionError(f"there is no `{id}`")
+            return scope.numbers[id]
+        case e.Negation(arg):
+            return -number(arg, scope)
+        case e.Arithmetic(op, left, right):
+            return _arithmetic(op, number(left, scope), number(right, scope))
+        case e.Call(name, args, _):
+            return _call(name, [number(arg, scope) for arg in args])
+        case _:
+            raise ExpressionError("a number is needed, and this is a truth value")
+
+
+def _constant(value: float, scope: Scope) -> Numbers:
+    return np.array([np.float32(value) if scope.single else value], np.float64)
+
+
+def _arithmetic(op: e.ArithmeticOperator, left: Numbers, right: Numbers) -> Numbers:
+    with np.errstate(all="ignore"):
+        match op:
+            case "+":
+                return left + right
+            case "-":
+                return left - right
+            case "*":
+                return left * right
+            case "/":
+                return np.where(right == 0, np.nan, left / right)
+            case _:
+                raise ExpressionError(f"bindings have no `{op}`")
+
+
+def _call(name: str, args: Sequence[Numbers]) -> Numbers:
+    match name, len(args):
+        case "abs", 1:
+            return np.abs(args[0])
+        case "min", _:
+            return reduce(np.minimum, args)
+        case "max", _:
+            return reduce(np.maximum, args)
+        case _:
+            raise ExpressionError(f"bindings have no `{name}` of {len(args)} numbers")
+
+
+def _compared(op: str, left: Numbers, right: Numbers, scope: Scope) -> States:
+    unknown = np.isnan(left) | np.isnan(right)
+    states = np.where(unknown, UNKNOWN, np.where(_COMPARE[op](left, right), TRUE, FALSE))
+    return np.broadcast_to(states, scope.length).astype(np.int8)
+
+
+def _not(states: States) -> States:
+    return (TRUE - states).astype(np.int8)
+
+
+def _same(left: States, right: States) -> States:
+    unknown = (left == UNKNOWN) | (right == UNKNOWN)
+    return np.where(unknown, UNKNOWN, np.where(left == right, TRUE, FALSE)).astype(np.int8)
+
+
+# Signals over time
+
+
+@dataclass(frozen=True, slots=True)
+class _History:
+    """The signals of a proposition at all its events; times have shape (n,)."""
+
+    times: Times
+    numbers: Mapping[str, Numbers]
+
+    def at(self, chosen: NDArray[np.intp], times: Times) -> _History:
+        """The same at other times, each with the event that is in force there."""
+        return _History(times, {name: values[chosen] for name, values in self.numbers.items()})
+
+
+def _history(signals: Mapping[str, Signal], recording: Recording) -> _History:
+    samples = {name: _samples(recording, name) for name in signals}
+    gaps = _merged(recording.gaps)
+    fixed = [recording.start_ns, *(edge for gap in gaps for edge in gap)]
+    sources = [np.unique(np.array(fixed, np.int64))]
+    for name, signal in signals.items():
+        sources += [samples[name][0], _expiries(samples[name][0], signal.max_age)]
+    times, places = _events(sources)
+    numbers = {
+        name: _held_values(*samples[name], places[1 + 2 * i], times, signal.max_age, gaps)
+        for i, (name, signal) in enumerate(signals.items())
+    }
+    first = int(np.searchsorted(times, recording.start_ns))
+    return _History(times[first:], {name: values[first:] for name, values in numbers.items()})
+
+
+def _samples(recording: Recording, name: str) -> tuple[Times, Numbers]:
+    samples = recording.samples.get(name)
+    if samples is None:
+        return np.zeros(0, np.int64), np.zeros(0)
+    return samples.times, samples.values
+
+
+def _merged(gaps: Sequence[tuple[int, int]]) -> list[tuple[int, int]]:
+    """The same time as gaps that do not touch, in order."""
+    merged: list[tuple[int, int]] = []
+    for start, end in sorted(gaps):
+        if merged and start <= merged[-1][1]:
+            merged[-1] = merged[-1][0], max(end, merged[-1][1])
+        else:
+            merged.append((start, end))
+    return merged
+
+
+def _expiries(times: Times, max_age: int | None) -> Times:
+    """Where a sample has grown too old and no newer one has come."""
+    if max_age is None or not len(times):
+        return np.zeros(0, np.int64)
+    following = np.append(times[1:], _FOREVER)
+    expiries: Times = times + (max_age + 1)
+    return expiries[expiries < following]
+
+
+def _events(sources: Sequence[Times]) -> tuple[Times, list[NDArray[np.intp]]]:
+    """All times, in order, and for each source the places of its own.
+
+    The n-th of equal times of one source stands together with the n-th of the others.
+    """
+    times = np.concatenate(sources)
+    ranks = np.concatenate([_ranks(source) for source in sources])
+    order = np.lexsort((ranks, times))
+    times, ranks = times[order], ranks[order]
+    new = np.ones(len(times), bool)
+    new[1:] = (times[1:] != times[:-1]) | (ranks[1:] != ranks[:-1])
+    place = np.empty(len(times), np.intp)
+    place[order] = np.cumsum(new) - 1
+    ends = np.cumsum([len(source) for source in sources])
+    return times[new], np.split(place, ends[:-1])
+
+
+def _ranks(times: Times) -> NDArray[np.intp]:
+    """How many equal times stand before each one."""
+    return np.arange(len(times)) - np.searchsorted(times, times, "left")
+
+
+def _held_values(
+    taken: Times,
+    values: Numbers,
+    places: NDArray[np.intp],
+    times: Times,
+    max_age: int | None,
+    gaps: Sequence[tuple[int, int]],
+) -> Numbers:
+    """The value of one signal at each event; NaN where it is unknown."""
+    if not len(taken):
+        return np.full(len(times), np.nan)
+    last = np.searchsorted(places, np.arange(len(times)), "right") - 1
+    taken, values = taken[last], values[last]
+    unknown = last < 0
+    if max_age is not None:
+        unknown |= times - taken > max_age
+    if gaps:
+        starts, ends = np.array(gaps, np.int64).T
+        gap = np.searchsorted(starts, times, "right") - 1
+        unknown |= (gap >= 0) & ((times <= ends[gap]) | (taken <= ends[gap]))
+    return np.where(unknown, np.nan, values)
+
+
+# Durations
+
+
+def _steps(expression: e.Expression, history: _History) -> Steps:
+    held = {
+        part: _held(_steps(part.arg, history), part.duration) for part in _durations(expression)
+    }
+    changes = [steps.times for steps in held.values()]
+    extra = np.setdiff1d(np.concatenate(changes), history.times) if changes else history.times[:0]
+    times = np.sort(np.concatenate([history.times, extra]), kind="stable")
+    history = (
+        history.at(np.searchsorted(history.times, times, "right") - 1, times)
+        if len(extra)
+        else history
+    )
+    states = {part: _at(steps, history.times) for part, steps in held.items()}
+    scope = Scope(len(times), history.numbers, held=states)
+    return Steps(history.times, truth(expression, scope))
+
+
+def _durations(expression: e.Expression) -> Iterator[e.Held]:
+    """The outermost `... for 200 ms` in it."""
+    if isinstance(expression, e.Held):
+        yield expression
+        return
+    for part in e.children(expression):
+        yield from _durations(part)
+
+
+def _at(steps: Steps, times: Times) -> States:
+    """What the step function is at each of the times, none of them before its first step."""
+    return steps.states[np.searchsorted(steps.times, times, "right") - 1]
+
+
+def _held(arg: Steps, duration: int) -> Steps:
+    """`arg` throughout `[t - duration, t]`.
+
+    False where it was false within it, else unknown where it was unknown within it (and before
+    the log it was), else true. Only changes are steps.
+    """
+    ends = np.append(arg.times[1:], _FOREVER)
+    begins = np.append(arg.times[:1], ends[:-1])  # where it can begin to be true
+    times = np.unique(np.concatenate([arg.times, begins + duration]))
+    states = np.full(len(times), TRUE, np.int8)
+    states[times < arg.times[0] + duration] = UNKNOWN
+    for state in (UNKNOWN, FALSE):
+        having = arg.states == state
+        states[_reached(times, arg.times[having], ends[having] + duration)] = state
+    changed = np.append(True, states[1:] != states[:-1])
+    return Steps(times[changed], states[changed])
+
+
+def _reached(times: Times, starts: Times, ends: Times) -> NDArray[np.bool_]:
+    """Whether a time lies in one of the spans `start <= t < end`; both ends are in order."""
+    if not len(starts):
+        return np.zeros(len(times), bool)
+    last = np.searchsorted(starts, times, "right") - 1
+    return (last >= 0) & (times < ends[last])

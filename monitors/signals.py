@@ -1,0 +1,312 @@
+"""Signals: from a decoded message to one number.
+
+Numbers are in the base unit of the signal's dimension; NaN is unknown. What no measurement is
+(NaN, an infinity, a number outside of `valid`) never passes for a number: `Invalid` says what it
+means.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from math import isfinite
+from numbers import Real
+from typing import assert_never
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fretish import expressions as e
+from fretish.declarations import Declarations, Proposition, Reading, Reduce, Signal
+from fretish.diagnostic import Code, Diagnostic, Severity, suggestion
+from monitors.outline import blind_share, distances, places
+from monitors.propositions import TRUE, ExpressionError, Numbers, Scope, number, truth
+
+RANGE_MIN = "range_min"
+"""The field of a range sensor's messages that says what is too near for it."""
+
+
+class FieldError(ValueError):
+    """The message does not hold the number that the signal asks for.
+
+    The text names what is missing; `mend` says what is there instead.
+    """
+
+    def __init__(self, message: str, mend: str | None = None) -> None:
+        super().__init__(message)
+        self.mend = mend
+
+
+def sample(signal: Signal, message: object) -> float:
+    """The signal's value in one message.
+
+    Elements are told apart first: NaN, +inf, -inf, a finite number for which `valid` is not
+    true, and a valid number. `signal.invalid` then says for each of the first four: it is
+    dropped; it is far (+inf); it is near (-inf, and for `outline` a clearance of 0); or it makes
+    the whole sample unknown. `valid` is read in the unit of the field. Where all elements are
+    32-bit floats its numbers are rounded to 32 bits too, so that `x <= 0.3` keeps a 0.3.
+
+    `outline` takes each element for a beam, as sensor_msgs/LaserScan defines them, and gives the
+    least distance from `signal.footprint` to their end points. A valid beam that ends inside of
+    the footprint has a clearance of 0: whether it met the robot itself cannot be known.
+
+    Args:
+        signal: what to read, and how.
+        message: an object with the message's fields as attributes, arrays as sequences.
+
+    Returns:
+        In the base unit of `signal.unit`. NaN, unknown, where nothing was measured: an index past
+        the end, an empty array, an element that is unknown, nothing left after the drops.
+
+    Raises:
+        FieldError: the message has no such field, or something else than numbers is in it.
+    """
+    factor = float(signal.unit.factor)
+    value = _field(signal, message)
+    if isinstance(value, float) and signal.valid is None and isfinite(value):
+        return value * factor  # most signals are so, and most of the time is spent on them
+    values = np.array([value]) if isinstance(value, float) else value
+    readings = _readings(signal, values, _valid(signal, message, values))
+    if readings is None or np.isnan(readings).all():
+        return float("nan")
+    if signal.reduce is Reduce.OUTLINE:
+        return _clearance(signal, message, readings)
+    measured = readings[~np.isnan(readings)]
+    return _reduced(signal.reduce, measured) * factor
+
+
+def nearest(signal: Signal, message: object) -> float | None:
+    """The least distance that the sensor can report, as the message itself states it.
+
+    Returns:
+        `range_min` in metres, for a signal that is the nearest of many readings; None for
+        others, and where the message does not state it.
+    """
+    if signal.reduce not in (Reduce.MIN, Reduce.OUTLINE):
+        return None
+    stated = getattr(message, RANGE_MIN, None)
+    if not isinstance(stated, Real) or not np.isfinite(float(stated)):
+        return None
+    return float(stated) * float(signal.unit.factor)
+
+
+# Elements
+
+
+def _field(signal: Signal, message: object) -> float | Numbers:
+    """A number, or the chosen elements of an array, shape (n,), in the unit of the field."""
+    path = signal.path
+    value = message
+    for position, name in enumerate(path.fields):
+        value = _attribute(value, name, ".".join(path.fields[:position]))
+    name = ".".join(path.fields)
+    if not path.each and path.index is None:
+        return _number(value, name)
+    values = _array(value, name)
+    if path.index is None:
+        return values
+    return values[path.index : path.index + 1]
+
+
+def _attribute(value: object, name: str, parent: str) -> object:
+    known = fields(value)
+    if name in known:
+        return getattr(value, name)
+    where = f"`{parent}`" if parent else "the message"
+    near = suggestion(name, known)
+    listed = f"it has {', '.join(known)}" if known else None
+    raise FieldError(
+        f"{where} has no field `{name}`", f"did you mean `{near}`?" if near else listed
+    )
+
+
+def fields(message: object) -> tuple[str, ...]:
+    """The names of a decoded message's fields, in their order; none where it is no message."""
+    slots = getattr(type(message), "__slots__", None)
+    if slots:
+        return tuple(slots)
+    return tuple(getattr(message, "__dict__", ()))
+
+
+def _number(value: object, name: str) -> float:
+    if isinstance(value, float | int | Real | np.bool_):  # the frequent ones first
+        return float(value)
+    inner = fields(value)
+    if inner:
+        raise FieldError(f"`{name}` is no number", f"it has {', '.join(inner)}")
+    if isinstance(value, list | tuple | bytes | np.ndarray):
+        raise FieldError(
+            f"`{name}` is an array", f"write `{name}[0]`, or `{name}[:]` with `reduce`"
+        )
+    raise FieldError(f"`{name}` is no number")
+
+
+def _array(value: object, name: str) -> Numbers:
+    if isinstance(value, bytes | bytearray):
+        return np.frombuffer(value, np.uint8).astype(np.float64)
+    if isinstance(value, str) or not isinstance(value, list | tuple | np.ndarray):
+        raise FieldError(f"`{name}` is no array", "leave out the index")
+    try:
+        values = np.asarray(value, np.float64)
+    except (TypeError, ValueError):
+        raise FieldError(f"`{name}` is no array of numbers") from None
+    return values.reshape(-1)
+
+
+# What the elements mean
+
+
+def _valid(signal: Signal, message: object, values: Numbers) -> NDArray[np.bool_]:
+    """Which elements are measurements."""
+    finite = np.isfinite(values)
+    if signal.valid is None:
+        return finite
+    names = {name.id for name in e.names(signal.valid)} - {"x"}
+    siblings = {name: np.array([_sibling(message, name)]) for name in names}
+    with np.errstate(over="ignore"):
+        single = bool(np.all(values.astype(np.float32) == values, where=finite))
+    scope = Scope(len(values), {"x": values, **siblings}, signal.unit, single)
+    try:
+        accepted: NDArray[np.bool_] = truth(signal.valid, scope) == TRUE
+    except ExpressionError as error:
+        raise FieldError(f"`valid` cannot be evaluated: {error}") from None
+    return finite & accepted
+
+
+def _sibling(message: object, name: str) -> float:
+    return _number(_attribute(message, name, ""), name)
+
+
+def _readings(signal: Signal, values: Numbers, valid: NDArray[np.bool_]) -> Numbers | None:
+    """The elements with what is far or near put in; NaN where one is dropped.
+
+    None when an element makes the whole sample unknown.
+    """
+    invalid = signal.invalid
+    readings = values.copy()
+    for chosen, reading in (
+        (np.isnan(values), invalid.nan),
+        (np.isposinf(values), invalid.positive_infinity),
+        (np.isneginf(values), invalid.negative_infinity),
+        (np.isfinite(values) & ~valid, invalid.other),
+    ):
+        if not chosen.any():
+            continue
+        match reading:
+            case Reading.UNKNOWN:
+                return None
+            case Reading.DROP:
+                readings[chosen] = np.nan
+            case Reading.FAR:
+                readings[chosen] = np.inf
+            case Reading.NEAR:
+                readings[chosen] = -np.inf
+            case _:
+                assert_never(reading)
+    return readings
+
+
+def _reduced(reduce: Reduce | None, readings: Numbers) -> float:
+    match reduce:
+        case None:
+            return float(readings[0])
+        case Reduce.MIN:
+            return float(readings.min())
+        case Reduce.MAX:
+            return float(readings.max())
+        case Reduce.MEAN:
+            with np.errstate(invalid="ignore"):
+                return float(readings.mean())
+        case _:
+            raise AssertionError(f"{reduce} takes more than the numbers")
+
+
+def _clearance(signal: Signal, message: object, readings: Numbers) -> float:
+    """Metres from the footprint to the nearest end of a beam; inf where all are far."""
+    if np.isneginf(readings).any():
+        return 0.0
+    beams = np.isfinite(readings)
+    if not beams.any():
+        return float("inf")
+    increment = _sibling(message, "angle_increment")
+    angles = _sibling(message, "angle_min") + increment * np.arange(len(readings), dtype=float)
+    ranges = readings[beams] * float(signal.unit.factor)
+    ends = places(ranges, angles[beams], signal.sensor)
+    return float(distances(ends, signal.footprint).min())
+
+
+# Bounds where the sensor is blind
+
+
+def blind_zones(
+    proposition: Proposition, declarations: Declarations, nearest: Mapping[str, float]
+) -> tuple[Diagnostic, ...]:
+    """F311 for each bound of the proposition that lies nearer than its sensor can measure.
+
+    A bound is a number that a signal is compared with by `<`, `<=`, `>` or `>=`; where nothing
+    beyond it can be measured, the comparison says the same for ever. Signals for which readings
+    outside of `valid` count as near are left out.
+
+    Args:
+        proposition: with an expression over signals.
+        declarations: what it was declared with.
+        nearest: for each signal the least distance that its sensor reports, in metres, as
+            `Recording.nearest` has it.
+    """
+    found = []
+    for part in _comparisons(proposition.expression):
+        for name, bound, op in _bounds(part):
+            signal = declarations.signals.get(name.id)
+            limit = nearest.get(name.id)
+            if signal is None or limit is None or signal.invalid.other is Reading.NEAR:
+                continue
+            share = _blind(signal, bound, limit, op)
+            if share > 0:
+                found.append(_blind_zone(proposition, signal, bound, limit, share))
+    return tuple(found)
+
+
+def _comparisons(expression: e.Expression) -> Iterator[e.Comparison]:
+    if isinstance(expression, e.Comparison):
+        yield expression
+    for part in e.children(expression):
+        yield from _comparisons(part)
+
+
+def _bounds(comparison: e.Comparison) -> Iterator[tuple[e.Name, float, str]]:
+    """`(signal, bound in the base unit, operator as if the signal stood on the left)`."""
+    mirrored = {"<": ">", "<=": ">=", ">": "<", ">=": "<="}
+    if comparison.op not in mirrored:
+        return
+    for name, other, op in (
+        (comparison.left, comparison.right, comparison.op),
+        (comparison.right, comparison.left, mirrored[comparison.op]),
+    ):
+        if isinstance(name, e.Name) and not any(e.names(other)):
+            yield name, float(number(other, Scope(1, {}))[0]), op
+
+
+def _blind(signal: Signal, bound: float, limit: float, op: str) -> float:
+    """In how much of the circle the bound cannot be reached; for `min` it is all or nothing."""
+    if signal.reduce is Reduce.OUTLINE:
+        return blind_share(bound, limit, signal.footprint, signal.sensor)
+    return float(bound <= limit if op in ("<", ">=") else bound < limit)
+
+
+def _blind_zone(
+    proposition: Proposition, signal: Signal, bound: float, limit: float, share: float
+) -> Diagnostic:
+    where = "" if share == 1 else f" in {round(share * 360)} of 360 degrees"
+    return Diagnostic(
+        Code.BLIND_ZONE,
+        f"`{proposition.name}` compares `{signal.name}` with {_written(bound, signal)}, and "
+        f"`{signal.path.topic}` reports nothing nearer than {_written(limit, signal)}: what is "
+        f"nearer than the bound cannot be seen{where}",
+        proposition.span,
+        help="raise the bound above what the sensor can measure, or use a sensor that measures "
+        "nearer; only a reading of -inf could tell that something is too near",
+        severity=Severity.WARNING,
+    )
+
+
+def _written(value: float, signal: Signal) -> str:
+    return f"{value / float(signal.unit.factor):.4g} {signal.unit_name}".rstrip()

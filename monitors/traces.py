@@ -1,0 +1,117 @@
+"""Truth columns on the declared clock: what each tick of a recording sees.
+
+Times are nanoseconds. None is unknown: neither true nor false.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fretish.declarations import Aggregate, Declarations
+from monitors.propositions import UNKNOWN, States, Steps, Times, evaluate, truth_values
+from monitors.recordings import Recording
+
+Column = tuple[bool | None, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Timeline:
+    """The ticks of one recording.
+
+    `times` has shape (n,), when each tick is, in nanoseconds; it does not decrease. `period` is
+    None where the clock ticks by message.
+    """
+
+    times: Times
+    period: int | None
+
+
+@dataclass(frozen=True, slots=True)
+class Trace:
+    """One column for each proposition, each with one entry for each tick."""
+
+    timeline: Timeline
+    columns: Mapping[str, Column]
+
+
+def trace(declarations: Declarations, recording: Recording, names: Collection[str]) -> Trace:
+    """The propositions' truth at each tick.
+
+    A tick sees what happened since the tick before: the steps after that tick's time, up to and
+    including its own time; the first tick those at its own time. `any` of them makes it true, or
+    else unknown if one of them is unknown; `all` makes it false, or else unknown; `last` is the
+    last one. Without a step it sees what was in force before. `on_unknown` replaces what is then
+    unknown.
+
+    Args:
+        declarations: clock, signals and propositions.
+        recording: with the samples of all signals that the propositions name.
+        names: of propositions that are declared.
+    """
+    ticks = timeline(declarations, recording)
+    return Trace(ticks, {name: _column(name, declarations, recording, ticks) for name in names})
+
+
+def timeline(declarations: Declarations, recording: Recording) -> Timeline:
+    """The ticks of the declared clock over the recording.
+
+    Every `period` from the first bound message on, not later than the last; or one for each
+    message of the clock's topic, and messages with the same time are a tick each.
+    """
+    period = declarations.clock.period
+    if period is None:
+        return Timeline(recording.ticks, None)
+    count = max(0, recording.end_ns - recording.start_ns) // period + 1
+    return Timeline(recording.start_ns + np.arange(count, dtype=np.int64) * period, period)
+
+
+def _column(name: str, declarations: Declarations, recording: Recording, ticks: Timeline) -> Column:
+    proposition = declarations.propositions[name]
+    steps = evaluate(proposition, declarations, recording)
+    values = truth_values(_seen(steps, ticks.times, proposition.aggregate))
+    default = proposition.on_unknown
+    return tuple(default if value is None else value for value in values)
+
+
+def _seen(steps: Steps, ticks: Times, aggregate: Aggregate) -> States:
+    """The state of each tick, shape (ticks,)."""
+    before, upto = _windows(steps.times, ticks)
+    held = np.where(before > 0, steps.states[before - 1], UNKNOWN).astype(np.int8)
+    filled = upto > before
+    if not filled.any():
+        return held
+    match aggregate:
+        case Aggregate.ANY:
+            held[filled] = _each(np.maximum, steps.states, before[filled], upto[filled])
+        case Aggregate.ALL:
+            held[filled] = _each(np.minimum, steps.states, before[filled], upto[filled])
+        case Aggregate.LAST:
+            held[filled] = steps.states[upto[filled] - 1]
+    return held
+
+
+def _each(
+    function: np.ufunc, states: States, before: NDArray[np.intp], upto: NDArray[np.intp]
+) -> States:
+    """The function over each of the windows; they are not empty and follow each other."""
+    return np.asarray(function.reduceat(states[: upto[-1]], before), np.int8)
+
+
+def _windows(times: Times, ticks: Times) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+    """For each tick the steps `before <= i < upto` that it sees.
+
+    Ticks with the same time share the steps of that time: the first tick has the first of them,
+    the last tick has all that are left.
+    """
+    rank = np.arange(len(ticks)) - np.searchsorted(ticks, ticks, "left")
+    upto = np.searchsorted(times, ticks, "right")
+    more = np.append(ticks[1:] == ticks[:-1], False)
+    shared = np.searchsorted(times, ticks, "left") + rank + 1
+    upto = np.where(more, np.minimum(shared, upto), upto)
+    before = np.roll(upto, 1)
+    before[:1] = np.searchsorted(times, ticks[:1], "left")
+    return before, upto

@@ -1,0 +1,167 @@
+import time
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import example, given, settings
+from hypothesis import strategies as st
+
+from monitors.propositions import evaluate
+from monitors.recordings import Recording, Samples
+from monitors.traces import timeline, trace
+from tests.monitors.logs import MS, S, declare
+
+Value = bool | None
+
+
+def bindings(aggregate: str = "last", tick: str = "10 ns", extra: str = "") -> str:
+    return (
+        f'[clock]\ntick = "{tick}"\n[signal.x]\npath = "/x.data"\n'
+        f'[proposition.p]\nexpr = "x < 5"\nagg = "{aggregate}"\n{extra}'
+    )
+
+
+def recording(
+    pairs: Sequence[tuple[int, float]],
+    start: int = 0,
+    end: int = 50,
+    ticks: Sequence[int] = (),
+) -> Recording:
+    times = np.array([time for time, _ in pairs], np.int64)
+    values = np.array([value for _, value in pairs], np.float64)
+    samples = {"x": Samples(times, values)}
+    return Recording(
+        "log", "", 0, start, end, samples, np.array(ticks, np.int64), (), {}, {}, (), True
+    )
+
+
+def column(
+    pairs: Sequence[tuple[int, float]], aggregate: str, end: int = 50, extra: str = ""
+) -> list[Value]:
+    found = trace(declare(bindings(aggregate, extra=extra)), recording(pairs, end=end), ["p"])
+    return list(found.columns["p"])
+
+
+LOW, HIGH, NAN = 1.0, 9.0, float("nan")
+
+
+def test_ticks_come_each_period_from_the_first_message_to_the_last() -> None:
+    declarations = declare(bindings())
+    found = timeline(declarations, recording([], start=7, end=36))
+    assert found.times.tolist() == [7, 17, 27]
+    assert found.period == 10
+    assert timeline(declarations, recording([], start=7, end=37)).times.tolist()[-1] == 37
+    assert timeline(declarations, recording([], start=7, end=7)).times.tolist() == [7]
+
+
+def test_a_sample_at_the_time_of_a_tick_counts_for_that_tick() -> None:
+    pairs = [(0, HIGH), (10, LOW), (11, HIGH)]
+    assert column(pairs, "last", end=20) == [False, True, False]
+    assert column([(10, LOW)], "last", end=20) == [None, True, True]
+
+
+def test_a_pulse_shorter_than_a_tick_is_seen_by_any_and_not_by_last() -> None:
+    pairs = [(0, HIGH), (13, LOW), (14, HIGH)]
+    assert column(pairs, "any", end=30) == [False, False, True, False]
+    assert column(pairs, "last", end=30) == [False, False, False, False]
+
+
+def test_all_sees_the_shortest_break() -> None:
+    pairs = [(0, LOW), (13, HIGH), (14, LOW)]
+    assert column(pairs, "all", end=30) == [True, True, False, True]
+
+
+def test_unknown_yields_to_what_decides() -> None:
+    assert column([(1, NAN), (2, LOW)], "any", end=10) == [None, True]
+    assert column([(1, NAN), (2, HIGH)], "any", end=10) == [None, None]
+    assert column([(1, NAN), (2, LOW)], "all", end=10) == [None, None]
+    assert column([(1, NAN), (2, HIGH)], "all", end=10) == [None, False]
+    assert column([(1, NAN), (2, HIGH)], "last", end=10) == [None, False]
+
+
+def test_what_was_in_force_before_does_not_count_where_there_are_steps() -> None:
+    assert column([(0, LOW), (13, HIGH)], "any", end=20) == [True, True, False]
+    assert column([(0, HIGH), (13, LOW)], "all", end=20) == [False, False, True]
+
+
+def test_on_unknown_replaces_what_is_unknown_at_the_end() -> None:
+    pairs = [(1, NAN), (2, HIGH), (11, LOW), (21, NAN)]
+    assert column(pairs, "any", end=30) == [None, None, True, None]
+    assert column(pairs, "any", end=30, extra="on_unknown = true") == [True, True, True, True]
+    assert column(pairs, "any", end=30, extra="on_unknown = false") == [False, False, True, False]
+
+
+def test_a_clock_by_message_ticks_with_each_of_them() -> None:
+    declarations = declare(bindings("any", tick="/scan"))
+    log = recording([(0, HIGH), (12, LOW), (13, HIGH)], ticks=[5, 20, 21])
+    found = trace(declarations, log, ["p"])
+    assert found.timeline.period is None
+    assert found.timeline.times.tolist() == [5, 20, 21]
+    assert found.columns["p"] == (False, True, False)
+
+
+def test_messages_with_equal_times_are_a_tick_each_with_its_own_sample() -> None:
+    declarations = declare(bindings("any", tick="/x"))
+    log = recording([(5, HIGH), (9, LOW), (9, HIGH), (9, HIGH)], ticks=[5, 9, 9, 9])
+    assert trace(declarations, log, ["p"]).columns["p"] == (False, True, False, False)
+
+
+def test_the_last_of_equal_ticks_sees_all_that_is_left() -> None:
+    declarations = declare(bindings("any", tick="/y"))
+    log = recording([(9, HIGH), (9, HIGH), (9, LOW), (11, HIGH)], ticks=[9, 9, 12])
+    assert trace(declarations, log, ["p"]).columns["p"] == (False, True, False)
+
+
+def test_a_clock_without_messages_has_no_ticks() -> None:
+    declarations = declare(bindings("any", tick="/y"))
+    assert trace(declarations, recording([(9, HIGH)]), ["p"]).columns["p"] == ()
+
+
+def slow_tick(times: list[int], values: list[Value], low: int, high: int, how: str) -> Value:
+    """`(low, high]`, by the definition."""
+    inside = [value for time, value in zip(times, values, strict=True) if low < time <= high]
+    before = [value for time, value in zip(times, values, strict=True) if time <= low]
+    if not inside:
+        return before[-1] if before else None
+    if how == "last":
+        return inside[-1]
+    decisive = how == "any"
+    return decisive if decisive in inside else None if None in inside else not decisive
+
+
+@settings(deadline=None)
+@given(
+    st.lists(st.tuples(st.integers(0, 60), st.sampled_from([LOW, HIGH, NAN])), max_size=12),
+    st.sampled_from(["any", "all", "last"]),
+    st.integers(1, 25),
+    st.integers(0, 20),
+)
+@example([(0, LOW), (0, HIGH)], "any", 10, 0)
+def test_aggregation_agrees_with_the_definition(
+    pairs: list[tuple[int, float]], aggregate: str, period: int, start: int
+) -> None:
+    pairs = sorted(pairs, key=lambda pair: pair[0])
+    declarations = declare(bindings(aggregate, tick=f"{period} ns"))
+    log = replace(recording(pairs, end=61), start_ns=min(start, pairs[0][0] if pairs else 0))
+    steps = evaluate(declarations.propositions["p"], declarations, log)
+    ticks = list(range(log.start_ns, 62, period))
+    expected = [
+        slow_tick(steps.times.tolist(), steps.values, low, high, aggregate)
+        for low, high in zip([log.start_ns - 1, *ticks], ticks, strict=False)
+    ]
+    found = trace(declarations, log, ["p"])
+    assert found.timeline.times.tolist() == ticks
+    assert list(found.columns["p"]) == expected
+
+
+@pytest.mark.parametrize("expression", ["x < 5", "x < 5 for 200 ms"])
+def test_ten_minutes_take_well_under_a_second(expression: str) -> None:
+    text = bindings("any", tick="100 ms").replace("x < 5", expression)
+    times = np.arange(30_000, dtype=np.int64) * (20 * MS)
+    samples = {"x": Samples(times, np.sin(times / S) * 10)}
+    log = replace(recording([], end=600 * S), samples=samples)
+    declarations = declare(text)
+    begin = time.process_time()
+    assert len(trace(declarations, log, ["p"]).columns["p"]) == 6001
+    assert time.process_time() - begin < 0.5
