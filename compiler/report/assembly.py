@@ -1,0 +1,261 @@
+"""The whole report from a project and its evidence."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Sequence
+
+from compiler import __version__
+from compiler.project import Project
+from compiler.report import phrases
+from compiler.report.claims import (
+    MARKS,
+    NOT_EXERCISED,
+    RETIRED,
+    SUSPECT,
+    UNFORMALIZED,
+    Claim,
+    claims,
+)
+from compiler.report.evidence import Evidence
+from compiler.report.matrix import hazard_views, matrix, orphans, strangers
+from compiler.report.reproduction import commands, folder_of, manifest
+from compiler.report.runs import Run, run_views, runs, trust
+from compiler.report.sections import remark, section
+from compiler.report.views import (
+    SCHEMA,
+    Count,
+    Mark,
+    NotShown,
+    Overall,
+    Planned,
+    Report,
+    RequirementView,
+)
+from fretish.diagnostic import Code, Diagnostic, Severity, has_errors
+from fretish.source import Source
+from monitors import kernel
+
+
+def report(
+    project: Project, evidence: Evidence | None, path: str
+) -> tuple[Report, tuple[Diagnostic, ...]]:
+    """The report, and what there is to say of the evidence.
+
+    Args:
+        project: with or without errors; what could not be formalized is shown as such.
+        evidence: None where no run has been audited.
+        path: where the evidence is, or is to be.
+    """
+    found = runs(evidence)
+    claimed = claims(project, evidence)
+    anchors = {claim.id: claim.anchor for claim in reversed(claimed)}
+    audited = evidence is not None
+    sections = tuple(section(claim, project, found, anchors, audited) for claim in claimed)
+    plans = tuple(plan for view in sections for plan in view.planned if view.status != RETIRED)
+    reservations = tuple(line for view in sections for line in _reservations(view))
+    return Report(
+        schema=SCHEMA,
+        fretc=__version__,
+        project=folder_of(project),
+        components=tuple(sorted({rule.sentence.component for rule in project.rules})),
+        evidence=phrases.place(path) if evidence else "",
+        audited_by=evidence.fretc if evidence else "",
+        overall=_overall(project, claimed, plans, tuple(found.values()), reservations),
+        runs=run_views(found.values(), project),
+        claims=_claims(claimed, len(found)),
+        counts=_counts(claimed),
+        not_shown=tuple(_not_shown(view) for view in sections if view.reasons),
+        reservations=reservations,
+        planned=plans,
+        remarks=tuple(remark(diagnostic) for diagnostic in project.diagnostics),
+        hazards=hazard_views(project),
+        matrix=matrix(project, claimed, sections, found),
+        orphans=orphans(project, claimed, evidence),
+        requirements=sections,
+        assumptions=_assumptions(project, evidence),
+        commands=commands(project, sections, tuple(found.values()), path),
+        manifest=manifest(project, sections, tuple(found.values()), evidence),
+    ), _stale(claimed, evidence, path)
+
+
+def _not_shown(view: RequirementView) -> NotShown:
+    return NotShown(view.id, view.title, view.anchor, view.mark, view.reasons)
+
+
+# In words --------------------------------------------------------------------------------------
+
+_ALL = Mark("all shown", "✔", "satisfied")
+_PART = Mark("not all shown", "◔", "inconclusive")
+_NONE = Mark("nothing shown", "○", "not-exercised")
+_BROKEN = Mark("violated", "✘", "violated")
+
+
+def _overall(
+    project: Project,
+    claimed: Sequence[Claim],
+    plans: Sequence[Planned],
+    runs: Sequence[Run],
+    reservations: Sequence[str],
+) -> Overall:
+    active = [claim for claim in claimed if claim.verdict != RETIRED]
+    missing = [plan for plan in plans if not plan.has_result]
+    broken = [claim for claim in active if claim.verdict == kernel.VIOLATED]
+    good = [claim for claim in active if claim.verdict == kernel.SATISFIED]
+    flawed = has_errors(project.diagnostics)
+    said = tuple(
+        filter(
+            None,
+            (
+                _held(active, good, len(runs)),
+                *_few(reservations),
+                _unplanned(missing),
+                _uncovered(project, claimed),
+                trust(runs),
+                _FLAWED if flawed else "",
+            ),
+        )
+    )
+    if broken:
+        verb = "is" if len(broken) == 1 else "are"
+        names = phrases.some([claim.id for claim in broken])
+        return Overall(_BROKEN, f"{names} {verb} violated.", said)
+    if not good:
+        return Overall(_NONE, "Nothing that was claimed is shown.", said)
+    if len(good) < len(active) or flawed:
+        return Overall(_PART, "Not everything that was claimed is shown.", said)
+    if missing:
+        return Overall(_PART, "What was audited held; not all that was planned is shown.", said)
+    return Overall(_ALL, "Everything that was claimed is shown.", said)
+
+
+def _held(active: Sequence[Claim], good: Sequence[Claim], runs: int) -> str:
+    if not active:
+        return "There is no requirement to show."
+    if not runs:
+        return "No run has been audited."
+    if len(active) == 1:
+        where = _where(len(active[0].judged))
+        held = f"held in {where}" if good else f"was not shown to hold in {where}"
+        return f"The one requirement, {active[0].id}, {held if where else 'was not audited'}."
+    everywhere = all(len(claim.judged) == runs for claim in good)
+    where = _where(runs) if everywhere else "each run in which they were audited"
+    return f"{len(good)} of {len(active)} requirements held in {where}."
+
+
+def _where(runs: int) -> str:
+    return ("", "the audited run")[runs] if runs <= 1 else f"every one of the {runs} audited runs"
+
+
+def _unplanned(missing: Sequence[Planned]) -> str:
+    if not missing:
+        return ""
+    names = phrases.some([f"{plan.method} for {plan.requirement}" for plan in missing])
+    return f"No result is known of {phrases.times(len(missing), 'planned method')}: {names}."
+
+
+def _uncovered(project: Project, claimed: Sequence[Claim]) -> str:
+    count = len(orphans(project, claimed, None).hazards)
+    verb = "has" if count == 1 else "have"
+    return f"{phrases.times(count, 'hazard')} {verb} no requirement in force." if count else ""
+
+
+_FLAWED = "The requirements or what stands beside them have errors: this report is not complete."
+
+
+def _few(reservations: Sequence[str]) -> Sequence[str]:
+    """The reservations themselves, or that there are many."""
+    if len(reservations) <= 3:
+        return reservations
+    return (f"There are {len(reservations)} reservations about what is shown; part 2 lists them.",)
+
+
+def _reservations(view: RequirementView) -> Sequence[str]:
+    """What a reader has to know of a requirement that is shown."""
+    if view.mark.word != kernel.SATISFIED:
+        return ()
+    late = [
+        f"{view.id} sets no bound on its response; in {result.run_label} the longest took "
+        f"{result.latency.longest}."
+        for result in view.results
+        if result.latency and not result.latency.is_bounded
+        if result.latency.at_once < result.latency.answered
+    ]
+    draft = [f"{view.id} is a draft."] if view.status == "draft" else []
+    return (*late, *draft)
+
+
+def _claims(claimed: Sequence[Claim], runs: int) -> str:
+    active = [claim for claim in claimed if claim.verdict != RETIRED]
+    drafts = sum(claim.requirement.status == "draft" for claim in active)
+    retired = len(claimed) - len(active)
+    parts = [
+        f"{phrases.times(len(active), 'requirement')} in force",
+        f"{drafts} of them {'a draft' if drafts == 1 else 'drafts'}" if drafts else "",
+        f"{retired} retired" if retired else "",
+        f"audited against {phrases.times(runs, 'run')}" if runs else "not audited",
+    ]
+    return f"{', '.join(filter(None, parts))}."
+
+
+def _counts(claimed: Sequence[Claim]) -> tuple[Count, ...]:
+    active = [claim for claim in claimed if claim.verdict != RETIRED]
+    of_claims = Counter(claim.verdict for claim in claimed)
+    of_results = Counter(judged.verdict for claim in active for judged in claim.judged)
+    best_first = (kernel.SATISFIED, *(word for word in MARKS if word != kernel.SATISFIED))
+    always = (kernel.SATISFIED, kernel.VIOLATED, kernel.INCONCLUSIVE, kernel.VACUOUS)
+    shown = (*always, kernel.NO_DATA, SUSPECT, NOT_EXERCISED)
+    return tuple(
+        Count(MARKS[word], of_claims[word], of_results[word])
+        for word in best_first
+        if word in shown or (word in (UNFORMALIZED, RETIRED) and of_claims[word])
+    )
+
+
+def _assumptions(project: Project, evidence: Evidence | None) -> tuple[str, ...]:
+    declared = project.declarations.assumptions if project.declarations else ()
+    audited = [
+        text for result in (evidence.results if evidence else ()) for text in result.assumptions
+    ]
+    known = dict.fromkeys(declared)
+    older = dict.fromkeys(f"{text} (in the audit)" for text in audited if text not in known)
+    return (*known, *older)
+
+
+# F504 ------------------------------------------------------------------------------------------
+
+
+def _stale(
+    claimed: Sequence[Claim], evidence: Evidence | None, path: str
+) -> tuple[Diagnostic, ...]:
+    again = f"audit again: `fretc audit LOG... --evidence {path}`"
+    suspect = [
+        Diagnostic(
+            Code.STALE_EVIDENCE,
+            f"the evidence of {claim.id} is suspect in {phrases.times(count, 'run')}: {why}",
+            claim.requirement.wording,
+            help=again,
+            severity=Severity.WARNING,
+        )
+        for claim in claimed
+        for count, why in [_suspicions(claim)]
+        if count
+    ]
+    strange = [
+        Diagnostic(
+            Code.STALE_EVIDENCE,
+            f"there is evidence of {id}, which is not among the requirements",
+            Source(path, "").span(),
+            help=again,
+            severity=Severity.WARNING,
+        )
+        for id in strangers(claimed, evidence)
+    ]
+    return (*suspect, *strange)
+
+
+def _suspicions(claim: Claim) -> tuple[int, str]:
+    """In how many runs a claim is suspect, and why."""
+    stale = [judged for judged in claim.judged if judged.is_stale]
+    reasons = dict.fromkeys(reason for judged in stale for reason in judged.suspicions)
+    return len(stale), phrases.joined(list(reasons))

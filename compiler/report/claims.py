@@ -1,0 +1,152 @@
+"""Each requirement with all that bears upon it, and the verdict that follows."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+from compiler.files import sha256
+from compiler.project import Project, fingerprint
+from compiler.report.evidence import Evidence, Result
+from compiler.report.views import Mark
+from compiler.rule import Rule
+from compiler.targets import monitor
+from fretish.declarations import Declarations
+from fretish.diagnostic import Diagnostic
+from fretish.documents import Requirement
+from monitors import kernel
+
+SUSPECT = "suspect"
+UNFORMALIZED = "unformalized"
+NOT_EXERCISED = "not exercised"
+RETIRED = "retired"
+
+MARKS: Mapping[str, Mark] = {
+    kernel.VIOLATED: Mark(kernel.VIOLATED, "✘", "violated"),
+    UNFORMALIZED: Mark(UNFORMALIZED, "!", "unformalized"),
+    SUSPECT: Mark(SUSPECT, "⚠", "suspect"),
+    kernel.NO_DATA: Mark(kernel.NO_DATA, "?", "no-data"),
+    kernel.INCONCLUSIVE: Mark(kernel.INCONCLUSIVE, "◔", "inconclusive"),
+    kernel.VACUOUS: Mark(kernel.VACUOUS, "∅", "vacuous"),
+    NOT_EXERCISED: Mark(NOT_EXERCISED, "○", "not-exercised"),
+    kernel.SATISFIED: Mark(kernel.SATISFIED, "✔", "satisfied"),
+    RETIRED: Mark(RETIRED, "\N{EN DASH}", "retired"),
+}
+"""Every verdict of the report, the worst first: that of several runs is the worst of theirs."""
+
+_RANK = {word: rank for rank, word in enumerate(MARKS)}
+
+
+@dataclass(frozen=True, slots=True)
+class Judged:
+    """A result of an audit, and why it does not count, if it does not."""
+
+    result: Result
+    suspicions: tuple[str, ...]
+
+    @property
+    def verdict(self) -> str:
+        """The audit's verdict, or that it is suspect."""
+        return SUSPECT if self.suspicions else self.result.verdict
+
+    @property
+    def is_stale(self) -> bool:
+        """Whether it is the evidence of something else."""
+        return bool(self.suspicions)
+
+
+@dataclass(frozen=True, slots=True)
+class Claim:
+    """A requirement: formalized (`rule`) or not (`diagnostic`), and its audits."""
+
+    requirement: Requirement
+    anchor: str
+    rule: Rule | None
+    diagnostic: Diagnostic | None
+    judged: tuple[Judged, ...]
+
+    @property
+    def id(self) -> str:
+        """The requirement's id."""
+        return self.requirement.id
+
+    @property
+    def verdict(self) -> str:
+        """The worst of its runs, or why it has none."""
+        if self.requirement.status == RETIRED:
+            return RETIRED
+        if self.rule is None:
+            return UNFORMALIZED
+        verdicts = [judged.verdict for judged in self.judged]
+        return min(verdicts, key=_RANK.__getitem__, default=NOT_EXERCISED)
+
+    @property
+    def mark(self) -> Mark:
+        """Its verdict as it is shown."""
+        return MARKS[self.verdict]
+
+
+def claims(project: Project, evidence: Evidence | None) -> tuple[Claim, ...]:
+    """Every requirement of the project, in its order."""
+    rules = {id(rule.requirement): rule for rule in project.rules}
+    failed = {id(each.requirement): each.diagnostic for each in project.failed}
+    results = evidence.results if evidence else ()
+    anchors: list[str] = []
+    found = []
+    for requirement in project.requirements:
+        anchors.append(_anchor(requirement.id, anchors))
+        rule = rules.get(id(requirement))
+        judge = _Judge(rule, project.declarations)
+        mine = [result for result in results if result.requirement == requirement.id]
+        found.append(
+            Claim(
+                requirement,
+                anchors[-1],
+                rule,
+                failed.get(id(requirement)),
+                tuple(Judged(result, tuple(judge.suspicions(result))) for result in mine),
+            )
+        )
+    return tuple(found)
+
+
+def _anchor(id: str, taken: Sequence[str]) -> str:
+    """`req-R1`: letters, digits, `-`, `_` and `.` only, and different from all others."""
+    plain = "".join(c if c.isascii() and (c.isalnum() or c in "-_.") else "-" for c in id)
+    anchor, number = f"req-{plain}", 1
+    while anchor in taken:
+        number += 1
+        anchor = f"req-{plain}--{number}"
+    return anchor
+
+
+class _Judge:
+    """Compares evidence with what the requirement, its bindings and its monitor are now."""
+
+    def __init__(self, rule: Rule | None, declarations: Declarations | None) -> None:
+        self.sentence = rule.fingerprint if rule else None
+        self.bindings = fingerprint(declarations) if declarations else None
+        self.monitor = sha256(monitor.text(rule)) if rule else None
+
+    def suspicions(self, result: Result) -> list[str]:
+        """Why a result does not count; empty where it does."""
+        reasons = self._stale(result)
+        if result.verdict in (kernel.SATISFIED, kernel.VACUOUS) and not result.health.intact:
+            reasons.append("the log is damaged, and a damaged log cannot show this")
+        if result.verdict == kernel.SATISFIED and result.violations:
+            reasons.append("the evidence contradicts itself: it lists violations")
+        return reasons
+
+    def _stale(self, result: Result) -> list[str]:
+        if self.sentence is None:
+            return ["the sentence cannot be formalized now"]
+        reasons = []
+        if result.hashes["sentence"] != self.sentence:
+            reasons.append("the sentence has changed since the audit")
+        if self.bindings is None:
+            reasons.append("there are no bindings now to compare with")
+        elif result.hashes["bindings"] != self.bindings:
+            reasons.append("the bindings have changed since the audit")
+        if not reasons and result.hashes["monitor"] != self.monitor:
+            reasons.append("the monitor that is made now is not the one of the audit")
+        return reasons

@@ -1,0 +1,271 @@
+"""The evidence file as checked values: what audits have found, or why that cannot be read.
+
+Nothing in the file is trusted: a wrong shape anywhere is F503, never a report about half of it.
+Its schema is `templates/json/evidence.schema.json`; more fields than the report needs may be there.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import NoReturn
+
+from compiler.files import read as read_text
+from compiler.files import sha256
+from compiler.report.shapes import MisshapenError, Shape
+from fretish.diagnostic import Code, Diagnostic, Severity
+from fretish.source import Source
+from monitors import kernel
+from monitors.evidence import SCHEMA
+
+VERDICTS = (
+    kernel.VIOLATED,
+    kernel.NO_DATA,
+    kernel.INCONCLUSIVE,
+    kernel.VACUOUS,
+    kernel.SATISFIED,
+)
+"""What an audit can say, the worst first."""
+
+
+@dataclass(frozen=True, slots=True)
+class Moment:
+    """A tick and its time in seconds from the first tick of the run."""
+
+    tick: int
+    seconds: float
+
+
+@dataclass(frozen=True, slots=True)
+class Violation:
+    """Ticks `first..last`, both included, at which a demand was broken."""
+
+    first: Moment
+    last: Moment
+    trigger: Moment | None
+    values: Mapping[str, float | None]
+    """Each signal at the first tick, in its base unit; None: unknown."""
+
+
+@dataclass(frozen=True, slots=True)
+class Topic:
+    """How one topic of a log is; times in nanoseconds of the log."""
+
+    name: str
+    type: str
+    count: int
+    first_ns: int | None
+    last_ns: int | None
+    longest_gap_ns: int
+    out_of_order: int
+
+
+@dataclass(frozen=True, slots=True)
+class Finding:
+    """A diagnostic about the log, as the audit wrote it."""
+
+    code: str
+    severity: str
+    message: str
+    help: str
+
+
+@dataclass(frozen=True, slots=True)
+class Health:
+    """Whether the data of a run can be trusted; `size` in bytes, gaps in nanoseconds of the log."""
+
+    intact: bool
+    size: int | None
+    gaps: tuple[tuple[int, int], ...]
+    findings: tuple[Finding, ...]
+    topics: tuple[Topic, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Result:
+    """What the audit of one run says of one requirement."""
+
+    run: str
+    requirement: str
+    verdict: str
+    finite: bool | None
+    reason: str
+    clock: str
+    ticks: int
+    start_ns: int | None
+    end_ns: int | None
+    triggers: tuple[Moment, ...]
+    violations: tuple[Violation, ...]
+    unknown: tuple[tuple[int, int], ...]
+    open: tuple[Moment, ...]
+    latencies: tuple[float, ...]
+    units: Mapping[str, str]
+    hashes: Mapping[str, str]
+    """SHA-256 of `log` (absent where it could not be read), `sentence`, `bindings`, `monitor`."""
+    health: Health
+    assumptions: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Evidence:
+    """A whole evidence file."""
+
+    file: str
+    sha256: str
+    fretc: str
+    """Version of the tool that audited."""
+    results: tuple[Result, ...]
+
+
+def read(path: str) -> Evidence | Diagnostic:
+    """Read and check an evidence file; a note, not an error, where there is none yet."""
+    source = read_text(path)
+    if isinstance(source, Diagnostic):
+        return _not_audited(path) if source.code is Code.NO_SUCH_FILE else source
+    try:
+        value = json.loads(source.text, parse_constant=_no_number)
+    except json.JSONDecodeError as error:
+        return _not_json(source, error)
+    except (ValueError, RecursionError) as error:
+        return _wrong(path, f"is not JSON that fretc can read: {_why(error)}")
+    try:
+        return _evidence(Shape(value), source)
+    except MisshapenError as error:
+        return _wrong(path, f"is not evidence of fretc: {error}")
+
+
+def _not_audited(path: str) -> Diagnostic:
+    """F901 as a note: a report before the first audit is a report of what is not shown."""
+    return Diagnostic(
+        Code.NO_SUCH_FILE,
+        f"no run has been audited: there is no evidence in `{path}`",
+        help=f"audit a run: `fretc audit LOG... --evidence {path}`",
+        severity=Severity.NOTE,
+    )
+
+
+def _not_json(source: Source, error: json.JSONDecodeError) -> Diagnostic:
+    at = min(error.pos, max(0, len(source.text) - 1))
+    return Diagnostic(
+        Code.BAD_EVIDENCE,
+        f"the evidence is not JSON: {error.msg[:1].lower()}{error.msg[1:]}",
+        source.span(at, at + 1),
+        help=f"audit again: `fretc audit LOG... --evidence {source.name}`",
+    )
+
+
+def _wrong(path: str, what: str) -> Diagnostic:
+    return Diagnostic(
+        Code.BAD_EVIDENCE,
+        f"`{path}` {what}",
+        Source(path, "").span(),
+        help=f"audit again: `fretc audit LOG... --evidence {path}`",
+    )
+
+
+def _no_number(word: str) -> NoReturn:
+    raise ValueError(f"`{word}` is no number of JSON")
+
+
+def _why(error: Exception) -> str:
+    return "it is nested too deeply" if isinstance(error, RecursionError) else str(error)
+
+
+# Shapes -------------------------------------------------------------------------------------
+
+
+def _evidence(file: Shape, source: Source) -> Evidence:
+    schema = file.field("schema").text()
+    if schema != SCHEMA:
+        raise file.field("schema").wrong(f"`{SCHEMA}`")
+    return Evidence(
+        file=source.name,
+        sha256=sha256(source.text),
+        fretc=file.field("fretc").text(),
+        results=tuple(_result(result) for result in file.field("results").items()),
+    )
+
+
+def _result(at: Shape) -> Result:
+    return Result(
+        run=at.field("run").text(),
+        requirement=at.field("requirement").text(),
+        verdict=at.field("verdict").one_of(VERDICTS),
+        finite=at.field("finite").or_none(Shape.flag),
+        reason=at.field("reason").text(),
+        clock=at.field("clock").text(),
+        ticks=at.field("ticks").count(),
+        start_ns=at.field("start_ns").or_none(Shape.whole),
+        end_ns=at.field("end_ns").or_none(Shape.whole),
+        triggers=tuple(map(_moment, at.field("triggers").items())),
+        violations=tuple(map(_violation, at.field("violations").items())),
+        unknown=tuple(map(_ticks, at.field("unknown").items())),
+        open=tuple(map(_moment, at.field("open").items())),
+        latencies=tuple(latency.seconds() for latency in at.field("latencies_s").items()),
+        units={name: unit.text() for name, unit in at.field("units").fields().items()},
+        hashes=_hashes(at.field("hashes")),
+        health=_health(at.field("health")),
+        assumptions=tuple(text.text() for text in at.field("assumptions").items()),
+    )
+
+
+def _hashes(at: Shape) -> dict[str, str]:
+    for name in ("sentence", "bindings", "monitor"):
+        at.field(name).text()
+    return {name: value.text() for name, value in at.fields().items()}
+
+
+def _moment(at: Shape) -> Moment:
+    return Moment(at.field("tick").count(), at.field("seconds").seconds())
+
+
+def _violation(at: Shape) -> Violation:
+    values = at.field("values").fields()
+    return Violation(
+        Moment(at.field("first_tick").count(), at.field("start_s").seconds()),
+        Moment(at.field("last_tick").count(), at.field("end_s").seconds()),
+        at.field("trigger").or_none(_moment),
+        {name: value.or_none(Shape.number) for name, value in values.items()},
+    )
+
+
+def _ticks(at: Shape) -> tuple[int, int]:
+    ends = tuple(end.count() for end in at.items())
+    if len(ends) != 2:
+        raise at.wrong("two ticks: the first and the last")
+    return ends[0], ends[1]
+
+
+def _health(at: Shape) -> Health:
+    return Health(
+        intact=at.field("intact").flag(),
+        size=at.field("size").or_none(Shape.count),
+        gaps=tuple(
+            (gap.field("start_ns").whole(), gap.field("end_ns").whole())
+            for gap in at.field("gaps").items()
+        ),
+        findings=tuple(map(_finding, at.field("findings").items())),
+        topics=tuple(_topic(name, topic) for name, topic in at.field("topics").fields().items()),
+    )
+
+
+def _finding(at: Shape) -> Finding:
+    return Finding(
+        code=at.field("code").text(),
+        severity=at.field("severity").one_of([str(severity) for severity in Severity]),
+        message=at.field("message").text(),
+        help=at.field("help").or_none(Shape.text) or "",
+    )
+
+
+def _topic(name: str, at: Shape) -> Topic:
+    return Topic(
+        name=name,
+        type=at.field("type").text(),
+        count=at.field("count").count(),
+        first_ns=at.field("first_ns").or_none(Shape.whole),
+        last_ns=at.field("last_ns").or_none(Shape.whole),
+        longest_gap_ns=at.field("longest_gap_ns").count(),
+        out_of_order=at.field("out_of_order").count(),
+    )

@@ -1,0 +1,45 @@
+"""The planned methods of verification, and which of them have a result."""
+
+from __future__ import annotations
+
+from compiler.report import phrases
+from compiler.report.claims import UNFORMALIZED, Claim
+from compiler.report.views import Planned
+from compiler.targets import TARGETS
+
+_AUDIT = "audit"
+
+
+def planned(claim: Claim) -> tuple[Planned, ...]:
+    """Every method that the requirement's `verify` names, in its order."""
+    return tuple(
+        _audit(claim) if method == _AUDIT else _other(claim, method)
+        for method in dict.fromkeys(claim.requirement.verify)
+    )
+
+
+def _audit(claim: Claim) -> Planned:
+    counted = [judged for judged in claim.judged if not judged.is_stale]
+    if counted:
+        text = f"{phrases.times(len(counted), 'run')} audited: {claim.verdict}"
+        return Planned(claim.id, claim.anchor, _AUDIT, True, text)
+    text = "all its evidence is suspect" if claim.judged else "no run has been audited"
+    return Planned(claim.id, claim.anchor, _AUDIT, False, text)
+
+
+def _other(claim: Claim, method: str) -> Planned:
+    """A method whose result nothing tells this report: it says so, and what is at hand for it."""
+    return Planned(
+        claim.id, claim.anchor, method, False, f"no result is known{_at_hand(claim, method)}"
+    )
+
+
+def _at_hand(claim: Claim, method: str) -> str:
+    target = TARGETS.get(method)
+    if target is None:
+        return ""
+    if claim.rule is None:
+        return f", and none can be: the requirement is {UNFORMALIZED}"
+    if target.refuse(claim.rule) is not None:
+        return f", and none can be: {method} cannot express the requirement"
+    return "; the file for it can be made, and whether it was checked is not recorded"

@@ -1,0 +1,111 @@
+"""How to make everything again, and the hashes to compare it with."""
+
+from __future__ import annotations
+
+import shlex
+from collections.abc import Iterable, Sequence
+from pathlib import PurePath
+
+from compiler import __version__
+from compiler.project import Project, fingerprint
+from compiler.report import phrases
+from compiler.report.evidence import Evidence
+from compiler.report.runs import Run
+from compiler.report.views import Command, Hash, RequirementView
+from fretish.source import Source
+
+
+def commands(
+    project: Project, sections: Sequence[RequirementView], runs: Sequence[Run], evidence: str
+) -> tuple[Command, ...]:
+    """The commands, in the order in which they are to be run."""
+    from_here = _options(project)
+    logs = " ".join(_quoted(run.result.run) for run in runs) or "LOG..."
+    to = _quoted(evidence)
+    return (
+        Command("Check the version of the tool", f"fretc --version   # fretc {__version__}"),
+        *_check(runs),
+        Command("Audit the runs", f"fretc audit {logs} {from_here} --evidence {to}"),
+        *_emissions(sections),
+        Command("Write this report", f"fretc report {from_here} --evidence {to}"),
+    )
+
+
+def _quoted(path: str) -> str:
+    return shlex.quote(phrases.place(path))
+
+
+def _options(project: Project) -> str:
+    folder = folder_of(project)
+    options = [f"--requirements {shlex.quote(folder)}"]
+    bindings = project.declarations.source.name if project.declarations else ""
+    if bindings and _folder(bindings) != folder:
+        options.append(f"--bindings {_quoted(bindings)}")
+    return " ".join(options)
+
+
+def folder_of(project: Project) -> str:
+    """Where the requirements are: their folder, or the one file."""
+    files = _files(project)
+    return _folder(files[0].name) if files else "requirements"
+
+
+def _folder(path: str) -> str:
+    """The folder of a file, as it may be shown; of an absolute path its name only."""
+    folder = PurePath(path).parent
+    return str(folder) if phrases.place(path) == path else folder.name or str(folder)
+
+
+def _files(project: Project) -> list[Source]:
+    """The files of the requirements, each once."""
+    return list({r.wording.source.name: r.wording.source for r in project.requirements}.values())
+
+
+def _check(runs: Sequence[Run]) -> Iterable[Command]:
+    known = [run.result for run in runs if "log" in run.result.hashes]
+    if known:
+        lines = [f"{result.hashes['log']}  {phrases.place(result.run)}" for result in known]
+        text = "\n".join(["sha256sum --check <<'END'", *lines, "END"])
+        yield Command("Check that the runs are those that were audited", text)
+
+
+def _emissions(sections: Sequence[RequirementView]) -> Iterable[Command]:
+    """One command for all files with the same targets."""
+    targets: dict[str, list[str]] = {}
+    for section in sections:
+        file = section.source.rpartition(":")[0]
+        allowed = [a.target for a in section.artefacts if not a.refusal]
+        before = targets.get(file, allowed)
+        targets[file] = [target for target in before if target in allowed]
+    groups: dict[tuple[str, ...], list[str]] = {}
+    for file, names in targets.items():
+        groups.setdefault(tuple(dict.fromkeys(names)), []).append(file)
+    for kinds, files in groups.items():
+        if kinds:
+            emits = " ".join(f"--emit {kind}" for kind in kinds)
+            text = f"fretc {' '.join(map(shlex.quote, files))} {emits} --output build"
+            yield Command("Make the artefacts", text)
+
+
+def manifest(
+    project: Project,
+    sections: Sequence[RequirementView],
+    runs: Sequence[Run],
+    evidence: Evidence | None,
+) -> tuple[Hash, ...]:
+    """Every hash that the report rests on."""
+    bindings = project.declarations
+    lines = [Hash("sentence", section.id, section.fingerprint) for section in sections]
+    if bindings is not None:
+        lines.append(Hash("bindings", phrases.place(bindings.source.name), fingerprint(bindings)))
+    lines.extend(
+        Hash(artefact.target, artefact.file, artefact.sha256)
+        for section in sections
+        for artefact in section.artefacts
+    )
+    if evidence is not None:
+        lines.append(Hash("evidence", phrases.place(evidence.file), evidence.sha256))
+    lines.extend(
+        Hash("run", phrases.place(run.result.run), run.result.hashes.get("log", "")) for run in runs
+    )
+    return tuple(line for line in lines if line.sha256)

@@ -1,0 +1,208 @@
+"""One run against one requirement, as it is shown."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from itertools import groupby
+from statistics import median
+
+from compiler.report import phrases
+from compiler.report.claims import MARKS, Claim, Judged
+from compiler.report.evidence import Moment, Result, Violation
+from compiler.report.runs import Key, Run, key
+from compiler.report.timeline import answered, timelines
+from compiler.report.views import Latency, Listing, ResultView, ViolationView
+from compiler.rule import Rule
+from fretish import syntax
+from fretish.clock import Clock
+from fretish.meaning import span
+from monitors import kernel
+
+LISTED = 100
+"""Violations, open demands and unknown stretches that are listed; the evidence has them all."""
+_WAITS = 5
+
+
+def result_views(claim: Claim, runs: dict[Key, Run], clock: Clock | None) -> tuple[ResultView, ...]:
+    """Every audit of a requirement, in the order of the runs."""
+    return tuple(
+        _view(judged, claim, number, runs[key(judged.result)], clock)
+        for number, judged in enumerate(claim.judged, 1)
+    )
+
+
+def result_anchor(claim: Claim, number: int) -> str:
+    """Where a result of a requirement is shown, numbered from 1."""
+    return f"{claim.anchor.replace('req-', 'result-', 1)}.{number}"
+
+
+def _view(judged: Judged, claim: Claim, number: int, run: Run, clock: Clock | None) -> ResultView:
+    result = judged.result
+    tick = _tick(result, None if judged.is_stale else clock)
+    return ResultView(
+        anchor=result_anchor(claim, number),
+        run=run.anchor,
+        run_label=run.label,
+        run_file=phrases.place(result.run),
+        mark=MARKS[judged.verdict],
+        said=MARKS[result.verdict] if judged.is_stale else None,
+        suspicions=judged.suspicions,
+        reason=result.reason,
+        exercised=_exercised(result),
+        latency=_latency(result, claim.rule),
+        violations=tuple(_violation(v, result) for v in result.violations[:LISTED]),
+        violations_total=len(result.violations),
+        open=_open(result),
+        unknown=_unknown(result),
+        timelines=timelines(result, tick),
+    )
+
+
+def _tick(result: Result, clock: Clock | None) -> float:
+    """Seconds of a tick; on average, where the clock ticks by message or is not known."""
+    if clock is not None and clock.period:
+        return clock.period / 1e9
+    if result.start_ns is None or result.end_ns is None or result.end_ns <= result.start_ns:
+        return 1.0
+    return (result.end_ns - result.start_ns) / 1e9 / max(1, result.ticks)
+
+
+def _exercised(result: Result) -> str:
+    ticks = phrases.times(result.ticks, "tick")
+    if not result.triggers:
+        return f"never triggered in {ticks}"
+    stretches = len(_stretches(result.triggers))
+    return (
+        f"triggered at {phrases.whole(len(result.triggers))} of {ticks}, "
+        f"in {phrases.times(stretches, 'stretch', 'stretches')}"
+    )
+
+
+def _stretches(moments: Iterable[Moment]) -> list[list[Moment]]:
+    """The moments in order, those of neighbouring ticks together."""
+    found: list[list[Moment]] = []
+    for moment in sorted(moments, key=lambda m: m.tick):
+        if found and moment.tick - found[-1][-1].tick <= 1:
+            found[-1].append(moment)
+        else:
+            found.append([moment])
+    return found
+
+
+# Latency ---------------------------------------------------------------------------------------
+
+
+def _latency(result: Result, rule: Rule | None) -> Latency | None:
+    if not result.latencies:
+        return None
+    longest = max(result.latencies)
+    at_once = sum(latency <= 0 for latency in result.latencies)
+    answers = phrases.times(len(result.latencies), "trigger")
+    since = next((m for m, latency in answered(result) if latency == longest), None)
+    after = f", after the trigger at {phrases.seconds(since.seconds)}" if since and longest else ""
+    return Latency(
+        answered=len(result.latencies),
+        at_once=at_once,
+        answers=f"{answers}, {phrases.whole(at_once)} of them at the same tick",
+        median=phrases.seconds(median(result.latencies)),
+        longest=f"{phrases.seconds(longest)}{after}",
+        is_bounded=rule is None or not isinstance(rule.sentence.timing, syntax.Eventually),
+        bound=_bound(rule),
+        waits=_waits(result),
+    )
+
+
+def _bound(rule: Rule | None) -> str:
+    """What the sentence says about how long the response may take."""
+    if rule is None:
+        return ""
+    match rule.sentence.timing:
+        case syntax.Eventually(written):
+            how = "says `eventually`" if written else "gives no timing, which means `eventually`"
+            return (
+                f"No bound was required: the sentence {how}, so a response satisfies it however "
+                "late it comes."
+            )
+        case syntax.Within():
+            return f"The sentence allows {span(rule.ticks or 0, rule.clock)}."
+        case _:
+            return ""
+
+
+def _waits(result: Result) -> tuple[str, ...]:
+    """The longest waits; triggers that one answer ends are one wait."""
+    waiting = [(m.seconds, round(m.seconds + late, 6)) for m, late in answered(result) if late > 0]
+    ends = groupby(sorted(waiting, key=lambda wait: wait[::-1]), key=lambda wait: wait[1])
+    waits = [(end, [start for start, _ in group]) for end, group in ends]
+    waits.sort(key=lambda wait: (wait[1][0] - wait[0], wait[0]))
+    return tuple(
+        f"{phrases.seconds(starts[0])} to {phrases.seconds(end)}: "
+        f"{phrases.times(len(starts), 'trigger')}, "
+        f"{'the first ' if len(starts) > 1 else ''}waited {phrases.seconds(end - starts[0])}"
+        for end, starts in waits[:_WAITS]
+    )
+
+
+# Stretches -------------------------------------------------------------------------------------
+
+
+def _violation(violation: Violation, result: Result) -> ViolationView:
+    first, last, trigger = violation.first, violation.last, violation.trigger
+    ticks = f"{first.tick}" if first.tick == last.tick else f"{first.tick} to {last.tick}"
+    return ViolationView(
+        start=phrases.seconds(first.seconds),
+        end=phrases.seconds(last.seconds),
+        ticks=ticks,
+        trigger=f"{phrases.seconds(trigger.seconds)} (tick {trigger.tick})" if trigger else "none",
+        values=tuple(
+            (name, phrases.value(value, result.units.get(name, "")))
+            for name, value in violation.values.items()
+        ),
+    )
+
+
+def _open(result: Result) -> Listing:
+    stretches = _stretches(result.open)
+    return Listing(tuple(_since(stretch) for stretch in stretches[:LISTED]), len(result.open))
+
+
+def _since(stretch: Sequence[Moment]) -> str:
+    first, last = stretch[0], stretch[-1]
+    if len(stretch) == 1:
+        return f"triggered at {phrases.seconds(first.seconds)} (tick {first.tick})"
+    return (
+        f"triggered from {phrases.seconds(first.seconds)} to {phrases.seconds(last.seconds)} "
+        f"(ticks {first.tick} to {last.tick}): {phrases.times(len(stretch), 'demand')}"
+    )
+
+
+def _unknown(result: Result) -> Listing:
+    runs = result.unknown
+    total = sum(max(0, last - first + 1) for first, last in runs)
+    lines = (
+        f"tick {first}" if first == last else f"ticks {first} to {last}"
+        for first, last in runs[:LISTED]
+    )
+    return Listing(tuple(lines), total)
+
+
+# Why not ---------------------------------------------------------------------------------------
+
+
+def reasons(claim: Claim, runs: dict[Key, Run], *, audited: bool) -> tuple[str, ...]:
+    """Why a requirement is not shown: a reason for each run, or the one for all of them."""
+    if claim.diagnostic is not None and claim.rule is None:
+        return (f"{claim.diagnostic.code.number}: {claim.diagnostic.message}",)
+    if not claim.judged:
+        return ("the audit did not cover it" if audited else "no run has been audited",)
+    against = [judged for judged in claim.judged if judged.verdict != kernel.SATISFIED]
+    lines = [f"{runs[key(j.result)].label}: {_against(j)}" for j in against[:LISTED]]
+    left = len(against) - len(lines)
+    return (*lines, *([f"and {phrases.times(left, 'more run')}"] if left else []))
+
+
+def _against(judged: Judged) -> str:
+    result = judged.result
+    if judged.is_stale:
+        return f"suspect, because {phrases.joined(judged.suspicions)}; it said {result.verdict}"
+    return f"{result.verdict}, {result.reason}"

@@ -1,0 +1,130 @@
+"""The audited runs: what they are, and whether they can be trusted."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+
+from compiler.project import Project
+from compiler.report import phrases
+from compiler.report.evidence import Evidence, Finding, Result, Topic
+from compiler.report.views import Mark, Remark, RunView, TopicView
+
+_NONE = "\N{EN DASH}"
+_INTACT = Mark("intact", "✔", "satisfied")
+_DAMAGED = Mark("damaged", "✘", "violated")
+_UNREAD = Mark("not readable", "?", "no-data")
+
+
+@dataclass(frozen=True, slots=True)
+class Run:
+    """One audited file, by its name and hash; `result` is any of its results."""
+
+    number: int
+    result: Result
+
+    @property
+    def anchor(self) -> str:
+        """Where its section is."""
+        return f"run-{self.number}"
+
+    @property
+    def label(self) -> str:
+        """`Run 1`."""
+        return f"Run {self.number}"
+
+
+Key = tuple[str, str]
+
+
+def key(result: Result) -> Key:
+    """What makes two results those of the same run: the file's name and its hash."""
+    return result.run, result.hashes.get("log", "")
+
+
+def runs(evidence: Evidence | None) -> dict[Key, Run]:
+    """The runs of the evidence, numbered from 1 in its order."""
+    found: dict[Key, Run] = {}
+    for result in evidence.results if evidence else ():
+        found.setdefault(key(result), Run(len(found) + 1, result))
+    return found
+
+
+def run_views(found: Iterable[Run], project: Project) -> tuple[RunView, ...]:
+    """Each run as it is shown."""
+    return tuple(_view(run, project) for run in found)
+
+
+def _view(run: Run, project: Project) -> RunView:
+    result = run.result
+    health = result.health
+    return RunView(
+        anchor=run.anchor,
+        label=run.label,
+        file=phrases.place(result.run),
+        sha256=result.hashes.get("log", ""),
+        size=phrases.size(health.size),
+        recorded=phrases.instant(result.start_ns),
+        duration=_duration(result),
+        ticks=phrases.times(result.ticks, "tick"),
+        clock=result.clock,
+        intact=health.intact,
+        health=_INTACT if health.intact else _DAMAGED if health.topics else _UNREAD,
+        gaps=_gaps(result),
+        findings=tuple(_finding(finding) for finding in health.findings),
+        topics=tuple(_topic(topic, project) for topic in health.topics),
+    )
+
+
+def _duration(result: Result) -> str:
+    if result.start_ns is None or result.end_ns is None:
+        return "not known"
+    return phrases.seconds((result.end_ns - result.start_ns) / 1e9)
+
+
+def _gaps(result: Result) -> tuple[str, ...]:
+    start = result.start_ns or 0
+    return tuple(
+        f"{phrases.seconds((first - start) / 1e9)} to {phrases.seconds((last - start) / 1e9)}"
+        for first, last in result.health.gaps
+    )
+
+
+def _finding(finding: Finding) -> Remark:
+    return Remark(finding.code, finding.severity, finding.message, help=finding.help)
+
+
+def _topic(topic: Topic, project: Project) -> TopicView:
+    signals = project.declarations.signals.values() if project.declarations else ()
+    return TopicView(
+        name=topic.name,
+        type=topic.type,
+        count=phrases.whole(topic.count),
+        rate=_rate(topic),
+        longest_gap=phrases.seconds(topic.longest_gap_ns / 1e9) if topic.count > 1 else _NONE,
+        out_of_order=phrases.whole(topic.out_of_order),
+        read_for=tuple(signal.name for signal in signals if signal.path.topic == topic.name),
+    )
+
+
+def _rate(topic: Topic) -> str:
+    """Messages a second, between the first and the last."""
+    if topic.first_ns is None or topic.last_ns is None or topic.last_ns <= topic.first_ns:
+        return _NONE
+    rate = (topic.count - 1) * 1e9 / (topic.last_ns - topic.first_ns)
+    return f"{rate:.1f} Hz" if rate >= 1 else f"{rate:.2g} Hz"
+
+
+def trust(found: Sequence[Run]) -> str:
+    """Whether the runs can be trusted, in one sentence; empty where there are none."""
+    damaged = [run.label for run in found if not run.result.health.intact]
+    told = [run.label for run in found if run.result.health.findings]
+    if not found:
+        return ""
+    if damaged:
+        verb = "is" if len(damaged) == 1 else "are"
+        return f"{phrases.some(damaged)} {verb} damaged or could not be read."
+    if told:
+        verb = "has" if len(told) == 1 else "have"
+        return f"{phrases.some(told)} {verb} findings: read them before the verdicts."
+    return "The run is intact." if len(found) == 1 else f"All {len(found)} runs are intact."

@@ -1,0 +1,167 @@
+"""A requirement as its section shows it: what it says, means, is made of and has been shown."""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Mapping
+from typing import Any
+
+from compiler import printing
+from compiler.project import Project
+from compiler.record import wording
+from compiler.report import phrases
+from compiler.report.artefacts import artefacts
+from compiler.report.claims import RETIRED, Claim
+from compiler.report.plans import planned
+from compiler.report.results import reasons, result_views
+from compiler.report.runs import Key, Run
+from compiler.report.views import (
+    Formula,
+    Parent,
+    PropositionView,
+    Remark,
+    RequirementView,
+    SignalView,
+)
+from compiler.rule import Rule
+from fretish import expressions
+from fretish.clock import Clock
+from fretish.declarations import Declarations, Proposition, Signal
+from fretish.diagnostic import Diagnostic
+from fretish.meaning import meaning
+from fretish.printer import sentence
+from monitors import kernel
+
+
+def section(
+    claim: Claim, project: Project, runs: dict[Key, Run], anchors: Mapping[str, str], audited: bool
+) -> RequirementView:
+    """The view of one requirement.
+
+    Args:
+        claim: the requirement.
+        project: all that was read.
+        runs: all runs.
+        anchors: where the section of each requirement is, by its id.
+        audited: whether there is any evidence.
+    """
+    requirement, rule = claim.requirement, claim.rule
+    clock = project.declarations.clock if project.declarations else None
+    shown = claim.verdict in (kernel.SATISFIED, RETIRED)
+    return RequirementView(
+        id=claim.id,
+        anchor=claim.anchor,
+        title=requirement.title,
+        mark=claim.mark,
+        status=requirement.status,
+        source=f"{phrases.place(requirement.wording.source.name)}:{requirement.wording.line}",
+        text=requirement.text,
+        sentence=wording(requirement),
+        canonical=sentence(rule.sentence) if rule else "",
+        fingerprint=rule.fingerprint if rule else "",
+        meaning=meaning(rule.sentence, rule.ticks, rule.clock) if rule else "",
+        error=remark(claim.diagnostic) if claim.diagnostic else None,
+        formulas=_formulas(rule) if rule else (),
+        propositions=_propositions(rule, project.declarations) if rule else (),
+        clock=_clock(clock),
+        parents=tuple(_parent(parent, project, anchors) for parent in requirement.parents),
+        rationale=requirement.rationale,
+        params=dict(requirement.params),
+        planned=planned(claim),
+        artefacts=artefacts(rule),
+        results=result_views(claim, runs, clock),
+        reasons=() if shown else reasons(claim, runs, audited=audited),
+    )
+
+
+def remark(diagnostic: Diagnostic) -> Remark:
+    """A diagnostic as it is shown."""
+    span = diagnostic.span
+    place = phrases.place(span.source.name) if span else ""
+    where = f":{span.line}:{span.column}" if span and span.source.text else ""
+    return Remark(
+        diagnostic.code.number,
+        str(diagnostic.severity),
+        diagnostic.message,
+        f"{place}{where}",
+        diagnostic.help or "",
+    )
+
+
+def _formulas(rule: Rule) -> tuple[Formula, ...]:
+    return (
+        Formula("Future time", "infinite traces", printing.readable(rule.ft_infinite)),
+        Formula(
+            "Future time, finite",
+            "finite traces, read at the first tick; LAST holds at the last one",
+            printing.readable(rule.ft_finite),
+        ),
+        Formula("Past time", "finite traces, read at the last tick", printing.readable(rule.pt)),
+    )
+
+
+def _clock(clock: Clock | None) -> str:
+    if clock is None:
+        return "not declared"
+    return (
+        f"a tick with {clock}, by {clock.time}"
+        if clock.period is None
+        else (f"a tick every {clock}, by {clock.time}")
+    )
+
+
+def _parent(id: str, project: Project, anchors: Mapping[str, str]) -> Parent:
+    hazard = project.hazards.get(id)
+    if hazard is not None:
+        return Parent(id, hazard.title, "hazards")
+    above = next((r for r in project.requirements if r.id == id), None)
+    return Parent(id, above.title if above else "not declared", anchors.get(id, ""))
+
+
+# Propositions ----------------------------------------------------------------------------------
+
+
+def _propositions(rule: Rule, declared: Declarations | None) -> tuple[PropositionView, ...]:
+    return tuple(_proposition(name, declared) for name in rule.propositions)
+
+
+def _proposition(name: str, declared: Declarations | None) -> PropositionView:
+    bound = declared.propositions.get(name) if declared else None
+    if bound is None or declared is None:
+        return PropositionView(name, False, "", "", "", ())
+    used = dict.fromkeys(each.id for each in expressions.names(bound.expression))
+    return PropositionView(
+        name=name,
+        is_bound=True,
+        text=bound.text,
+        expression=_written(declared, name),
+        properties=_properties(bound),
+        signals=tuple(_signal(declared.signals[each]) for each in used),
+    )
+
+
+def _written(declared: Declarations, name: str) -> str:
+    """The expression as it stands in the bindings."""
+    data: Mapping[str, Any] = tomllib.loads(declared.source.text)
+    return str(data["proposition"][name]["expr"])
+
+
+def _properties(bound: Proposition) -> str:
+    unknown = "unknown" if bound.on_unknown is None else str(bound.on_unknown).lower()
+    parts = [str(bound.role), *([bound.kind] if bound.kind else [])]
+    return f"{', '.join(parts)}; of a tick counts: {bound.aggregate}; where unknown: {unknown}"
+
+
+def _signal(signal: Signal) -> SignalView:
+    age = f"{phrases.decimal(signal.max_age / 1e6)} ms" if signal.max_age else ""
+    reading = [
+        str(signal.reduce) if signal.reduce else "",
+        f"unknown when older than {age}" if age else "a sample never grows too old",
+    ]
+    return SignalView(
+        signal.name,
+        str(signal.path),
+        signal.type or "any type",
+        signal.unit_name or "1",
+        "; ".join(filter(None, reading)),
+    )

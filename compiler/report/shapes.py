@@ -1,0 +1,130 @@
+"""A value of a JSON file together with its path: every look into it is checked.
+
+What is not as it must be raises `MisshapenError` with the path; `compiler/report/evidence.py`
+turns that into a diagnostic.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection
+from dataclasses import dataclass
+from math import isfinite
+from typing import TypeVar
+
+T = TypeVar("T")
+_LARGEST = 2**63
+_LONGEST = 10**10
+"""Seconds: some three hundred years, more than 64 bits of nanoseconds hold."""
+_SHOWN = 40
+
+
+class MisshapenError(ValueError):
+    """A value is missing or of the wrong kind; the message says which and where."""
+
+
+@dataclass(frozen=True, slots=True)
+class Shape:
+    """A value, and how to get there: `results[3].verdict`."""
+
+    value: object
+    path: str = ""
+
+    @property
+    def name(self) -> str:
+        """The path, for messages."""
+        return f"`{self.path}`" if self.path else "the whole file"
+
+    def field(self, key: str) -> Shape:
+        """The value of a key of an object."""
+        fields = self._object()
+        if key not in fields:
+            raise MisshapenError(f"{self.name} has no `{key}`")
+        return Shape(fields[key], f"{self.path}.{key}".removeprefix("."))
+
+    def fields(self) -> dict[str, Shape]:
+        """All values of an object, in the order of their keys."""
+        fields = self._object()
+        return {key: Shape(fields[key], f'{self.path}["{key}"]') for key in sorted(fields)}
+
+    def items(self) -> tuple[Shape, ...]:
+        """The values of an array."""
+        if not isinstance(self.value, list):
+            raise self.wrong("an array")
+        return tuple(Shape(value, f"{self.path}[{i}]") for i, value in enumerate(self.value))
+
+    def text(self) -> str:
+        """A text."""
+        if not isinstance(self.value, str):
+            raise self.wrong("a text")
+        return self.value
+
+    def one_of(self, words: Collection[str]) -> str:
+        """One of these texts."""
+        if self.value not in words or not isinstance(self.value, str):
+            raise self.wrong(f"one of {', '.join(words)}")
+        return self.value
+
+    def flag(self) -> bool:
+        """True or false."""
+        if not isinstance(self.value, bool):
+            raise self.wrong("true or false")
+        return self.value
+
+    def whole(self) -> int:
+        """A whole number that fits into 64 bits."""
+        if not isinstance(self.value, int) or isinstance(self.value, bool):
+            raise self.wrong("a whole number")
+        if abs(self.value) >= _LARGEST:
+            raise self.wrong("a whole number of at most 64 bits")
+        return self.value
+
+    def count(self) -> int:
+        """A whole number that is not negative."""
+        if self.whole() < 0:
+            raise self.wrong("a whole number from 0 on")
+        return self.whole()
+
+    def number(self) -> float:
+        """A finite number."""
+        if not isinstance(self.value, int | float) or isinstance(self.value, bool):
+            raise self.wrong("a number")
+        if isinstance(self.value, int):
+            return float(self.whole())
+        if not isfinite(self.value):
+            raise self.wrong("a finite number")
+        return self.value
+
+    def seconds(self) -> float:
+        """A number of seconds that a recorded run can last."""
+        if not 0 <= self.number() <= _LONGEST:
+            raise self.wrong("a number of seconds from the start of a run")
+        return self.number()
+
+    def or_none(self, read: Callable[[Shape], T]) -> T | None:
+        """None for null, else what `read` makes of it."""
+        return None if self.value is None else read(self)
+
+    def wrong(self, wanted: str) -> MisshapenError:
+        """It is something else than was wanted."""
+        return MisshapenError(f"{self.name} must be {wanted}, and is {self._shown()}")
+
+    def _object(self) -> dict[str, object]:
+        if not isinstance(self.value, dict):
+            raise self.wrong("an object")
+        return self.value
+
+    def _shown(self) -> str:
+        match self.value:
+            case None:
+                return "null"
+            case bool():
+                return str(self.value).lower()
+            case dict():
+                return "an object"
+            case list():
+                return "an array"
+            case int() if abs(self.value) >= _LARGEST:
+                return "far too large"
+            case _:
+                text = str(self.value)
+                return f"`{text[:_SHOWN]}{'…' if len(text) > _SHOWN else ''}`"

@@ -1,0 +1,373 @@
+"""What the report says, as frozen values: templates place them and the JSON form lists them.
+
+All that is decided is decided by the functions that build these; nothing here is markup. Times
+are seconds from the first tick of a run, ticks count from 0, intervals include both ends.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+SCHEMA = "fretc-report-1"
+
+
+@dataclass(frozen=True, slots=True)
+class Mark:
+    """A verdict as it is shown: always a word and a sign; `kind` is only its colour."""
+
+    word: str
+    glyph: str
+    kind: str
+
+
+@dataclass(frozen=True, slots=True)
+class Remark:
+    """A diagnostic; `place` is `file:line:column`, empty where it has none."""
+
+    code: str
+    severity: str
+    message: str
+    place: str = ""
+    help: str = ""
+
+
+# 1: the runs -----------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True)
+class Overall:
+    """The result of everything, in words."""
+
+    mark: Mark
+    headline: str
+    sentences: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class TopicView:
+    """One topic of a run; `read_for` names the signals that the bindings read from it."""
+
+    name: str
+    type: str
+    count: str
+    rate: str
+    longest_gap: str
+    out_of_order: str
+    read_for: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class RunView:
+    """One recorded run and whether it can be trusted."""
+
+    anchor: str
+    label: str
+    file: str
+    sha256: str
+    size: str
+    recorded: str
+    duration: str
+    ticks: str
+    clock: str
+    intact: bool
+    health: Mark
+    gaps: tuple[str, ...]
+    findings: tuple[Remark, ...]
+    topics: tuple[TopicView, ...]
+
+
+# 2: the claims ---------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True)
+class Count:
+    """How many requirements, and how many single audits, have a verdict."""
+
+    mark: Mark
+    requirements: int
+    results: int
+
+
+@dataclass(frozen=True, slots=True)
+class NotShown:
+    """A requirement that is not shown, and why."""
+
+    requirement: str
+    title: str
+    anchor: str
+    mark: Mark
+    reasons: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Planned:
+    """A planned method of verification and what came of it."""
+
+    requirement: str
+    anchor: str
+    method: str
+    has_result: bool
+    result: str
+
+
+# 3: the matrix ---------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True)
+class ArtefactView:
+    """What a target makes of a requirement; `sha256` is empty where it refuses."""
+
+    target: str
+    file: str
+    sha256: str
+    refusal: str
+
+
+@dataclass(frozen=True, slots=True)
+class Cell:
+    """A verdict in the matrix, or a number of runs with the same one; `anchor` is its section."""
+
+    mark: Mark
+    label: str
+    anchor: str
+
+
+@dataclass(frozen=True, slots=True)
+class Row:
+    """A hazard and a requirement that traces to it; no hazard where it traces to none."""
+
+    hazard: str
+    hazard_title: str
+    via: str
+    requirement: str
+    title: str
+    status: str
+    anchor: str
+    mark: Mark
+    artefacts: tuple[ArtefactView, ...]
+    cells: tuple[Cell, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class HazardView:
+    """A hazard as it was declared."""
+
+    id: str
+    title: str
+    text: str
+    severity: str
+    source: str
+
+
+@dataclass(frozen=True, slots=True)
+class Orphans:
+    """Where the chain from hazard to verdict has no link, each with the reason in words."""
+
+    hazards: tuple[str, ...]
+    requirements: tuple[str, ...]
+    parents: tuple[str, ...]
+    evidence: tuple[str, ...]
+
+
+# 4: the requirements ---------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True)
+class SpanMark:
+    """A stretch of time on a lane of a timeline, and how many events it stands for."""
+
+    start: float
+    end: float
+    count: int
+
+
+@dataclass(frozen=True, slots=True)
+class Lane:
+    """One kind of event on a timeline."""
+
+    name: str
+    kind: str
+    marks: tuple[SpanMark, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Timeline:
+    """A picture of a stretch of a run; `text` says the same in words."""
+
+    title: str
+    start: float
+    end: float
+    lanes: tuple[Lane, ...]
+    text: str
+
+
+@dataclass(frozen=True, slots=True)
+class Formula:
+    """A formula with what it is read over."""
+
+    name: str
+    over: str
+    text: str
+
+
+@dataclass(frozen=True, slots=True)
+class SignalView:
+    """Where the numbers of a proposition come from."""
+
+    name: str
+    path: str
+    type: str
+    unit: str
+    reading: str
+
+
+@dataclass(frozen=True, slots=True)
+class PropositionView:
+    """A name of the sentence and what it means in the messages."""
+
+    name: str
+    is_bound: bool
+    text: str
+    expression: str
+    properties: str
+    signals: tuple[SignalView, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Parent:
+    """What a requirement traces to; no anchor where it is not declared."""
+
+    id: str
+    title: str
+    anchor: str
+
+
+@dataclass(frozen=True, slots=True)
+class Latency:
+    """How long the response took; waits are the longest ones, those of one answer together."""
+
+    answered: int
+    at_once: int
+    answers: str
+    median: str
+    longest: str
+    is_bounded: bool
+    bound: str
+    waits: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class ViolationView:
+    """A stretch at which the requirement was broken; values are `(signal, value)`."""
+
+    start: str
+    end: str
+    ticks: str
+    trigger: str
+    values: tuple[tuple[str, str], ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Listing:
+    """The first of many lines, and how many there are in all."""
+
+    lines: tuple[str, ...]
+    total: int
+
+
+@dataclass(frozen=True, slots=True)
+class ResultView:
+    """What one run shows of one requirement; `said` is the audit's verdict where it is suspect."""
+
+    anchor: str
+    run: str
+    run_label: str
+    run_file: str
+    mark: Mark
+    said: Mark | None
+    suspicions: tuple[str, ...]
+    reason: str
+    exercised: str
+    latency: Latency | None
+    violations: tuple[ViolationView, ...]
+    violations_total: int
+    open: Listing
+    unknown: Listing
+    timelines: tuple[Timeline, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class RequirementView:
+    """Everything known of one requirement."""
+
+    id: str
+    anchor: str
+    title: str
+    mark: Mark
+    status: str
+    source: str
+    text: str
+    sentence: str
+    canonical: str
+    fingerprint: str
+    meaning: str
+    error: Remark | None
+    formulas: tuple[Formula, ...]
+    propositions: tuple[PropositionView, ...]
+    clock: str
+    parents: tuple[Parent, ...]
+    rationale: str
+    params: Mapping[str, str]
+    planned: tuple[Planned, ...]
+    artefacts: tuple[ArtefactView, ...]
+    results: tuple[ResultView, ...]
+    reasons: tuple[str, ...]
+    """Why it is not shown; empty where it is."""
+
+
+# 5: the means ----------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True)
+class Command:
+    """A command to reproduce a part of the report."""
+
+    purpose: str
+    text: str
+
+
+@dataclass(frozen=True, slots=True)
+class Hash:
+    """A line of the manifest."""
+
+    kind: str
+    name: str
+    sha256: str
+
+
+@dataclass(frozen=True, slots=True)
+class Report:
+    """The whole report."""
+
+    schema: str
+    fretc: str
+    project: str
+    components: tuple[str, ...]
+    evidence: str
+    audited_by: str
+    overall: Overall
+    runs: tuple[RunView, ...]
+    claims: str
+    counts: tuple[Count, ...]
+    not_shown: tuple[NotShown, ...]
+    reservations: tuple[str, ...]
+    planned: tuple[Planned, ...]
+    remarks: tuple[Remark, ...]
+    hazards: tuple[HazardView, ...]
+    matrix: tuple[Row, ...]
+    orphans: Orphans
+    requirements: tuple[RequirementView, ...]
+    assumptions: tuple[str, ...]
+    commands: tuple[Command, ...]
+    manifest: tuple[Hash, ...]
