@@ -16,7 +16,7 @@ from monitors import kernel
 from monitors.evidence import Evidence, Moment, Violation, health
 from monitors.recordings import Recording
 from monitors.signals import blind_zones
-from monitors.traces import Timeline, Trace, trace
+from monitors.traces import Column, Timeline, Trace, trace
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,9 +73,10 @@ def _evidence(
     count = len(seen.timeline.times)
     rows = ({name: column[i] for name, column in columns.items()} for i in range(count))
     outcome = kernel.run(monitor, rows, str(declarations.clock.end))
+    undone = _undone(monitor, columns, seen, outcome)
     at = partial(_moment, seen.timeline)
     signals = signals_of(declarations, tuple(monitor.PROPOSITIONS))
-    verdict = _weakened(outcome.verdict, recording)
+    verdict = _weakened(outcome.verdict, recording, undone=undone)
     latencies = tuple(at(k).seconds - at(t).seconds for t, k in outcome.answers)
     evidence = Evidence(
         run=recording.name,
@@ -100,10 +101,30 @@ def _evidence(
     return replace(evidence, reason=_reason(evidence, recording))
 
 
-def _weakened(verdict: str, recording: Recording) -> str:
-    """A damaged log can show a violation, and nothing else."""
-    shown = verdict in (kernel.SATISFIED, kernel.VACUOUS)
-    return kernel.NO_DATA if shown and not recording.intact else verdict
+_SHOWN = (kernel.SATISFIED, kernel.VACUOUS)
+
+
+def _undone(
+    monitor: kernel.Monitor, columns: Mapping[str, Column], seen: Trace, outcome: kernel.Outcome
+) -> bool:
+    """Whether what came after the last whole tick makes another verdict of a shown one.
+
+    What that is cannot be said: the tick is cut short, and no duration counts it.
+    """
+    if outcome.verdict not in _SHOWN or seen.cut is None:
+        return False
+    rows = [dict(zip(columns, row, strict=True)) for row in zip(*columns.values(), strict=True)]
+    cut = {name: seen.cut[name] for name in columns}
+    if not rows or cut == rows[-1]:
+        return False
+    return kernel.run(monitor, [*rows, cut]).verdict != outcome.verdict
+
+
+def _weakened(verdict: str, recording: Recording, *, undone: bool) -> str:
+    """A damaged log can show a violation, and nothing else; a cut tick leaves things open."""
+    if verdict in _SHOWN and not recording.intact:
+        return kernel.NO_DATA
+    return kernel.INCONCLUSIVE if undone else verdict
 
 
 def _moment(timeline: Timeline, tick: int) -> Moment:
@@ -149,6 +170,8 @@ def _reason(evidence: Evidence, recording: Recording) -> str:
             return _broken(evidence)
         case kernel.NO_DATA:
             return _unknown(evidence, recording)
+        case kernel.INCONCLUSIVE if evidence.outcome.verdict in _SHOWN:
+            return "what came after the last whole tick leaves it open"
         case kernel.INCONCLUSIVE:
             last = evidence.open[-1] if evidence.open else None
             since = f" since {last.seconds:.1f} s" if last else ""

@@ -20,7 +20,7 @@ Column = tuple[bool | None, ...]
 
 @dataclass(frozen=True, slots=True)
 class Timeline:
-    """The ticks of one recording.
+    """The whole ticks of one recording.
 
     `times` has shape (n,), when each tick is, in nanoseconds; it does not decrease. `period` is
     None where the clock ticks by message.
@@ -32,10 +32,15 @@ class Timeline:
 
 @dataclass(frozen=True, slots=True)
 class Trace:
-    """One column for each proposition, each with one entry for each tick."""
+    """One column for each proposition, each with one entry for each tick.
+
+    `cut` is what a tick would see that was cut short by the end of the log: what came after the
+    last whole tick. No duration counts it. None where nothing came after that.
+    """
 
     timeline: Timeline
     columns: Mapping[str, Column]
+    cut: Mapping[str, bool | None] | None
 
 
 def trace(declarations: Declarations, recording: Recording, names: Collection[str]) -> Trace:
@@ -53,11 +58,17 @@ def trace(declarations: Declarations, recording: Recording, names: Collection[st
         names: of propositions that are declared.
     """
     ticks = timeline(declarations, recording)
-    return Trace(ticks, {name: _column(name, declarations, recording, ticks) for name in names})
+    is_cut = len(ticks.times) > 0 and recording.end_ns > ticks.times[-1]
+    times = np.append(ticks.times, recording.end_ns) if is_cut else ticks.times
+    columns = {name: _column(name, declarations, recording, times) for name in names}
+    if not is_cut:
+        return Trace(ticks, columns, None)
+    whole = {name: column[:-1] for name, column in columns.items()}
+    return Trace(ticks, whole, {name: column[-1] for name, column in columns.items()})
 
 
 def timeline(declarations: Declarations, recording: Recording) -> Timeline:
-    """The ticks of the declared clock over the recording.
+    """The whole ticks of the declared clock over the recording.
 
     Every `period` from the first bound message on, not later than the last; or one for each
     message of the clock's topic, and messages with the same time are a tick each.
@@ -69,10 +80,10 @@ def timeline(declarations: Declarations, recording: Recording) -> Timeline:
     return Timeline(recording.start_ns + np.arange(count, dtype=np.int64) * period, period)
 
 
-def _column(name: str, declarations: Declarations, recording: Recording, ticks: Timeline) -> Column:
+def _column(name: str, declarations: Declarations, recording: Recording, ticks: Times) -> Column:
     proposition = declarations.propositions[name]
     steps = evaluate(proposition, declarations, recording)
-    values = truth_values(_seen(steps, ticks.times, proposition.aggregate))
+    values = truth_values(_seen(steps, ticks, proposition.aggregate))
     default = proposition.on_unknown
     return tuple(default if value is None else value for value in values)
 

@@ -21,9 +21,11 @@ DOORS = {
     "click": {"compiler/cli.py"},
     "mujoco": {"simulation/robot.py"},
     "rosbags": {"simulation/recording.py"},
-    "mcap": {"monitors/recordings.py", "simulation/recording.py"},
-    "mcap_ros1": {"monitors/recordings.py"},
-    "mcap_ros2": {"monitors/recordings.py"},
+    "mcap": {"monitors/container.py", "monitors/walk.py", "simulation/recording.py"},
+    "mcap_ros1": {"monitors/decoding.py"},
+    "mcap_ros2": {"monitors/decoding.py"},
+    "zstandard": {"monitors/container.py"},
+    "lz4": {"monitors/container.py"},
 }
 
 

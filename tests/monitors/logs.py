@@ -8,11 +8,13 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from mcap.reader import make_reader
 from mcap.writer import CompressionType, IndexType, Writer
 from rosbags.typesys import Stores, get_typestore
 
 from fretish.bindings import read_bindings
 from fretish.declarations import Declarations
+from fretish.diagnostic import Diagnostic
 from fretish.source import Source
 from monitors.recordings import Recording, read
 
@@ -155,7 +157,7 @@ def declare(text: str) -> Declarations:
     return declarations
 
 
-X = """
+X_TEXT = """
 [clock]
 time = "log_time"
 tick = "100 ms"
@@ -200,3 +202,34 @@ def values(recording: Recording, signal: str) -> list[float]:
 
 def times(recording: Recording, signal: str) -> list[int]:
     return [int(time) for time in recording.samples[signal].times]
+
+
+X = declare(X_TEXT)
+TWELVE = [number(i / 100, 1000 * S + i * 100 * MS) for i in range(12)]
+"""Times 1000.0 s to 1001.1 s, values 0.00 to 0.11."""
+
+
+def refused(path: Path, text: str = X_TEXT) -> Diagnostic:
+    """Why the log cannot be read at all."""
+    diagnostic = read(str(path), declare(text), [])
+    assert isinstance(diagnostic, Diagnostic), diagnostic
+    return diagnostic
+
+
+def codes(recording: Recording) -> list[str]:
+    return [finding.code.number for finding in recording.findings]
+
+
+def chunk_starts(path: Path) -> list[int]:
+    """The bytes at which the chunks begin, by the official reader."""
+    with path.open("rb") as stream:
+        summary = make_reader(stream).get_summary()
+    assert summary is not None
+    return [index.chunk_start_offset for index in summary.chunk_indexes]
+
+
+def damaged(path: Path, at: int, value: int | None = None) -> None:
+    """One byte is another: the value, or all its bits turned over."""
+    data = bytearray(path.read_bytes())
+    data[at] = data[at] ^ 0xFF if value is None else value
+    path.write_bytes(data)

@@ -1,0 +1,246 @@
+"""Messages in, columns of times and numbers out: of each topic what the signals ask for.
+
+Times are nanoseconds. Only the messages of topics that the bindings name are decoded.
+"""
+
+from __future__ import annotations
+
+from array import array
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fretish.clock import TimeSource
+from fretish.declarations import Declarations, Signal
+from fretish.diagnostic import Diagnostic
+from fretish.source import Span
+from monitors import findings
+from monitors.container import Stream
+from monitors.damage import LATEST
+from monitors.decoding import Decode, decoder, short_type, stamp
+from monitors.propositions import Numbers, Times
+from monitors.signals import FieldError, nearest, sample
+
+if TYPE_CHECKING:
+    from monitors.recordings import Gap
+
+
+@dataclass(slots=True)
+class Column:
+    """What is read of one topic; `logs` are the log times, `times` those of the declared clock."""
+
+    name: str
+    type: str
+    encoding: str
+    bound: bool
+    """Whether the bindings name it; of another topic there are only `logs`."""
+    signals: list[Signal]
+    """Those that are read of it: wanted, and nothing wrong with them."""
+    logs: array[int] = field(default_factory=lambda: array("q"))
+    times: array[int] = field(default_factory=lambda: array("q"))
+    values: dict[str, array[float]] = field(default_factory=dict)
+    wrong: dict[str, Diagnostic] = field(default_factory=dict)
+    """Why there are no samples of a signal."""
+    undecoded: int = 0
+    unstamped: int = 0
+
+    def refuse(self, signal: Signal, diagnostic: Diagnostic) -> None:
+        """No samples of this signal."""
+        self.signals.remove(signal)
+        self.wrong[signal.name] = diagnostic
+        self.values.pop(signal.name, None)
+
+    def stamps(self) -> Times:
+        """In the order of the file: by the declared clock, or log times where no signal reads."""
+        return np.array(self.times if self.bound else self.logs, np.int64)
+
+    def late(self) -> int:
+        """How many messages are earlier than one before them."""
+        stamps = self.stamps()
+        return int((stamps < np.maximum.accumulate(stamps)).sum())
+
+
+class Columns:
+    """Takes messages and keeps the numbers that the signals ask for."""
+
+    def __init__(self, declarations: Declarations, wanted: Sequence[Signal]) -> None:
+        self.topics: dict[str, Column] = {}
+        """Every topic of the log."""
+        self.nearest: dict[str, float] = {}
+        self._clock = declarations.clock
+        self._source = declarations.source
+        self._wanted = wanted
+        self._bound = {signal.path.topic for signal in declarations.signals.values()}
+        self._bound |= {self._clock.topic} if self._clock.topic else set()
+        self._decoders: dict[int, Decode | None] = {}
+
+    # Messages
+
+    def declare(self, stream: Stream) -> None:
+        """A topic of the log, with or without messages."""
+        topic, type_ = stream.channel.topic, stream.schema.name if stream.schema else ""
+        if topic not in self.topics:
+            self.topics[topic] = Column(
+                topic,
+                type_,
+                stream.channel.message_encoding,
+                topic in self._bound,
+                [signal for signal in self._wanted if signal.path.topic == topic],
+            )
+        column = self.topics[topic]
+        for signal in tuple(column.signals):
+            declared = signal.type and short_type(signal.type)
+            if stream.schema and declared and declared != short_type(type_):
+                column.refuse(signal, findings.wrong_type(signal, type_))
+
+    def add(self, stream: Stream, log_time: int, publish_time: int, payload: memoryview) -> None:
+        """One message; only those of bound topics are decoded."""
+        column = self.topics[stream.channel.topic]
+        if not column.bound:
+            column.logs.append(log_time)
+            return
+        message = None
+        if column.signals or self._clock.time is TimeSource.HEADER_STAMP:
+            message = self._decoded(column, stream, payload)
+        time = self._time(column, log_time, publish_time, message)
+        if time >= LATEST:
+            column.undecoded += 1
+            return
+        column.logs.append(log_time)
+        column.times.append(time)
+        for signal in tuple(column.signals):
+            self._sample(column, signal, message)
+
+    def _decoded(self, column: Column, stream: Stream, payload: memoryview) -> object | None:
+        id = stream.channel.id
+        if id not in self._decoders:
+            self._decoders[id] = self._decoder(column, stream)
+        decode = self._decoders[id]
+        if decode is None:
+            return None
+        try:
+            return decode(bytes(payload))
+        except Exception:  # the decoder trusts each byte, and each may be wrong
+            column.undecoded += 1
+            return None
+
+    def _decoder(self, column: Column, stream: Stream) -> Decode | None:
+        found = decoder(stream)
+        if not isinstance(found, str):
+            return found
+        for signal in tuple(column.signals):
+            column.refuse(signal, findings.unknown_encoding(signal, found))
+        return None
+
+    def _time(
+        self, column: Column, log_time: int, publish_time: int, message: object | None
+    ) -> int:
+        """When the message was, on the declared clock."""
+        match self._clock.time:
+            case TimeSource.LOG_TIME:
+                return log_time
+            case TimeSource.PUBLISH_TIME:
+                return publish_time
+            case TimeSource.HEADER_STAMP:
+                stamped = stamp(message)
+                if stamped is not None:
+                    return stamped
+                if message is None and column.times:
+                    return column.times[-1]
+                column.unstamped += message is not None
+                return log_time
+
+    def _sample(self, column: Column, signal: Signal, message: object | None) -> None:
+        values = column.values.setdefault(signal.name, array("d"))
+        if message is None:
+            values.append(float("nan"))
+            return
+        try:
+            values.append(sample(signal, message))
+        except FieldError as error:
+            column.refuse(signal, findings.no_field(signal, error))
+            return
+        least = nearest(signal, message)
+        if least is not None:
+            self.nearest[signal.name] = min(least, self.nearest.get(signal.name, least))
+
+    # The results
+
+    def samples(self, signal: Signal) -> tuple[Times, Numbers]:
+        """Times and values of one signal, in order of time; none where something is wrong."""
+        column = self.topics.get(signal.path.topic)
+        if column is None or signal.name not in column.values:
+            return np.zeros(0, np.int64), np.zeros(0)
+        times = np.array(column.times, np.int64)
+        order = np.argsort(times, kind="stable")
+        return times[order], np.array(column.values[signal.name], np.float64)[order]
+
+    def ticks(self) -> Times:
+        """Times of the clock's topic, where the clock ticks by message."""
+        column = self.topics.get(self._clock.topic or "")
+        return np.sort(np.array(column.times if column else [], np.int64))
+
+    def span(self) -> Gap:
+        """First and last message of the bound topics; of all, where those have none."""
+        bound = [column.times for column in self.topics.values() if column.times]
+        all_ = bound or [column.logs for column in self.topics.values() if column.logs]
+        return min(map(min, all_)), max(map(max, all_))
+
+    def on_clock(self, gap: Gap) -> Gap:
+        """A span of log times, on the declared clock: between the messages around it."""
+        columns = [column for column in self.topics.values() if column.times]
+        if self._clock.time is TimeSource.LOG_TIME or not columns:
+            return gap
+        logs = np.concatenate([np.array(column.logs, np.int64) for column in columns])
+        times = np.concatenate([np.array(column.times, np.int64) for column in columns])
+        before, after = times[logs < gap[0]], times[logs > gap[1]]
+        start = int(before.max()) if len(before) else int(times.min())
+        end = int(after.min()) if len(after) else int(times.max())
+        return min(start, end), max(start, end)
+
+    # What there is to say
+
+    def findings(self) -> list[Diagnostic]:
+        """About single topics: what is missing first, then what is odd."""
+        found = [wrong for signal in self._wanted if (wrong := self._wrong(signal)) is not None]
+        if self._clock.topic and not self.ticks().size:
+            found.append(self._absent(self._clock.topic, self._clock_place(self._clock.topic)))
+        for topic, signal in {signal.path.topic: signal for signal in self._wanted}.items():
+            if topic in self.topics:
+                found += self._oddities(self.topics[topic], signal)
+        return found
+
+    def _wrong(self, signal: Signal) -> Diagnostic | None:
+        column = self.topics.get(signal.path.topic)
+        if column is None or not column.logs:
+            return self._absent(signal.path.topic, signal.span)
+        return column.wrong.get(signal.name)
+
+    def _absent(self, topic: str, span: Span | None) -> Diagnostic:
+        if topic in self.topics:
+            return findings.no_message(topic, span)
+        return findings.no_topic(topic, self.topics, span)
+
+    def _clock_place(self, topic: str) -> Span | None:
+        start = self._source.text.find(f'"{topic}"')
+        return self._source.span(start, start + len(topic) + 2) if start >= 0 else None
+
+    def _oddities(self, column: Column, signal: Signal) -> list[Diagnostic]:
+        found, count = [], len(column.logs)
+        if column.undecoded:
+            found.append(findings.bad_messages(signal, column.undecoded, count))
+        if late := column.late():
+            found.append(findings.out_of_order(signal, late, count))
+        if column.unstamped:
+            found.append(findings.unstamped(signal, self._shift()))
+        return found
+
+    def _shift(self) -> int:
+        """By how many nanoseconds header stamps are away from log times, in the middle."""
+        stamped = [c for c in self.topics.values() if c.times and not c.unstamped]
+        if self._clock.time is not TimeSource.HEADER_STAMP or not stamped:
+            return 0
+        shifts = [np.array(c.logs, np.int64) - np.array(c.times, np.int64) for c in stamped]
+        return int(np.median(np.abs(np.concatenate(shifts))))

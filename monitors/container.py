@@ -1,0 +1,217 @@
+"""An MCAP file as bytes: records in their frames, chunks unpacked within bounds, the summary.
+
+Each byte may be wrong: what does not fit together is a `BrokenError`, and nothing is unpacked or
+read beyond what its own frame holds.
+
+Source: MCAP specification, https://mcap.dev/spec
+"""
+
+from __future__ import annotations
+
+import struct
+import zlib
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+from io import BufferedReader, BytesIO
+from typing import TypeVar
+
+from mcap.data_stream import ReadDataStream
+from mcap.opcode import Opcode
+from mcap.records import Channel, Chunk, ChunkIndex, Schema, Statistics
+
+MAGIC = b"\x89MCAP0\r\n"
+"""What a file begins and ends with."""
+HEAD = struct.Struct("<BQ")
+"""What each record begins with: opcode and length."""
+PADDING = 256
+"""Bytes; a record may be so much longer than what is in it."""
+LARGEST = 2**30
+"""Bytes; a larger message or chunk is not read."""
+BLOCK = 2**20
+"""Bytes that are read at once where more are not needed."""
+_FOOTER = struct.Struct("<QQI")
+"""Start of the summary, start of its offsets, CRC."""
+_RATIO = 50_000
+"""No compression packs more than so many bytes into one."""
+
+R = TypeVar("R")
+
+
+class BrokenError(Exception):
+    """A record is not what it should be; the text says in which way."""
+
+
+@dataclass(frozen=True, slots=True)
+class Stream:
+    """A channel of the file, with the definition of its messages."""
+
+    channel: Channel
+    schema: Schema | None
+
+
+# Records
+
+
+def frames(data: bytes) -> Iterator[tuple[int, int, int]]:
+    """`(opcode, start, end)` of each record: its content is `data[start:end]`.
+
+    Raises:
+        BrokenError: the last one is longer than the data.
+    """
+    at, size = 0, len(data)
+    while at < size:
+        if at + HEAD.size > size:
+            raise BrokenError("a record is cut off")
+        opcode, length = HEAD.unpack_from(data, at)
+        start = at + HEAD.size
+        at = start + length
+        if at > size:
+            raise BrokenError("a record is cut off")
+        yield opcode, start, at
+
+
+class _Exact(ReadDataStream):
+    """Bytes that cannot be read past their end."""
+
+    def read(self, length: int) -> bytes:
+        data = super().read(length)
+        if len(data) != length:
+            raise EOFError
+        return data
+
+
+def parse(kind: Callable[[ReadDataStream], R], content: bytes) -> R:
+    """One record, from its own bytes and no others.
+
+    Raises:
+        BrokenError: they do not fit together.
+    """
+    try:
+        return kind(_Exact(BytesIO(content)))
+    except Exception as error:  # the parser trusts each byte, and each may be wrong
+        raise BrokenError("a record cannot be read") from error
+
+
+# Chunks
+
+
+def unpacked(chunk: Chunk) -> bytes:
+    """What is in a chunk: as long as it states, and with the CRC that it states.
+
+    Never more memory than stated, and no more than `LARGEST`, whatever the bytes ask for.
+
+    Raises:
+        BrokenError: it is not so.
+    """
+    size = chunk.uncompressed_size
+    if size > min(LARGEST, _RATIO * (len(chunk.data) + 1)):
+        raise BrokenError(f"a chunk states the absurd size of {size} bytes")
+    if chunk.compression not in _CODECS:
+        raise BrokenError(f"a chunk is compressed with the unknown `{chunk.compression}`")
+    try:
+        data = _CODECS[chunk.compression](chunk.data, size + 1)
+    except Exception as error:  # each codec has its own
+        raise BrokenError("a chunk does not decompress") from error
+    if len(data) != size:
+        raise BrokenError("a chunk has another size than it states")
+    if chunk.uncompressed_crc and zlib.crc32(data) != chunk.uncompressed_crc:
+        raise BrokenError("a chunk has another CRC than it states")
+    return data
+
+
+def _stored(data: bytes, _: int) -> bytes:
+    return data
+
+
+def _zstd(data: bytes, most: int) -> bytes:
+    import zstandard
+
+    with zstandard.ZstdDecompressor().stream_reader(data) as stream:
+        return stream.read(most)
+
+
+def _lz4(data: bytes, most: int) -> bytes:
+    import lz4.frame  # type: ignore[import-untyped]
+
+    return bytes(lz4.frame.LZ4FrameDecompressor().decompress(data, max_length=most))
+
+
+_CODECS: dict[str, Callable[[bytes, int], bytes]] = {"": _stored, "zstd": _zstd, "lz4": _lz4}
+"""What unpacks not more than so many bytes."""
+
+
+# The end of the file
+
+
+@dataclass(slots=True)
+class Summary:
+    """What the end of a file states about the rest; empty where it is damaged."""
+
+    end: int
+    """Where the data section ends, if `sound`; it ends earlier if not."""
+    sound: bool
+    footer: int
+    """Where the record before the closing magic begins."""
+    after: int
+    """Where the closing magic ends; the file should end there too."""
+    statistics: Statistics | None = None
+    chunks: dict[int, ChunkIndex] = field(default_factory=dict)
+    """By the byte at which each chunk begins."""
+    schemas: dict[int, Schema] = field(default_factory=dict)
+    channels: dict[int, Channel] = field(default_factory=dict)
+
+
+def no_summary(size: int) -> Summary:
+    """Of a file that breaks off: nothing is known about its `size` bytes."""
+    return Summary(size, sound=False, footer=size, after=size)
+
+
+def summary(stream: BufferedReader, size: int) -> Summary | None:
+    """What the end of a file of `size` bytes states; None where the file has no end."""
+    begin = max(0, size - BLOCK)
+    stream.seek(begin)
+    tail = stream.read()
+    end = tail.rfind(MAGIC)
+    for length in range(_FOOTER.size, _FOOTER.size + PADDING):
+        at = end - HEAD.size - length
+        if at >= 0 and HEAD.unpack_from(tail, at) == (Opcode.FOOTER, length):
+            return _summary(stream, begin + at, tail[at + HEAD.size : end])
+    return None
+
+
+def _summary(stream: BufferedReader, at: int, footer: bytes) -> Summary:
+    """The summary of a file whose footer begins at byte `at`."""
+    start, _, crc = _FOOTER.unpack_from(footer)
+    after = at + HEAD.size + len(footer) + len(MAGIC)
+    damaged = Summary(at, sound=False, footer=at, after=after)
+    if start == 0:
+        return Summary(at, sound=True, footer=at, after=after)
+    if not len(MAGIC) <= start <= at:
+        return damaged
+    stream.seek(start)
+    data = stream.read(at - start)
+    covered = zlib.crc32(HEAD.pack(Opcode.FOOTER, len(footer)), zlib.crc32(data))
+    if crc and crc != zlib.crc32(footer[: _FOOTER.size - 4], covered):
+        return damaged
+    found = Summary(start, sound=True, footer=at, after=after)
+    try:
+        for opcode, begin, end in frames(data):
+            _note(found, opcode, data[begin:end])
+    except BrokenError:
+        return damaged
+    return found
+
+
+def _note(found: Summary, opcode: int, content: bytes) -> None:
+    match opcode:
+        case Opcode.STATISTICS:
+            found.statistics = parse(Statistics.read, content)
+        case Opcode.CHUNK_INDEX:
+            chunk = parse(ChunkIndex.read, content)
+            found.chunks[chunk.chunk_start_offset] = chunk
+        case Opcode.SCHEMA:
+            schema = parse(Schema.read, content)
+            found.schemas[schema.id] = schema
+        case Opcode.CHANNEL:
+            channel = parse(Channel.read, content)
+            found.channels[channel.id] = channel

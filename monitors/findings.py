@@ -1,0 +1,229 @@
+"""What there is to say about a log: one function for each message (F400 to F412).
+
+`place` is the log itself; what concerns one signal points at its line of the bindings. Times are
+nanoseconds.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from typing import TYPE_CHECKING
+
+from fretish.clock import Clock
+from fretish.declarations import Signal
+from fretish.diagnostic import Code, Diagnostic, Severity, suggestion
+from fretish.source import Span
+from monitors.damage import Damage
+from monitors.decoding import short_type
+from monitors.signals import FieldError
+
+if TYPE_CHECKING:
+    from monitors.recordings import Gap
+
+_SECOND = 10**9
+_MOST_TOLD = 20
+
+# The whole file
+
+
+def no_such_file(place: Span) -> Diagnostic:
+    """There is nothing at the path."""
+    return Diagnostic(Code.NO_SUCH_FILE, "there is no such file", place, "check the path")
+
+
+def is_a_directory(place: Span) -> Diagnostic:
+    """The path names a directory."""
+    return Diagnostic(Code.IS_A_DIRECTORY, "it is a directory", place, "name the MCAP files in it")
+
+
+def not_a_file(place: Span) -> Diagnostic:
+    """The path names a device, a pipe or the like."""
+    return Diagnostic(Code.UNREADABLE, "it is not a regular file", place, "name a file")
+
+
+def unreadable(error: OSError, place: Span) -> Diagnostic:
+    """The system does not let it be read."""
+    reason = error.strerror or str(error)
+    return Diagnostic(
+        Code.UNREADABLE, f"it cannot be read: {reason}", place, "check its permissions"
+    )
+
+
+def empty(place: Span) -> Diagnostic:
+    """No bytes, or no messages."""
+    return Diagnostic(
+        Code.EMPTY_LOG,
+        "the log holds no message",
+        place,
+        "was the recorder stopped at once, or did it subscribe to no topic?",
+    )
+
+
+def not_a_log(start: bytes, place: Span) -> Diagnostic:
+    """Another kind of file, told by its first bytes."""
+    for magic, what in ((b"#ROSBAG V", "a ROS 1 bag"), (b"SQLite format 3", "an SQLite database")):
+        if start.startswith(magic):
+            return Diagnostic(
+                Code.NOT_A_LOG,
+                f"it is {what}, not an MCAP file",
+                place,
+                "convert it: `mcap convert IN OUT.mcap`",
+            )
+    return Diagnostic(
+        Code.NOT_A_LOG, "it is not an MCAP file", place, "name a recording in the MCAP format"
+    )
+
+
+def truncated(cut: int, whole: Gap | None, place: Span) -> Diagnostic:
+    """It has no end; `whole` is the time of the whole messages before byte `cut`."""
+    reach = "no message in it is whole"
+    if whole is not None:
+        reach = f"whole messages go {_seconds(whole[1] - whole[0])} far"
+    return Diagnostic(
+        Code.TRUNCATED_LOG,
+        f"the log breaks off after byte {cut}: {reach}",
+        place,
+        "keep what is whole with `mcap recover IN -o OUT`, and audit that",
+    )
+
+
+def nothing_whole(damage: Damage, place: Span) -> Diagnostic:
+    """There are messages, and none of them is whole."""
+    return Diagnostic(
+        Code.DAMAGED_CHUNK,
+        f"no message of the log can be read: {damage.what}",
+        place,
+        "copy the log again from where it was recorded",
+    )
+
+
+def too_long(length: int, ticks: int, clock: Clock, place: Span) -> Diagnostic:
+    """So many ticks that a time must be wrong."""
+    return Diagnostic(
+        Code.UNREADABLE_LOG,
+        f"the log lasts {_seconds(length)}, which is {ticks} ticks: a message has a wrong time "
+        f"({clock.time})",
+        place,
+        "use another `time` under `[clock]`, or a longer `tick`",
+    )
+
+
+# Damaged places
+
+
+def damaged(damage: Damage, gap: Gap | None, origin: int, place: Span) -> Diagnostic:
+    """One place; the gap that it has left is told in seconds from `origin`."""
+    lost = "no message is known to be lost"
+    if gap is not None:
+        start, end = (_seconds(time - origin) for time in gap)
+        lost = f"what was recorded from {start} to {end} counts as unknown"
+    return Diagnostic(
+        damage.code,
+        f"the log is damaged near byte {damage.at}: {damage.what}; {lost}",
+        place,
+        "copy the log again from where it was recorded; nothing counts as shown by a damaged log",
+        Severity.WARNING,
+    )
+
+
+def few(told: list[Diagnostic], place: Span) -> list[Diagnostic]:
+    """Not more than a page of them."""
+    if len(told) <= _MOST_TOLD:
+        return told
+    more = f"the log is damaged in {len(told) - _MOST_TOLD} more places"
+    return [
+        *told[:_MOST_TOLD],
+        Diagnostic(Code.DAMAGED_CHUNK, more, place, told[0].help, Severity.WARNING),
+    ]
+
+
+# One topic
+
+
+def no_message(topic: str, span: Span | None) -> Diagnostic:
+    """F405: the log knows the topic and holds nothing of it."""
+    return Diagnostic(
+        Code.NO_TOPIC,
+        f"the log holds no message of `{topic}`",
+        span,
+        "the topic was recorded, but nothing was published on it",
+    )
+
+
+def no_topic(topic: str, topics: Collection[str], span: Span | None) -> Diagnostic:
+    """F405, with the topics that the log does have."""
+    near = suggestion(topic, topics)
+    listed = ", ".join(sorted(topics)[:8]) + (", ..." if len(topics) > 8 else "")
+    return Diagnostic(
+        Code.NO_TOPIC,
+        f"the topic `{topic}` is not in the log",
+        span,
+        f"did you mean `{near}`?" if near else f"it holds {listed}",
+    )
+
+
+def no_field(signal: Signal, error: FieldError) -> Diagnostic:
+    """The message does not hold the number that the signal asks for."""
+    return Diagnostic(Code.NO_FIELD, f"in `{signal.path.topic}` {error}", signal.span, error.mend)
+
+
+def wrong_type(signal: Signal, found: str) -> Diagnostic:
+    """The topic is of another type than the signal declares."""
+    return Diagnostic(
+        Code.WRONG_TYPE,
+        f"`{signal.path.topic}` is of type `{short_type(found)}` in the log, "
+        f"not `{short_type(signal.type or '')}`",
+        signal.span,
+        f'write `type = "{short_type(found)}"`, and check that `path` still fits',
+    )
+
+
+def unknown_encoding(signal: Signal, why: str) -> Diagnostic:
+    """No message of the topic can be decoded."""
+    return Diagnostic(
+        Code.UNKNOWN_ENCODING,
+        f"`{signal.path.topic}` cannot be read: {why}",
+        signal.span,
+        "fretc reads ROS 2 messages (cdr with ros2msg) and ROS 1 messages (ros1 with ros1msg)",
+    )
+
+
+def bad_messages(signal: Signal, bad: int, count: int) -> Diagnostic:
+    """Single messages of the topic cannot be decoded."""
+    return Diagnostic(
+        Code.BAD_MESSAGE,
+        f"{bad} of {count} messages of `{signal.path.topic}` cannot be decoded: their samples are "
+        "unknown",
+        signal.span,
+        "the recorder and the publisher may differ in the type's definition",
+    )
+
+
+def out_of_order(signal: Signal, late: int, count: int) -> Diagnostic:
+    """Messages of the topic are earlier than one before them."""
+    return Diagnostic(
+        Code.OUT_OF_ORDER,
+        f"{late} of {count} messages of `{signal.path.topic}` are earlier than one before them: "
+        "they are sorted by time",
+        signal.span,
+        "check the clocks of publisher and recorder",
+        Severity.WARNING,
+    )
+
+
+def unstamped(signal: Signal, shift: int) -> Diagnostic:
+    """The topic has no stamps, and those of others are `shift` nanoseconds from log times."""
+    message = f"the messages of `{signal.path.topic}` have no header.stamp: their log_time is used"
+    if shift < _SECOND:
+        return Diagnostic(Code.NO_FIELD, message, signal.span, severity=Severity.NOTE)
+    return Diagnostic(
+        Code.NO_FIELD,
+        f"{message}, and that is {_seconds(shift)} away from the stamps of the other topics",
+        signal.span,
+        'two clocks are mixed: use `time = "log_time"` under `[clock]`',
+        Severity.WARNING,
+    )
+
+
+def _seconds(length: int) -> str:
+    return f"{length / _SECOND:.3f} s"

@@ -1,0 +1,303 @@
+"""The way through an MCAP file, record by record: messages to a sink, damaged places kept.
+
+What the summary states (where the chunks are) is used to find the way again after a damaged
+place. Times are nanoseconds, log times.
+"""
+
+from __future__ import annotations
+
+import struct
+import zlib
+from bisect import bisect_right
+from collections import Counter
+from collections.abc import Callable
+from dataclasses import dataclass
+from io import BufferedReader
+from typing import TYPE_CHECKING, Protocol
+
+from mcap.data_stream import ReadDataStream
+from mcap.opcode import Opcode
+from mcap.records import Attachment, Channel, Chunk, DataEnd, Header, Metadata, Schema
+
+from monitors.container import (
+    BLOCK,
+    HEAD,
+    LARGEST,
+    MAGIC,
+    PADDING,
+    BrokenError,
+    Stream,
+    frames,
+    no_summary,
+    parse,
+    summary,
+    unpacked,
+)
+from monitors.damage import LATEST, Damage, Damages
+
+if TYPE_CHECKING:
+    from monitors.recordings import Gap
+
+_MESSAGE = struct.Struct("<HIQQ")
+"""What each message begins with: channel, sequence, log time, publish time."""
+_INDEX, _ENTRY = struct.Struct("<HI"), struct.Struct("<QQ")
+"""What the index of a chunk begins with (channel, length), and its entries: time, place."""
+_KNOWN = frozenset(Opcode)
+_PASSED_BY: dict[int, Callable[[ReadDataStream], object]] = {
+    Opcode.HEADER: Header.read,
+    Opcode.ATTACHMENT: Attachment.read,
+    Opcode.METADATA: Metadata.read,
+}
+"""What may stand among the data and says nothing about messages."""
+
+
+class Sink(Protocol):
+    """Takes the messages in the order of the file."""
+
+    def declare(self, stream: Stream) -> None:
+        """A stream of the file, before its messages; it may come more than once."""
+        ...
+
+    def add(self, stream: Stream, log_time: int, publish_time: int, payload: memoryview) -> None:
+        """One whole message."""
+        ...
+
+
+@dataclass(frozen=True, slots=True)
+class _Unchecked:
+    """A chunk without CRC: `entries` are the `(time, place)` of its messages by their channel."""
+
+    at: int
+    span: Gap
+    entries: dict[int, list[tuple[int, int]]]
+
+
+class Walk:
+    """One way through the data section; messages go to the sink, damages stay here."""
+
+    def __init__(self, stream: BufferedReader, size: int, sink: Sink) -> None:
+        self.damages = Damages()
+        self.cut: int | None = None
+        """Up to which byte there are whole records, in a file without an end."""
+        self._stream, self._size, self._sink = stream, size, sink
+        self._summary = no_summary(size)
+        self._schemas: dict[int, Schema] = {}
+        self._streams: dict[int, Stream] = {}
+        self._counts: Counter[int] = Counter()
+        self._whole: set[int] = set()
+        self._unchecked: _Unchecked | None = None
+        self._unprotected = False
+        """Whether messages were read that no CRC covers but that of the whole data section."""
+        self._crc: int | None = 0
+        """Of the data up to here; None once a part was jumped over."""
+
+    def run(self) -> None:
+        """Read everything."""
+        found = summary(self._stream, self._size)
+        if found is None:
+            self.cut = self._data(truncated=True)
+            return
+        self._summary = found
+        self._schemas.update(found.schemas)
+        for channel in found.channels.values():
+            self._declare(channel, self._size)
+        self._data(truncated=False)
+        if not found.sound:
+            self.damages.add(found.footer, "its summary is damaged", lossless=True)
+        if found.after != self._size:
+            self.damages.add(found.after, "it goes on after its end", lossless=True)
+
+    def settled(self) -> list[tuple[Damage, Gap | None]]:
+        """All damages, with the time that each has cost; None where it cost nothing."""
+        return self.damages.settled(self._summary, self._whole, self._counts, self._size)
+
+    # Records
+
+    def _data(self, truncated: bool) -> int:
+        """Walk through the data section; where it ended."""
+        at, end = len(MAGIC), self._summary.end
+        walls = sorted({end, *(chunk for chunk in self._summary.chunks if chunk < end)})
+        self._stream.seek(0)
+        self._take(at)
+        while at < end:
+            wall = walls[bisect_right(walls, at)]
+            crc, head = self._crc, self._take(HEAD.size)
+            opcode, length = HEAD.unpack(head) if len(head) == HEAD.size else (0, self._size)
+            stop: int = at + HEAD.size + length
+            if stop > wall:
+                if truncated:
+                    return at
+                self.damages.add(at, "the length of a record is damaged")
+                at = self._jump(wall)
+                continue
+            try:
+                if opcode == Opcode.DATA_END:
+                    self._data_end(length, stop, crc)
+                    return stop
+                self._record(opcode, at, length)
+                at = stop
+            except BrokenError as error:
+                self.damages.add(at, str(error))
+                at = self._jump(stop if self._fits(stop, wall) else wall)
+        if not truncated and self._crc is not None:
+            what = "the end of its data is damaged"
+            self.damages.add(at, what, lossless=not self._unprotected)
+        return at
+
+    def _take(self, length: int) -> bytes:
+        data = self._stream.read(length)
+        if self._crc is not None:
+            self._crc = zlib.crc32(data, self._crc)
+        return data
+
+    def _skip(self, length: int) -> None:
+        while length > 0:
+            taken = len(self._take(min(length, BLOCK)))
+            length -= taken or length
+
+    def _jump(self, to: int) -> int:
+        self._stream.seek(to)
+        self._crc = None
+        return to
+
+    def _fits(self, at: int, wall: int) -> bool:
+        """Whether there seems to be a record at that byte."""
+        if at == wall:
+            return True
+        self._stream.seek(at)
+        head = self._stream.read(HEAD.size)
+        if len(head) < HEAD.size:
+            return False
+        opcode, length = HEAD.unpack(head)
+        return opcode in _KNOWN and at + HEAD.size + length <= wall
+
+    def _record(self, opcode: int, at: int, length: int) -> None:
+        if opcode == 0:
+            raise BrokenError("a record has no kind")
+        if opcode not in _KNOWN:
+            self._skip(length)
+            self.damages.doubt(at, f"a record is of the unknown kind {opcode}")
+            return
+        if length > LARGEST:
+            self._skip(length)
+            raise BrokenError(f"a record of {length} bytes is too large to be read")
+        content = self._take(length)
+        match opcode:
+            case Opcode.MESSAGE:
+                self._unprotected = True
+                self._message(at, content, 0, length)
+            case Opcode.CHUNK:
+                self._chunk(at, parse(Chunk.read, content))
+            case Opcode.MESSAGE_INDEX:
+                self._index(content)
+            case Opcode.SCHEMA:
+                self._define(parse(Schema.read, content), at)
+            case Opcode.CHANNEL:
+                self._declare(parse(Channel.read, content), at)
+            case _ if opcode in _PASSED_BY:
+                parse(_PASSED_BY[opcode], content)
+            case _:
+                raise BrokenError("a record of the summary stands among the data")
+
+    def _data_end(self, length: int, stop: int, crc: int | None) -> None:
+        if self._summary.sound and stop != self._summary.end:
+            raise BrokenError("the end of the data stands among the data")
+        stated = parse(DataEnd.read, self._take(length)).data_section_crc
+        if stated and crc is not None and crc != stated and not self.damages.kept:
+            what = "its data has another CRC than it states"
+            self.damages.add(stop, what, lossless=not self._unprotected, anywhere=True)
+
+    def _define(self, schema: Schema, at: int) -> None:
+        known = self._schemas.setdefault(schema.id, schema)
+        if known != schema:
+            self.damages.add(at, f"it defines `{schema.name}` in two ways", anywhere=True)
+
+    def _declare(self, channel: Channel, at: int) -> None:
+        known = self._streams.get(channel.id)
+        if known is not None and known.channel != channel:
+            what = f"it declares the topic `{channel.topic}` in two ways"
+            self.damages.add(at, what, anywhere=True)
+            channel = known.channel
+        stream = Stream(channel, self._schemas.get(channel.schema_id))
+        self._streams[channel.id] = stream
+        self._sink.declare(stream)
+
+    # Messages
+
+    def _chunk(self, at: int, chunk: Chunk) -> None:
+        self._unchecked = None
+        span = chunk.message_start_time, chunk.message_end_time
+        try:
+            data = unpacked(chunk)
+            messages = self._inside(at, data, None if chunk.uncompressed_crc else span)
+        except BrokenError as error:
+            self.damages.add(at, str(error), span)
+            return
+        self._whole.add(at)
+        for start, end in messages:
+            self._message(at, data, start, end)
+        if not chunk.uncompressed_crc:
+            self._unprotected = True
+            entries: dict[int, list[tuple[int, int]]] = {}
+            for start, _ in messages:
+                channel, _, time, _ = _MESSAGE.unpack_from(data, start)
+                entries.setdefault(channel, []).append((time, start - HEAD.size))
+            self._unchecked = _Unchecked(at, span, entries)
+
+    def _inside(self, at: int, data: bytes, span: Gap | None) -> list[tuple[int, int]]:
+        """Where the messages of a chunk are, `data[start:end]` each.
+
+        What a CRC does not protect is held against the `span` that the chunk states.
+        """
+        messages = []
+        for opcode, start, end in frames(data):
+            if opcode == Opcode.MESSAGE:
+                if end - start < _MESSAGE.size:
+                    raise BrokenError("a message is cut off")
+                messages.append((start, end))
+                if span is not None:
+                    self._check(data, start, span)
+            elif opcode == Opcode.SCHEMA:
+                self._define(parse(Schema.read, data[start:end]), at)
+            elif opcode == Opcode.CHANNEL:
+                self._declare(parse(Channel.read, data[start:end]), at)
+            elif span is not None:
+                raise BrokenError("a chunk holds a record that does not belong there")
+        return messages
+
+    def _check(self, data: bytes, start: int, span: Gap) -> None:
+        channel, _, log_time, _ = _MESSAGE.unpack_from(data, start)
+        if not span[0] <= log_time <= span[1]:
+            raise BrokenError("a message is of another time than its chunk states")
+        if channel not in self._streams:
+            raise BrokenError("a message is of a topic that is not declared")
+
+    def _index(self, content: bytes) -> None:
+        """Hold the index of a chunk without CRC against the messages in it."""
+        if len(content) < _INDEX.size:
+            raise BrokenError("a record cannot be read")
+        channel, length = _INDEX.unpack_from(content)
+        padding = len(content) - _INDEX.size - length
+        if length % _ENTRY.size or not 0 <= padding < PADDING:
+            raise BrokenError("a record cannot be read")
+        if self._unchecked is None:
+            return
+        listed = list(_ENTRY.iter_unpack(content[_INDEX.size : _INDEX.size + length]))
+        if listed and sorted(listed) != sorted(self._unchecked.entries.get(channel, [])):
+            what = "the index of a chunk names other messages than are in it"
+            self.damages.add(self._unchecked.at, what, self._unchecked.span)
+
+    def _message(self, at: int, data: bytes, start: int, end: int) -> None:
+        if end - start < _MESSAGE.size:
+            raise BrokenError("a message is cut off")
+        channel, _, log_time, publish_time = _MESSAGE.unpack_from(data, start)
+        self._counts[channel] += 1
+        stream = self._streams.get(channel)
+        if stream is None:
+            self.damages.add(at, "a message is of a topic that is not declared")
+        elif log_time >= LATEST:
+            self.damages.add(at, "a message is of an absurd time")
+        else:
+            self.damages.passed(log_time)
+            payload = memoryview(data)[start + _MESSAGE.size : end]
+            self._sink.add(stream, log_time, publish_time, payload)
