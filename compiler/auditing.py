@@ -9,6 +9,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from monitors.audit import Watched, audit, examined, signals_of
+from monitors.evidence import SCHEMA, as_record, unread
+from monitors.recordings import read
+
 from compiler import __version__
 from compiler.files import sha256
 from compiler.pipeline import unbound
@@ -20,10 +24,7 @@ from compiler.templating import to_json
 from fretish.declarations import Declarations
 from fretish.diagnostic import Code, Diagnostic
 from monitors import kernel
-from monitors.audit import Watched, audit, examined, signals_of
-from monitors.evidence import SCHEMA, as_record, unread
 from monitors.loading import load
-from monitors.recordings import read
 
 GLYPHS: Mapping[str, tuple[str, str]] = {
     kernel.SATISFIED: ("✔", "green"),

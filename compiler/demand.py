@@ -8,9 +8,11 @@ natural language requirements, IST 137 (2021), section 4.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from enum import Enum, auto
-from typing import assert_never
+from functools import partial
+from typing import Protocol, assert_never
 
 from compiler import formula as f
 from fretish import expressions as e
@@ -59,25 +61,61 @@ class Obligation:
     demand: Demand
 
 
-def obligation(sentence: s.Sentence, ticks: int) -> Obligation:
+Expand = Callable[[str, tuple[e.Expression, ...], "Read"], f.Formula | None]
+"""A call (name, arguments, how to read them) as a formula; None leaves it a proposition."""
+
+Read = Callable[[e.Expression], f.Formula]
+
+
+class Vocabulary(Protocol):
+    """What the temporal predicates mean, in the past or in the future."""
+
+    def alone(self) -> Expand:
+        """Within the expression of a scope, where there is no interval yet."""
+
+    def inside(self, scope: s.ScopeKind | None, mode: f.Formula) -> Expand:
+        """Within condition, stop condition and response: relative to the scope's interval."""
+
+
+class Uninterpreted:
+    """Every predicate stays a proposition."""
+
+    def alone(self) -> Expand:
+        """None is expanded."""
+        return lambda name, args, read: None
+
+    def inside(self, scope: s.ScopeKind | None, mode: f.Formula) -> Expand:
+        """None is expanded."""
+        return self.alone()
+
+
+def obligation(
+    sentence: s.Sentence, ticks: int, vocabulary: Vocabulary | None = None
+) -> Obligation:
     """The sentence without its words.
 
     Args:
         sentence: a checked sentence.
         ticks: what its duration counts; 0 where it has none.
+        vocabulary: what the temporal predicates mean; None leaves all of them propositions.
     """
+    words = vocabulary or Uninterpreted()
     scope, condition = sentence.scope, sentence.condition
-    demand = _demand(sentence.timing, boolean(sentence.response), ticks)
+    kind = scope.kind if scope else None
+    mode = boolean(scope.mode, words.alone()) if scope else f.TRUE
+    read = partial(boolean, expand=words.inside(kind, mode))
+    demand = _demand(sentence.timing, read, sentence.response, ticks)
     return Obligation(
-        scope.kind if scope else None,
-        boolean(scope.mode) if scope else f.TRUE,
+        kind,
+        mode,
         condition.kind if condition else None,
-        boolean(condition.expression) if condition else f.TRUE,
+        read(condition.expression) if condition else f.TRUE,
         dual(demand) if scope and scope.kind.negates else demand,
     )
 
 
-def _demand(timing: s.Timing, response: f.Formula, ticks: int) -> Demand:
+def _demand(timing: s.Timing, read: Read, satisfied: e.Expression, ticks: int) -> Demand:
+    response = read(satisfied)
     match timing:
         case s.Immediately():
             return Demand(Kind.IMMEDIATELY, response)
@@ -98,9 +136,9 @@ def _demand(timing: s.Timing, response: f.Formula, ticks: int) -> Demand:
         case s.After():
             return Demand(Kind.AFTER, response, ticks)
         case s.Until(stop):
-            return Demand(Kind.UNTIL, response, stop=boolean(stop))
+            return Demand(Kind.UNTIL, response, stop=read(stop))
         case s.Before(stop):
-            return Demand(Kind.BEFORE, response, stop=boolean(stop))
+            return Demand(Kind.BEFORE, response, stop=read(stop))
         case _:
             assert_never(timing)
 
@@ -125,27 +163,32 @@ def dual(demand: Demand) -> Demand:
     return Demand(_DUALS[demand.kind], f.not_(demand.response), demand.ticks, demand.stop)
 
 
-def boolean(expression: e.Expression) -> f.Formula:
-    """A Boolean expression as a formula; comparisons and calls become atoms."""
+def boolean(expression: e.Expression, expand: Expand) -> f.Formula:
+    """A Boolean expression as a formula; comparisons become atoms, and calls that stay."""
+    read = partial(boolean, expand=expand)
     match expression:
         case e.Truth(value):
             return f.Const(value)
+        case e.Name("FTP"):
+            return expand("FTP", (), read) or f.Atom("FTP")
         case e.Name(id):
             return f.Atom(id)
-        case e.Comparison() | e.Call():
+        case e.Comparison():
             return f.Atom(_atom(expression))
+        case e.Call(name, args):
+            return expand(name, args, read) or f.Atom(_atom(expression))
         case e.Not(arg):
-            return f.not_(boolean(arg))
+            return f.not_(read(arg))
         case e.And(args):
-            return f.and_(*map(boolean, args))
+            return f.and_(*map(read, args))
         case e.Or(args):
-            return f.or_(*map(boolean, args))
+            return f.or_(*map(read, args))
         case e.Xor(left, right):
-            return f.xor(boolean(left), boolean(right))
+            return f.xor(read(left), read(right))
         case e.Implies(left, right):
-            return f.implies(boolean(left), boolean(right))
+            return f.implies(read(left), read(right))
         case e.Iff(left, right):
-            return f.iff(boolean(left), boolean(right))
+            return f.iff(read(left), read(right))
         case e.Number() | e.Quantity() | e.Negation() | e.Arithmetic() | e.Held():
             raise AssertionError(f"not a truth value of a sentence: {expression}")
         case _:

@@ -221,7 +221,14 @@ def and_(*args: Formula) -> Formula:
     flat = _flat(And, args)
     if FALSE in flat:
         return FALSE
-    rest = tuple(arg for arg in flat if arg != TRUE)
+    # F a is weaker than F[0,n] a, so beside it in a conjunction it says nothing.
+    bounded = {g.arg for g in flat if isinstance(g, Eventually) and g.ahead.hi is not None}
+    rest = tuple(
+        arg
+        for arg in flat
+        if arg != TRUE
+        and not (isinstance(arg, Eventually) and arg.ahead == EVER and arg.arg in bounded)
+    )
     return And(rest) if len(rest) > 1 else rest[0] if rest else TRUE
 
 
@@ -324,7 +331,9 @@ def next_(arg: Formula) -> Formula:
 
 
 def eventually(arg: Formula, ahead: Interval = EVER) -> Formula:
-    """`F[ahead] arg`."""
+    """`F[ahead] arg`; `F[n,n] F[lo,hi] arg` is `F[n+lo,n+hi] arg`."""
+    if isinstance(arg, Eventually) and ahead.lo == ahead.hi and arg.ahead.hi is not None:
+        return eventually(arg.arg, Interval(ahead.lo + arg.ahead.lo, ahead.lo + arg.ahead.hi))
     return arg if isinstance(arg, Const) or ahead == Interval(0, 0) else Eventually(arg, ahead)
 
 

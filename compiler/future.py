@@ -34,31 +34,40 @@ from fretish.syntax import ConditionKind, ScopeKind
 
 def future(obligation: Obligation) -> Formula:
     """The formula about finite traces, evaluated at tick 0."""
-    m, condition = obligation.mode, obligation
+    m = obligation.mode
+    enforced = _enforced(obligation, end_marker(obligation.scope, m))
     match obligation.scope:
-        case None:
-            return _enforced(condition, LAST)
+        case None | ScopeKind.ONLY_AFTER:
+            return enforced
         case ScopeKind.IN:
-            return _on_runs(m, _enforced(condition, _leaves(m)))
+            return _on_runs(m, enforced)
         case ScopeKind.NOT_IN | ScopeKind.ONLY_IN:
-            return _on_runs(not_(m), _enforced(condition, _leaves(not_(m))))
+            return _on_runs(not_(m), enforced)
         case ScopeKind.BEFORE:
-            return or_(m, _enforced(condition, _leaves(not_(m))))
+            return or_(m, enforced)
         case ScopeKind.AFTER:
             # left: the last tick of the first run of m; the interval begins one tick later.
             left = and_(m, not_(LAST), next_(not_(m)))
-            return release(or_(left, LAST), implies(left, next_(_enforced(condition, LAST))))
+            return release(or_(left, LAST), implies(left, next_(enforced)))
         case ScopeKind.ONLY_BEFORE:
-            return release(or_(m, LAST), implies(m, _enforced(condition, LAST)))
-        case ScopeKind.ONLY_AFTER:
-            return _enforced(condition, or_(LAST, and_(m, next_(not_(m)))))
+            return release(or_(m, LAST), implies(m, enforced))
         case _:
             assert_never(obligation.scope)
 
 
-def _leaves(inside: Formula) -> Formula:
-    """The last tick of a run, seen from within the run."""
-    return or_(LAST, next_(not_(inside)))
+def end_marker(scope: ScopeKind | None, m: Formula) -> Formula:
+    """True at the last tick of an interval and at no tick of it before, seen from inside of it."""
+    match scope:
+        case None | ScopeKind.AFTER | ScopeKind.ONLY_BEFORE:
+            return LAST
+        case ScopeKind.IN:
+            return or_(LAST, next_(not_(m)))
+        case ScopeKind.NOT_IN | ScopeKind.ONLY_IN | ScopeKind.BEFORE:
+            return or_(LAST, next_(m))
+        case ScopeKind.ONLY_AFTER:
+            return or_(LAST, and_(m, next_(not_(m))))
+        case _:
+            assert_never(scope)
 
 
 def _on_runs(inside: Formula, enforced: Formula) -> Formula:

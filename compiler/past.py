@@ -147,6 +147,11 @@ def _interval(scope: ScopeKind | None, m: Formula) -> tuple[Formula, Formula, Fo
             assert_never(scope)
 
 
+def first_marker(scope: ScopeKind | None, m: Formula) -> Formula:
+    """True at the first tick of an interval, and at no other tick of it."""
+    return _interval(scope, m)[1]
+
+
 # Demands -----------------------------------------------------------------------------------
 
 

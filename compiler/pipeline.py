@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from fractions import Fraction
 
+from compiler import predicates
 from compiler.demand import obligation
 from compiler.formula import endless
 from compiler.future import future
@@ -38,8 +39,9 @@ def formalize(
     if isinstance(ticks, Diagnostic):
         return None, (ticks,)
     said = tuple(_remarks(requirement, sentence, declarations))
-    meant = obligation(sentence, ticks or 0)
-    finite = future(meant)
+    ahead = obligation(sentence, ticks or 0, predicates.Future())
+    back = obligation(sentence, ticks or 0, predicates.Past())
+    finite = future(ahead)
     rule = Rule(
         requirement=requirement,
         sentence=sentence,
@@ -47,8 +49,8 @@ def formalize(
         clock=clock,
         ft_infinite=endless(finite),
         ft_finite=finite,
-        pt=past(meant),
-        watch=watch(meant),
+        pt=past(back),
+        watch=watch(back),
     )
     return rule, said
 
