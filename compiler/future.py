@@ -17,8 +17,11 @@ from compiler.demand import Demand, Kind, Obligation
 from compiler.formula import (
     FALSE,
     LAST,
+    And,
     Formula,
+    Implies,
     Interval,
+    Release,
     and_,
     eventually,
     globally,
@@ -35,14 +38,15 @@ from fretish.syntax import ConditionKind, ScopeKind
 def future(obligation: Obligation) -> Formula:
     """The formula about finite traces, evaluated at tick 0."""
     m = obligation.mode
-    enforced = _enforced(obligation, end_marker(obligation.scope, m))
+    end = end_marker(obligation.scope, m)
+    enforced = _enforced(obligation, end)
     match obligation.scope:
         case None | ScopeKind.ONLY_AFTER:
             return enforced
         case ScopeKind.IN:
-            return _on_runs(m, enforced)
+            return _on_runs(m, end, enforced)
         case ScopeKind.NOT_IN | ScopeKind.ONLY_IN:
-            return _on_runs(not_(m), enforced)
+            return _on_runs(not_(m), end, enforced)
         case ScopeKind.BEFORE:
             return or_(m, enforced)
         case ScopeKind.AFTER:
@@ -70,13 +74,27 @@ def end_marker(scope: ScopeKind | None, m: Formula) -> Formula:
             assert_never(scope)
 
 
-def _on_runs(inside: Formula, enforced: Formula) -> Formula:
-    """`enforced` at the first tick of every maximal run of `inside`."""
+def _on_runs(inside: Formula, end: Formula, enforced: Formula) -> Formula:
+    """`enforced` at the first tick of every maximal run of `inside`.
+
+    A part `end R x` says x at every tick of the run: then it is said of every tick inside.
+    """
+    parts = enforced.args if isinstance(enforced, And) else (enforced,)
+    throughout = [p.right for p in parts if isinstance(p, Release) and p.left == end]
+    at_first = and_(*(p for p in parts if not (isinstance(p, Release) and p.left == end)))
     enters = and_(not_(LAST), not_(inside), next_(inside))
     return and_(
-        release(LAST, implies(enters, next_(enforced))),
-        implies(inside, enforced),
+        *(release(LAST, _given(inside, said)) for said in throughout),
+        release(LAST, implies(enters, next_(at_first))),
+        implies(inside, at_first),
     )
+
+
+def _given(inside: Formula, said: Formula) -> Formula:
+    """`inside -> (a -> b)` as `inside & a -> b`."""
+    if isinstance(said, Implies):
+        return implies(and_(inside, said.left), said.right)
+    return implies(inside, said)
 
 
 def _enforced(obligation: Obligation, end: Formula) -> Formula:

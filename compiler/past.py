@@ -76,8 +76,11 @@ class _Stage:
 
     def open(self, kept: Formula, ago: Interval = EVER) -> Formula:
         """A trigger of this interval, `ago` ticks back, since which `kept` has held."""
-        if and_(self.inside, self.trigger) == FIRST and ago == EVER:
-            return historically(kept)
+        if self.trigger == self.left and ago == EVER:
+            if kept == TRUE:
+                return self.inside  # every tick inside has the first of its interval behind it
+            if self.left == FIRST and self.inside == TRUE:
+                return historically(kept)
         return since(and_(kept, self.inside), and_(self.trigger, kept), ago)
 
 
