@@ -29,6 +29,24 @@ def same_language(left: str, right: str) -> bool:
     return bool(spot.are_equivalent(spot.formula(left), spot.formula(right)))
 
 
+def simplified(formula: Formula) -> str | None:
+    """A shorter formula in Spot's syntax that holds on the same infinite traces, if Spot has one.
+
+    Spot's rewriting by syntax, by semantics and by implication; its result is then proved
+    equivalent through automata. Bounds must be small.
+
+    Source: Duret-Lutz et al., CAV 2022, and Spot's documentation of tl_simplifier.
+    """
+    spot = _spot()
+    exact = spot.formula(printing.future(formula))
+    shorter = spot.tl_simplifier(spot.tl_simplifier_options(3)).simplify(exact)
+    text = f"{shorter}"
+    if len(text) >= len(f"{exact}"):
+        return None
+    assert spot.are_equivalent(exact, shorter), "Spot's own simplification is not equivalent"
+    return text
+
+
 def _spot() -> Any:
     import spot
 

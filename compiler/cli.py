@@ -20,9 +20,11 @@ from fretish.rendering import render_all
 
 if TYPE_CHECKING:
     from compiler.project import Project
+    from compiler.targets.target import Options
 
 SHOWN, VIOLATION, BAD, NOT_SHOWN, INTERRUPTED = 0, 1, 2, 3, 130
 _EMITS = ("ltl", "monitor", "ajpf", "json")
+_NOTATIONS = ("plain", "fret", "spot", "nusmv", "latex")
 _DEFAULT = "compile"
 """The command that `fretc FILE...` stands for."""
 
@@ -97,8 +99,22 @@ def cli() -> None:
     show_default=True,
     help="Form of the formulas.",
 )
+@click.option(
+    "--notation",
+    type=click.Choice(_NOTATIONS),
+    default="plain",
+    show_default=True,
+    help="Spelling of the formulas.",
+)
+@click.option("--simplify", is_flag=True, help="Show a simplified formula beside the exact one.")
 def compile_(
-    files: tuple[str, ...], kinds: tuple[str, ...], output: str, bindings: str | None, form: str
+    files: tuple[str, ...],
+    kinds: tuple[str, ...],
+    output: str,
+    bindings: str | None,
+    form: str,
+    notation: str,
+    simplify: bool,
 ) -> None:
     """Parse and formalize requirements; make files of them.
 
@@ -114,10 +130,13 @@ def compile_(
         raise SystemExit(BAD if project.failed else SHOWN)
     if has_errors(project.diagnostics):
         raise SystemExit(BAD)
+    from compiler.targets.target import Options
+
+    options = Options(notation, simplify)
     if kinds:
-        _emit(project, dict.fromkeys(kinds), output)
+        _emit(project, dict.fromkeys(kinds), output, options)
     else:
-        _print_formulas(project)
+        _print_formulas(project, options)
 
 
 def _only_failed(project: Project) -> bool:
@@ -137,13 +156,13 @@ def _deliver_formulas(project: Project, output: str) -> None:
     _deliver({"ltl.json": f"{text}\n"}, output)
 
 
-def _print_formulas(project: Project) -> None:
+def _print_formulas(project: Project, options: Options) -> None:
     from compiler.targets.ltl import text
 
-    click.echo("\n".join(text(rule) for rule in project.rules), nl=False)
+    click.echo("\n".join(text(rule, options) for rule in project.rules), nl=False)
 
 
-def _emit(project: Project, kinds: dict[str, None], output: str) -> None:
+def _emit(project: Project, kinds: dict[str, None], output: str, options: Options) -> None:
     from compiler.targets import TARGETS
 
     targets = [TARGETS[kind] for kind in kinds]
@@ -155,7 +174,7 @@ def _emit(project: Project, kinds: dict[str, None], output: str) -> None:
     ]
     if refused:
         _stop(*refused)
-    files = [artifact for target in targets for artifact in target.emit(project.rules)]
+    files = [artifact for target in targets for artifact in target.emit(project.rules, options)]
     _deliver({str(artifact.path): artifact.text for artifact in files}, output)
 
 

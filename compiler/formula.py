@@ -178,6 +178,15 @@ class Release:
     right: Formula
 
 
+@dataclass(frozen=True, slots=True)
+class Odds:
+    """`P op bound [ arg ]`: over all runs from here, arg has such a probability (PCTL*)."""
+
+    op: str
+    bound: str
+    arg: Formula
+
+
 Formula = (
     Const
     | Atom
@@ -198,6 +207,7 @@ Formula = (
     | Globally
     | Until
     | Release
+    | Odds
 )
 
 TRUE, FALSE, LAST = Const(True), Const(False), Last()
@@ -363,7 +373,7 @@ def children(f: Formula) -> tuple[Formula, ...]:
             return ()
         case And(args) | Or(args):
             return args
-        case Not(arg) | Previous(arg) | WeakPrevious(arg) | Next(arg):
+        case Not(arg) | Previous(arg) | WeakPrevious(arg) | Next(arg) | Odds(_, _, arg):
             return (arg,)
         case Once(arg, _) | Historically(arg, _) | Eventually(arg, _) | Globally(arg, _):
             return (arg,)
@@ -396,6 +406,8 @@ def rebuild(f: Formula, change: Callable[[Formula], Formula]) -> Formula:
             return until(change(left), change(right))
         case Release(left, right):
             return release(change(left), change(right))
+        case Odds(op, bound, arg):
+            return Odds(op, bound, change(arg))
         case _:
             return _rebuild_unary(f, change)
 
@@ -440,3 +452,20 @@ def atoms(f: Formula) -> Iterator[str]:
             seen[part.name] = None
         waiting.extend(reversed(children(part)))
     return iter(seen)
+
+
+def longest_bound(f: Formula) -> int:
+    """The largest number of ticks that an operator of the formula counts; 0 for none."""
+    longest = 0
+    waiting = [f]
+    while waiting:
+        part = waiting.pop()
+        match part:
+            case Once(_, interval) | Historically(_, interval) | Since(_, _, interval):
+                longest = max(longest, interval.lo, interval.hi or 0)
+            case Eventually(_, interval) | Globally(_, interval):
+                longest = max(longest, interval.lo, interval.hi or 0)
+            case _:
+                pass
+        waiting.extend(children(part))
+    return longest

@@ -11,6 +11,7 @@ Giannakopoulou et al., IST 137 (2021), section 5, rebuilt from the meaning.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import assert_never
 
 from compiler.demand import Demand, Kind, Obligation
@@ -21,8 +22,10 @@ from compiler.formula import (
     Formula,
     Implies,
     Interval,
+    Odds,
     Release,
     and_,
+    endless,
     eventually,
     globally,
     implies,
@@ -37,9 +40,23 @@ from fretish.syntax import ConditionKind, ScopeKind
 
 def future(obligation: Obligation) -> Formula:
     """The formula about finite traces, evaluated at tick 0."""
+    return _everywhere(obligation, lambda demanded: demanded)
+
+
+def probabilistic(obligation: Obligation, op: str, bound: str) -> Formula:
+    """PCTL*: almost surely, each demand is met with a probability `op bound` from its trigger on.
+
+    The shape is FRET's, `P>=1[ ... P op bound[demand] ... ]`, around our own formulas: what is
+    demanded, scope by scope, is what the sentence demands without a probability.
+    """
+    met = _everywhere(obligation, lambda demanded: Odds(op, bound, demanded))
+    return Odds(">=", "1", endless(met))
+
+
+def _everywhere(obligation: Obligation, told: Callable[[Formula], Formula]) -> Formula:
     m = obligation.mode
     end = end_marker(obligation.scope, m)
-    enforced = _enforced(obligation, end)
+    enforced = _enforced(obligation, end, told)
     match obligation.scope:
         case None | ScopeKind.ONLY_AFTER:
             return enforced
@@ -97,9 +114,9 @@ def _given(inside: Formula, said: Formula) -> Formula:
     return implies(inside, said)
 
 
-def _enforced(obligation: Obligation, end: Formula) -> Formula:
-    """At the first tick of an interval: the demand at every trigger of the interval."""
-    demanded = _demanded(obligation.demand, end)
+def _enforced(obligation: Obligation, end: Formula, told: Callable[[Formula], Formula]) -> Formula:
+    """At the first tick of an interval: the demand, as told, at every trigger of the interval."""
+    demanded = told(_demanded(obligation.demand, end))
     p = obligation.trigger
     match obligation.condition:
         case None:

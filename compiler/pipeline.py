@@ -8,7 +8,7 @@ from fractions import Fraction
 from compiler import predicates
 from compiler.demand import obligation
 from compiler.formula import endless
-from compiler.future import future
+from compiler.future import future, probabilistic
 from compiler.past import past, watch
 from compiler.rule import Rule
 from fretish import expressions as e
@@ -42,6 +42,7 @@ def formalize(
     ahead = obligation(sentence, ticks or 0, predicates.Future())
     back = obligation(sentence, ticks or 0, predicates.Past())
     finite = future(ahead)
+    odds = sentence.probability
     rule = Rule(
         requirement=requirement,
         sentence=sentence,
@@ -51,6 +52,7 @@ def formalize(
         ft_finite=finite,
         pt=past(back),
         watch=watch(back),
+        pctl=probabilistic(ahead, odds.op, odds.digits) if odds else None,
     )
     return rule, said
 

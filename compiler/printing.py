@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from types import MappingProxyType
 
 from compiler import formula as f
 
@@ -10,15 +13,10 @@ _ATOMIC, _UNARY, _BINARY, _AND, _OR, _XOR, _IMPLIES, _IFF = range(8)
 """How loose an operator binds."""
 
 _MANGLED = {".": "_DOT_", "%": "_PRC_", " ": "_SPC_", '"': "_DQT_", "[": "_LSQ_", "]": "_RSQ_"}
-_IDENTIFIER = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
 
 
 def identifier(name: str) -> str:
-    """A variable's name as FRET writes it in formulas: `a.b` becomes `a_DOT_b`.
-
-    Raises:
-        AssertionError: the name is no variable but the text of a comparison or call.
-    """
+    """A variable's name as FRET writes it in formulas: `a.b` becomes `a_DOT_b`."""
     assert not is_compound(name)
     return "".join(c if c.isalnum() and c.isascii() else _MANGLED.get(c, "_") for c in name)
 
@@ -28,88 +26,114 @@ def is_compound(name: str) -> bool:
     return name.endswith(")") and not name.startswith('"')
 
 
-# For people ----------------------------------------------------------------------------------
+def _plain_atom(name: str) -> str:
+    return name if is_compound(name) else identifier(name)
+
+
+def _quoted_atom(name: str) -> str:
+    """Spot's: a comparison is one proposition in double quotes."""
+    return f'"{name}"' if is_compound(name) else identifier(name)
+
+
+def _bounds(opening: str, separator: str, closing: str) -> Callable[[f.Interval], str]:
+    def text(interval: f.Interval) -> str:
+        hi = "inf" if interval.hi is None else interval.hi
+        return "" if interval == f.EVER else f"{opening}{interval.lo}{separator}{hi}{closing}"
+
+    return text
+
+
+_SQUARE = _bounds("[", ",", "]")
+
+
+@dataclass(frozen=True, slots=True)
+class Dialect:
+    """How one tool spells formulas."""
+
+    name: str
+    constants: tuple[str, str] = ("FALSE", "TRUE")
+    last: str = "LAST"
+    not_: str = "!"
+    and_: str = " & "
+    or_: str = " | "
+    xor: str = " xor "
+    implies: str = " -> "
+    iff: str = " <-> "
+    operators: Mapping[str, str] = field(default_factory=dict)
+    """Temporal operators that are spelt in another way than by their letter."""
+    bounds: Callable[[f.Interval], str] = _SQUARE
+    atom: Callable[[str], str] = _plain_atom
+    gap: str = " "
+    """Between a temporal operator and an operand that does not begin with a parenthesis."""
+    full: bool = False
+    """Every operator in parentheses of its own."""
+    has_past: bool = True
+    has_bounded_since: bool = True
+
+
+def _frozen(**operators: str) -> Mapping[str, str]:
+    return MappingProxyType(operators)
+
+
+def _latex_atom(name: str) -> str:
+    escaped = re.sub(r"([_%&#$])", r"\\\1", _plain_atom(name))
+    for symbol, command in (("<=", r"\le "), (">=", r"\ge "), ("!=", r"\ne ")):
+        escaped = escaped.replace(symbol, command)
+    return rf"\mathit{{{escaped}}}"
+
+
+PLAIN = Dialect("plain")
+FRET = Dialect("fret", operators=_frozen(R="V"), has_bounded_since=False)
+NUSMV = Dialect(
+    "nusmv",
+    operators=_frozen(R="V"),
+    bounds=_bounds(" [", ",", "]"),
+    has_bounded_since=False,
+)
+SPOT = Dialect(
+    "spot",
+    constants=("0", "1"),
+    bounds=_bounds("[", ":", "]"),
+    atom=_quoted_atom,
+    has_past=False,
+)
+LATEX = Dialect(
+    "latex",
+    constants=(r"\bot", r"\top"),
+    last=r"\mathsf{LAST}",
+    not_=r"\lnot ",
+    and_=r" \land ",
+    or_=r" \lor ",
+    xor=r" \oplus ",
+    implies=r" \rightarrow ",
+    iff=r" \leftrightarrow ",
+    operators=MappingProxyType(
+        {letter: rf"\mathbf{{{letter}}}" for letter in "XFGYZOH"}
+        | {letter: rf"\mathbin{{\mathbf{{{letter}}}}}" for letter in "URS"}
+    ),
+    bounds=_bounds("_{[", ",", "]}"),
+    atom=_latex_atom,
+    gap=r"\,",
+)
+DIALECTS: Mapping[str, Dialect] = MappingProxyType(
+    {dialect.name: dialect for dialect in (PLAIN, FRET, SPOT, NUSMV, LATEX)}
+)
+
+_FULL_FUTURE = Dialect(
+    "full future",
+    constants=("0", "1"),
+    not_="! ",
+    bounds=_bounds("[", ":", "]"),
+    atom=_quoted_atom,
+    full=True,
+)
+_PCTL = Dialect("pctl", constants=("false", "true"), full=True)
+_FULL_PAST = Dialect("full past", not_="! ", full=True, has_bounded_since=False)
 
 
 def readable(formula: f.Formula) -> str:
     """With as few parentheses as may be: `G(too_close -> F stopped)`."""
-    return _loose(formula, _IFF)
-
-
-def _loose(formula: f.Formula, loosest: int) -> str:
-    rank, text = _ranked(formula)
-    return text if rank <= loosest else f"({text})"
-
-
-def _ranked(formula: f.Formula) -> tuple[int, str]:
-    match formula:
-        case f.Const(value):
-            return _ATOMIC, str(value).upper()
-        case f.Atom(name):
-            return _ATOMIC, name if is_compound(name) else identifier(name)
-        case f.Last():
-            return _ATOMIC, "LAST"
-        case f.WeakPrevious(f.Const(False)):
-            return _ATOMIC, "(Z FALSE)"
-        case f.Not(arg):
-            return _UNARY, f"!{_loose(arg, _UNARY)}"
-        case f.And(args):
-            return _AND, " & ".join(_loose(arg, _BINARY) for arg in args)
-        case f.Or(args):
-            return _OR, " | ".join(_loose(arg, _BINARY) for arg in args)
-        case f.Xor(left, right):
-            return _XOR, f"{_loose(left, _UNARY)} xor {_loose(right, _UNARY)}"
-        case f.Implies(left, right):
-            return _IMPLIES, f"{_loose(left, _OR)} -> {_loose(right, _IMPLIES)}"
-        case f.Iff(left, right):
-            return _IFF, f"{_loose(left, _OR)} <-> {_loose(right, _OR)}"
-        case _:
-            return _temporal(formula)
-
-
-def _temporal(formula: f.Formula) -> tuple[int, str]:
-    operator, args = _operator(formula, ",")
-    if len(args) == 1:
-        arg = _loose(args[0], _UNARY)
-        return _UNARY, f"{operator}{arg}" if arg.startswith("(") else f"{operator} {arg}"
-    left, right = args
-    return _BINARY, f"{_loose(left, _UNARY)} {operator} {_loose(right, _UNARY)}"
-
-
-def _operator(formula: f.Formula, colon: str) -> tuple[str, tuple[f.Formula, ...]]:
-    """The temporal operator with its bounds, and its arguments."""
-    match formula:
-        case f.Previous(arg):
-            return "Y", (arg,)
-        case f.WeakPrevious(arg):
-            return "Z", (arg,)
-        case f.Next(arg):
-            return "X", (arg,)
-        case f.Once(arg, ago):
-            return f"O{_bounds(ago, colon)}", (arg,)
-        case f.Historically(arg, ago):
-            return f"H{_bounds(ago, colon)}", (arg,)
-        case f.Eventually(arg, ahead):
-            return f"F{_bounds(ahead, colon)}", (arg,)
-        case f.Globally(arg, ahead):
-            return f"G{_bounds(ahead, colon)}", (arg,)
-        case f.Since(left, right, ago):
-            return f"S{_bounds(ago, colon)}", (left, right)
-        case f.Until(left, right):
-            return "U", (left, right)
-        case f.Release(left, right):
-            return "R", (left, right)
-        case _:
-            raise AssertionError(f"not a temporal operator: {formula}")
-
-
-def _bounds(interval: f.Interval, colon: str) -> str:
-    if interval == f.EVER:
-        return ""
-    return f"[{interval.lo}{colon}{'inf' if interval.hi is None else interval.hi}]"
-
-
-# For machines --------------------------------------------------------------------------------
+    return text(formula, PLAIN)
 
 
 def future(formula: f.Formula) -> str:
@@ -118,46 +142,136 @@ def future(formula: f.Formula) -> str:
     Constants are `1` and `0`, bounds `F[a:b]`, and a comparison or call is one proposition in
     double quotes. `LAST` is a proposition of its own.
     """
-    return _full(formula, ":", ("0", "1"), '"{}"')
+    return text(formula, _FULL_FUTURE)
 
 
 def past(formula: f.Formula) -> str:
-    """Fully parenthesized past-time text in FRET's notation: `TRUE`, `O[a,b]`, `S`."""
-    return _full(formula, ",", ("FALSE", "TRUE"), "{}")
+    """Fully parenthesized past-time text in FRET's notation: `TRUE`, `O[a,b]`, plain `S`."""
+    return text(formula, _FULL_PAST)
 
 
-def _full(formula: f.Formula, colon: str, constants: tuple[str, str], compound: str) -> str:
-    def text(part: f.Formula) -> str:
-        return _full(part, colon, constants, compound)
+def pctl(formula: f.Formula) -> str:
+    """Fully parenthesized PCTL*, in the operators that PRISM and Storm read within a path.
 
-    match formula:
-        case f.Const(value):
-            return constants[value]
-        case f.Atom(name):
-            return compound.format(name) if is_compound(name) else identifier(name)
-        case f.Last():
-            return "LAST"
-        case f.Not(arg):
-            return f"(! {text(arg)})"
-        case f.And(args):
-            return f"({' & '.join(map(text, args))})"
-        case f.Or(args):
-            return f"({' | '.join(map(text, args))})"
-        case f.Xor(left, right):
-            return f"({text(left)} xor {text(right)})"
+    They have neither implication nor release there: `a -> b` is `!a | b`, and `a R b` is
+    `!(!a U !b)`.
+    """
+    return text(_for_prism(formula), _PCTL)
+
+
+def _for_prism(formula: f.Formula) -> f.Formula:
+    rebuilt = f.rebuild(formula, _for_prism)
+    match rebuilt:
         case f.Implies(left, right):
-            return f"({text(left)} -> {text(right)})"
+            return f.or_(f.not_(left), right)
         case f.Iff(left, right):
-            return f"({text(left)} <-> {text(right)})"
+            return f.or_(f.and_(left, right), f.and_(f.not_(left), f.not_(right)))
+        case f.Xor(left, right):
+            return f.or_(f.and_(left, f.not_(right)), f.and_(f.not_(left), right))
+        case f.Release(left, right):
+            return f.not_(f.until(f.not_(left), f.not_(right)))
         case _:
-            return _full_temporal(formula, colon, constants, compound)
+            return rebuilt
 
 
-def _full_temporal(
-    formula: f.Formula, colon: str, constants: tuple[str, str], compound: str
-) -> str:
-    operator, args = _operator(formula, colon)
-    texts = [_full(arg, colon, constants, compound) for arg in args]
-    if len(texts) == 1:
-        return f"({operator} {texts[0]})"
-    return f"({texts[0]} {operator} {texts[1]})"
+def text(formula: f.Formula, dialect: Dialect) -> str:
+    """The formula in the spelling of a dialect, with as few parentheses as it allows."""
+    spoken = formula if dialect.has_bounded_since else without_bounded_since(formula)
+    return _Printer(dialect).at(spoken, _IFF)
+
+
+def without_bounded_since(formula: f.Formula) -> f.Formula:
+    """`p S[lo,hi] q` by plain `S`, `O` and `H`: the nearest q decides, and p since lo ticks ago."""
+    rebuilt = f.rebuild(formula, without_bounded_since)
+    match rebuilt:
+        case f.Since(left, right, f.Interval(lo, hi)) if rebuilt.ago != f.EVER:
+            near = f.since(left, right)
+            if hi is not None:
+                near = f.and_(near, f.once(right, f.Interval(0, hi - lo)))
+            if lo == 0:
+                return near
+            kept = f.historically(left, f.Interval(0, lo - 1))
+            return f.and_(kept, f.once(near, f.Interval(lo, lo)))
+        case _:
+            return rebuilt
+
+
+class _Printer:
+    """One dialect's text, with the rank of the operator at its root."""
+
+    def __init__(self, dialect: Dialect) -> None:
+        self.dialect = dialect
+
+    def at(self, formula: f.Formula, loosest: int) -> str:
+        """The text, in parentheses where its operator binds looser than its place allows."""
+        rank, text = self.ranked(formula)
+        if self.dialect.full and rank != _ATOMIC:
+            return f"({text})"
+        return text if rank <= loosest else f"({text})"
+
+    def ranked(self, formula: f.Formula) -> tuple[int, str]:
+        d = self.dialect
+        match formula:
+            case f.Const(value):
+                return _ATOMIC, d.constants[value]
+            case f.Atom(name):
+                return _ATOMIC, d.atom(name)
+            case f.Last():
+                return _ATOMIC, d.last
+            case f.Odds(op, bound, arg):
+                return _ATOMIC, f"P{op}{bound} [ {self.at(arg, _IFF)} ]"
+            case f.Not(arg):
+                return _UNARY, f"{d.not_}{self.at(arg, _UNARY)}"
+            case f.And(args):
+                return _AND, d.and_.join(self.at(arg, _BINARY) for arg in args)
+            case f.Or(args):
+                return _OR, d.or_.join(self.at(arg, _BINARY) for arg in args)
+            case f.Xor(left, right):
+                return _XOR, f"{self.at(left, _UNARY)}{d.xor}{self.at(right, _UNARY)}"
+            case f.Implies(left, right):
+                return _IMPLIES, f"{self.at(left, _OR)}{d.implies}{self.at(right, _IMPLIES)}"
+            case f.Iff(left, right):
+                return _IFF, f"{self.at(left, _OR)}{d.iff}{self.at(right, _OR)}"
+            case _:
+                return self.temporal(formula)
+
+    def temporal(self, formula: f.Formula) -> tuple[int, str]:
+        d = self.dialect
+        letter, interval = _operator(formula)
+        operator = d.operators.get(letter, letter) + d.bounds(interval)
+        operands = f.children(formula)
+        if len(operands) == 1:
+            arg = self.at(operands[0], _UNARY)
+            near = arg.startswith("(") and not d.full
+            text = f"{operator}{'' if near else d.gap}{arg}"
+            # The first tick reads as one thing: (Z FALSE).
+            return (_ATOMIC, f"({text})") if formula == f.FIRST else (_UNARY, text)
+        left, right = (self.at(operand, _UNARY) for operand in operands)
+        return _BINARY, f"{left} {operator} {right}"
+
+
+def _operator(formula: f.Formula) -> tuple[str, f.Interval]:
+    """The letter of a temporal operator, and its bounds."""
+    match formula:
+        case f.Previous():
+            return "Y", f.EVER
+        case f.WeakPrevious():
+            return "Z", f.EVER
+        case f.Next():
+            return "X", f.EVER
+        case f.Once(_, ago):
+            return "O", ago
+        case f.Historically(_, ago):
+            return "H", ago
+        case f.Eventually(_, ahead):
+            return "F", ahead
+        case f.Globally(_, ahead):
+            return "G", ahead
+        case f.Since(_, _, ago):
+            return "S", ago
+        case f.Until():
+            return "U", f.EVER
+        case f.Release():
+            return "R", f.EVER
+        case _:
+            raise AssertionError(f"not a temporal operator: {formula}")

@@ -34,7 +34,7 @@ def formulas(rule: Rule) -> dict[str, Any]:
         "ft_infinite": printing.future(rule.ft_infinite),
         "ft_finite": printing.future(rule.ft_finite),
         "pt": printing.past(rule.pt),
-        "pctl": None,
+        "pctl": printing.pctl(rule.pctl) if rule.pctl else None,
     }
 
 

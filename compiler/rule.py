@@ -30,6 +30,8 @@ class Rule:
     pt: Formula
     """Past-time; at the last tick."""
     watch: Watch
+    pctl: Formula | None
+    """PCTL*; None where the sentence gives no probability."""
 
     @property
     def id(self) -> str:

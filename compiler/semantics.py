@@ -24,6 +24,9 @@ def holds(formula: f.Formula, trace: Sequence[Valuation], at: int = 0) -> bool:
         formula: any formula.
         trace: one valuation per tick, at least one.
         at: the tick, `0..len(trace)-1`.
+
+    Raises:
+        ValueError: the formula speaks of probabilities.
     """
     match formula:
         case f.Const(value):
@@ -44,6 +47,8 @@ def holds(formula: f.Formula, trace: Sequence[Valuation], at: int = 0) -> bool:
             return not holds(left, trace, at) or holds(right, trace, at)
         case f.Iff(left, right):
             return holds(left, trace, at) is holds(right, trace, at)
+        case f.Odds():
+            raise ValueError("one trace does not tell a probability")
         case f.Next() | f.Eventually() | f.Globally() | f.Until() | f.Release():
             return _future(formula, trace, at)
         case _:

@@ -15,7 +15,7 @@ from pathlib import PurePosixPath
 
 from compiler import formula as f
 from compiler.rule import Rule
-from compiler.targets.target import Artifact, Target, not_expressible, stem
+from compiler.targets.target import DEFAULT, Artifact, Options, Target, not_expressible, stem
 from compiler.templating import render
 from fretish.diagnostic import Diagnostic
 
@@ -59,7 +59,7 @@ def _beyond(formula: f.Formula) -> str | None:
             return next((part for child in f.children(formula) if (part := _beyond(child))), None)
 
 
-def emit(rules: Sequence[Rule]) -> tuple[Artifact, ...]:
+def emit(rules: Sequence[Rule], options: Options = DEFAULT) -> tuple[Artifact, ...]:
     """`<id>.psl` for each rule: one property, with the requirement's id as its key."""
     return tuple(
         Artifact(

@@ -6,31 +6,59 @@ from collections.abc import Sequence
 from pathlib import PurePosixPath
 
 from compiler import printing
+from compiler.formula import longest_bound
+from compiler.record import wording
 from compiler.rule import Rule
-from compiler.targets.target import Artifact, Target, stem
+from compiler.targets.target import DEFAULT, Artifact, Options, Target, stem
 from compiler.templating import render
 from fretish.meaning import meaning
-from fretish.printer import sentence
+
+_MOST_TICKS = 12
+"""A longer bound is not given to Spot, which expands it into a chain of X."""
 
 
-def emit(rules: Sequence[Rule]) -> tuple[Artifact, ...]:
+def emit(rules: Sequence[Rule], options: Options = DEFAULT) -> tuple[Artifact, ...]:
     """`<id>.ltl` for each rule."""
-    return tuple(Artifact(PurePosixPath(f"{stem(rule)}.ltl"), text(rule)) for rule in rules)
+    return tuple(
+        Artifact(PurePosixPath(f"{stem(rule)}.ltl"), text(rule, options)) for rule in rules
+    )
 
 
-def text(rule: Rule) -> str:
-    """What a person reads: the sentence, its meaning, and the three formulas."""
+def text(rule: Rule, options: Options = DEFAULT) -> str:
+    """What a person reads: the sentence, its meaning, and its formulas."""
+    dialect = printing.DIALECTS[options.notation]
+    lines = {
+        "meaning": meaning(rule.sentence, rule.ticks, rule.clock),
+        "FT": printing.text(rule.ft_infinite, dialect),
+    }
+    if options.simplify:
+        lines["FT, simplified"] = _simplified(rule, dialect)
+    lines["FT, finite"] = printing.text(rule.ft_finite, dialect)
+    lines["PT"] = (
+        printing.text(rule.pt, dialect)
+        if dialect.has_past
+        else f"({dialect.name} has no past operators)"
+    )
+    if rule.pctl is not None:
+        lines["PCTL*"] = printing.pctl(rule.pctl)
     return render(
         "ltl/requirement.ltl.j2",
         id=rule.id,
         title=rule.requirement.title,
-        sentence=" ".join(rule.requirement.wording.text.split()),
-        canonical=sentence(rule.sentence),
-        meaning=meaning(rule.sentence, rule.ticks, rule.clock),
-        ft_infinite=printing.readable(rule.ft_infinite),
-        ft_finite=printing.readable(rule.ft_finite),
-        pt=printing.readable(rule.pt),
+        sentence=wording(rule.requirement),
+        lines=lines,
+        width=max(map(len, lines)),
     )
+
+
+def _simplified(rule: Rule, dialect: printing.Dialect) -> str:
+    """Spot's shorter form, proved equivalent; or why there is none."""
+    from compiler.automata import simplified
+
+    if longest_bound(rule.ft_infinite) > _MOST_TICKS:
+        return f"(not attempted: a bound is longer than {_MOST_TICKS} ticks)"
+    shorter = simplified(rule.ft_infinite)
+    return shorter if shorter is not None else "(Spot finds nothing shorter)"
 
 
 TARGET = Target("ltl", "future-time and past-time formulas, for reading", emit)

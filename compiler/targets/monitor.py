@@ -16,7 +16,7 @@ from pathlib import PurePosixPath
 from compiler import __version__, printing
 from compiler.program import program
 from compiler.rule import Rule
-from compiler.targets.target import Artifact, Target, stem
+from compiler.targets.target import DEFAULT, Artifact, Options, Target, stem
 from compiler.templating import render
 from fretish.clock import assumed_ticks
 from fretish.diagnostic import Code, Diagnostic
@@ -37,7 +37,7 @@ def refuse(rule: Rule) -> Diagnostic | None:
     )
 
 
-def emit(rules: Sequence[Rule]) -> tuple[Artifact, ...]:
+def emit(rules: Sequence[Rule], options: Options = DEFAULT) -> tuple[Artifact, ...]:
     """`<id>_monitor.py` for each rule; it needs Python 3.11 and nothing else."""
     return tuple(
         Artifact(PurePosixPath(f"{_module(stem(rule))}_monitor.py"), text(rule)) for rule in rules

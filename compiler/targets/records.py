@@ -7,11 +7,11 @@ from pathlib import PurePosixPath
 
 from compiler.record import record
 from compiler.rule import Rule
-from compiler.targets.target import Artifact, Target, stem
+from compiler.targets.target import DEFAULT, Artifact, Options, Target, stem
 from compiler.templating import render
 
 
-def emit(rules: Sequence[Rule]) -> tuple[Artifact, ...]:
+def emit(rules: Sequence[Rule], options: Options = DEFAULT) -> tuple[Artifact, ...]:
     """`<id>.json` for each rule."""
     return tuple(
         Artifact(

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import PurePosixPath
+from typing import Protocol
 
 from compiler.rule import Rule
 from fretish.diagnostic import Code, Diagnostic
@@ -19,12 +20,32 @@ class Artifact:
 
 
 @dataclass(frozen=True, slots=True)
+class Options:
+    """How formulas are shown; targets for machines pass them over."""
+
+    notation: str = "plain"
+    """A name of `printing.DIALECTS`."""
+    simplify: bool = False
+    """Whether a simplified form stands beside the exact one."""
+
+
+DEFAULT = Options()
+
+
+class Emit(Protocol):
+    """Rules → files."""
+
+    def __call__(self, rules: Sequence[Rule], options: Options = DEFAULT) -> tuple[Artifact, ...]:
+        """Make all files of the rules; pure."""
+
+
+@dataclass(frozen=True, slots=True)
 class Target:
     """One kind of output. `refuse` is asked first; `emit` then never fails and never weakens."""
 
     name: str
     summary: str
-    emit: Callable[[Sequence[Rule]], tuple[Artifact, ...]]
+    emit: Emit
     refuse: Callable[[Rule], Diagnostic | None] = lambda rule: None
 
 
