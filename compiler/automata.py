@@ -9,7 +9,15 @@ from __future__ import annotations
 from typing import Any
 
 from compiler import printing
-from compiler.formula import Formula
+from compiler.formula import (
+    Atom,
+    Eventually,
+    Formula,
+    Globally,
+    Interval,
+    longest_bound,
+    rebuild,
+)
 
 
 def equivalent(left: Formula, right: Formula) -> bool:
@@ -29,22 +37,43 @@ def same_language(left: str, right: str) -> bool:
     return bool(spot.are_equivalent(spot.formula(left), spot.formula(right)))
 
 
-def simplified(formula: Formula) -> str | None:
-    """A shorter formula in Spot's syntax that holds on the same infinite traces, if Spot has one.
+_PROVABLE_BOUND = 12
+"""A longer bound is not given to Spot, which expands it into a chain of X."""
 
-    Spot's rewriting by syntax, by semantics and by implication; its result is then proved
-    equivalent through automata. Bounds must be small.
+
+def simplified(formula: Formula) -> str | None:
+    """A shorter text in Spot's syntax that says the same on infinite traces, if there is one.
+
+    Bounded operators are opaque while Spot rewrites, so that bounds of any size stay one operator;
+    what is true of the formula around them is true whatever they mean. Spot then proves the result
+    equivalent through automata, around the opaque operators, and outright where bounds are small.
 
     Source: Duret-Lutz et al., CAV 2022, and Spot's documentation of tl_simplifier.
     """
     spot = _spot()
-    exact = spot.formula(printing.future(formula))
-    shorter = spot.tl_simplifier(spot.tl_simplifier_options(3)).simplify(exact)
-    text = f"{shorter}"
-    if len(text) >= len(f"{exact}"):
-        return None
-    assert spot.are_equivalent(exact, shorter), "Spot's own simplification is not equivalent"
-    return text
+    opaque: dict[str, Formula] = {}
+    outline = spot.formula(printing.future(_hide(formula, opaque)))
+    shorter = spot.tl_simplifier(spot.tl_simplifier_options(3)).simplify(outline)
+    assert spot.are_equivalent(outline, shorter), "Spot's simplification is not equivalent"
+    text = str(shorter)
+    for name, bounded in reversed(opaque.items()):
+        text = text.replace(name, f"({printing.text(bounded, printing.SPOT)})")
+    if longest_bound(formula) <= _PROVABLE_BOUND:
+        assert same_language(text, printing.future(formula)), "simplification is not equivalent"
+    return text if len(text) < len(printing.text(formula, printing.SPOT)) else None
+
+
+def _hide(formula: Formula, opaque: dict[str, Formula]) -> Formula:
+    """The formula with a fresh proposition for each bounded operator, which `opaque` remembers."""
+    match formula:
+        case Eventually(arg, Interval(_, int())) | Globally(arg, Interval(_, int())):
+            inner = rebuild(formula, lambda part: _hide(part, opaque))
+            known = {bounded: name for name, bounded in opaque.items()}
+            name = known.get(inner) or f"bounded_{len(opaque)}_"
+            opaque[name] = inner
+            return Atom(name)
+        case _:
+            return rebuild(formula, lambda part: _hide(part, opaque))
 
 
 def _spot() -> Any:

@@ -6,15 +6,11 @@ from collections.abc import Sequence
 from pathlib import PurePosixPath
 
 from compiler import printing
-from compiler.formula import longest_bound
 from compiler.record import wording
 from compiler.rule import Rule
 from compiler.targets.target import DEFAULT, Artifact, Options, Target, stem
 from compiler.templating import render
 from fretish.meaning import meaning
-
-_MOST_TICKS = 12
-"""A longer bound is not given to Spot, which expands it into a chain of X."""
 
 
 def emit(rules: Sequence[Rule], options: Options = DEFAULT) -> tuple[Artifact, ...]:
@@ -32,7 +28,7 @@ def text(rule: Rule, options: Options = DEFAULT) -> str:
         "FT": printing.text(rule.ft_infinite, dialect),
     }
     if options.simplify:
-        lines["FT, simplified"] = _simplified(rule, dialect)
+        lines["FT, simplified"] = _simplified(rule)
     lines["FT, finite"] = printing.text(rule.ft_finite, dialect)
     lines["PT"] = (
         printing.text(rule.pt, dialect)
@@ -51,12 +47,10 @@ def text(rule: Rule, options: Options = DEFAULT) -> str:
     )
 
 
-def _simplified(rule: Rule, dialect: printing.Dialect) -> str:
+def _simplified(rule: Rule) -> str:
     """Spot's shorter form, proved equivalent; or why there is none."""
     from compiler.automata import simplified
 
-    if longest_bound(rule.ft_infinite) > _MOST_TICKS:
-        return f"(not attempted: a bound is longer than {_MOST_TICKS} ticks)"
     shorter = simplified(rule.ft_infinite)
     return shorter if shorter is not None else "(Spot finds nothing shorter)"
 
