@@ -66,10 +66,10 @@ def simplified(formula: Formula) -> str | None:
 def _hide(formula: Formula, opaque: dict[str, Formula]) -> Formula:
     """The formula with a fresh proposition for each bounded operator, which `opaque` remembers."""
     match formula:
-        case Eventually(arg, Interval(_, int())) | Globally(arg, Interval(_, int())):
+        case Eventually(_, Interval(_, int())) | Globally(_, Interval(_, int())):
             inner = rebuild(formula, lambda part: _hide(part, opaque))
             known = {bounded: name for name, bounded in opaque.items()}
-            name = known.get(inner) or f"bounded_{len(opaque)}_"
+            name = known.get(inner) or f"_bounded_{len(opaque)}_"  # no name of FRETish
             opaque[name] = inner
             return Atom(name)
         case _:

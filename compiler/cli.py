@@ -197,6 +197,30 @@ def _deliver(files: dict[str, str], output: str) -> None:
 
 
 @cli.command()
+@click.argument("files", nargs=-1, required=True, metavar="FILE...")
+@click.option("--check", is_flag=True, help="Write nothing; exit with 1 if a file would change.")
+@click.option("-o", "--output", type=click.Choice(("-",)), help="`-` prints in place of writing.")
+def fmt(files: tuple[str, ...], check: bool, output: str | None) -> None:
+    """Put the sentences of requirement files into their canonical wording."""
+    from compiler.formatting import formatted
+
+    done, wrong = formatted(files)
+    if wrong:
+        _stop(*wrong)
+    changed = [file for file in done if file.before != file.after]
+    if output == "-":
+        click.echo("".join(file.after for file in done), nl=False)
+    elif check:
+        for file in changed:
+            click.echo(f"would change {file.path}", err=True)
+        raise SystemExit(VIOLATION if changed else SHOWN)
+    else:
+        for file in changed:
+            path = Path(file.path)
+            _deliver({path.name: file.after}, str(path.parent))
+
+
+@cli.command()
 @click.argument("logs", nargs=-1, required=True, metavar="LOG...")
 @click.option(
     "--requirements", default="requirements", show_default=True, help="Folder, or one file."

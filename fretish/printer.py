@@ -13,6 +13,15 @@ _IFF, _IMPLIES, _XOR, _OR, _AND, _NOT, _COMPARE, _SUM, _PRODUCT, _SIGN, _POWER, 
 _PLAIN = re.compile(r"[A-Za-z](?:[A-Za-z0-9_.%]*[A-Za-z0-9_%])?")
 _RANK = {"+": _SUM, "-": _SUM, "*": _PRODUCT, "/": _PRODUCT, "mod": _PRODUCT, "^": _POWER}
 
+_MODES = {
+    s.ScopeKind.IN: "in {} mode",
+    s.ScopeKind.NOT_IN: "except in {} mode",
+    s.ScopeKind.BEFORE: "before {} mode",
+    s.ScopeKind.AFTER: "after {} mode",
+    s.ScopeKind.ONLY_IN: "only in {} mode",
+    s.ScopeKind.ONLY_BEFORE: "only before {} mode",
+    s.ScopeKind.ONLY_AFTER: "only after {} mode",
+}
 _SCOPES = {
     s.ScopeKind.IN: "while {}",
     s.ScopeKind.NOT_IN: "except while {}",
@@ -36,12 +45,13 @@ def sentence(tree: s.Sentence) -> str:
         timing(tree.timing),
         f"satisfy {expression(tree.response)}",
     ]
-    text = " ".join(part for part in parts if part)
-    return text[0].upper() + text[1:] if text.startswith("the ") else text
+    return " ".join(part for part in parts if part)
 
 
 def _scope(scope: s.Scope) -> str:
-    return _SCOPES[scope.kind].format(expression(scope.mode)) + ","
+    """A scope that is one variable is a mode: `in m mode`; any other expression is a `while`."""
+    wordings = _MODES if isinstance(scope.mode, e.Name) else _SCOPES
+    return f"{wordings[scope.kind].format(expression(scope.mode))},"
 
 
 def _condition(condition: s.Condition) -> str:
