@@ -10,7 +10,7 @@ from fretish import syntax
 from fretish.diagnostic import Diagnostic
 from fretish.documents import Requirement
 from fretish.meaning import meaning
-from fretish.printer import expression, sentence
+from fretish.printer import canonical, expression
 from fretish.rendering import as_json
 
 SCHEMA = "fretc-requirement-1"
@@ -59,7 +59,7 @@ def record(rule: Rule) -> dict[str, Any]:
         "schema": SCHEMA,
         "fretc": __version__,
         **formulas(rule),
-        "canonical": sentence(tree),
+        "canonical": canonical(tree),
         "fingerprint": rule.fingerprint,
         "meaning": meaning(tree, rule.ticks, rule.clock),
         "readable": {

@@ -9,7 +9,7 @@ from compiler.formula import Formula, atoms
 from compiler.past import Watch
 from fretish.clock import Clock
 from fretish.documents import Requirement
-from fretish.printer import sentence as canonical
+from fretish.printer import canonical
 from fretish.syntax import Sentence
 
 

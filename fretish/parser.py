@@ -143,8 +143,8 @@ class _Timed(tuple[s.Timing, Span]):
     __slots__ = ()
 
 
-class _Component(tuple[str, Span]):
-    """The component's name with its place, on the way to the sentence."""
+class _Component(tuple[str, Span, bool]):
+    """The component's name, its place, and whether `the` precedes it; for the sentence."""
 
     __slots__ = ()
 
@@ -262,7 +262,8 @@ class _Build(Transformer_NonRecursive[Token, Any]):
 
     def component(self, meta: Any, children: list[Any]) -> _Component:
         (name,) = _parts(children)
-        return _Component((name.id, name.span))
+        article = any(isinstance(c, Token) and c.type == "THE" for c in children)
+        return _Component((name.id, name.span, article))
 
     def probability(self, meta: Any, children: list[Any]) -> s.Probability:
         _, _, op, *digits = children
@@ -283,7 +284,7 @@ class _Build(Transformer_NonRecursive[Token, Any]):
         *parts, response = _parts(children)
         found = {type(part): part for part in parts}
         timing, timing_span = found.get(_Timed, (s.Eventually(written=False), None))
-        component, component_span = found[_Component]
+        component, component_span, article = found[_Component]
         return s.Sentence(
             scope=found.get(s.Scope),
             condition=found.get(s.Condition),
@@ -294,6 +295,7 @@ class _Build(Transformer_NonRecursive[Token, Any]):
             span=_meta_span(meta),
             component_span=component_span,
             timing_span=timing_span,
+            article=article,
         )
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 from typing import assert_never
 
 from fretish import expressions as e
@@ -33,12 +34,21 @@ _SCOPES = {
 }
 
 
+def canonical(tree: s.Sentence) -> str:
+    """The one wording that all equal trees share: the text that fingerprints are taken of."""
+    condition = replace(tree.condition, word="") if tree.condition else None
+    return sentence(replace(tree, article=False, condition=condition))
+
+
 def sentence(tree: s.Sentence) -> str:
-    """The canonical wording: parsing it gives an equal tree."""
+    """The wording that `fretc fmt` writes: parsing it gives an equal tree.
+
+    The words that only the writer's taste decides stay: `the`, and `when`, `if`, `where` or `upon`.
+    """
     parts = [
         _scope(tree.scope) if tree.scope else "",
         _condition(tree.condition) if tree.condition else "",
-        f"the {identifier(tree.component)} shall",
+        f"{'the ' if tree.article else ''}{identifier(tree.component)} shall",
         f"with probability {tree.probability.op} {tree.probability.digits}"
         if tree.probability
         else "",

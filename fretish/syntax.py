@@ -177,6 +177,8 @@ class Sentence:
     span: Span | None = field(default=None, compare=False, repr=False)
     component_span: Span | None = field(default=None, compare=False, repr=False)
     timing_span: Span | None = field(default=None, compare=False, repr=False)
+    article: bool = field(default=False, compare=False, repr=False)
+    """Whether `the` stands before the component."""
 
 
 def scope_key(sentence: Sentence) -> str:
