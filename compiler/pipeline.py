@@ -20,6 +20,7 @@ from fretish.diagnostic import Code, Diagnostic, Severity, suggestion
 from fretish.documents import Requirement
 from fretish.parser import parse
 from fretish.source import Span
+from fretish.surprises import surprises
 from fretish.syntax import Sentence
 
 
@@ -64,6 +65,7 @@ def _remarks(
     assumed = assumed_ticks(sentence, clock)
     if assumed is not None:
         yield assumed
+    yield from surprises(sentence)
     yield from temporal_predicates(sentence)
     if declarations is not None:
         yield from drift(requirement, declarations)

@@ -45,6 +45,11 @@ class Code(Enum):
 
     DUPLICATE_ID = ("F201", "two requirements have the same id")
     PREDICATE_NOT_FORMALIZED = ("F202", "a temporal predicate is left uninterpreted")
+    EDGE_TRIGGER = ("F204", "`when` and `if` trigger where the condition becomes true")
+    NO_TIMING = ("F205", "no timing means eventually")
+    SHORT_SCOPE = ("F206", "a deadline behind the end of its scope requires nothing")
+    FIRST_RUN_ONLY = ("F207", "`after` looks at the first stretch of its mode only")
+    BEFORE_NOTHING = ("F208", "`before` requires nothing when its mode holds at the start")
     NEVER_DECIDED = ("F203", "no run can ever decide the requirement")
 
     BAD_BINDINGS = ("F301", "the bindings are not TOML")

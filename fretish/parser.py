@@ -21,7 +21,16 @@ from lark.visitors import Transformer_NonRecursive
 from fretish import expressions as e
 from fretish import syntax as s
 from fretish.checking import check_names, check_response_kinds
-from fretish.diagnostic import Code, Diagnostic, suggestion
+from fretish.diagnostic import Diagnostic
+from fretish.mistakes import (
+    Met,
+    Unexpected,
+    bad_duration,
+    bad_probability,
+    explain,
+    no_sentence,
+    unknown_character,
+)
 from fretish.source import Span
 
 _UNITS: dict[str, s.TimeUnit] = {
@@ -32,15 +41,6 @@ _UNITS: dict[str, s.TimeUnit] = {
     "MINUTE": "minute",
     "HOUR": "hour",
 }
-
-KEYWORDS = (
-    "after always and at before during eventually except finally first for if immediately in "
-    "initially is last mod mode never next not occurrence of only or previous probability same "
-    "satisfy shall the then timepoint unless until upon when whenever where while with within xor "
-    "tick ticks microsecond microseconds millisecond milliseconds second seconds minute minutes "
-    "hour hours"
-).split()
-"""The words of the grammar, for suggestions."""
 
 
 def parse(text: Span) -> s.Sentence | Diagnostic:
@@ -53,19 +53,14 @@ def parse(text: Span) -> s.Sentence | Diagnostic:
         The tree, or the first thing that keeps the text from being a sentence.
     """
     if not text.text.strip():
-        return Diagnostic(
-            Code.NO_SENTENCE,
-            "there is no sentence here",
-            text.part(0, 0),
-            help="write `the COMPONENT shall eventually satisfy CONDITION`",
-        )
+        return no_sentence(text)
     try:
         with _places_in(text):
             sentence = cast(s.Sentence, _Build().transform(_lark().parse(text.text)))
     except UnexpectedToken as error:
         return _unexpected(error, text)
     except UnexpectedCharacters as error:
-        return _unknown_character(error, text)
+        return unknown_character(text, error.pos_in_stream or 0)
     except VisitError as error:
         if isinstance(error.orig_exc, _MistakeError):
             return error.orig_exc.diagnostic
@@ -270,14 +265,14 @@ class _Build(Transformer_NonRecursive[Token, Any]):
         text = "".join(digits)
         bound = Fraction(text)
         if not 0 <= bound <= 1 or (op == "<" and bound == 0) or (op == ">" and bound == 1):
-            raise _MistakeError(_bad_probability(text, _meta_span(meta)))
+            raise _MistakeError(bad_probability(_meta_span(meta)))
         return s.Probability(op, bound, text)
 
     def duration(self, meta: Any, children: list[Token]) -> s.Duration:
         *digits, unit = children
         text = "".join(digits)
         if not text.isdigit():
-            raise _MistakeError(_bad_duration(text, _span(children[0], digits[-1])))
+            raise _MistakeError(bad_duration(_span(children[0], digits[-1])))
         return s.Duration(int(text), _UNITS[unit.type], _meta_span(meta))
 
     def start(self, meta: Any, children: list[Any]) -> s.Sentence:
@@ -301,174 +296,34 @@ class _Build(Transformer_NonRecursive[Token, Any]):
 
 # What went wrong ---------------------------------------------------------------------------
 
-_GROUPS: tuple[tuple[str, frozenset[str]], ...] = (
-    ("a scope (`in m`, `before m`, ...)", frozenset({"DURING", "EXCEPT", "ONLY", "WHILE"})),
-    ("a condition (`whenever p`, `when p`, ...)", frozenset({"WHENEVER", "UPON"})),
-    ("`shall`", frozenset({"SHALL"})),
-    ("a timing (`eventually`, `within 3 seconds`, ...)", frozenset({"EVENTUALLY", "WITHIN"})),
-    ("`satisfy`", frozenset({"SATISFY"})),
-    ("a unit (`ticks`, `milliseconds`, `seconds`, ...)", frozenset({"TICK", "SECOND"})),
-    ("a name", frozenset({"ID"})),
-    ("a number", frozenset({"NUMBER"})),
-    ("a comparison (`<`, `>=`, ...)", frozenset({"LESS"})),
-    ("an operator (`&`, `|`, `->`, ...)", frozenset({"_AMPERSAND", "_IMPLIES"})),
-    ("`then`", frozenset({"THEN"})),
-    ("`TRUE` or `FALSE` in capitals", frozenset({"IS_TRUE"})),
-    ("`timepoint`", frozenset({"TIMEPOINT"})),
-    ("`mode`", frozenset({"MODE"})),
-    ("`probability`", frozenset({"PROBABILITY"})),
-    ("`occurrence of`", frozenset({"OCCURRENCE"})),
-    ("`,`", frozenset({"_COMMA"})),
-    ("`)`", frozenset({"RPAR"})),
-    ("the end of the sentence", frozenset({"$END"})),
-)
-"""What the grammar may expect, in the words of a reader, in the order of a sentence."""
-
-_UNIT_TERMINALS = frozenset(_UNITS)
-_STARTS_EXPRESSION = frozenset(
-    {"ID", "QUOTED", "NUMBER", "TRUE", "FALSE", "_BANG", "LPAR", "MINUS"}
-)
-
 
 def _unexpected(error: UnexpectedToken, text: Span) -> Diagnostic:
     token: Token = error.token
-    accepts = frozenset(error.accepts or error.expected)
-    at_end = token.type == "$END"
-    place = text.part(len(text.text.rstrip()), len(text.text.rstrip())) if at_end else None
-    span = place or _token_span(token, text)
-    before = error.token_history[-1] if error.token_history else None
-    return (
-        _missing_unit(token, accepts, span, at_end)
-        or _misspelt(token, before, accepts, text)
-        or _missing_satisfy(token, accepts, span, text)
-        or _missing_component(token, accepts, span)
-        or _key_word_as_name(token, accepts, span)
-        or _not_fretish(token, accepts, span, at_end)
+    before = _word_before(token, text)
+    return explain(
+        Unexpected(
+            _met(token, text),
+            _met(before, text) if before is not None else None,
+            frozenset(error.accepts or error.expected),
+            text,
+        )
     )
 
 
-def _token_span(token: Token, text: Span) -> Span:
+def _word_before(token: Token, text: Span) -> Token | None:
+    """The parser stopped at `token`, so all words before it are known to the lexer."""
+    before = None
+    for word in _lark().lex(text.text):
+        if token.type != "$END" and word.start_pos == token.start_pos:
+            break
+        before = word
+    return before
+
+
+def _met(token: Token, text: Span) -> Met:
+    if token.type == "$END":
+        end = len(text.text.rstrip())
+        return Met(token.type, text.part(end, end))
     assert token.start_pos is not None
     assert token.end_pos is not None
-    return text.part(token.start_pos, token.end_pos)
-
-
-def _misspelt(
-    token: Token, before: Token | None, accepts: frozenset[str], text: Span
-) -> Diagnostic | None:
-    """A name stands where only a key word fits, and one key word is near."""
-    suspects = [token] if "ID" not in accepts else []
-    if before is not None and "SHALL" in accepts:
-        suspects.append(before)
-    for suspect in suspects:
-        near = suggestion(str(suspect), KEYWORDS, cutoff=0.72)
-        if suspect.type == "ID" and near is not None:
-            return Diagnostic(
-                Code.MISSPELT,
-                f"`{suspect}` is no word of FRETish here",
-                _token_span(suspect, text),
-                help=f"did you mean `{near}`?",
-            )
-    return None
-
-
-def _missing_unit(
-    token: Token, accepts: frozenset[str], span: Span, at_end: bool
-) -> Diagnostic | None:
-    if not accepts & _UNIT_TERMINALS:
-        return None
-    found = "" if at_end or token.type == "SATISFY" else f", and `{token}` is none"
-    return Diagnostic(
-        Code.BAD_DURATION,
-        f"a duration needs a unit{found}",
-        span,
-        help="write ticks, microseconds, milliseconds, seconds, minutes or hours: "
-        "`within 3 seconds`",
-    )
-
-
-def _missing_satisfy(
-    token: Token, accepts: frozenset[str], span: Span, text: Span
-) -> Diagnostic | None:
-    if "SATISFY" not in accepts or token.type not in _STARTS_EXPRESSION:
-        return None
-    end = len(text.text.rstrip().rstrip("."))
-    response = text.source.span(span.start, max(span.end, text.start + end))
-    return Diagnostic(
-        Code.MISSING_SATISFY,
-        f"missing `satisfy` before `{response.text}`",
-        response,
-        help=f"write `satisfy {response.text}`",
-    )
-
-
-def _missing_component(token: Token, accepts: frozenset[str], span: Span) -> Diagnostic | None:
-    if token.type != "SHALL" or "ID" not in accepts:
-        return None
-    return Diagnostic(
-        Code.MISSING_COMPONENT,
-        "there is no component before `shall`",
-        span,
-        help="name what must satisfy the requirement: `the rover shall ...`",
-    )
-
-
-def _key_word_as_name(token: Token, accepts: frozenset[str], span: Span) -> Diagnostic | None:
-    if "ID" not in accepts or str(token).lower() not in KEYWORDS:
-        return None
-    return Diagnostic(
-        Code.RESERVED,
-        f"`{token}` is a key word of FRETish and cannot be a name",
-        span,
-        help=f'choose another name, or quote it: `"{token}"`',
-    )
-
-
-def _not_fretish(token: Token, accepts: frozenset[str], span: Span, at_end: bool) -> Diagnostic:
-    expected = [words for words, terminals in _GROUPS if accepts & terminals]
-    what = "the sentence ends too early" if at_end else f"`{token}` does not fit here"
-    return Diagnostic(
-        Code.NOT_FRETISH,
-        what,
-        span,
-        help=f"expected {_one_of(expected)}" if expected else None,
-    )
-
-
-def _one_of(words: list[str]) -> str:
-    return words[0] if len(words) == 1 else f"{', '.join(words[:-1])} or {words[-1]}"
-
-
-def _unknown_character(error: UnexpectedCharacters, text: Span) -> Diagnostic:
-    at = error.pos_in_stream or 0
-    span = text.part(at, at + 1)
-    mends = {
-        "[": 'quote a name with brackets: `"a[3]"`',
-        "_": "a name begins with a letter",
-        '"': "close the quotes",
-        "\N{LEFT DOUBLE QUOTATION MARK}": 'use straight quotes: `"`',
-    }
-    return Diagnostic(
-        Code.NOT_FRETISH,
-        f"`{span.text}` is no character of FRETish",
-        span,
-        help=mends.get(span.text, "names are letters, digits, `_`, `.` and `%`"),
-    )
-
-
-def _bad_duration(digits: str, span: Span) -> Diagnostic:
-    return Diagnostic(
-        Code.BAD_DURATION,
-        f"a duration counts whole units, and `{digits}` is no whole number",
-        span,
-        help="use a smaller unit: `within 2500 milliseconds`",
-    )
-
-
-def _bad_probability(digits: str, span: Span) -> Diagnostic:
-    return Diagnostic(
-        Code.BAD_PROBABILITY,
-        f"no run can have the probability `{span.text}`",
-        span,
-        help="a probability lies between 0 and 1; `> 1` and `< 0` can never hold",
-    )
+    return Met(token.type, text.part(token.start_pos, token.end_pos))
