@@ -110,6 +110,15 @@ def _not_auditable(rules: Sequence[Rule], declarations: Declarations | None) -> 
                 help="write `bindings.toml` beside the requirements, or name it with `--bindings`",
             )
         ]
+    if not declarations.clock.declared:
+        return [
+            Diagnostic(
+                Code.NO_CLOCK,
+                f"`{declarations.source.name}` declares no clock",
+                declarations.source.span(0, 0),
+                help='add `[clock]` with `tick = "100 ms"`',
+            )
+        ]
     refused = [monitors.refuse(rule) for rule in rules]
     missing = [diagnostic for rule in rules for diagnostic in unbound(rule, declarations)]
     return [*(diagnostic for diagnostic in refused if diagnostic), *missing]

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from compiler.targets.target import Options
 
 SHOWN, VIOLATION, BAD, NOT_SHOWN, INTERRUPTED = 0, 1, 2, 3, 130
-_EMITS = ("ltl", "monitor", "ajpf", "json")
+_EMITS = ("ltl", "monitor", "ajpf", "json", "fret-json")
 _NOTATIONS = ("plain", "fret", "spot", "nusmv", "latex")
 _DEFAULT = "compile"
 """The command that `fretc FILE...` stands for."""
@@ -127,12 +127,12 @@ def compile_(
     as_json = form == "json" and set(kinds) <= {"ltl"}
     if as_json and _only_failed(project):
         _deliver_formulas(project, output if kinds else "-")
-        raise SystemExit(BAD if project.failed else SHOWN)
+        raise SystemExit(BAD if has_errors(project.diagnostics) else SHOWN)
     if has_errors(project.diagnostics):
         raise SystemExit(BAD)
     from compiler.targets.target import Options
 
-    options = Options(notation, simplify)
+    options = Options(notation, simplify, tuple(f.requirement for f in project.failed))
     if kinds:
         _emit(project, dict.fromkeys(kinds), output, options)
     else:
@@ -182,8 +182,8 @@ def _deliver(files: dict[str, str], output: str) -> None:
     """Print the texts (`-`), or write them below the folder and name them."""
     from pathlib import PurePosixPath
 
+    from compiler.artifact import Artifact
     from compiler.files import write
-    from compiler.targets.target import Artifact
 
     if output == "-":
         click.echo("".join(files.values()), nl=False)
@@ -218,6 +218,57 @@ def fmt(files: tuple[str, ...], check: bool, output: str | None) -> None:
         for file in changed:
             path = Path(file.path)
             _deliver({path.name: file.after}, str(path.parent))
+
+
+@cli.command("import")
+@click.argument("file", metavar="FILE")
+@click.option(
+    "-o", "--output", default="requirements", show_default=True, help="Folder; `-` prints."
+)
+@click.option("--id-column", help="CSV: the column of the ids.")
+@click.option("--text-column", help="CSV: the column of the sentences or texts.")
+@click.option("--project-column", help="CSV: the column of the projects.")
+@click.option("--force", is_flag=True, help="Write over files that are there.")
+def import_(
+    file: str,
+    output: str,
+    id_column: str | None,
+    text_column: str | None,
+    project_column: str | None,
+    force: bool,
+) -> None:
+    """Read requirements that FRET exported: JSON, or a CSV.
+
+    Writes a `.fret` file for each project, and `bindings.toml` with FRET's variables. Formulas are
+    not taken over: they are made from the sentences.
+    """
+    from compiler.exchange import read_export
+    from compiler.files import read
+
+    source = read(file)
+    if isinstance(source, Diagnostic):
+        _stop(source)
+        return
+    asked = {"id": id_column, "text": text_column, "project": project_column}
+    result = read_export(source, {part: name for part, name in asked.items() if name})
+    _say(result.diagnostics)
+    if has_errors(result.diagnostics):
+        raise SystemExit(BAD)
+    files = {str(artifact.path): artifact.text for artifact in result.artifacts}
+    there = [path for path in files if (Path(output) / path).exists()]
+    if there and output != "-" and not force:
+        _stop(_exists(str(Path(output) / there[0])))
+    _deliver(files, output)
+    counts = f"{result.requirements} requirements, {result.variables} variables"
+    click.echo(f"imported {counts}", err=True)
+
+
+def _exists(path: str) -> Diagnostic:
+    return Diagnostic(
+        Code.NOT_WRITTEN,
+        f"`{path}` is there already",
+        help="name another folder with `-o`, or write over it with `--force`",
+    )
 
 
 @cli.command()

@@ -8,7 +8,7 @@ import tempfile
 from collections.abc import Iterable
 from pathlib import Path
 
-from compiler.targets.target import Artifact
+from compiler.artifact import Artifact
 from fretish.diagnostic import Code, Diagnostic, suggestion
 from fretish.source import Source
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from fractions import Fraction
 
 from compiler import predicates
@@ -14,8 +14,8 @@ from compiler.rule import Rule
 from fretish import expressions as e
 from fretish import units
 from fretish.checking import conditions, temporal_predicates
-from fretish.clock import assumed_ticks, in_ticks
-from fretish.declarations import Declarations
+from fretish.clock import Clock, assumed_ticks, in_ticks
+from fretish.declarations import Declarations, Variable
 from fretish.diagnostic import Code, Diagnostic, Severity, suggestion
 from fretish.documents import Requirement
 from fretish.parser import parse
@@ -32,10 +32,12 @@ def formalize(
     Returns:
         The rule, or None where there is an error; and all that there is to say.
     """
+    if requirement.is_free_text:
+        return None, (_free_text(requirement),)
     sentence = parse(requirement.wording)
     if isinstance(sentence, Diagnostic):
         return None, (sentence,)
-    clock = declarations.clock if declarations else None
+    clock = _clock(declarations)
     ticks = in_ticks(sentence.timing, clock)
     if isinstance(ticks, Diagnostic):
         return None, (ticks,)
@@ -54,14 +56,40 @@ def formalize(
         pt=past(back),
         watch=watch(back),
         pctl=probabilistic(ahead, odds.op, odds.digits) if odds else None,
+        glossary=_glossary(declarations),
     )
     return rule, said
+
+
+def _glossary(declarations: Declarations | None) -> Mapping[str, Variable]:
+    """What is declared of each variable; a bound proposition tells its role and its text."""
+    if declarations is None:
+        return {}
+    bound = {
+        name: Variable(name, type="boolean", role=str(p.role), text=p.text)
+        for name, p in declarations.propositions.items()
+    }
+    return {**bound, **declarations.variables}
+
+
+def _free_text(requirement: Requirement) -> Diagnostic:
+    return Diagnostic(
+        Code.FREE_TEXT,
+        f"{requirement.id} is free text: it is kept, and not formalized",
+        requirement.wording,
+        help="write it in FRETish, without quotes around the whole, to formalize it",
+        severity=Severity.NOTE,
+    )
+
+
+def _clock(declarations: Declarations | None) -> Clock | None:
+    return declarations.clock if declarations and declarations.clock.declared else None
 
 
 def _remarks(
     requirement: Requirement, sentence: Sentence, declarations: Declarations | None
 ) -> Iterator[Diagnostic]:
-    clock = declarations.clock if declarations else None
+    clock = _clock(declarations)
     assumed = assumed_ticks(sentence, clock)
     if assumed is not None:
         yield assumed

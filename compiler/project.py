@@ -39,7 +39,7 @@ class Hazard:
 
 @dataclass(frozen=True, slots=True)
 class Failed:
-    """A requirement that could not be formalized, and why."""
+    """A requirement without a rule, and why: it has an error, or it is free text."""
 
     requirement: Requirement
     diagnostic: Diagnostic
@@ -83,12 +83,17 @@ def load(paths: Sequence[str], bindings: str | None = None, hazards: str | None 
         if rule is not None:
             rules.append(rule)
         else:
-            failed.append(Failed(requirement, next(d for d in remarks if d.is_error)))
+            failed.append(Failed(requirement, _reason(remarks)))
     if hazards:
         diagnostics.extend(_unknown_parents(written, known))
     return Project(
         tuple(written), tuple(rules), tuple(failed), declarations, known, tuple(diagnostics)
     )
+
+
+def _reason(remarks: Sequence[Diagnostic]) -> Diagnostic:
+    """The error among them; the note where the requirement is free text."""
+    return next((remark for remark in remarks if remark.is_error), remarks[0])
 
 
 def requirement_files(folder: str) -> list[str] | Diagnostic:

@@ -29,7 +29,7 @@ def formulas(rule: Rule) -> dict[str, Any]:
         "scope": syntax.scope_key(tree),
         "condition": syntax.condition_key(tree),
         "timing": syntax.timing_key(tree),
-        "variables": [name for name in rule.propositions if not printing.is_compound(name)],
+        "variables": list(rule.variables),
         "durations": [] if rule.ticks is None else [rule.ticks],
         "ft_infinite": printing.future(rule.ft_infinite),
         "ft_finite": printing.future(rule.ft_finite),

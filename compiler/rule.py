@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 import hashlib
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 from compiler.formula import Formula, atoms
 from compiler.past import Watch
+from fretish.checking import conditions
 from fretish.clock import Clock
+from fretish.declarations import Variable
 from fretish.documents import Requirement
+from fretish.expressions import Name, names
 from fretish.printer import canonical
 from fretish.syntax import Sentence
 
@@ -32,6 +36,8 @@ class Rule:
     watch: Watch
     pctl: Formula | None
     """PCTL*; None where the sentence gives no probability."""
+    glossary: Mapping[str, Variable]
+    """Every variable that the bindings declare, bound or not."""
 
     @property
     def id(self) -> str:
@@ -45,6 +51,21 @@ class Rule:
         return tuple(both)
 
     @property
+    def variables(self) -> tuple[str, ...]:
+        """Every variable of the sentence, also those within comparisons, as they come in it."""
+        found = [
+            name
+            for expression in conditions(self.sentence)
+            for name in names(expression)
+            if name.id != "FTP"
+        ]
+        return tuple(dict.fromkeys(name.id for name in sorted(found, key=_place)))
+
+    @property
     def fingerprint(self) -> str:
         """SHA-256 of the canonical sentence: white space and wording of key words do not count."""
         return hashlib.sha256(canonical(self.sentence).encode()).hexdigest()
+
+
+def _place(name: Name) -> int:
+    return name.span.start if name.span else 0

@@ -21,6 +21,7 @@ from fretish.declarations import (
     Reduce,
     Role,
     Signal,
+    Variable,
     path,
 )
 from fretish.diagnostic import Code, Diagnostic
@@ -68,7 +69,7 @@ class _Reader:
 
     def declarations(self) -> Declarations:
         data = self.tables.data
-        self._known(data, ("clock", "signal", "proposition"), "the bindings")
+        self._known(data, ("clock", "signal", "proposition", "variable"), "the bindings")
         signals = {
             name: self._signal(name, fields) for name, fields in self._tables("signal").items()
         }
@@ -82,6 +83,7 @@ class _Reader:
             self._clock(),
             read,
             {name: value for name, value in propositions.items() if value is not None},
+            {name: self._variable(name, f) for name, f in self._tables("variable").items()},
             tuple(self.assumptions),
         )
 
@@ -159,6 +161,8 @@ class _Reader:
 
     def _clock(self) -> Clock:
         table = self.tables.data.get("clock")
+        if table is None and not self.tables.data.keys() & {"signal", "proposition"}:
+            return Clock(None)
         if not isinstance(table, dict):
             self._say(
                 Code.BAD_BINDING_FIELD,
@@ -372,6 +376,18 @@ class _Reader:
             )
         return kind is None
 
+    # Variables that are not bound
+
+    def _variable(self, name: str, table: Mapping[str, Any]) -> Variable:
+        at = ("variable", name)
+        self._known(table, _VARIABLE, f"[variable.{name}]", *at)
+        texts = {
+            key: self._field(table, (*at, key), str, "a text in quotes") or ""
+            for key in ("component", "type", "role", "text")
+        }
+        kept = self._field(table, (*at, "fret"), dict, "a table of texts") or {}
+        return Variable(name, **texts, fret={key: str(value) for key, value in kept.items()})
+
     def _kind(self, table: Mapping[str, Any], at: tuple[str, ...]) -> str:
         kind = table.get("kind", "")
         if kind not in (*_KINDS, ""):
@@ -399,6 +415,9 @@ class _Reader:
             self.tables.value(*at, "on_unknown"),
         )
         return None
+
+
+_VARIABLE = ("component", "type", "role", "text", "fret")
 
 
 def _is_numbers(value: object, count: int) -> bool:

@@ -52,6 +52,11 @@ class Clock:
     end: End = End.INCONCLUSIVE
     rounding: Rounding = Rounding.EXACT
 
+    @property
+    def declared(self) -> bool:
+        """Whether it says what a tick is; bindings that bind nothing yet may leave it open."""
+        return self.period is not None or self.topic is not None
+
     def __str__(self) -> str:
         """`100 ms` or `each message of /scan`."""
         return f"each message of {self.topic}" if self.period is None else milliseconds(self.period)

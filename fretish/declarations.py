@@ -149,6 +149,21 @@ class Proposition:
 
 
 @dataclass(frozen=True, slots=True)
+class Variable:
+    """A name of the sentences that is declared and not bound yet, as FRET's glossary has it."""
+
+    name: str
+    component: str = ""
+    type: str = ""
+    """FRET's data type: `boolean`, `integer`, `double`, ..."""
+    role: str = ""
+    """`input`, `output`, `internal`, `mode`, `function`, or nothing."""
+    text: str = ""
+    fret: Mapping[str, str] = field(default_factory=dict)
+    """What FRET keeps of it and fretc does not use."""
+
+
+@dataclass(frozen=True, slots=True)
 class Declarations:
     """Everything that the bindings declare."""
 
@@ -156,5 +171,6 @@ class Declarations:
     clock: Clock
     signals: Mapping[str, Signal]
     propositions: Mapping[str, Proposition]
+    variables: Mapping[str, Variable] = field(default_factory=dict)
     assumptions: tuple[str, ...] = ()
     """Defaults that were taken, in words, for the report."""

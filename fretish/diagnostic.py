@@ -42,6 +42,7 @@ class Code(Enum):
     MISSING_COMPONENT = ("F111", "the component is missing")
     WRONG_KIND = ("F112", "a number stands where a truth value should, or the other way round")
     UNCLOSED_HEADER = ("F113", "the header has no closing `+++`")
+    FREE_TEXT = ("F114", "free text is kept and not formalized")
 
     DUPLICATE_ID = ("F201", "two requirements have the same id")
     PREDICATE_NOT_FORMALIZED = ("F202", "a temporal predicate is left uninterpreted")
@@ -82,6 +83,7 @@ class Code(Enum):
     UNKNOWN_PARENT = ("F501", "a parent is not declared")
     BAD_HAZARDS = ("F502", "the hazards cannot be read")
     BAD_EVIDENCE = ("F503", "the evidence cannot be read")
+    BAD_EXPORT = ("F505", "the requirements of another tool cannot be read")
     STALE_EVIDENCE = ("F504", "the evidence is about another requirement, binding or log")
 
     NOT_EXPRESSIBLE = ("F601", "the target cannot express the requirement")

@@ -12,9 +12,10 @@ from fretish.diagnostic import Code, Diagnostic
 from fretish.source import Source, Span
 from fretish.tables import Tables, read, unknown_key
 
-FIELDS = ("id", "title", "text", "parents", "rationale", "status", "verify", "params")
+FIELDS = ("id", "title", "text", "parents", "rationale", "status", "verify", "params", "fret")
 STATUSES = ("draft", "approved", "retired")
 _ID = re.compile(r"[A-Za-z0-9][A-Za-z0-9_.-]*")
+_FREE_TEXT = re.compile(r'"[^"]*"')
 _FENCE = re.compile(r"^\+\+\+[ \t]*(?:\r?\n|\Z)", re.MULTILINE)
 
 
@@ -36,7 +37,14 @@ class Requirement:
     """The planned methods of verification."""
     params: Mapping[str, str] = field(default_factory=dict)
     """Numbers that the requirement states, by the proposition they belong to."""
+    fret: Mapping[str, str] = field(default_factory=dict)
+    """What FRET keeps beside the sentence and fretc does not use: project, comments, ..."""
     header: Tables | None = field(default=None, compare=False, repr=False)
+
+    @property
+    def is_free_text(self) -> bool:
+        """A text wholly in double quotes is kept, and not formalized."""
+        return _FREE_TEXT.fullmatch(self.wording.text) is not None
 
     def place(self, *path: str) -> Span:
         """Where a header field stands; the sentence where there is no header."""
@@ -104,6 +112,7 @@ def _requirement(
             status=data.get("status", "draft"),
             verify=tuple(data.get("verify", ())),
             params=dict(data.get("params", {})),
+            fret=dict(data.get("fret", {})),
             header=tables,
         ),
         (),
@@ -131,7 +140,7 @@ def _fits(key: str, value: Any) -> bool:
     match key:
         case "parents" | "verify":
             return isinstance(value, list) and all(isinstance(item, str) for item in value)
-        case "params":
+        case "params" | "fret":
             return isinstance(value, dict) and all(isinstance(v, str) for v in value.values())
         case "id":
             return isinstance(value, str) and _ID.fullmatch(value) is not None
@@ -146,6 +155,7 @@ def _bad_field(tables: Tables, key: str) -> Diagnostic:
         "parents": 'a list of ids: `["HAZ-003"]`',
         "verify": 'a list of methods: `["audit", "ajpf"]`',
         "params": 'a table of quantities in quotes: `{ too_close = "5 cm" }`',
+        "fret": 'a table of texts: `{ project = "Rover" }`',
         "id": "letters, digits, `_`, `-` and `.` in quotes, beginning with a letter or digit",
         "status": f"one of {', '.join(STATUSES)}",
     }

@@ -5,9 +5,12 @@ from __future__ import annotations
 from collections.abc import Mapping
 from types import MappingProxyType
 
-from compiler.targets import ajpf, ltl, monitor, records
+from compiler.targets import ajpf, fret, ltl, monitor, records
 from compiler.targets.target import Target
 
 TARGETS: Mapping[str, Target] = MappingProxyType(
-    {target.name: target for target in (ltl.TARGET, monitor.TARGET, ajpf.TARGET, records.TARGET)}
+    {
+        target.name: target
+        for target in (ltl.TARGET, monitor.TARGET, ajpf.TARGET, records.TARGET, fret.TARGET)
+    }
 )

@@ -14,8 +14,9 @@ from collections.abc import Sequence
 from pathlib import PurePosixPath
 
 from compiler import formula as f
+from compiler.artifact import Artifact
 from compiler.rule import Rule
-from compiler.targets.target import DEFAULT, Artifact, Options, Target, not_expressible, stem
+from compiler.targets.target import DEFAULT, Options, Target, not_expressible, stem
 from compiler.templating import render
 from fretish.diagnostic import Diagnostic
 

@@ -6,9 +6,10 @@ from collections.abc import Sequence
 from pathlib import PurePosixPath
 
 from compiler import printing
+from compiler.artifact import Artifact
 from compiler.record import wording
 from compiler.rule import Rule
-from compiler.targets.target import DEFAULT, Artifact, Options, Target, stem
+from compiler.targets.target import DEFAULT, Options, Target, stem
 from compiler.templating import render
 from fretish.meaning import meaning
 

@@ -14,9 +14,10 @@ from keyword import iskeyword
 from pathlib import PurePosixPath
 
 from compiler import __version__, printing
+from compiler.artifact import Artifact
 from compiler.program import program
 from compiler.rule import Rule
-from compiler.targets.target import DEFAULT, Artifact, Options, Target, stem
+from compiler.targets.target import DEFAULT, Options, Target, stem
 from compiler.templating import render
 from fretish.clock import assumed_ticks
 from fretish.diagnostic import Code, Diagnostic

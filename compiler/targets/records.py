@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import PurePosixPath
 
+from compiler.artifact import Artifact
 from compiler.record import record
 from compiler.rule import Rule
-from compiler.targets.target import DEFAULT, Artifact, Options, Target, stem
+from compiler.targets.target import DEFAULT, Options, Target, stem
 from compiler.templating import render
 
 

@@ -4,29 +4,24 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from pathlib import PurePosixPath
 from typing import Protocol
 
+from compiler.artifact import Artifact
 from compiler.rule import Rule
 from fretish.diagnostic import Code, Diagnostic
-
-
-@dataclass(frozen=True, slots=True)
-class Artifact:
-    """A file to write, relative to the output folder."""
-
-    path: PurePosixPath
-    text: str
+from fretish.documents import Requirement
 
 
 @dataclass(frozen=True, slots=True)
 class Options:
-    """How formulas are shown; targets for machines pass them over."""
+    """What some targets want to know beside the rules; the others pass it over."""
 
     notation: str = "plain"
     """A name of `printing.DIALECTS`."""
     simplify: bool = False
     """Whether a simplified form stands beside the exact one."""
+    free_texts: tuple[Requirement, ...] = ()
+    """Requirements without a rule, which only formats for exchange carry."""
 
 
 DEFAULT = Options()

@@ -1,0 +1,326 @@
+"""FRET's exchange formats → `.fret` files and `bindings.toml`.
+
+Only what a person wrote is taken over: sentences, names, comments. FRET's formulas are not: they
+are made anew from the sentence, because an export can carry those of an older one.
+Source: NASA FRET v3.1, its export of requirements and variables (JSON), and its import of CSV.
+"""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+import re
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import PurePosixPath
+from typing import Any
+
+import tomli_w
+
+from compiler.artifact import Artifact
+from fretish.diagnostic import Code, Diagnostic, Severity, suggestion
+from fretish.parser import parse
+from fretish.source import Source
+
+STATUSES = {"completed": "approved", "deprecated": "retired"}
+"""FRET's status → ours; every other one is a draft."""
+
+_KEPT = ("project", "comments", "status", "_id", "reqid")
+_VARIABLE_FIELDS = frozenset(
+    "_id project component_name variable_name dataType idType description reqs".split()
+)
+_NOT_KEPT = frozenset({"modeldoc", "completed", "smvCompleted", "r2u2Completed", "_rev"})
+
+
+@dataclass(frozen=True, slots=True)
+class Imported:
+    """One requirement of the export."""
+
+    id: str
+    fulltext: str
+    header: Mapping[str, Any]
+    project: str
+
+
+@dataclass(frozen=True, slots=True)
+class Import:
+    """What an export becomes."""
+
+    artifacts: tuple[Artifact, ...] = ()
+    diagnostics: tuple[Diagnostic, ...] = ()
+    requirements: int = 0
+    variables: int = 0
+    mapping: Mapping[str, str] = field(default_factory=dict)
+
+
+def read_export(source: Source, columns: Mapping[str, str]) -> Import:
+    """Read FRET's JSON, or a CSV of any tool.
+
+    Args:
+        source: the file; `.csv` by its name, JSON otherwise.
+        columns: for CSV, the names of the columns `id`, `text` and `project`.
+    """
+    if source.name.lower().endswith(".csv"):
+        return _from_csv(source, columns)
+    return _from_json(source)
+
+
+# JSON ------------------------------------------------------------------------------------------
+
+
+def _from_json(source: Source) -> Import:
+    try:
+        data = json.loads(source.text)
+    except json.JSONDecodeError as error:
+        return _failed(f"it is not JSON: {error.msg.lower()}", source, error.pos)
+    except RecursionError:
+        return _failed("it is nested too deep", source)
+    parts = _parts(data)
+    if isinstance(parts, str):
+        return _failed(parts, source)
+    requirements, variables = parts
+    said: list[Diagnostic] = []
+    found = list(_requirements(requirements, source, said))
+    declared = _variables(variables)
+    files = [*_documents(found), *_glossary(declared)]
+    return Import(tuple(files), tuple(said), len(found), len(declared))
+
+
+def _parts(data: Any) -> tuple[list[Mapping[str, Any]], list[Mapping[str, Any]]] | str:
+    """The requirements and the variables of an export, old or new; or what is wrong with it."""
+    if isinstance(data, list):
+        records = _records(data)
+        if len(records) < len(data):
+            return "it is an array of something else than objects"
+        return (records, []) if records and "reqid" in records[0] else ([], records)
+    if not isinstance(data, dict):
+        return "it is neither an array nor an object"
+    if "requirement" in data:  # one requirement, as FRET's external mode exports it
+        data = {"requirements": [data["requirement"]], "variables": data.get("variables", [])}
+    if "requirements" not in data and "variables" not in data:
+        return "it has neither `requirements` nor `variables`"
+    requirements, variables = data.get("requirements", []), data.get("variables", [])
+    if isinstance(variables, dict):  # {"regular": [...], "modes": [...]}, or {"docs": [...]}
+        variables = [record for part in variables.values() for record in _records(part)]
+    return _records(requirements), _records(variables)
+
+
+def _records(value: Any) -> list[Mapping[str, Any]]:
+    if not isinstance(value, list):
+        return []
+    return [record for record in value if isinstance(record, dict)]
+
+
+def _requirements(
+    records: Iterable[Mapping[str, Any]], source: Source, said: list[Diagnostic]
+) -> Iterator[Imported]:
+    taken: set[str] = set()
+    for number, record in enumerate(records, 1):
+        reqid, fulltext = _text(record.get("reqid")), _text(record.get("fulltext")).strip()
+        if not fulltext:
+            said.append(_skipped(f"requirement {number} ({reqid or 'no id'}) has no text", source))
+            continue
+        project = _text(record.get("project"))
+        id = _unique(_id(reqid or f"requirement-{number}"), project, taken)
+        yield Imported(id, fulltext, _header(id, record), project)
+        said.extend(_unread(id, fulltext))
+
+
+def _header(id: str, record: Mapping[str, Any]) -> dict[str, Any]:
+    """The `.fret` header; what fretc does not use goes below `fret`."""
+    kept = {key: _text(record.get(key)) for key in _KEPT}
+    if kept["reqid"] == id:
+        del kept["reqid"]
+    parent = _text(record.get("parent_reqid"))
+    header: dict[str, Any] = {
+        "id": id,
+        "parents": [part.strip() for part in parent.split(",") if part.strip()],
+        "rationale": _text(record.get("rationale")),
+        "status": STATUSES.get(kept["status"], "draft"),
+        "fret": {key: value for key, value in kept.items() if value},
+    }
+    return {key: value for key, value in header.items() if value not in ("", [], {})}
+
+
+def _unread(id: str, fulltext: str) -> Iterator[Diagnostic]:
+    """The sentence is taken over as it is, and said to be no FRETish."""
+    source = Source(f"{id} (fulltext)", fulltext)
+    if re.fullmatch(r'"[^"]*"', fulltext):
+        return
+    tree = parse(source.span())
+    if isinstance(tree, Diagnostic):
+        yield Diagnostic(tree.code, tree.message, tree.span, tree.help, Severity.WARNING)
+
+
+def _id(text: str) -> str:
+    """Letters, digits, `_`, `-` and `.`: what an id may have."""
+    cleaned = re.sub(r"[^A-Za-z0-9_.-]+", "-", text).strip("-._")
+    return cleaned or "requirement"
+
+
+def _unique(id: str, project: str, taken: set[str]) -> str:
+    """Ids differ by more than capitals; FRET's differ within a project only."""
+    candidates = [id, f"{_id(project)}-{id}" if project else f"{id}-2"]
+    candidates += [f"{id}-{n}" for n in range(2, len(taken) + 3)]
+    free = next(c for c in candidates if c.lower() not in taken)
+    taken.add(free.lower())
+    return free
+
+
+def _text(value: Any) -> str:
+    """FRET writes lists and null where there is no text."""
+    return value if isinstance(value, str) else "" if value in (None, [], {}) else str(value)
+
+
+def _documents(requirements: Sequence[Imported]) -> Iterator[Artifact]:
+    """One `.fret` file for each project."""
+    by_project: dict[str, list[Imported]] = {}
+    for requirement in requirements:
+        by_project.setdefault(requirement.project, []).append(requirement)
+    for project, members in sorted(by_project.items()):
+        text = "\n".join(_pair(member) for member in members)
+        yield Artifact(PurePosixPath(f"{_id(project or 'requirements').lower()}.fret"), text)
+
+
+def _pair(requirement: Imported) -> str:
+    wording = re.sub(r"\s*\n\s*", "\n", requirement.fulltext)
+    return f"+++\n{tomli_w.dumps(requirement.header)}+++\n{wording}\n"
+
+
+# Variables -------------------------------------------------------------------------------------
+
+
+def _variables(records: Iterable[Mapping[str, Any]]) -> dict[str, dict[str, Any]]:
+    """`[variable.NAME]` tables; a variable of several components is one."""
+    tables: dict[str, dict[str, Any]] = {}
+    for record in records:
+        name = _text(record.get("variable_name"))
+        if not name or record.get("modeldoc") is True:
+            continue
+        kept = {
+            key: _text(value) if not isinstance(value, list) else json.dumps(value)
+            for key, value in sorted(record.items())
+            if key not in _VARIABLE_FIELDS | _NOT_KEPT and value not in ("", None, [], {}, False)
+        }
+        table = {
+            "component": _text(record.get("component_name")),
+            "type": _text(record.get("dataType")),
+            "role": _text(record.get("idType")).lower(),
+            "text": _text(record.get("description")),
+            "fret": {**kept, **_of_project(record)},
+        }
+        tables.setdefault(name, {key: value for key, value in table.items() if value})
+    return tables
+
+
+def _of_project(record: Mapping[str, Any]) -> dict[str, str]:
+    project = _text(record.get("project"))
+    return {"project": project} if project else {}
+
+
+def _glossary(tables: Mapping[str, Mapping[str, Any]]) -> Iterator[Artifact]:
+    if tables:
+        text = (
+            "# The variables of the requirements, as FRET's glossary has them. To audit logs,\n"
+            "# declare a [clock], and bind each variable by a [proposition.NAME] over signals.\n\n"
+        )
+        yield Artifact(
+            PurePosixPath("bindings.toml"),
+            text + tomli_w.dumps({"variable": {name: dict(t) for name, t in tables.items()}}),
+        )
+
+
+# CSV -------------------------------------------------------------------------------------------
+
+_GUESSES = {
+    "id": ("id", "reqid", "requirement id", "requirement", "req id", "identifier", "key"),
+    "text": ("fulltext", "text", "description", "requirement text", "summary", "statement"),
+    "project": ("project", "module", "component"),
+}
+
+
+def _from_csv(source: Source, columns: Mapping[str, str]) -> Import:
+    try:
+        rows = list(csv.DictReader(io.StringIO(source.text), strict=True))
+    except csv.Error as error:
+        return _failed(f"it is not CSV: {error}", source)
+    if not rows:
+        return _failed(
+            "it has a header and no rows" if source.text.strip() else "it is empty", source
+        )
+    chosen = _columns(list(rows[0]), columns, source)
+    if isinstance(chosen, Diagnostic):
+        return Import((), (chosen,))
+    said: list[Diagnostic] = []
+    found = list(_requirements((_row(row, chosen) for row in rows), source, said))
+    return Import(tuple(_documents(found)), tuple(said), len(found), 0, chosen)
+
+
+def _columns(
+    names: Sequence[str], asked: Mapping[str, str], source: Source
+) -> dict[str, str] | Diagnostic:
+    """Which column is which: as asked for, or by its name."""
+    chosen: dict[str, str] = {}
+    for part, guesses in _GUESSES.items():
+        wanted = asked.get(part)
+        if wanted is not None and wanted not in names:
+            near = suggestion(wanted, names)
+            return _bad(
+                f"there is no column `{wanted}`",
+                source,
+                f"did you mean `{near}`?" if near else f"there are {', '.join(names)}",
+            )
+        by_name = {name.strip().lower(): name for name in reversed(names) if name}
+        guess = next((by_name[g] for g in guesses if g in by_name), None)
+        if wanted or guess:
+            chosen[part] = wanted or str(guess)
+    if "text" not in chosen:
+        return _bad(
+            "no column looks like the text of a requirement",
+            source,
+            f"name it with `--text-column`; there are {', '.join(names)}",
+        )
+    return chosen
+
+
+def _row(row: Mapping[str | None, Any], chosen: Mapping[str, str]) -> dict[str, Any]:
+    """As a FRET record; text that is no FRETish is quoted, as FRET does, and kept as free text."""
+    text = _text(row.get(chosen["text"])).strip()
+    if text and isinstance(parse(Source("row", text).span()), Diagnostic):
+        text = '"' + text.replace('"', "'") + '"'
+    used = set(chosen.values())
+    rest = [
+        f"{name}: {value}" for name, value in row.items() if name and name not in used and value
+    ]
+    return {
+        "reqid": row.get(chosen.get("id", "")),
+        "project": row.get(chosen.get("project", "")),
+        "fulltext": text,
+        "rationale": "\n".join(rest),
+    }
+
+
+# Mistakes --------------------------------------------------------------------------------------
+
+
+def _failed(why: str, source: Source, at: int = 0) -> Import:
+    return Import((), (_bad(why, source, "give it an export of FRET (JSON), or a CSV", at),))
+
+
+def _bad(why: str, source: Source, mend: str, at: int = 0) -> Diagnostic:
+    return Diagnostic(
+        Code.BAD_EXPORT,
+        f"`{source.name}` cannot be imported: {why}",
+        source.span(at, min(at + 1, len(source.text))),
+        help=mend,
+    )
+
+
+def _skipped(why: str, source: Source) -> Diagnostic:
+    return Diagnostic(
+        Code.BAD_EXPORT,
+        f"{why}: it is left out",
+        Source(source.name, "").span(),
+        severity=Severity.WARNING,
+    )

@@ -1,0 +1,178 @@
+"""`--emit fret-json`: requirements and variables as FRET imports them."""
+
+from __future__ import annotations
+
+import uuid
+from collections.abc import Sequence
+from pathlib import PurePosixPath
+from typing import Any
+
+from compiler import printing
+from compiler.artifact import Artifact
+from compiler.exchange import STATUSES
+from compiler.record import wording
+from compiler.rule import Rule
+from compiler.targets.target import DEFAULT, Options, Target
+from compiler.templating import render
+from fretish import syntax as s
+from fretish.declarations import Variable
+from fretish.documents import Requirement
+from fretish.meaning import meaning
+from fretish.printer import expression, timing
+from fretish.source import Span
+
+_STATUSES = {"approved": "completed", "retired": "deprecated"}
+_SPACE = uuid.UUID("6ba7b811-9dad-11d1-80b4-00c04fd430c8")
+"""RFC 4122's name space of URLs: the same requirement always has the same `_id`."""
+
+
+def emit(rules: Sequence[Rule], options: Options = DEFAULT) -> tuple[Artifact, ...]:
+    """`fret.json` with all rules: `{"requirements": [...], "variables": [...]}`."""
+    content = {
+        "requirements": [
+            *(requirement(rule.requirement, rule) for rule in rules),
+            *(requirement(written, None) for written in options.free_texts),
+        ],
+        "variables": variables(rules),
+    }
+    text = render("fret-json/fret.json.j2", content=content)
+    return (Artifact(PurePosixPath("fret.json"), text),)
+
+
+def requirement(written: Requirement, rule: Rule | None) -> dict[str, Any]:
+    """FRET's record of one requirement; one without a rule is free text."""
+    kept = written.fret
+    return {
+        "reqid": kept.get("reqid", written.id),
+        "parent_reqid": ", ".join(written.parents),
+        "project": kept.get("project", ""),
+        "rationale": written.rationale,
+        "comments": kept.get("comments", ""),
+        "status": _status(written),
+        "fulltext": wording(written),
+        "semantics": semantics(rule) if rule else {"type": "freeForm"},
+        "input": {},
+        "_id": _id(written),
+    }
+
+
+def _status(written: Requirement) -> str:
+    """FRET's own status where it still says the same, else the nearest."""
+    kept = written.fret.get("status", "")
+    if STATUSES.get(kept, "draft") == written.status:
+        return kept
+    return _STATUSES.get(written.status, "")
+
+
+def _id(written: Requirement) -> str:
+    name = f"fretc:{written.fret.get('project', '')}/{written.id}"
+    return written.fret.get("_id") or str(uuid.uuid5(_SPACE, name))
+
+
+def semantics(rule: Rule) -> dict[str, Any]:
+    """FRET's description of a sentence, with our formulas in FRET's spelling."""
+    tree = rule.sentence
+    base = rule.requirement.wording.start
+    found: dict[str, Any] = {
+        "type": "nasa",
+        "scope": {"type": s.scope_key(tree)},
+        "condition": s.condition_key(tree),
+        "probability": "bound" if tree.probability else "null",
+        "timing": s.timing_key(tree),
+        "response": "satisfaction",
+        "variables": list(rule.variables),
+        "component_name": tree.component,
+        "component": tree.component,
+        "post_condition": f"({expression(tree.response)})",
+        "description": meaning(tree, rule.ticks, rule.clock),
+        "ft": printing.text(rule.ft_finite, printing.FRET),
+        "pt": printing.text(rule.pt, printing.FRET),
+        "ftExpanded": printing.text(rule.ft_finite, printing.FRET),
+        "ftInfAUExpanded": printing.text(rule.ft_infinite, printing.FRET),
+        "ptExpanded": printing.text(rule.pt, printing.FRET),
+    }
+    found |= _parts(tree)
+    if rule.pctl is not None:
+        found["pctlExpanded"] = printing.pctl(rule.pctl)
+    for name, span in _spans(tree).items():
+        if span is not None:
+            found[f"{name}TextRange"] = [span.start - base, span.end - base - 1]
+    return found
+
+
+def _parts(tree: s.Sentence) -> dict[str, Any]:
+    """The fields that only some sentences have."""
+    found: dict[str, Any] = {}
+    if tree.scope is not None:
+        found["scope_mode"] = expression(tree.scope.mode)
+    if tree.condition is not None:
+        condition = f"({expression(tree.condition.expression)})"
+        found |= {
+            "qualifier_word": tree.condition.word,
+            "pre_condition": condition,
+            "regular_condition": condition,
+        }
+    if isinstance(tree.timing, s.Until | s.Before):
+        found["stop_condition"] = f"({expression(tree.timing.stop)})"
+    counted = s.duration(tree.timing)
+    if counted is not None:
+        found["duration"] = str(counted.amount)
+    if tree.probability is not None:
+        found["probability_bound"] = [tree.probability.op, tree.probability.digits]
+    if timing(tree.timing):
+        found["timingText"] = timing(tree.timing)
+    return found
+
+
+def _spans(tree: s.Sentence) -> dict[str, Span | None]:
+    return {
+        "scope": tree.scope.span if tree.scope else None,
+        "condition": tree.condition.span if tree.condition else None,
+        "component": tree.component_span,
+        "timing": tree.timing_span,
+    }
+
+
+def variables(rules: Sequence[Rule]) -> list[dict[str, Any]]:
+    """FRET's records of all variables; types and roles as far as the bindings know them."""
+    records: dict[tuple[str, str, str], dict[str, Any]] = {}
+    for rule in rules:
+        project = rule.requirement.fret.get("project", "")
+        component = rule.sentence.component
+        for name in rule.variables:
+            key = (project, component, name)
+            record = records.setdefault(
+                key, _variable(rule.glossary.get(name), project, component, name)
+            )
+            record["reqs"].append(_id(rule.requirement))
+    used = {name for _, _, name in records}
+    for name, variable in rules[0].glossary.items() if rules else ():
+        if name not in used:
+            project = variable.fret.get("project", "")
+            record = _variable(variable, project, variable.component, name)
+            records[project, variable.component, name] = record
+    return list(records.values())
+
+
+def _variable(glossary: Variable | None, project: str, component: str, name: str) -> dict[str, Any]:
+    kept = dict(glossary.fret) if glossary else {}
+    kept.pop("project", None)
+    return {
+        "project": project,
+        "component_name": component,
+        "variable_name": name,
+        "reqs": [],
+        "dataType": (glossary.type if glossary else "") or "boolean",
+        "idType": glossary.role.capitalize() if glossary else "",
+        "moduleName": "",
+        "description": glossary.text if glossary else "",
+        "assignment": "",
+        "modeRequirement": "",
+        "modeldoc": False,
+        "completed": False,
+        **kept,
+        "_id": f"{project}{component}{name}",
+    }
+
+
+TARGET = Target("fret-json", "requirements and variables, as FRET imports them", emit)
