@@ -18,6 +18,7 @@ from compiler.formula import (
     longest_bound,
     rebuild,
 )
+from fretish.depth import deep
 
 
 def equivalent(left: Formula, right: Formula) -> bool:
@@ -41,6 +42,7 @@ _PROVABLE_BOUND = 12
 """A longer bound is not given to Spot, which expands it into a chain of X."""
 
 
+@deep
 def simplified(formula: Formula) -> str | None:
     """A shorter text in Spot's syntax that says the same on infinite traces, if there is one.
 

@@ -258,11 +258,14 @@ def or_(*args: Formula) -> Formula:
     return Or(rest) if len(rest) > 1 else rest[0] if rest else FALSE
 
 
-def _flat(kind: type[And] | type[Or], args: tuple[Formula, ...]) -> tuple[Formula, ...]:
-    flat: dict[Formula, None] = {}
+def _flat(kind: type[And] | type[Or], args: tuple[Formula, ...]) -> list[Formula]:
+    """The arguments in their order, each once; compared, not hashed: unequal trees differ early."""
+    flat: list[Formula] = []
     for arg in args:
-        flat.update(dict.fromkeys(arg.args if isinstance(arg, kind) else (arg,)))
-    return tuple(flat)
+        for part in arg.args if isinstance(arg, kind) else (arg,):
+            if part not in flat:
+                flat.append(part)
+    return flat
 
 
 def xor(left: Formula, right: Formula) -> Formula:

@@ -16,6 +16,7 @@ from fretish import units
 from fretish.checking import conditions, temporal_predicates
 from fretish.clock import Clock, assumed_ticks, in_ticks
 from fretish.declarations import Declarations, Variable
+from fretish.depth import deep
 from fretish.diagnostic import Code, Diagnostic, Severity, suggestion
 from fretish.documents import Requirement
 from fretish.parser import parse
@@ -24,6 +25,7 @@ from fretish.surprises import surprises
 from fretish.syntax import Sentence
 
 
+@deep
 def formalize(
     requirement: Requirement, declarations: Declarations | None
 ) -> tuple[Rule | None, tuple[Diagnostic, ...]]:

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from types import MappingProxyType
 
 from compiler import formula as f
+from fretish.depth import deep
 
 _ATOMIC, _UNARY, _BINARY, _AND, _OR, _XOR, _IMPLIES, _IFF = range(8)
 """How loose an operator binds."""
@@ -150,6 +151,7 @@ def past(formula: f.Formula) -> str:
     return text(formula, _FULL_PAST)
 
 
+@deep
 def pctl(formula: f.Formula) -> str:
     """Fully parenthesized PCTL*, in the operators that PRISM and Storm read within a path.
 
@@ -174,6 +176,7 @@ def _for_prism(formula: f.Formula) -> f.Formula:
             return rebuilt
 
 
+@deep
 def text(formula: f.Formula, dialect: Dialect) -> str:
     """The formula in the spelling of a dialect, with as few parentheses as it allows."""
     spoken = formula if dialect.has_bounded_since else without_bounded_since(formula)

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from compiler import formula as f
 from compiler import printing
 from compiler.past import Watch
+from fretish.depth import deep
 
 RAILS = ("must", "may")
 _OR, _AND, _NOT, _ATOMIC = range(4)
@@ -46,6 +47,7 @@ class Program:
     """Signal of the watch → its (must, may) expressions."""
 
 
+@deep
 def program(watch: Watch, parameters: Mapping[str, str]) -> Program:
     """Compile the signals of a watch; a sub-formula that comes twice is stepped once.
 

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from typing import assert_never
 
 from fretish import expressions as e
+from fretish.depth import MOST, depth
 from fretish.diagnostic import Code, Diagnostic, Severity
 from fretish.source import Span
 from fretish.syntax import Before, Sentence, Until
@@ -34,6 +35,18 @@ def conditions(sentence: Sentence) -> Iterator[e.Expression]:
     if isinstance(sentence.timing, Until | Before):
         yield sentence.timing.stop
     yield sentence.response
+
+
+def check_depth(sentence: Sentence) -> Diagnostic | None:
+    """F115 for an expression of more levels than any pass has room for."""
+    if all(depth(expression) <= MOST for expression in conditions(sentence)):
+        return None
+    return Diagnostic(
+        Code.TOO_DEEP,
+        f"an expression has more than {MOST} operators within each other",
+        sentence.span,
+        help="give parts of it names of their own",
+    )
 
 
 def check_names(sentence: Sentence) -> Diagnostic | None:

@@ -42,6 +42,7 @@ class Code(Enum):
     MISSING_COMPONENT = ("F111", "the component is missing")
     WRONG_KIND = ("F112", "a number stands where a truth value should, or the other way round")
     UNCLOSED_HEADER = ("F113", "the header has no closing `+++`")
+    TOO_DEEP = ("F115", "the sentence is nested too deep")
     FREE_TEXT = ("F114", "free text is kept and not formalized")
 
     DUPLICATE_ID = ("F201", "two requirements have the same id")

@@ -20,7 +20,7 @@ from lark.visitors import Transformer_NonRecursive
 
 from fretish import expressions as e
 from fretish import syntax as s
-from fretish.checking import check_names, check_response_kinds
+from fretish.checking import check_depth, check_names, check_response_kinds
 from fretish.diagnostic import Diagnostic
 from fretish.mistakes import (
     Met,
@@ -65,7 +65,8 @@ def parse(text: Span) -> s.Sentence | Diagnostic:
         if isinstance(error.orig_exc, _MistakeError):
             return error.orig_exc.diagnostic
         raise
-    return check_names(sentence) or check_response_kinds(sentence) or sentence
+    checks = (check_depth, check_names, check_response_kinds)
+    return next((wrong for check in checks if (wrong := check(sentence))), sentence)
 
 
 class _MistakeError(Exception):

@@ -9,6 +9,7 @@ from typing import assert_never
 from fretish import expressions as e
 from fretish import syntax as s
 from fretish.clock import written
+from fretish.depth import deep
 
 _IFF, _IMPLIES, _XOR, _OR, _AND, _NOT, _COMPARE, _SUM, _PRODUCT, _SIGN, _POWER, _OPERAND = range(12)
 _PLAIN = re.compile(r"[A-Za-z](?:[A-Za-z0-9_.%]*[A-Za-z0-9_%])?")
@@ -34,12 +35,14 @@ _SCOPES = {
 }
 
 
+@deep
 def canonical(tree: s.Sentence) -> str:
     """The one wording that all equal trees share: the text that fingerprints are taken of."""
     condition = replace(tree.condition, word="") if tree.condition else None
     return sentence(replace(tree, article=False, condition=condition))
 
 
+@deep
 def sentence(tree: s.Sentence) -> str:
     """The wording that `fretc fmt` writes: parsing it gives an equal tree.
 
@@ -105,6 +108,7 @@ def identifier(id: str) -> str:
     return id if _PLAIN.fullmatch(id) else f'"{id}"'
 
 
+@deep
 def expression(tree: e.Expression) -> str:
     """FRETish, or the language of bindings for what only they can say."""
     return _at(tree, _IFF)

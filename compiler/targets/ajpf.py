@@ -18,6 +18,7 @@ from compiler.artifact import Artifact
 from compiler.rule import Rule
 from compiler.targets.target import DEFAULT, Options, Target, not_expressible, stem
 from compiler.templating import render
+from fretish.depth import deep
 from fretish.diagnostic import Diagnostic
 
 _FUNCTOR = re.compile(r"[a-z][A-Za-z0-9_]*")
@@ -26,6 +27,7 @@ _KEY_WORDS = frozenset("A E U R B G F I D P T ItD".split())
 _BEYOND = "AJPF has no next, no past and no time; state the requirement with `eventually`, or "
 
 
+@deep
 def refuse(rule: Rule) -> Diagnostic | None:
     """F601 for the first part of the rule that AJPF's language cannot say."""
     agent = rule.sentence.component
@@ -60,6 +62,7 @@ def _beyond(formula: f.Formula) -> str | None:
             return next((part for child in f.children(formula) if (part := _beyond(child))), None)
 
 
+@deep
 def emit(rules: Sequence[Rule], options: Options = DEFAULT) -> tuple[Artifact, ...]:
     """`<id>.psl` for each rule: one property, with the requirement's id as its key."""
     return tuple(

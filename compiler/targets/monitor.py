@@ -17,9 +17,11 @@ from compiler import __version__, printing
 from compiler.artifact import Artifact
 from compiler.program import program
 from compiler.rule import Rule
-from compiler.targets.target import DEFAULT, Options, Target, stem
+from compiler.targets.target import DEFAULT, Options, Target, not_expressible, stem
 from compiler.templating import render
+from fretish.checking import conditions
 from fretish.clock import assumed_ticks
+from fretish.depth import depth
 from fretish.diagnostic import Code, Diagnostic
 
 _KERNEL_BEGINS = "# kernel begins here\n"
@@ -27,7 +29,17 @@ _IMPORTS_END = re.compile(r"\n\n(?=[A-Z])")
 
 
 def refuse(rule: Rule) -> Diagnostic | None:
-    """F312: a monitor steps by ticks, so it must be known how long a tick is."""
+    """F312: a monitor steps by ticks, so it must be known how long a tick is.
+
+    F601: Python reads no more than 200 parentheses within each other.
+    """
+    if max(map(depth, conditions(rule.sentence))) > _MOST_LEVELS:
+        return not_expressible(
+            "Python",
+            rule,
+            f"more than {_MOST_LEVELS} operators within each other",
+            "give parts of the expression names of their own",
+        )
     if assumed_ticks(rule.sentence, rule.clock) is None:
         return None
     return Diagnostic(
@@ -87,6 +99,7 @@ def _module(name: str) -> str:
     return re.sub(r"[^a-z0-9_]", "_", name)
 
 
+_MOST_LEVELS = 60
 _SPOKEN = {"<=": "_le_", ">=": "_ge_", "!=": "_ne_", "<": "_lt_", ">": "_gt_", "=": "_eq_"}
 _TAKEN = frozenset({"self", "Window", "History", "Verdict", "Truth", "rails", "first"})
 

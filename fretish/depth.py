@@ -1,0 +1,45 @@
+"""Deep trees: passes over them recurse, and Python's own limit is too low for some sentences."""
+
+from __future__ import annotations
+
+import functools
+import sys
+from collections.abc import Callable
+from typing import ParamSpec, TypeVar
+
+from fretish import expressions as e
+
+MOST = 2500
+"""Levels of operators that a sentence may have: more than 1 000 nested parentheses."""
+_FRAMES = 30_000
+
+P = ParamSpec("P")
+R = TypeVar("R")
+
+
+def deep(function: Callable[P, R]) -> Callable[P, R]:
+    """Let the function recurse over trees of `MOST` levels; the limit is put back after it."""
+
+    @functools.wraps(function)
+    def with_room(*args: P.args, **kwargs: P.kwargs) -> R:
+        limit = sys.getrecursionlimit()
+        if limit >= _FRAMES:
+            return function(*args, **kwargs)
+        sys.setrecursionlimit(_FRAMES)
+        try:
+            return function(*args, **kwargs)
+        finally:
+            sys.setrecursionlimit(limit)
+
+    return with_room
+
+
+def depth(expression: e.Expression) -> int:
+    """How many operators stand within each other, without recursion."""
+    deepest = 0
+    waiting = [(expression, 1)]
+    while waiting:
+        part, level = waiting.pop()
+        deepest = max(deepest, level)
+        waiting.extend((child, level + 1) for child in e.children(part))
+    return deepest
