@@ -452,11 +452,22 @@ def main() -> None:
     except BrokenPipeError:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         raise SystemExit(BAD) from None
+    except RecursionError:
+        _say([_too_deep()])
+        raise SystemExit(BAD) from None
     except Exception as error:
         if "FRETC_TRACEBACK" in os.environ:
             raise
         _say([_internal(error)])
         raise SystemExit(BAD) from None
+
+
+def _too_deep() -> Diagnostic:
+    return Diagnostic(
+        Code.TOO_DEEP,
+        "an expression has too many operators within each other",
+        help="give parts of it names of their own",
+    )
 
 
 def _bad_usage(error: click.ClickException) -> Diagnostic:

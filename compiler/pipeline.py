@@ -13,7 +13,7 @@ from compiler.past import past, watch
 from compiler.rule import Rule
 from fretish import expressions as e
 from fretish import units
-from fretish.checking import conditions, temporal_predicates
+from fretish.checking import conditions, temporal_predicates, too_deep
 from fretish.clock import Clock, assumed_ticks, in_ticks
 from fretish.declarations import Declarations, Variable
 from fretish.depth import deep
@@ -39,20 +39,32 @@ def formalize(
     sentence = parse(requirement.wording)
     if isinstance(sentence, Diagnostic):
         return None, (sentence,)
-    clock = _clock(declarations)
-    ticks = in_ticks(sentence.timing, clock)
+    ticks = in_ticks(sentence.timing, _clock(declarations))
     if isinstance(ticks, Diagnostic):
         return None, (ticks,)
-    said = tuple(_remarks(requirement, sentence, declarations))
+    try:
+        rule = _rule(requirement, sentence, ticks, declarations)
+    except RecursionError:  # some versions of Python bound it below what `deep` asks for
+        return None, (too_deep(sentence),)
+    return rule, tuple(_remarks(requirement, sentence, declarations))
+
+
+def _rule(
+    requirement: Requirement,
+    sentence: Sentence,
+    ticks: int | None,
+    declarations: Declarations | None,
+) -> Rule:
+    """The three formulas and the watch, each from the same obligation."""
     ahead = obligation(sentence, ticks or 0, predicates.Future())
     back = obligation(sentence, ticks or 0, predicates.Past())
     finite = future(ahead)
     odds = sentence.probability
-    rule = Rule(
+    return Rule(
         requirement=requirement,
         sentence=sentence,
         ticks=ticks,
-        clock=clock,
+        clock=_clock(declarations),
         ft_infinite=endless(finite),
         ft_finite=finite,
         pt=past(back),
@@ -60,7 +72,6 @@ def formalize(
         pctl=probabilistic(ahead, odds.op, odds.digits) if odds else None,
         glossary=_glossary(declarations),
     )
-    return rule, said
 
 
 def _glossary(declarations: Declarations | None) -> Mapping[str, Variable]:

@@ -41,9 +41,14 @@ def check_depth(sentence: Sentence) -> Diagnostic | None:
     """F115 for an expression of more levels than any pass has room for."""
     if all(depth(expression) <= MOST for expression in conditions(sentence)):
         return None
+    return too_deep(sentence)
+
+
+def too_deep(sentence: Sentence) -> Diagnostic:
+    """F115."""
     return Diagnostic(
         Code.TOO_DEEP,
-        f"an expression has more than {MOST} operators within each other",
+        "an expression has too many operators within each other",
         sentence.span,
         help="give parts of it names of their own",
     )
