@@ -80,15 +80,15 @@ def _named(expression: e.Expression) -> Iterator[tuple[str, Span | None]]:
 def check_response_kinds(sentence: Sentence) -> Diagnostic | None:
     """F112 for the first place where a number meets a truth value."""
     for expression in conditions(sentence):
-        wrong = _check_kinds(expression)
+        wrong = _check_kinds(expression, sentence.span)
         if wrong is not None:
             return wrong
     return None
 
 
-def _check_kinds(whole: e.Expression) -> Diagnostic | None:
+def _check_kinds(whole: e.Expression, place: Span | None) -> Diagnostic | None:
     """A name may be either: its kind is what its place asks for."""
-    waiting: list[tuple[e.Expression, bool, Span | None]] = [(whole, True, None)]
+    waiting: list[tuple[e.Expression, bool, Span | None]] = [(whole, True, place)]
     while waiting:
         part, boolean, near = waiting.pop()
         here = getattr(part, "span", None) or near
@@ -122,15 +122,28 @@ def _is_boolean(part: e.Expression, expected: bool) -> bool:
             assert_never(part)
 
 
+_ALL_TRUTHS = frozenset({"prevOcc", "nextOcc", "preBool"})
+_LAST_TRUTH = frozenset({"persisted", "occurred", "persists", "occurs"})
+
+
 def _expected(part: e.Expression) -> list[tuple[e.Expression, bool]]:
-    """The parts, each with whether it must be Boolean; a call's arguments may be anything."""
+    """The parts, each with whether it must be Boolean; what functions take is their own."""
     match part:
-        case e.Call():
-            return [(arg, _is_boolean(arg, expected=True)) for arg in part.args]
+        case e.Call(name, args):
+            return [
+                (arg, _takes_truth(name, arg, last=i == len(args) - 1))
+                for i, arg in enumerate(args)
+            ]
         case e.Comparison() | e.Arithmetic() | e.Negation():
             return [(child, False) for child in e.children(part)]
         case _:
             return [(child, True) for child in e.children(part)]
+
+
+def _takes_truth(name: str, arg: e.Expression, *, last: bool) -> bool:
+    if name in _ALL_TRUTHS or (name in _LAST_TRUTH and last):
+        return True
+    return name not in _NUMERIC_PREDICATES | _NUMERIC_FUNCTIONS and _is_boolean(arg, expected=True)
 
 
 def _wrong_kind(boolean: bool, span: Span | None) -> Diagnostic:

@@ -4,6 +4,8 @@ import re
 from pathlib import Path
 
 import pytest
+from tests.fret_notation import parse as parse_notation
+from tests.fret_notation import values
 
 from compiler.pipeline import formalize
 from compiler.semantics import holds
@@ -11,8 +13,6 @@ from fretish.diagnostic import Diagnostic
 from fretish.documents import requirements
 from fretish.parser import parse
 from fretish.source import Source
-from tests.fret_notation import parse as parse_notation
-from tests.fret_notation import values
 
 TEXT = (Path(__file__).parent.parent.parent / "docs/fret-differences.md").read_text("utf-8")
 
@@ -48,18 +48,14 @@ def test_the_trace_has_the_verdicts_that_the_table_gives(
     assert verdicts == (ours == "true", theirs == "true"), why
 
 
-@pytest.mark.parametrize(
-    ("sentence", "fret", "code"), rows("Refused here, accepted by FRET", 3)
-)
+@pytest.mark.parametrize(("sentence", "fret", "code"), rows("Refused here, accepted by FRET", 3))
 def test_a_misread_sentence_is_refused(sentence: str, fret: str, code: str) -> None:
     refused = parse(Source("r.fret", sentence).span())
     assert isinstance(refused, Diagnostic)
     assert refused.code.number == code
 
 
-@pytest.mark.parametrize(
-    ("sentence", "fret", "reading"), rows("Accepted here, refused by FRET", 3)
-)
+@pytest.mark.parametrize(("sentence", "fret", "reading"), rows("Accepted here, refused by FRET", 3))
 def test_a_clear_sentence_is_read_as_it_says(sentence: str, fret: str, reading: str) -> None:
     spelt_out = parse(Source("r.fret", f"the sw shall always satisfy {reading}").span())
     assert not isinstance(spelt_out, Diagnostic)

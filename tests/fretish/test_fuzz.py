@@ -1,0 +1,33 @@
+"""Whatever is fed to the parser, it answers with a tree or with a diagnostic of its own."""
+
+from compiler.pipeline import formalize
+from fretish.diagnostic import Code, Diagnostic
+from fretish.documents import Requirement
+from fretish.parser import parse
+from fretish.source import Source
+from tests.fuzzing import check, sentences
+
+
+def test_ten_thousand_near_sentences_get_a_formula_or_a_diagnostic() -> None:
+    accepted = sum(check(text) for text in sentences(10_000, seed=20))
+    assert 2_000 < accepted < 8_000
+
+
+def read(response: str) -> object:
+    return parse(Source("r.fret", f"the sw shall always satisfy {response}").span())
+
+
+def test_a_thousand_parentheses_around_a_name_are_that_name() -> None:
+    assert read("(" * 1_000 + "p" + ")" * 1_000) == read("p")
+
+
+def test_a_thousand_levels_of_operators_are_formalized_or_told_to_be_too_deep() -> None:
+    text = "the sw shall always satisfy " + "a & (b | " * 1_000 + "c" + ")" * 1_000
+    rule, said = formalize(Requirement("deep", Source("r.fret", text).span()), None)
+    assert rule is not None or [d.code for d in said] == [Code.TOO_DEEP]
+
+
+def test_more_levels_than_any_pass_has_room_for_are_told() -> None:
+    told = read("!(" * 5_000 + "p" + ")" * 5_000)
+    assert isinstance(told, Diagnostic)
+    assert told.code is Code.TOO_DEEP
