@@ -9,10 +9,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from monitors.audit import Watched, audit, examined, signals_of
-from monitors.evidence import SCHEMA, as_record, unread
-from monitors.recordings import read
-
 from compiler import __version__
 from compiler.files import sha256
 from compiler.pipeline import unbound
@@ -24,7 +20,10 @@ from compiler.templating import to_json
 from fretish.declarations import Declarations
 from fretish.diagnostic import Code, Diagnostic
 from monitors import kernel
+from monitors.audit import Watched, audit, examined, signals_of
+from monitors.evidence import SCHEMA, as_record, unread
 from monitors.loading import load
+from monitors.recordings import read
 
 GLYPHS: Mapping[str, tuple[str, str]] = {
     kernel.SATISFIED: ("✔", "green"),
@@ -44,6 +43,8 @@ class Audit:
     evidence: str
     """The text of the evidence file."""
     diagnostics: tuple[Diagnostic, ...]
+    read: int = 0
+    """How many of the logs could be read."""
 
     @property
     def violated(self) -> bool:
@@ -91,11 +92,13 @@ def audit_logs(project: Project, logs: Sequence[str]) -> Audit:
     watched = [_watched(rule, declarations) for rule in rules]
     results: list[Mapping[str, Any]] = []
     said: list[Diagnostic] = []
+    read = 0
     for log in dict.fromkeys(logs):
-        found, told = _audit_log(log, declarations, watched)
+        found, told, could_be_read = _audit_log(log, declarations, watched)
         results.extend(found)
         said.extend(told)
-    return Audit(tuple(results), _evidence(rules, declarations, results), tuple(said))
+        read += could_be_read
+    return Audit(tuple(results), _evidence(rules, declarations, results), tuple(said), read)
 
 
 def _not_auditable(rules: Sequence[Rule], declarations: Declarations | None) -> list[Diagnostic]:
@@ -138,17 +141,23 @@ def _watched(rule: Rule, declarations: Declarations) -> Watched:
 
 def _audit_log(
     log: str, declarations: Declarations, watched: Sequence[Watched]
-) -> tuple[list[dict[str, Any]], list[Diagnostic]]:
+) -> tuple[list[dict[str, Any]], list[Diagnostic], bool]:
+    """The results of one log, what there is to say of it, and whether it could be read."""
     names = tuple(dict.fromkeys(name for w in watched for name in w.monitor.PROPOSITIONS))
     recording = read(log, declarations, signals_of(declarations, names))
     if isinstance(recording, Diagnostic):
         hashes = _hash_of(log)
-        return [
-            unread(log, w.monitor.REQUIREMENT, recording, {**hashes, **w.hashes}) for w in watched
-        ], [recording]
+        return (
+            [
+                unread(log, w.monitor.REQUIREMENT, recording, {**hashes, **w.hashes})
+                for w in watched
+            ],
+            [recording],
+            False,
+        )
     recording = examined(recording, declarations, names)
     evidence = audit(recording, declarations, watched)
-    return [as_record(e) for e in evidence], list(recording.findings)
+    return [as_record(e) for e in evidence], list(recording.findings), True
 
 
 def _hash_of(log: str) -> dict[str, str]:

@@ -307,7 +307,8 @@ def audit(
     if not result.results:
         raise SystemExit(BAD)
     path = Path(evidence)
-    _deliver({path.name: result.evidence}, str(path.parent))
+    if result.read:  # a mistyped name must not cost the evidence of the last audit
+        _deliver({path.name: result.evidence}, str(path.parent))
     click.echo(result.as_json if form == "json" else _coloured(result.text), nl=False)
     if has_errors(result.diagnostics):
         raise SystemExit(BAD)

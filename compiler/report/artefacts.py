@@ -16,7 +16,8 @@ def artefacts(rule: Rule | None) -> tuple[ArtefactView, ...]:
     if rule is None:
         return ()
     known = [name for name in _ORDER if name in TARGETS]
-    names = [*known, *(name for name in TARGETS if name not in known)]
+    others = [name for name, target in TARGETS.items() if target.per_rule and name not in known]
+    names = [*known, *others]
     return tuple(view for name in names for view in _of_target(TARGETS[name], rule))
 
 

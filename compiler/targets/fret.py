@@ -175,4 +175,6 @@ def _variable(glossary: Variable | None, project: str, component: str, name: str
     }
 
 
-TARGET = Target("fret-json", "requirements and variables, as FRET imports them", emit)
+TARGET = Target(
+    "fret-json", "requirements and variables, as FRET imports them", emit, per_rule=False
+)

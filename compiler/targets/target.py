@@ -42,6 +42,8 @@ class Target:
     summary: str
     emit: Emit
     refuse: Callable[[Rule], Diagnostic | None] = lambda rule: None
+    per_rule: bool = True
+    """False where all rules go into one file, for exchange with another tool."""
 
 
 def stem(rule: Rule) -> str:

@@ -4,8 +4,6 @@ import re
 from pathlib import Path
 
 import pytest
-from tests.fret_notation import parse as parse_notation
-from tests.fret_notation import values
 
 from compiler.pipeline import formalize
 from compiler.semantics import holds
@@ -13,6 +11,8 @@ from fretish.diagnostic import Diagnostic
 from fretish.documents import requirements
 from fretish.parser import parse
 from fretish.source import Source
+from tests.fret_notation import parse as parse_notation
+from tests.fret_notation import values
 
 TEXT = (Path(__file__).parent.parent.parent / "docs/fret-differences.md").read_text("utf-8")
 
