@@ -6,6 +6,7 @@ to its files may depend on this room.
 
 from __future__ import annotations
 
+import warnings
 from typing import Any
 
 from compiler import printing
@@ -79,6 +80,8 @@ def _hide(formula: Formula, opaque: dict[str, Formula]) -> Formula:
 
 
 def _spot() -> Any:
-    import spot
-
+    with warnings.catch_warnings():
+        # SWIG's deprecations are not ours; as errors they would end the process.
+        warnings.simplefilter("ignore")
+        import spot
     return spot

@@ -15,6 +15,7 @@ from functools import partial
 from typing import Protocol, assert_never
 
 from compiler import formula as f
+from compiler.printing import is_compound
 from fretish import expressions as e
 from fretish import syntax as s
 from fretish.printer import identifier
@@ -172,7 +173,8 @@ def boolean(expression: e.Expression, expand: Expand) -> f.Formula:
         case e.Name("FTP"):
             return expand("FTP", (), read) or f.Atom("FTP")
         case e.Name(id):
-            return f.Atom(id)
+            # A quoted name may look like the text of a comparison: then it keeps its quotes.
+            return f.Atom(f'"{id}"' if is_compound(id) else id)
         case e.Comparison():
             return f.Atom(_atom(expression))
         case e.Call(name, args):

@@ -10,6 +10,7 @@ from compiler.demand import obligation
 from compiler.formula import endless
 from compiler.future import future, probabilistic
 from compiler.past import past, watch
+from compiler.printing import identifier, is_compound
 from compiler.rule import Rule
 from fretish import expressions as e
 from fretish import units
@@ -46,7 +47,27 @@ def formalize(
         rule = _rule(requirement, sentence, ticks, declarations)
     except RecursionError:  # some versions of Python bound it below what `deep` asks for
         return None, (too_deep(sentence),)
+    clash = _clash(rule)
+    if clash is not None:
+        return None, (clash,)
     return rule, tuple(_remarks(requirement, sentence, declarations))
+
+
+def _clash(rule: Rule) -> Diagnostic | None:
+    """F116: formulas spell `a.b` as `a_DOT_b`, and another name is spelt so already."""
+    spelt: dict[str, str] = {}
+    for name in rule.propositions:
+        if is_compound(name):
+            continue
+        first = spelt.setdefault(identifier(name), name)
+        if first != name:
+            return Diagnostic(
+                Code.NAME_CLASH,
+                f"`{first}` and `{name}` would be one name in formulas: `{identifier(name)}`",
+                _place(rule, name),
+                help="rename one of them",
+            )
+    return None
 
 
 def _rule(

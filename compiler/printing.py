@@ -16,24 +16,40 @@ _ATOMIC, _UNARY, _BINARY, _AND, _OR, _XOR, _IMPLIES, _IFF = range(8)
 _MANGLED = {".": "_DOT_", "%": "_PRC_", " ": "_SPC_", '"': "_DQT_", "[": "_LSQ_", "]": "_RSQ_"}
 
 
+_COMPOUND = re.compile(r"(?:[A-Za-z][A-Za-z0-9_.%]*)?\(.*\)", re.DOTALL)
+
+
 def identifier(name: str) -> str:
     """A variable's name as FRET writes it in formulas: `a.b` becomes `a_DOT_b`."""
     assert not is_compound(name)
-    return "".join(c if c.isalnum() and c.isascii() else _MANGLED.get(c, "_") for c in name)
+    return "".join(map(_mangled, name))
+
+
+def _mangled(c: str) -> str:
+    if (c.isalnum() and c.isascii()) or c == "_":
+        return c
+    return _MANGLED.get(c, f"_x{ord(c):X}_")
 
 
 def is_compound(name: str) -> bool:
     """Whether an atom's name is the text of a comparison or a call, not a variable."""
-    return name.endswith(")") and not name.startswith('"')
+    return _COMPOUND.fullmatch(name) is not None
 
 
 def _plain_atom(name: str) -> str:
     return name if is_compound(name) else identifier(name)
 
 
+_PLAIN_TO_SPOT = re.compile(r"(?!true$|false$|xor$)[A-EH-LN-QSTYZa-z_][A-Za-z0-9_]*")
+
+
 def _quoted_atom(name: str) -> str:
-    """Spot's: a comparison is one proposition in double quotes."""
-    return f'"{name}"' if is_compound(name) else identifier(name)
+    """Spot's: a comparison is one proposition in double quotes.
+
+    So is a name that begins like one of Spot's operators: `Fault` would be `F ault`.
+    """
+    text = name if is_compound(name) else identifier(name)
+    return text if _PLAIN_TO_SPOT.fullmatch(text) else f'"{text}"'
 
 
 def _bounds(opening: str, separator: str, closing: str) -> Callable[[f.Interval], str]:

@@ -6,7 +6,7 @@ Each value is computed on two rails: `must` (true whatever the unknown propositi
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 from compiler import formula as f
@@ -67,11 +67,17 @@ def program(watch: Watch, parameters: Mapping[str, str]) -> Program:
     return Program(tuple(writer.cells), tuple(writer.blocks), told)
 
 
+def locals_of(parameters: Iterable[str]) -> frozenset[str]:
+    """The parameters of a step and the names of their rails."""
+    return frozenset(name for p in parameters for name in (p, *(f"{p}_{rail}" for rail in RAILS)))
+
+
 class _Writer:
     """Walks formulas from the leaves up and writes one block for each temporal operator."""
 
     def __init__(self, parameters: Mapping[str, str]) -> None:
         self.parameters = parameters
+        self.taken = locals_of(parameters.values())
         self.cells: list[Cell] = []
         self.blocks: list[Block] = []
         self._names: dict[f.Formula, str] = {}
@@ -104,10 +110,10 @@ class _Writer:
                 return _OR, " or ".join(self._grouped(arg, rail, _AND) for arg in args)
             case f.Implies(left, right):
                 return self._ranked(f.or_(f.not_(left), right), rail)
-            case f.Xor(left, right):
-                return self._ranked(_unequal(left, right), rail)
             case f.Iff(left, right):
-                return self._ranked(f.not_(_unequal(left, right)), rail)
+                return self._ranked(f.not_(f.xor(left, right)), rail)
+            case f.Xor():
+                return _ATOMIC, f"{self._differing(formula)}_{rail}"
             case f.WeakPrevious(f.Const(False)):
                 return _ATOMIC, self._first()
             case f.Historically(arg, ago) if ago != f.EVER:
@@ -123,13 +129,31 @@ class _Writer:
             self.blocks.append(Block("(Z FALSE)", ("first, self.first = self.first, False",)))
         return "first"
 
+    def _differing(self, formula: f.Xor) -> str:
+        """The name of a difference: each rail of it needs both rails of both sides."""
+        if formula not in self._names:
+            (left_must, left_may), (right_must, right_may) = (
+                (self._grouped(side, "must", _NOT), self._grouped(side, "may", _NOT))
+                for side in (formula.left, formula.right)
+            )
+            name = self._named(formula, "differ")
+            comment = printing.readable(formula)
+            lines = tuple(
+                f"{name}_{rail} = {left} and not {right} or not {other_left} and {other_right}"
+                for rail, left, right, other_left, other_right in (
+                    ("must", left_must, right_may, left_may, right_must),
+                    ("may", left_may, right_must, left_must, right_may),
+                )
+            )
+            self.blocks.append(Block(comment, lines))
+        return self._names[formula]
+
     def _stepped(self, formula: f.Formula) -> str:
         """The name under which a temporal operator keeps its value; its block is written once."""
         if formula not in self._names:
             for child in f.children(formula):
                 self.both(child)  # the blocks of the operands come first
-            name = self._fresh(_KINDS[type(formula)])
-            self._names[formula] = name
+            name = self._named(formula, _KINDS[type(formula)])
             comment = printing.readable(formula)
             lines: list[str] = []
             for rail in RAILS:
@@ -137,10 +161,12 @@ class _Writer:
             self.blocks.append(Block(comment, tuple(lines)))
         return self._names[formula]
 
-    def _fresh(self, kind: str) -> str:
+    def _named(self, formula: f.Formula, kind: str) -> str:
+        """A name for the value of the formula, as no parameter and no rail of one is called."""
         name = f"{kind}_{1 + sum(n.startswith(kind) for n in self._names.values())}"
-        while name in self.parameters.values():
+        while any(f"{name}_{rail}" in self.taken for rail in RAILS):
             name += "_"
+        self._names[formula] = name
         return name
 
     def _step(self, formula: f.Formula, name: str, rail: str, comment: str) -> list[str]:
@@ -209,10 +235,6 @@ def _otherwise(condition: str, statement: str, last: str) -> list[str]:
     if condition == "True":
         return ["else:", f"    {statement}"]
     return [f"elif {condition}:", f"    {statement}", "else:", f"    {last}"]
-
-
-def _unequal(left: f.Formula, right: f.Formula) -> f.Formula:
-    return f.or_(f.and_(left, f.not_(right)), f.and_(f.not_(left), right))
 
 
 _KINDS: dict[type[f.Formula], str] = {

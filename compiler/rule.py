@@ -46,9 +46,13 @@ class Rule:
 
     @property
     def propositions(self) -> tuple[str, ...]:
-        """The atoms of the sentence, in the order of the future-time formula."""
-        both = dict.fromkeys((*atoms(self.ft_infinite), *atoms(self.ft_finite)))
-        return tuple(both)
+        """The atoms of the sentence, in the order of the future-time formula.
+
+        A formula may lack some: `finally` says nothing of an infinite run.
+        """
+        watched = (self.watch.trigger, self.watch.breach, self.watch.owed, self.watch.fails)
+        formulas = (self.ft_infinite, self.ft_finite, self.pt, *watched)
+        return tuple(dict.fromkeys(name for formula in formulas for name in atoms(formula)))
 
     @property
     def variables(self) -> tuple[str, ...]:

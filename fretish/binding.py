@@ -71,7 +71,10 @@ class _Build(Transformer_NonRecursive[Token, Any]):
         arg, token = children[0], children[-1]
         duration = nanoseconds(str(token))
         if duration is None:
-            raise _UnitError(_bad_duration(str(token).strip(), self._span(token)))
+            written = str(token)
+            before = len(written) - len(written.lstrip())
+            place = self._span(token).part(before, len(written))
+            raise _UnitError(_bad_duration(written.strip(), place))
         return e.Held(arg, duration)
 
     def either(self, children: list[Any]) -> e.Expression:
@@ -168,7 +171,7 @@ def _truths(
         if isinstance(kind, Diagnostic):
             return kind
         if kind is not None:
-            return _mismatch("a truth value is needed, and this is a number", arg, place)
+            return _wrong_kind("a truth value is needed, and this is a number", arg, place)
     return None
 
 
@@ -182,7 +185,7 @@ def _numbers(
         if isinstance(kind, Diagnostic):
             return kind
         if kind is None:
-            return _mismatch("a number is needed, and this is a truth value", arg, place)
+            return _wrong_kind("a number is needed, and this is a truth value", arg, place)
         if found is not None and kind != found:
             return _mismatch(
                 f"{_named(found)} cannot be compared with or added to {_named(kind)}", arg, place
@@ -217,6 +220,21 @@ def _mismatch(message: str, part: e.Expression, place: Span) -> Diagnostic:
         getattr(part, "span", None) or place,
         help="give each number its unit: `min_range < 5 cm`",
     )
+
+
+def _wrong_kind(message: str, part: e.Expression, place: Span) -> Diagnostic:
+    return Diagnostic(
+        Code.BAD_EXPRESSION,
+        message,
+        getattr(part, "span", None) or place,
+        help="compare numbers, `x < 5 m`, and join truth values by `and`, `or`, `not`",
+    )
+
+
+def is_truth(expression: e.Expression) -> bool:
+    """Whether it is true or false by its outermost operator; a name may be either."""
+    numbers = (e.Number, e.Quantity, e.Negation, e.Arithmetic, e.Call, e.Name)
+    return not isinstance(expression, numbers)
 
 
 def unknown_unit(name: str, span: Span) -> Diagnostic:

@@ -66,6 +66,7 @@ class _Reader:
         self.tables = tables
         self.wrong: list[Diagnostic] = []
         self.assumptions: list[str] = []
+        self.told: set[str] = set()
 
     def declarations(self) -> Declarations:
         data = self.tables.data
@@ -103,6 +104,9 @@ class _Reader:
     def _tables(self, kind: str) -> dict[str, Mapping[str, Any]]:
         tables = self.tables.data.get(kind, {})
         if not isinstance(tables, dict) or not all(isinstance(t, dict) for t in tables.values()):
+            if kind in self.told:
+                return {}
+            self.told.add(kind)
             self._say(
                 Code.BAD_BINDING_FIELD,
                 f"`{kind}` must hold tables",
@@ -205,14 +209,16 @@ class _Reader:
         at = ("signal", name)
         self._known(table, _SIGNAL, f"[signal.{name}]", *at)
         where = self._path(table, (*at, "path"))
-        unit_name = self._field(table, (*at, "unit"), str, "a unit in quotes") or "1"
-        unit = units.unit(unit_name)
-        if unit is None:
+        unit_name = self._field(table, (*at, "unit"), str, "a unit in quotes")
+        if unit_name is None and "unit" not in table:
+            unit_name = "1"
+        unit = units.unit(unit_name) if unit_name is not None else None
+        if unit is None and unit_name is not None:
             self.wrong.append(binding.unknown_unit(unit_name, self.tables.value(*at, "unit")))
         reduce = self._reduce(table, at, where)
-        valid = self._expression(table, (*at, "valid"))
+        valid = self._valid(table, (*at, "valid"))
         footprint = self._footprint(table, at, reduce)
-        if where is None or unit is None:
+        if where is None or unit is None or unit_name is None:
             return None
         type_ = self._field(table, (*at, "type"), str, "a message type in quotes")
         return Signal(
@@ -229,6 +235,18 @@ class _Reader:
             sensor=self._sensor(table, at),
             span=self.tables.value(*at, "path"),
         )
+
+    def _valid(self, table: Mapping[str, Any], at: tuple[str, ...]) -> e.Expression | None:
+        valid = self._expression(table, at)
+        if valid is None or binding.is_truth(valid):
+            return valid
+        self._say(
+            Code.BAD_EXPRESSION,
+            "`valid` must be true or false, and this is a number",
+            self.tables.value(*at),
+            "compare the reading: `range_min <= x and x <= range_max`",
+        )
+        return None
 
     def _path(self, table: Mapping[str, Any], at: tuple[str, ...]) -> Path | None:
         text = table.get("path")
@@ -277,7 +295,7 @@ class _Reader:
             self._say(
                 Code.BAD_BINDING_FIELD,
                 "`empty` can only be `unknown`: no reading is no evidence",
-                self.tables.value(*place),
+                self.tables.value(*place, "empty"),
             )
         values = {
             attribute: self._choice(fields, (*place, key), Reading, getattr(default, attribute))

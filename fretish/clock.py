@@ -59,14 +59,26 @@ class Clock:
 
     def __str__(self) -> str:
         """`100 ms` or `each message of /scan`."""
-        return f"each message of {self.topic}" if self.period is None else milliseconds(self.period)
+        return f"each message of {self.topic}" if self.period is None else in_words(self.period)
 
 
-def milliseconds(period: int) -> str:
-    """Nanoseconds as `100 ms`, `2 s` or `1.5 ms`."""
+def in_words(period: int) -> str:
+    """Nanoseconds as `2 s`, `100 ms`, `1.5 ms`, `250 us` or `7 ns`: never rounded."""
     if period % 10**9 == 0:
         return f"{period // 10**9} s"
-    return f"{float(Fraction(period, 10**6)):g} ms"
+    size, unit = next(
+        ((size, unit) for size, unit in ((10**6, "ms"), (10**3, "us")) if period >= size), (1, "ns")
+    )
+    return f"{_exactly(Fraction(period, size))} {unit}"
+
+
+def _exactly(value: Fraction) -> str:
+    """As a decimal number where it is one, else as a fraction: never rounded."""
+    for digits in range(10):
+        if (value * 10**digits).denominator == 1:
+            whole, part = divmod(int(value * 10**digits), 10**digits)
+            return f"{whole}.{part:0{digits}d}" if digits else str(whole)
+    return str(value)
 
 
 def in_ticks(timing: Timing, clock: Clock | None) -> int | Diagnostic | None:
@@ -117,9 +129,11 @@ def _inexact(counted: Duration, clock: Clock, exact: Fraction) -> Diagnostic:
     assert clock.period is not None
     return Diagnostic(
         Code.INEXACT_DURATION,
-        f"{written(counted)} is {float(exact):g} ticks of {milliseconds(clock.period)}",
+        f"{written(counted)} is {_exactly(exact)} ticks of {in_words(clock.period)}",
         counted.span,
-        help="use a whole number of ticks, a finer `tick`, or "
+        help="use a whole number of ticks, or a finer `tick`"
+        if clock.rounding is Rounding.CONSERVATIVE
+        else "use a whole number of ticks, a finer `tick`, or "
         '`rounding = "conservative"` under `[clock]`',
     )
 

@@ -43,6 +43,7 @@ class Code(Enum):
     WRONG_KIND = ("F112", "a number stands where a truth value should, or the other way round")
     UNCLOSED_HEADER = ("F113", "the header has no closing `+++`")
     TOO_DEEP = ("F115", "the sentence is nested too deep")
+    NAME_CLASH = ("F116", "two names become one in formulas")
     FREE_TEXT = ("F114", "free text is kept and not formalized")
 
     DUPLICATE_ID = ("F201", "two requirements have the same id")

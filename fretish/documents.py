@@ -16,7 +16,7 @@ FIELDS = ("id", "title", "text", "parents", "rationale", "status", "verify", "pa
 STATUSES = ("draft", "approved", "retired")
 _ID = re.compile(r"[A-Za-z0-9][A-Za-z0-9_.-]*")
 _FREE_TEXT = re.compile(r'"[^"]*"')
-_FENCE = re.compile(r"^\+\+\+[ \t]*(?:\r?\n|\Z)", re.MULTILINE)
+_FENCE = re.compile(r"^\ufeff?\+\+\+[ \t]*(?:\r?\n|\Z)", re.MULTILINE)
 
 
 @dataclass(frozen=True, slots=True)

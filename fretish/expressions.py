@@ -36,6 +36,7 @@ class Number:
     """A number without a unit, digits as written; never signed."""
 
     digits: str
+    span: Span | None = field(default=None, compare=False, repr=False)
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,6 +53,7 @@ class Negation:
     """Arithmetic minus: `-x`."""
 
     arg: Expression
+    span: Span | None = field(default=None, compare=False, repr=False)
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,6 +63,7 @@ class Arithmetic:
     op: ArithmeticOperator
     left: Expression
     right: Expression
+    span: Span | None = field(default=None, compare=False, repr=False)
 
 
 @dataclass(frozen=True, slots=True)

@@ -9,7 +9,7 @@ from __future__ import annotations
 from typing import assert_never
 
 from fretish import syntax as s
-from fretish.clock import Clock, milliseconds
+from fretish.clock import Clock, in_words
 from fretish.printer import expression
 
 
@@ -26,8 +26,9 @@ def meaning(sentence: s.Sentence, ticks: int | None, clock: Clock | None) -> str
     negated = sentence.scope is not None and sentence.scope.kind.negates
     say = _forbidden if negated else _demanded
     counted = (span(ticks or 0, clock), span((ticks or 0) + 1, clock))
-    parts = f"{where}: {_when(sentence.condition)}, {say(sentence.timing, q, close, counted)}."
-    return parts + _odds(sentence.probability)
+    when = _when(sentence.condition, sentence.scope)
+    demand = say(sentence.timing, q, close, counted)
+    return f"{where}: {when}, {demand}.{_odds(sentence.probability)}"
 
 
 def _where(scope: s.Scope | None) -> tuple[str, str]:
@@ -54,15 +55,16 @@ def _where(scope: s.Scope | None) -> tuple[str, str]:
             assert_never(scope.kind)
 
 
-def _when(condition: s.Condition | None) -> str:
+def _when(condition: s.Condition | None, scope: s.Scope | None) -> str:
     if condition is None:
         return "from its first tick on"
     p = f"`{expression(condition.expression)}`"
+    start = "the first tick there" if scope else "the first tick"
     match condition.kind:
         case s.ConditionKind.HOLDING:
             return f"at every tick at which {p} is true"
         case s.ConditionKind.TRIGGER:
-            return f"at every tick at which {p} becomes true (or is true at the start)"
+            return f"at every tick at which {p} becomes true (or is true at {start})"
         case _:
             assert_never(condition.kind)
 
@@ -91,8 +93,8 @@ def _demanded(timing: s.Timing, q: str, close: str, counted: _Counted) -> str:
             return _for(q, "true", close, counted[0])
         case s.After():
             return (
-                f"{q} must be false at that tick and for the next {counted[0]}, and true at the "
-                f"tick after those, unless {close} ends before"
+                f"{q} must be false at that tick and for the next {counted[0]}, or until {close} "
+                f"ends, and true at the tick after those, if {close} has it"
             )
         case s.Until(stop):
             return _up_to(q, "true", close, expression(stop))
@@ -155,15 +157,15 @@ def _for(q: str, value: str, close: str, ticks: str) -> str:
 
 def _up_to(q: str, value: str, close: str, stop: str) -> str:
     return (
-        f"{q} must be {value} from that tick on, up to the tick before `{stop}` becomes true "
-        f"or until {close} ends"
+        f"{q} must be {value} from that tick on, up to the tick before the first at which "
+        f"`{stop}` is true, or until {close} ends"
     )
 
 
 def _ahead_of(q: str, value: str, close: str, stop: str) -> str:
     return (
-        f"if `{stop}` becomes true before {close} ends, {q} must be {value} at some tick "
-        "from that tick on and before it"
+        f"if `{stop}` is true at that tick or at a later one before {close} ends, {q} must be "
+        f"{value} at some tick from that tick on and before the first of those"
     )
 
 
@@ -172,7 +174,7 @@ def span(ticks: int, clock: Clock | None) -> str:
     count = f"{ticks} tick{'' if ticks == 1 else 's'}"
     if clock is None or clock.period is None:
         return count
-    return f"{count} ({milliseconds(ticks * clock.period)})"
+    return f"{count} ({in_words(ticks * clock.period)})"
 
 
 def _odds(probability: s.Probability | None) -> str:

@@ -9,16 +9,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from fretish.diagnostic import Code, Diagnostic, suggestion
+from fretish.keywords import KEYWORDS
 from fretish.source import Span
-
-KEYWORDS = (
-    "after always and at before during eventually except finally first for if immediately in "
-    "initially is last mod mode never next not occurrence of only or previous probability same "
-    "satisfy shall the then timepoint unless until upon when whenever where while with within xor "
-    "tick ticks microsecond microseconds millisecond milliseconds second seconds minute minutes "
-    "hour hours"
-).split()
-"""The words of the grammar, for suggestions."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -110,7 +102,7 @@ def no_sentence(text: Span) -> Diagnostic:
         Code.NO_SENTENCE,
         "there is no sentence here",
         text.part(0, 0),
-        help="write `the COMPONENT shall eventually satisfy CONDITION`",
+        help="write `the COMPONENT shall eventually satisfy RESPONSE`",
     )
 
 
@@ -146,7 +138,7 @@ def bad_duration(span: Span) -> Diagnostic:
         Code.BAD_DURATION,
         f"a duration counts whole units, and `{span.text}` is no whole number",
         span,
-        help="use a smaller unit: `within 2500 milliseconds`",
+        help="count a smaller unit, in whole numbers: 500 milliseconds, not 0.5 seconds",
     )
 
 
@@ -364,7 +356,7 @@ def _missing_component(u: Unexpected) -> Diagnostic | None:
         return None
     return Diagnostic(
         Code.MISSING_COMPONENT,
-        f"there is no component {'before' if starts else 'beside'} `shall`",
+        "there is no component before `shall`",
         u.met.span if starts or u.before is None else u.before.span,
         help="name what must satisfy the requirement: `the rover shall ...`",
     )

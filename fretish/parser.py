@@ -163,7 +163,7 @@ class _Build(Transformer_NonRecursive[Token, Any]):
         return cast(e.Name, _parts(children)[0])
 
     def number(self, meta: Any, children: list[Token]) -> e.Number:
-        return e.Number(str(children[0]))
+        return e.Number(str(children[0]), _span(children[0]))
 
     def truth(self, meta: Any, children: list[Token]) -> e.Truth:
         return e.Truth(children[0] == "true")
@@ -208,10 +208,11 @@ class _Build(Transformer_NonRecursive[Token, Any]):
 
     def arithmetic(self, meta: Any, children: list[Any]) -> e.Expression:
         left, op, right = children
-        return e.Arithmetic(cast(e.ArithmeticOperator, str(op).lower()), left, right)
+        operator = cast(e.ArithmeticOperator, str(op).lower())
+        return e.Arithmetic(operator, left, right, _meta_span(meta))
 
     def negation(self, meta: Any, children: list[Any]) -> e.Expression:
-        return e.Negation(_parts(children)[0])
+        return e.Negation(_parts(children)[0], _meta_span(meta))
 
     # Parts of the sentence
 

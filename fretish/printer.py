@@ -10,6 +10,7 @@ from fretish import expressions as e
 from fretish import syntax as s
 from fretish.clock import written
 from fretish.depth import deep
+from fretish.keywords import RESERVED
 
 _IFF, _IMPLIES, _XOR, _OR, _AND, _NOT, _COMPARE, _SUM, _PRODUCT, _SIGN, _POWER, _OPERAND = range(12)
 _PLAIN = re.compile(r"[A-Za-z](?:[A-Za-z0-9_.%]*[A-Za-z0-9_%])?")
@@ -105,7 +106,8 @@ def timing(tree: s.Timing) -> str:
 
 def identifier(id: str) -> str:
     """The name, in quotes where it needs them."""
-    return id if _PLAIN.fullmatch(id) else f'"{id}"'
+    plain = _PLAIN.fullmatch(id) and id.lower() not in RESERVED
+    return id if plain else f'"{id}"'
 
 
 @deep

@@ -11,6 +11,17 @@ from typing import Any
 from fretish.diagnostic import Code, Diagnostic, suggestion
 from fretish.source import Span
 
+_VALUE = re.compile(
+    r"""["']?\s*=\s*(?P<value>
+        "(?:[^"\\\n]|\\.)*"            # a text
+      | '[^'\n]*'
+      | \{[^}\n]*\}                    # an inline table
+      | \[[^\]\n]*\][^#\n]*?(?=\s*(?:\#|$))  # a list, perhaps of lists
+      | [^#\n]*?(?=\s*(?:\#|$))        # anything else on the line
+    )""",
+    re.VERBOSE | re.MULTILINE,
+)
+
 
 @dataclass(frozen=True, slots=True)
 class Tables:
@@ -22,7 +33,7 @@ class Tables:
     def place(self, *path: str) -> Span:
         """Where the last key of the path stands; the whole text's start where it is not found."""
         *tables, key = path
-        start, end = self._table(tables)
+        start, end = self._table(tables) or self._inline(tables)
         match = _key(key).search(self.text.text, start, end)
         if match is None:
             match = _header(path).search(self.text.text)
@@ -34,29 +45,34 @@ class Tables:
         """Where the value behind the last key of the path stands, up to the end of its line."""
         key = self.place(*path)
         rest = self.text.source.text[key.end : self.text.end]
-        match = re.match(r"[\"']?\s*=\s*(?P<value>[^\n]*)", rest)
+        match = _VALUE.match(rest)
         if match is None:
             return key
         start, end = match.span("value")
-        comment = re.search(r"\s*(?:#[^\"']*)?$", match["value"])
-        cut = comment.start() if comment else len(match["value"])
-        return Span(key.source, key.end + start, key.end + min(end, start + cut))
+        return Span(key.source, key.end + start, key.end + max(start, end))
 
-    def _table(self, tables: Iterable[str]) -> tuple[int, int]:
+    def _inline(self, tables: list[str]) -> tuple[int, int]:
+        """Where the braces of an inline table stand."""
+        span = self.value(*tables)
+        if not span.text.startswith("{"):
+            return 0, 0
+        return span.start - self.text.start, span.end - self.text.start
+
+    def _table(self, tables: Iterable[str]) -> tuple[int, int] | None:
         path = tuple(tables)
         if not path:
             first = re.search(r"^\s*\[", self.text.text, re.MULTILINE)
             return 0, first.start() if first else len(self.text.text)
         header = _header(path).search(self.text.text)
         if header is None:
-            return 0, 0
+            return None
         following = re.compile(r"^\s*\[", re.MULTILINE).search(self.text.text, header.end())
         return header.end(), following.start() if following else len(self.text.text)
 
 
 def _header(path: Iterable[str]) -> re.Pattern[str]:
     name = r"\s*\.\s*".join(f"[\"']?{re.escape(part)}[\"']?" for part in path)
-    return re.compile(rf"^\s*\[\s*(?P<key>{name})\s*\]", re.MULTILINE)
+    return re.compile(rf"^\s*\[\s*(?P<key>{name})\s*[\].]", re.MULTILINE)
 
 
 def _key(key: str) -> re.Pattern[str]:

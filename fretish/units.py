@@ -85,7 +85,8 @@ _FACTOR = re.compile(r"([A-Za-z%]+|1)(?:\^?(-?\d+))?")
 def unit(text: str) -> Unit | None:
     """Read `m`, `m/s`, `m/s^2`, `kg*m/s2`; None where a part is not known."""
     result = ONE
-    for position, factors in enumerate(text.replace(" ", "").split("/")):
+    compact = re.sub(r"\s*([*/])\s*", r"\1", text.strip())
+    for position, factors in enumerate(compact.split("/")):
         for factor in factors.split("*"):
             match = _FACTOR.fullmatch(factor)
             if match is None or match[1] not in _UNITS:

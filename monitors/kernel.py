@@ -296,8 +296,9 @@ def _csv_rows(
         _check_columns(header, names, f"{source}:1")
         for values in table:
             place = f"{source}:{table.line_num}"
-            if not values:
-                continue
+            if not values and len(header) > 1:
+                continue  # an empty line; in a table of one column it is an unknown value
+            values = values or [""]
             if len(values) != len(header):
                 raise InputError(f"{place}: {len(values)} values for {len(header)} columns")
             yield place, dict(zip(header, values, strict=True))
@@ -312,13 +313,20 @@ def _json_rows(
         if not line.strip():
             continue
         try:
-            row = json.loads(line)
-        except ValueError as error:
+            row = json.loads(line, object_pairs_hook=_distinct)
+        except (ValueError, RecursionError) as error:
             raise InputError(f"{source}:{number}: not JSON: {error}") from None
         if not isinstance(row, dict):
             raise InputError(f"{source}:{number}: a line must hold one object")
         _check_columns(row, names, f"{source}:{number}")
         yield f"{source}:{number}", row
+
+
+def _distinct(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+    found = dict(pairs)
+    if len(found) < len(pairs):
+        raise ValueError("a key comes twice")
+    return found
 
 
 def _check_columns(found: Iterable[str], names: Sequence[str], place: str) -> None:
@@ -387,9 +395,11 @@ def _parser(monitors: Sequence[type[Monitor]]) -> argparse.ArgumentParser:
     names = dict.fromkeys(name for monitor in monitors for name in monitor.PROPOSITIONS)
     parser = argparse.ArgumentParser(
         formatter_class=argparse.RawDescriptionHelpFormatter,
-        description=f"Monitor of\n{sentences}".replace("%", "%%"),
-        epilog=f"columns: {', '.join(names)}\n"
-        "exit status: 0 satisfied, 1 violated, 2 bad use or input, 3 not shown".replace("%", "%%"),
+        description=_literal(f"Monitor of\n{sentences}"),
+        epilog=_literal(
+            f"columns: {', '.join(names)}\n"
+            "exit status: 0 satisfied, 1 violated, 2 bad use or input, 3 not shown"
+        ),
     )
     parser.add_argument(
         "trace",
@@ -406,18 +416,23 @@ def _parser(monitors: Sequence[type[Monitor]]) -> argparse.ArgumentParser:
     return parser
 
 
+def _literal(text: str) -> str:
+    """The text as argparse shows it unchanged: it formats only where `%(prog)` comes."""
+    return text.replace("%", "%%") if "%(prog)" in text else text
+
+
 def _report(monitor: Monitor, path: str, options: argparse.Namespace) -> int:
-    names = tuple(monitor.PROPOSITIONS)
+    source = "<stdin>" if path == "-" else path
     with _opened(path) as text:
         try:
-            source = "<stdin>" if path == "-" else path
-            outcome = run(monitor, read_rows(text, names, source), options.end)
+            rows = read_rows(text, tuple(monitor.PROPOSITIONS), source)
+            outcome = run(monitor, rows, options.end)
         except UnicodeDecodeError:
-            raise InputError(f"{path}: the trace is not UTF-8 text") from None
+            raise InputError(f"{source}: the trace is not UTF-8 text") from None
     if options.format == "json":
         print(json.dumps(outcome.as_json()))
     else:
-        print(f"{path}: {outcome.requirement}: {_sentence(outcome)}")
+        print(f"{source}: {outcome.requirement}: {_sentence(outcome)}")
     return EXIT_STATUS[outcome.verdict]
 
 

@@ -18,19 +18,34 @@ from compiler.artifact import Artifact
 from compiler.rule import Rule
 from compiler.targets.target import DEFAULT, Options, Target, not_expressible, stem
 from compiler.templating import render
+from fretish import syntax as s
 from fretish.depth import deep
 from fretish.diagnostic import Diagnostic
+from fretish.printer import timing as printing_of
 
 _FUNCTOR = re.compile(r"[a-z][A-Za-z0-9_]*")
 _AGENT = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
 _KEY_WORDS = frozenset("A E U R B G F I D P T ItD".split())
 _BEYOND = "AJPF has no next, no past and no time; state the requirement with `eventually`, or "
+_MONITOR = "check it with `--emit monitor`"
+_COUNTING = (s.Immediately, s.Next, s.Within, s.For, s.After)
+"""A reasoning cycle of an agent is many states: a number of them means nothing, not even 0."""
 
 
 @deep
 def refuse(rule: Rule) -> Diagnostic | None:
     """F601 for the first part of the rule that AJPF's language cannot say."""
     agent = rule.sentence.component
+    if rule.pctl is not None:
+        return not_expressible(
+            "AJPF",
+            rule,
+            "the probability",
+            "leave it out, or use a probabilistic tool",
+        )
+    if isinstance(rule.sentence.timing, _COUNTING):
+        timing = printing_of(rule.sentence.timing)
+        return not_expressible("AJPF", rule, f"the timing `{timing}`", f"{_BEYOND}{_MONITOR}")
     if not _AGENT.fullmatch(agent) or agent in _KEY_WORDS:
         return not_expressible(
             "AJPF", rule, f"the agent name `{agent}`", "use letters, digits and `_` only"
@@ -47,7 +62,7 @@ def refuse(rule: Rule) -> Diagnostic | None:
         return not_expressible("AJPF", rule, "a formula that is constant", "it says nothing")
     part = _beyond(rule.ft_infinite)
     if part is not None:
-        return not_expressible("AJPF", rule, part, f"{_BEYOND}check it with `--emit monitor`")
+        return not_expressible("AJPF", rule, part, f"{_BEYOND}{_MONITOR}")
     return None
 
 

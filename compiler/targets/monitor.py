@@ -15,7 +15,7 @@ from pathlib import PurePosixPath
 
 from compiler import __version__, printing
 from compiler.artifact import Artifact
-from compiler.program import program
+from compiler.program import locals_of, program
 from compiler.rule import Rule
 from compiler.targets.target import DEFAULT, Options, Target, not_expressible, stem
 from compiler.templating import render
@@ -31,7 +31,8 @@ _IMPORTS_END = re.compile(r"\n\n(?=[A-Z])")
 def refuse(rule: Rule) -> Diagnostic | None:
     """F312: a monitor steps by ticks, so it must be known how long a tick is.
 
-    F601: Python reads no more than 200 parentheses within each other.
+    F601: Python reads no more than 200 parentheses within each other; and one run cannot show
+    a probability.
     """
     if max(map(depth, conditions(rule.sentence))) > _MOST_LEVELS:
         return not_expressible(
@@ -39,6 +40,13 @@ def refuse(rule: Rule) -> Diagnostic | None:
             rule,
             f"more than {_MOST_LEVELS} operators within each other",
             "give parts of the expression names of their own",
+        )
+    if rule.pctl is not None:
+        return not_expressible(
+            "a monitor",
+            rule,
+            "the probability",
+            "one run does not tell a probability: estimate it over many, or leave it out",
         )
     if assumed_ticks(rule.sentence, rule.clock) is None:
         return None
@@ -109,10 +117,21 @@ def _parameters(names: Iterable[str]) -> dict[str, str]:
     parameters: dict[str, str] = {}
     for name in names:
         parameter = printing.identifier(name) if not printing.is_compound(name) else _spoken(name)
-        while parameter in _TAKEN or iskeyword(parameter) or parameter in parameters.values():
+        if not parameter[0].isalpha():
+            parameter = f"p_{parameter}"
+        while _clashes(parameter, parameters.values()):
             parameter += "_"
         parameters[name] = parameter
     return parameters
+
+
+def _clashes(parameter: str, others: Iterable[str]) -> bool:
+    """Whether the name, or one of its rails, is another name of the generated step."""
+    return (
+        iskeyword(parameter)
+        or not locals_of([parameter]).isdisjoint(_TAKEN)
+        or not locals_of([parameter]).isdisjoint(locals_of(others))
+    )
 
 
 def _spoken(text: str) -> str:
@@ -120,7 +139,7 @@ def _spoken(text: str) -> str:
     for operator, word in _SPOKEN.items():
         text = text.replace(operator, word)
     name = re.sub(r"\W+", "_", text, flags=re.ASCII).strip("_")
-    return re.sub(r"_+", "_", name) if name[:1].isalpha() else f"p_{name}"
+    return re.sub(r"_+", "_", name) or "p"
 
 
 TARGET = Target("monitor", "a standalone runtime monitor in Python", emit, refuse)

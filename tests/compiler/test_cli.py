@@ -140,7 +140,9 @@ def test_one_target_that_refuses_keeps_every_file_from_being_written(fretc: Fret
     sentence = "whenever p the rover shall within 3 ticks satisfy q"
     run = fretc(write("r.fret", sentence), "--emit", "monitor", "--emit", "ajpf")
     assert run.status == 2
-    assert run.err.startswith("F601 AJPF cannot express a bound in ticks of r\n  --> r.fret:1:1\n")
+    assert run.err.startswith(
+        "F601 AJPF cannot express the timing `within 3 ticks` of r\n  --> r.fret:1:1\n"
+    )
     assert not Path("build").exists()
 
 

@@ -358,7 +358,9 @@ def test_what_a_target_cannot_say_is_not_expressible(tmp_path: Path) -> None:
     made_of = {view["target"]: view for view in section["artefacts"]}
     assert list(made_of) == ["monitor", "ltl", "ajpf", "json"]
     assert made_of["ajpf"]["sha256"] == ""
-    assert made_of["ajpf"]["refusal"].startswith("F601 AJPF cannot express the next tick")
+    assert made_of["ajpf"]["refusal"].startswith(
+        "F601 AJPF cannot express the timing `within 3 ticks`"
+    )
     assert content["planned"][0]["result"] == (
         "no result is known, and none can be: ajpf cannot express the requirement"
     )

@@ -1,0 +1,39 @@
+"""Golden files, and how hard hypothesis tries.
+
+`--hypothesis-profile=full`, or `HYPOTHESIS_PROFILE=full`: many more examples.
+"""
+
+import os
+import warnings
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from hypothesis import settings
+
+with warnings.catch_warnings():
+    # Spot's bindings warn while they are imported, and crash where a warning is an error.
+    warnings.simplefilter("ignore", DeprecationWarning)
+    import spot  # noqa: F401
+
+settings.register_profile("default", max_examples=100, deadline=None)
+settings.register_profile("full", max_examples=2000, deadline=None)
+settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "default"))
+
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    parser.addoption("--update-golden", action="store_true", help="rewrite tests/golden/")
+
+
+@pytest.fixture
+def golden(request: pytest.FixtureRequest) -> Callable[[str, str], None]:
+    """Compare a whole output with its file in `tests/golden/`, or rewrite that file."""
+
+    def check(name: str, text: str) -> None:
+        path = Path(__file__).parent / "golden" / name
+        if request.config.getoption("--update-golden"):
+            path.parent.mkdir(parents=True, exist_ok=True)
+            path.write_text(text, encoding="utf-8")
+        assert text == path.read_text(encoding="utf-8"), f"{name}: pytest --update-golden"
+
+    return check

@@ -1,0 +1,173 @@
+"""Durations in ticks of the declared clock: exactly, or an error."""
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from fretish import syntax as s
+from fretish.clock import Clock, Rounding, assumed_ticks, in_ticks, in_words
+from fretish.diagnostic import Diagnostic, Severity
+from fretish.parser import parse
+from fretish.rendering import render
+from fretish.source import Source
+
+MS = 10**6
+EXACT = Clock(100 * MS)
+CONSERVATIVE = Clock(100 * MS, rounding=Rounding.CONSERVATIVE)
+BY_MESSAGE = Clock(None, "/scan")
+
+
+def read(text: str) -> s.Sentence:
+    result = parse(Source("r.fret", text).span())
+    assert isinstance(result, s.Sentence)
+    return result
+
+
+def ticks(timing: str, clock: Clock | None) -> int | Diagnostic | None:
+    return in_ticks(read(f"the sw shall {timing} satisfy q").timing, clock)
+
+
+@pytest.mark.parametrize(
+    ("timing", "count"),
+    [
+        ("within 200 milliseconds", 2),
+        ("for 3 seconds", 30),
+        ("after 1 second", 10),
+        ("within 1 minute", 600),
+        ("within 1 hour", 36_000),
+        ("within 300000 microseconds", 3),
+        ("within 3 ticks", 3),
+        ("within 0 seconds", 0),
+        ("for 0 ticks", 0),
+        ("eventually", None),
+        ("until s", None),
+    ],
+)
+def test_a_duration_is_converted_exactly(timing: str, count: int | None) -> None:
+    assert ticks(timing, EXACT) == count
+    assert ticks(timing, CONSERVATIVE) == count
+
+
+def test_a_tick_is_exact_where_a_floating_point_number_is_not() -> None:
+    assert ticks("within 1 second", Clock(333_333_333 * 3 + 1)) == 1
+    assert ticks("within 3 seconds", Clock(10**9 // 10)) == 30
+    assert isinstance(ticks("within 1 second", Clock(333_333_333)), Diagnostic)
+    assert ticks("within 1000000000 hours", Clock(1)) == 3_600 * 10**18
+
+
+def test_a_duration_between_two_ticks_is_an_error() -> None:
+    wrong = ticks("within 250 milliseconds", EXACT)
+    assert isinstance(wrong, Diagnostic)
+    assert render(wrong) == (
+        "F307 250 milliseconds is 2.5 ticks of 100 ms\n"
+        "  --> r.fret:1:21\n"
+        "   | the sw shall within 250 milliseconds satisfy q\n"
+        "   |                     ^^^^^^^^^^^^^^^^\n"
+        "help: use a whole number of ticks, a finer `tick`, or "
+        '`rounding = "conservative"` under `[clock]`'
+    )
+
+
+@pytest.mark.parametrize(
+    ("timing", "count"),
+    [
+        ("within 250 milliseconds", 2),
+        ("within 299 milliseconds", 2),
+        ("for 250 milliseconds", 3),
+        ("for 201 milliseconds", 3),
+        ("after 250 milliseconds", 3),
+        ("for 1 microsecond", 1),
+        ("after 1 microsecond", 1),
+    ],
+)
+def test_conservative_rounding_goes_to_the_stricter_side(timing: str, count: int) -> None:
+    assert ticks(timing, CONSERVATIVE) == count
+
+
+def test_nothing_is_rounded_to_0() -> None:
+    wrong = ticks("within 99 milliseconds", CONSERVATIVE)
+    assert isinstance(wrong, Diagnostic)
+    assert wrong.is_error
+    assert wrong.message == "99 milliseconds is 0.99 ticks of 100 ms"
+
+
+def test_the_mend_does_not_propose_the_rounding_that_is_declared_already() -> None:
+    wrong = ticks("within 99 milliseconds", CONSERVATIVE)
+    assert isinstance(wrong, Diagnostic)
+    assert wrong.help is not None
+    assert "conservative" not in wrong.help
+
+
+def test_a_number_of_ticks_that_is_not_whole_is_never_shown_as_whole() -> None:
+    wrong = ticks("for 1000000001 microseconds", Clock(10**6))
+    assert isinstance(wrong, Diagnostic)
+    assert wrong.message != "1000000001 microseconds is 1e+06 ticks of 1 ms"
+
+
+@given(
+    st.sampled_from(["within", "for", "after"]),
+    st.integers(0, 10**7),
+    st.integers(1, 10**10),
+)
+def test_rounding_is_by_less_than_a_tick(word: str, amount: int, period: int) -> None:
+    found = ticks(f"{word} {amount} microseconds", Clock(period, rounding=Rounding.CONSERVATIVE))
+    whole, over = divmod(amount * 1000, period)
+    if over == 0:
+        assert found == whole
+    elif word != "within":
+        assert found == whole + 1
+    elif whole:
+        assert found == whole
+    else:
+        assert isinstance(found, Diagnostic)
+
+
+def test_a_message_clock_counts_ticks_only() -> None:
+    assert ticks("within 3 ticks", BY_MESSAGE) == 3
+    wrong = ticks("within 3 seconds", BY_MESSAGE)
+    assert isinstance(wrong, Diagnostic)
+    assert render(wrong) == (
+        "F313 the clock ticks with each message of /scan: it cannot count seconds\n"
+        "  --> r.fret:1:21\n"
+        "   | the sw shall within 3 seconds satisfy q\n"
+        "   |                     ^^^^^^^^^\n"
+        'help: count ticks, or declare a period: `tick = "100 ms"`'
+    )
+
+
+def test_without_a_clock_a_unit_counts_ticks_and_that_is_said() -> None:
+    assert ticks("within 3 hours", None) == 3
+    said = assumed_ticks(read("the sw shall within 3 hours satisfy q"), None)
+    assert said is not None
+    assert said.severity is Severity.WARNING
+    assert render(said) == (
+        "F312 warning: no clock says what a tick is: `3 hours` is read as 3 ticks, as FRET does\n"
+        "  --> r.fret:1:21\n"
+        "   | the sw shall within 3 hours satisfy q\n"
+        "   |                     ^^^^^^^\n"
+        'help: declare `[clock]` with `tick = "100 ms"` in bindings.toml, or write ticks'
+    )
+
+
+def test_nothing_is_said_where_ticks_are_counted() -> None:
+    assert assumed_ticks(read("the sw shall within 3 ticks satisfy q"), None) is None
+    assert assumed_ticks(read("the sw shall always satisfy q"), None) is None
+    assert assumed_ticks(read("the sw shall within 3 hours satisfy q"), EXACT) is None
+
+
+@pytest.mark.parametrize(
+    ("nanoseconds", "text"),
+    [
+        (100 * MS, "100 ms"),
+        (2 * 10**9, "2 s"),
+        (1_500_000, "1.5 ms"),
+        (1, "1 ns"),
+        (2_500, "2.5 us"),
+    ],
+)
+def test_a_period_is_shown_in_a_unit_that_people_read(nanoseconds: int, text: str) -> None:
+    assert in_words(nanoseconds) == text
+
+
+def test_two_different_periods_are_not_shown_alike() -> None:
+    assert in_words(33_333_333) != in_words(33_333_334)

@@ -1,0 +1,86 @@
+"""Units are exact, and two dimensions never meet."""
+
+import math
+from fractions import Fraction
+
+import pytest
+
+from fretish.units import DIMENSIONLESS, NAMES, base_name, nanoseconds, unit
+
+
+@pytest.mark.parametrize(
+    ("text", "factor", "base"),
+    [
+        ("m", Fraction(1), "m"),
+        ("cm", Fraction(1, 100), "m"),
+        ("mm", Fraction(1, 1000), "m"),
+        ("km", Fraction(1000), "m"),
+        ("ms", Fraction(1, 1000), "s"),
+        ("min", Fraction(60), "s"),
+        ("h", Fraction(3600), "s"),
+        ("m/s", Fraction(1), "m/s"),
+        ("km/h", Fraction(5, 18), "m/s"),
+        ("m/s^2", Fraction(1), "m/s^2"),
+        ("m/s2", Fraction(1), "m/s^2"),
+        ("kg*m/s^2", Fraction(1), "m*kg/s^2"),
+        ("N", Fraction(1), "m*kg/s^2"),
+        ("g", Fraction(1, 1000), "kg"),
+        ("rad/s", Fraction(1), "rad/s"),
+        ("Hz", Fraction(1), "1/s"),
+        ("%", Fraction(1, 100), ""),
+        ("1", Fraction(1), ""),
+    ],
+)
+def test_a_unit_is_a_factor_of_its_base(text: str, factor: Fraction, base: str) -> None:
+    found = unit(text)
+    assert found is not None
+    assert (found.factor, base_name(found.dimension)) == (factor, base)
+
+
+def test_a_degree_is_a_part_of_a_turn() -> None:
+    degree = unit("deg")
+    assert degree is not None
+    assert math.isclose(degree.factor, 2 * math.pi / 360, rel_tol=1e-15)
+
+
+def test_an_angle_is_no_plain_number() -> None:
+    radian, plain = unit("rad"), unit("1")
+    assert radian is not None
+    assert plain is not None
+    assert radian.dimension != plain.dimension == DIMENSIONLESS
+
+
+@pytest.mark.parametrize("text", ["", "metre", "m/", "/s", "m//s", "m^", "m**2", "5 m", "M", "m s"])
+def test_what_is_no_unit_is_not_read(text: str) -> None:
+    assert unit(text) is None
+
+
+def test_a_watt_is_a_newton_metre_a_second() -> None:
+    assert unit("W") == unit("N*m/s") == unit("V*A")
+
+
+def test_every_name_is_a_unit() -> None:
+    assert [name for name in NAMES if unit(name) is None] == []
+
+
+@pytest.mark.parametrize(
+    ("text", "count"),
+    [
+        ("100 ms", 100_000_000),
+        ("100ms", 100_000_000),
+        (" 2 s ", 2_000_000_000),
+        ("0.5 us", 500),
+        ("0.1 ms", 100_000),
+        ("1 min", 60_000_000_000),
+        ("1 h", 3_600_000_000_000),
+        ("1 ns", 1),
+        ("0 s", 0),
+    ],
+)
+def test_a_period_is_a_whole_number_of_nanoseconds(text: str, count: int) -> None:
+    assert nanoseconds(text) == count
+
+
+@pytest.mark.parametrize("text", ["", "100", "ms", "0.5 ns", "-1 s", "1 day", "1 s 5 ms", "1e3 s"])
+def test_what_is_no_period_is_not_read(text: str) -> None:
+    assert nanoseconds(text) is None

@@ -1,0 +1,243 @@
+"""What hypothesis draws: expressions, sentences, formulas, traces."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any
+
+from hypothesis import strategies as st
+
+from compiler import formula as f
+from fretish import expressions as e
+from fretish import syntax as s
+from tests import meaning
+
+# Templates -----------------------------------------------------------------------------------
+
+_SCOPES = {
+    "null": "",
+    "in": "in m mode",
+    "notin": "when not in m mode",
+    "before": "before m mode",
+    "after": "after m mode",
+    "onlyIn": "only in m mode",
+    "onlyBefore": "only before m mode",
+    "onlyAfter": "only after m mode",
+}
+_CONDITIONS = {"null": "", "regular": "upon p", "holding": "whenever p"}
+_TIMINGS = {
+    "null": "",
+    "immediately": "immediately",
+    "next": "at the next timepoint",
+    "finally": "finally",
+    "eventually": "eventually",
+    "always": "always",
+    "never": "never",
+    "within": "within {n} ticks",
+    "for": "for {n} ticks",
+    "after": "after {n} ticks",
+    "until": "until s",
+    "before": "before s",
+}
+
+
+@dataclass(frozen=True)
+class Template:
+    """One of the 288 templates of FRETish, with what its timing counts."""
+
+    scope: str
+    condition: str
+    timing: str
+    n: int
+
+    @property
+    def sentence(self) -> str:
+        """The template as a sentence about m, p, q and s."""
+        timing = _TIMINGS[self.timing].format(n=self.n)
+        return f"{_SCOPES[self.scope]} {_CONDITIONS[self.condition]} sw shall {timing} satisfy q"
+
+    @property
+    def columns(self) -> tuple[str, ...]:
+        """The variables that it names."""
+        used = {
+            "m": self.scope != "null",
+            "p": self.condition != "null",
+            "q": True,
+            "s": self.timing in ("until", "before"),
+        }
+        return tuple(name for name, named in used.items() if named)
+
+    def satisfied(self, columns: dict[str, list[bool]]) -> bool:
+        """The meaning of the template, from its definition."""
+        m, p, q, s = (columns.get(name, columns["q"]) for name in "mpqs")
+        return meaning.satisfied(self.scope, self.condition, self.timing, self.n, m, p, q, s)
+
+
+def templates(counts: tuple[int, ...] = (0, 1, 2, 3)) -> Iterator[Template]:
+    """Every template, those that count with each of the counts."""
+    for scope in meaning.SCOPES:
+        for condition in meaning.CONDITIONS:
+            for timing in meaning.TIMINGS:
+                for n in counts if timing in meaning.COUNTING else (0,):
+                    yield Template(scope, condition, timing, n)
+
+
+# Sentences -----------------------------------------------------------------------------------
+
+NAMES = ("p", "q", "r1", "speed", "arm.joint", "load%", "too_close", "two words", "a[3]", "Fault")
+"""Names as users choose them; the last but one need quotes."""
+FORMULA_ATOMS = ("a", "b")
+
+names = st.sampled_from(NAMES).map(e.Name)
+numbers = st.sampled_from(["0", "3", "12", "0.5", "1.5e-3", "20.0"]).map(e.Number)
+
+
+def _arithmetic(inner: st.SearchStrategy[e.Expression]) -> st.SearchStrategy[e.Expression]:
+    operators: st.SearchStrategy[Any] = st.sampled_from(["+", "-", "*", "/", "mod", "^"])
+    return st.one_of(
+        st.builds(e.Arithmetic, operators, inner, inner),
+        st.builds(e.Negation, inner),
+        st.builds(lambda arg: e.Call("absReal", (arg,)), inner),
+    )
+
+
+arithmetic: st.SearchStrategy[e.Expression] = st.recursive(
+    st.one_of(names, numbers), _arithmetic, max_leaves=5
+)
+_comparison_operators: st.SearchStrategy[Any] = st.sampled_from(["<", "<=", ">", ">=", "=", "!="])
+comparisons = st.builds(e.Comparison, _comparison_operators, arithmetic, arithmetic)
+truths = st.booleans().map(e.Truth)
+
+
+def _boolean(inner: st.SearchStrategy[e.Expression]) -> st.SearchStrategy[e.Expression]:
+    return st.one_of(
+        st.builds(e.Not, inner),
+        st.builds(e.both, inner, inner),
+        st.builds(e.either, inner, inner),
+        st.builds(e.Xor, inner, inner),
+        st.builds(e.Implies, inner, inner),
+        st.builds(e.Iff, inner, inner),
+        st.builds(lambda a, b: e.Call("f", (a, b)), inner, arithmetic),
+        st.builds(lambda a, b: e.Call("prevOcc", (a, b)), inner, inner),
+    )
+
+
+expressions: st.SearchStrategy[e.Expression] = st.recursive(
+    st.one_of(names, truths, comparisons), _boolean, max_leaves=6
+)
+
+scopes = st.one_of(st.none(), st.builds(s.Scope, st.sampled_from(s.ScopeKind), expressions))
+conditions = st.one_of(
+    st.none(), st.builds(s.Condition, st.sampled_from(s.ConditionKind), expressions)
+)
+_units: st.SearchStrategy[Any] = st.sampled_from(
+    ["tick", "microsecond", "millisecond", "second", "minute", "hour"]
+)
+durations = st.builds(s.Duration, st.sampled_from([0, 1, 2, 3, 250, 10**6]), _units)
+timings = st.one_of(
+    st.just(s.Immediately()),
+    st.just(s.Next()),
+    st.just(s.Finally()),
+    st.builds(s.Eventually, st.booleans()),
+    st.just(s.Always()),
+    st.just(s.Never()),
+    st.builds(s.Within, durations),
+    st.builds(s.For, durations),
+    st.builds(s.After, durations),
+    st.builds(s.Until, expressions),
+    st.builds(s.Before, expressions),
+)
+
+
+def _probability(operator: Any, digits: str) -> s.Probability:
+    return s.Probability(operator, Fraction(digits), digits)
+
+
+probabilities = st.one_of(
+    st.none(),
+    st.builds(
+        _probability, st.sampled_from(["<=", ">=", "=", "!="]), st.sampled_from(["0", "0.95", "1"])
+    ),
+)
+sentences = st.builds(
+    s.Sentence,
+    scope=scopes,
+    condition=conditions,
+    component=st.sampled_from(["sw", "agilex_agent", "Rover 1", "T", "arm.joint"]),
+    probability=probabilities,
+    timing=timings,
+    response=expressions,
+)
+
+# Formulas ------------------------------------------------------------------------------------
+
+
+intervals = st.one_of(
+    st.just(f.EVER),
+    st.builds(f.Interval, st.integers(0, 2), st.none()),
+    st.builds(lambda lo, more: f.Interval(lo, lo + more), st.integers(0, 3), st.integers(0, 2)),
+)
+leaves: st.SearchStrategy[f.Formula] = st.one_of(
+    st.sampled_from([f.Atom(name) for name in FORMULA_ATOMS]), st.sampled_from([f.TRUE, f.FALSE])
+)
+
+
+def _logic(inner: st.SearchStrategy[f.Formula]) -> list[st.SearchStrategy[f.Formula]]:
+    several = st.lists(inner, min_size=2, max_size=3).map(tuple)
+    return [
+        st.builds(f.Not, inner),
+        st.builds(f.And, several),
+        st.builds(f.Or, several),
+        st.builds(f.Xor, inner, inner),
+        st.builds(f.Implies, inner, inner),
+        st.builds(f.Iff, inner, inner),
+    ]
+
+
+def _past(inner: st.SearchStrategy[f.Formula]) -> st.SearchStrategy[f.Formula]:
+    return st.one_of(
+        *_logic(inner),
+        st.builds(f.Previous, inner),
+        st.builds(f.WeakPrevious, inner),
+        st.builds(f.Once, inner, intervals),
+        st.builds(f.Historically, inner, intervals),
+        st.builds(f.Since, inner, inner, intervals),
+    )
+
+
+def _future(inner: st.SearchStrategy[f.Formula]) -> st.SearchStrategy[f.Formula]:
+    return st.one_of(
+        *_logic(inner),
+        st.builds(f.Next, inner),
+        st.builds(f.Eventually, inner, intervals),
+        st.builds(f.Globally, inner, intervals),
+        st.builds(f.Until, inner, inner),
+        st.builds(f.Release, inner, inner),
+    )
+
+
+past_formulas: st.SearchStrategy[f.Formula] = st.recursive(leaves, _past, max_leaves=6)
+"""Nodes as they are: no constructor has folded anything."""
+future_formulas: st.SearchStrategy[f.Formula] = st.recursive(leaves, _future, max_leaves=6)
+logic_formulas: st.SearchStrategy[f.Formula] = st.recursive(
+    leaves, lambda inner: st.one_of(*_logic(inner)), max_leaves=6
+)
+
+# Traces --------------------------------------------------------------------------------------
+
+
+def traces(*columns: str, max_size: int = 8) -> st.SearchStrategy[list[dict[str, bool]]]:
+    """Rows of truth values; the shortest trace has one row."""
+    row = st.fixed_dictionaries({name: st.booleans() for name in columns})
+    return st.lists(row, min_size=1, max_size=max_size)
+
+
+def three_valued(
+    *columns: str, max_size: int = 8
+) -> st.SearchStrategy[list[dict[str, bool | None]]]:
+    """Rows of true, false and unknown."""
+    value = st.sampled_from([False, True, None])
+    row = st.fixed_dictionaries(dict.fromkeys(columns, value))
+    return st.lists(row, min_size=1, max_size=max_size)
