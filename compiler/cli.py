@@ -46,6 +46,13 @@ class _Commands(click.Group):
         formatter.write_usage("fretc", "FILE... [--emit KIND]\n       fretc COMMAND ...", "Usage: ")
 
 
+class _Compile(click.Command):
+    """The default command: it has no name of its own."""
+
+    def format_usage(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        formatter.write_usage("fretc", "FILE... [OPTIONS]")
+
+
 def _is_path(word: str) -> bool:
     return word == "-" or "/" in word or "." in word or Path(word).exists()
 
@@ -76,11 +83,12 @@ def _say(diagnostics: Sequence[Diagnostic]) -> None:
 def cli() -> None:
     """From FRETish requirements to monitors, audited logs and a traceability report.
 
-    `fretc FILE...` parses and formalizes requirements; with `--emit` it makes files of them.
+    `fretc FILE...` parses and formalizes requirements; with `--emit` it makes files of them:
+    ltl, monitor, ajpf, json, fret-json. `fretc FILE --help` says more.
     """
 
 
-@cli.command(_DEFAULT, hidden=True)
+@cli.command(_DEFAULT, cls=_Compile, hidden=True)
 @click.argument("files", nargs=-1, required=True, metavar="FILE...")
 @click.option(
     "--emit",
@@ -196,7 +204,7 @@ def _deliver(files: dict[str, str], output: str) -> None:
         click.echo(f"wrote {Path(output) / path}", err=True)
 
 
-@cli.command()
+@cli.command(short_help="Put sentences into their canonical wording.")
 @click.argument("files", nargs=-1, required=True, metavar="FILE...")
 @click.option("--check", is_flag=True, help="Write nothing; exit with 1 if a file would change.")
 @click.option("-o", "--output", type=click.Choice(("-",)), help="`-` prints in place of writing.")
@@ -220,7 +228,7 @@ def fmt(files: tuple[str, ...], check: bool, output: str | None) -> None:
             _deliver({path.name: file.after}, str(path.parent))
 
 
-@cli.command("import")
+@cli.command("import", short_help="Read requirements that FRET exported.")
 @click.argument("file", metavar="FILE")
 @click.option(
     "-o", "--output", default="requirements", show_default=True, help="Folder; `-` prints."
@@ -271,7 +279,7 @@ def _exists(path: str) -> Diagnostic:
     )
 
 
-@cli.command()
+@cli.command(short_help="Audit recorded runs against all requirements.")
 @click.argument("logs", nargs=-1, required=True, metavar="LOG...")
 @click.option(
     "--requirements", default="requirements", show_default=True, help="Folder, or one file."
@@ -324,7 +332,7 @@ def _coloured(lines: Sequence[tuple[str, str | None]]) -> str:
     )
 
 
-@cli.command()
+@cli.command(short_help="Trace hazard to verdict in one HTML file.")
 @click.option("--html", "html", default="build/report.html", show_default=True, help="The report.")
 @click.option("--json", "json_", help="Also write what the report says as JSON.")
 @click.option(
@@ -363,7 +371,7 @@ def report(
             _deliver({Path(path).name: text}, str(Path(path).parent))
 
 
-@cli.command()
+@cli.command(short_help="Record a mission of the simulated robot.")
 @click.option("--out", required=True, help="The MCAP file to record.")
 @click.option("--seed", default=1, show_default=True, type=click.IntRange(min=0))
 @click.option(
