@@ -14,7 +14,7 @@ from fretish.declarations import Declarations
 from fretish.units import base_name
 from monitors import kernel
 from monitors.evidence import Evidence, Moment, Violation, health
-from monitors.recordings import Recording
+from monitors.samples import Recording
 from monitors.signals import blind_zones
 from monitors.traces import Column, Timeline, Trace, trace
 

@@ -8,7 +8,6 @@ from __future__ import annotations
 from array import array
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -20,11 +19,8 @@ from monitors import findings
 from monitors.container import Stream
 from monitors.damage import LATEST
 from monitors.decoding import Decode, decoder, short_type, stamp
-from monitors.propositions import Numbers, Times
+from monitors.samples import Gap, Numbers, Times
 from monitors.signals import FieldError, nearest, sample
-
-if TYPE_CHECKING:
-    from monitors.recordings import Gap
 
 
 @dataclass(slots=True)

@@ -8,13 +8,10 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Collection
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
 
 from fretish.diagnostic import Code
 from monitors.container import Summary
-
-if TYPE_CHECKING:
-    from monitors.recordings import Gap
+from monitors.samples import Gap
 
 LATEST = 2**62
 """Nanoseconds, the year 2116; a later time is damage."""

@@ -12,7 +12,7 @@ from typing import Any
 from fretish.diagnostic import Diagnostic
 from fretish.rendering import as_json
 from monitors.kernel import NO_DATA, Outcome
-from monitors.recordings import Recording
+from monitors.samples import Recording
 
 SCHEMA = "fretc-evidence-1"
 

@@ -7,7 +7,6 @@ nanoseconds.
 from __future__ import annotations
 
 from collections.abc import Collection
-from typing import TYPE_CHECKING
 
 from fretish.clock import Clock
 from fretish.declarations import Signal
@@ -15,10 +14,8 @@ from fretish.diagnostic import Code, Diagnostic, Severity, suggestion
 from fretish.source import Span
 from monitors.damage import Damage
 from monitors.decoding import short_type
+from monitors.samples import Gap
 from monitors.signals import FieldError
-
-if TYPE_CHECKING:
-    from monitors.recordings import Gap
 
 _SECOND = 10**9
 _MOST_TOLD = 20

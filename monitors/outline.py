@@ -11,7 +11,8 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-Numbers = NDArray[np.float64]
+from monitors.samples import Numbers
+
 Corners = Sequence[tuple[float, float]]
 _DIRECTIONS = 3600
 """How finely the circle is looked at: a tenth of a degree."""

@@ -9,7 +9,6 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import reduce
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,12 +16,8 @@ from numpy.typing import NDArray
 from fretish import expressions as e
 from fretish.declarations import Declarations, Proposition, Signal
 from fretish.units import ONE, Unit, unit
+from monitors.samples import Numbers, Recording, Times
 
-if TYPE_CHECKING:
-    from monitors.recordings import Recording
-
-Times = NDArray[np.int64]
-Numbers = NDArray[np.float64]
 States = NDArray[np.int8]
 """One of `FALSE`, `UNKNOWN`, `TRUE` each: `and` is the least of them, `or` the greatest."""
 

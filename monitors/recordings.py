@@ -10,8 +10,7 @@ from __future__ import annotations
 import hashlib
 import os
 import stat
-from collections.abc import Collection, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Collection, Sequence
 from io import BufferedReader
 from pathlib import Path
 
@@ -24,76 +23,16 @@ from fretish.source import Source, Span
 from monitors import findings
 from monitors.columns import Column, Columns
 from monitors.container import MAGIC
-from monitors.propositions import Numbers, Times
+from monitors.samples import Recording, Samples, Topic
 from monitors.walk import Walk
 
 _MOST_TICKS = 20_000_000
-
-Gap = tuple[int, int]
-"""First and last nanosecond of a time whose messages are lost."""
-
-
-@dataclass(frozen=True, slots=True)
-class Samples:
-    """One signal.
-
-    `times` has shape (n,), nanoseconds that do not decrease; equal times stand in the order of
-    the file. `values` has shape (n,), in the signal's base unit; NaN is unknown.
-    """
-
-    times: Times
-    values: Numbers
-
-
-@dataclass(frozen=True, slots=True)
-class Topic:
-    """How one topic of a log is, by the declared time (`log_time` where no signal reads it).
-
-    `first_ns` and `last_ns` are None for a topic without messages. `out_of_order` counts the
-    messages that are earlier than one before them, `equal_stamps` those with the time of another.
-    """
-
-    name: str
-    type: str
-    encoding: str
-    count: int
-    first_ns: int | None
-    last_ns: int | None
-    longest_gap_ns: int
-    out_of_order: int
-    equal_stamps: int
-
-
-@dataclass(frozen=True, slots=True)
-class Recording:
-    """What one log holds of the declared signals.
-
-    `start_ns` and `end_ns` are the times of the first and the last message of the topics that the
-    bindings read, whichever signals were asked for, widened to the `gaps`. `ticks` are the times
-    of the clock's topic, where the clock ticks by message. Each gap includes both its ends.
-    `nearest` is, for signals that are the nearest of many readings, the least distance in metres
-    that the sensor says it can report. `intact` is False when anything was found that could have
-    lost messages.
-    """
-
-    name: str
-    sha256: str
-    size: int
-    start_ns: int
-    end_ns: int
-    samples: Mapping[str, Samples]
-    ticks: Times
-    gaps: tuple[Gap, ...]
-    topics: Mapping[str, Topic]
-    nearest: Mapping[str, float]
-    findings: tuple[Diagnostic, ...]
-    intact: bool
 
 
 def read(path: str, declarations: Declarations, wanted: Collection[str]) -> Recording | Diagnostic:
     """Read a log.
 
-    Every byte is looked at once; only the messages of the topics in question are decoded.
+    All bytes are hashed and all records walked; only the messages in question are decoded.
 
     Args:
         path: the file, as the user names it.

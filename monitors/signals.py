@@ -19,7 +19,8 @@ from fretish import expressions as e
 from fretish.declarations import Declarations, Proposition, Reading, Reduce, Signal
 from fretish.diagnostic import Code, Diagnostic, Severity, suggestion
 from monitors.outline import blind_share, distances, places
-from monitors.propositions import TRUE, ExpressionError, Numbers, Scope, number, truth
+from monitors.propositions import TRUE, ExpressionError, Scope, number, truth
+from monitors.samples import Numbers
 
 RANGE_MIN = "range_min"
 """The field of a range sensor's messages that says what is too near for it."""

@@ -12,8 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fretish.declarations import Aggregate, Declarations
-from monitors.propositions import UNKNOWN, States, Steps, Times, evaluate, truth_values
-from monitors.recordings import Recording
+from monitors.propositions import UNKNOWN, States, Steps, evaluate, truth_values
+from monitors.samples import Recording, Times
 
 Column = tuple[bool | None, ...]
 

@@ -13,7 +13,7 @@ from collections import Counter
 from collections.abc import Callable
 from dataclasses import dataclass
 from io import BufferedReader
-from typing import TYPE_CHECKING, Protocol
+from typing import Protocol
 
 from mcap.data_stream import ReadDataStream
 from mcap.opcode import Opcode
@@ -34,9 +34,7 @@ from monitors.container import (
     unpacked,
 )
 from monitors.damage import LATEST, Damage, Damages
-
-if TYPE_CHECKING:
-    from monitors.recordings import Gap
+from monitors.samples import Gap
 
 _MESSAGE = struct.Struct("<HIQQ")
 """What each message begins with: channel, sequence, log time, publish time."""

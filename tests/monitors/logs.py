@@ -16,7 +16,8 @@ from fretish.bindings import read_bindings
 from fretish.declarations import Declarations
 from fretish.diagnostic import Diagnostic
 from fretish.source import Source
-from monitors.recordings import Recording, read
+from monitors.recordings import read
+from monitors.samples import Recording
 
 MS = 10**6
 S = 10**9

@@ -15,7 +15,7 @@ from fretish.source import Source
 from monitors.audit import Watched, audit, signals_of
 from monitors.evidence import Evidence, as_record
 from monitors.loading import load
-from monitors.recordings import Recording, Samples
+from monitors.samples import Recording, Samples
 
 S = 10**9
 BINDINGS = """

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from fretish import expressions as e
 from monitors.propositions import ExpressionError, Scope, Steps, evaluate, number, truth
-from monitors.recordings import Recording, Samples
+from monitors.samples import Recording, Samples
 from tests.monitors.logs import declare
 
 NAN, INF = float("nan"), float("inf")

@@ -5,7 +5,8 @@ from typing import Any
 import pytest
 
 from fretish.diagnostic import Code
-from monitors.recordings import Recording, Topic, read
+from monitors.recordings import read
+from monitors.samples import Recording, Topic
 from tests.monitors.logs import (
     LZ4,
     MS,

@@ -7,7 +7,7 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from monitors.propositions import evaluate
-from monitors.recordings import Recording, Samples
+from monitors.samples import Recording, Samples
 from monitors.traces import timeline, trace
 from tests.monitors.logs import MS, S, declare
 
