@@ -47,7 +47,8 @@ def trace(declarations: Declarations, recording: Recording, names: Collection[st
     """The propositions' truth at each tick.
 
     A tick sees what happened since the tick before: the steps after that tick's time, up to and
-    including its own time; the first tick those at its own time. `any` of them makes it true, or
+    including its own time; the first tick what happened since the log began, or, where the clock
+    ticks by message, what happened at its own time. `any` of them makes it true, or
     else unknown if one of them is unknown; `all` makes it false, or else unknown; `last` is the
     last one. Without a step it sees what was in force before. `on_unknown` replaces what is then
     unknown.
@@ -60,7 +61,8 @@ def trace(declarations: Declarations, recording: Recording, names: Collection[st
     ticks = timeline(declarations, recording)
     is_cut = len(ticks.times) > 0 and recording.end_ns > ticks.times[-1]
     times = np.append(ticks.times, recording.end_ns) if is_cut else ticks.times
-    columns = {name: _column(name, declarations, recording, times) for name in names}
+    first = recording.start_ns if ticks.period is not None else None
+    columns = {name: _column(name, declarations, recording, times, first) for name in names}
     if not is_cut:
         return Trace(ticks, columns, None)
     whole = {name: column[:-1] for name, column in columns.items()}
@@ -70,27 +72,44 @@ def trace(declarations: Declarations, recording: Recording, names: Collection[st
 def timeline(declarations: Declarations, recording: Recording) -> Timeline:
     """The whole ticks of the declared clock over the recording.
 
-    Every `period` from the first bound message on, not later than the last; or one for each
-    message of the clock's topic, and messages with the same time are a tick each.
+    Every `period` from the start on, not later than the last bound message; or one for each
+    message of the clock's topic, and messages with the same time are a tick each. The start is
+    the first bound message, or the first of the last topic to begin, where that is less than a
+    tick later: recorders hear no two topics at once, and the first tick shall know all of them.
     """
     period = declarations.clock.period
     if period is None:
         return Timeline(recording.ticks, None)
-    count = max(0, recording.end_ns - recording.start_ns) // period + 1
-    return Timeline(recording.start_ns + np.arange(count, dtype=np.int64) * period, period)
+    start = _start(declarations, recording, period)
+    count = max(0, recording.end_ns - start) // period + 1
+    return Timeline(start + np.arange(count, dtype=np.int64) * period, period)
 
 
-def _column(name: str, declarations: Declarations, recording: Recording, ticks: Times) -> Column:
+def _start(declarations: Declarations, recording: Recording, period: int) -> int:
+    topics = {signal.path.topic for signal in declarations.signals.values()}
+    found = (recording.topics[name].first_ns for name in topics if name in recording.topics)
+    last = max((first for first in found if first is not None), default=recording.start_ns)
+    return last if 0 <= last - recording.start_ns < period else recording.start_ns
+
+
+def _column(
+    name: str, declarations: Declarations, recording: Recording, ticks: Times, first: int | None
+) -> Column:
     proposition = declarations.propositions[name]
     steps = evaluate(proposition, declarations, recording)
-    values = truth_values(_seen(steps, ticks, proposition.aggregate))
+    values = truth_values(_seen(steps, ticks, proposition.aggregate, first))
     default = proposition.on_unknown
     return tuple(default if value is None else value for value in values)
 
 
-def _seen(steps: Steps, ticks: Times, aggregate: Aggregate) -> States:
-    """The state of each tick, shape (ticks,)."""
+def _seen(steps: Steps, ticks: Times, aggregate: Aggregate, first: int | None) -> States:
+    """The state of each tick, shape (ticks,); the first tick sees what came from `first` on."""
     before, upto = _windows(steps.times, ticks)
+    if first is not None and len(ticks):
+        # What is unknown only because its topic has not begun yet says nothing of the first tick.
+        begun = int(np.searchsorted(steps.times, first, "left"))
+        known = np.flatnonzero(steps.states[begun : upto[0]] != UNKNOWN)
+        before[0] = begun + int(known[0]) if len(known) else max(begun, int(upto[0]) - 1)
     held = np.where(before > 0, steps.states[before - 1], UNKNOWN).astype(np.int8)
     filled = upto > before
     if not filled.any():

@@ -7,7 +7,7 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from monitors.propositions import evaluate
-from monitors.samples import Recording, Samples
+from monitors.samples import Recording, Samples, Topic
 from monitors.traces import timeline, trace
 from tests.monitors.logs import MS, S, declare
 
@@ -198,3 +198,34 @@ def test_ten_minutes_are_a_column_of_6001_ticks(expression: str) -> None:
     log = replace(recording([], end=600 * S), samples=samples)
     declarations = declare(text)
     assert len(trace(declarations, log, ["p"]).columns["p"]) == 6001
+
+
+def two_topics(second_begins: int) -> Recording:
+    """/x from 0 on, /y from later on; both have a sample every 10 ns."""
+    log = recording([(t, LOW) for t in range(0, 60, 10)], end=55)
+    y = np.arange(second_begins, 56, 10, dtype=np.int64)
+    topics = {
+        name: Topic(name, "", "cdr", 1, first, 55, 10, 0, 0)
+        for name, first in (("/x", 0), ("/y", second_begins))
+    }
+    samples = {**log.samples, "y": Samples(y, np.full(len(y), LOW))}
+    return replace(log, samples=samples, topics=topics)
+
+
+BOTH = (
+    bindings("any")
+    .replace("x < 5", "x < 5 and y < 5")
+    .replace("[proposition.p]", '[signal.y]\npath = "/y.data"\n[proposition.p]')
+)
+
+
+def test_the_first_tick_waits_for_a_topic_that_begins_less_than_a_tick_later() -> None:
+    found = trace(declare(BOTH), two_topics(3), ["p"])
+    assert found.timeline.times.tolist() == [3, 13, 23, 33, 43, 53]
+    assert found.columns["p"] == (True,) * 6
+
+
+def test_a_topic_that_begins_later_than_that_leaves_the_ticks_before_it_unknown() -> None:
+    found = trace(declare(BOTH), two_topics(15), ["p"])
+    assert found.timeline.times.tolist() == [0, 10, 20, 30, 40, 50]
+    assert found.columns["p"] == (None, None, True, True, True, True)

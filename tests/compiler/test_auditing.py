@@ -1,0 +1,188 @@
+"""The audit as a user runs it, on the recorded mission that the repository carries."""
+
+import json
+import shutil
+import sys
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import jsonschema  # type: ignore[import-untyped]
+import pytest
+
+from compiler import cli
+
+ROOT = Path(__file__).parent.parent.parent
+MISSION = ROOT / "traces/mission-seed15.mcap"
+SCHEMA = json.loads((ROOT / "templates/json/evidence.schema.json").read_text("utf-8"))
+
+
+@dataclass(frozen=True)
+class Run:
+    status: int
+    out: str
+    err: str
+
+
+Fretc = Callable[..., Run]
+
+
+@pytest.fixture
+def fretc(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> Fretc:
+    """Run the command in a folder with the repository's requirements and its log."""
+    monkeypatch.chdir(tmp_path)
+    shutil.copytree(ROOT / "requirements", "requirements")
+    shutil.copy(MISSION, "run.mcap")
+
+    def run(*arguments: str) -> Run:
+        monkeypatch.setattr(sys, "argv", ["fretc", *arguments])
+        with pytest.raises(SystemExit) as exit_:
+            cli.main()
+        printed = capsys.readouterr()
+        assert "Traceback" not in printed.err
+        return Run(int(str(exit_.value.code or 0)), printed.out, printed.err)
+
+    return run
+
+
+def evidence() -> Any:
+    return json.loads(Path("build/evidence.json").read_text("utf-8"))
+
+
+def change(path: str, old: str, new: str) -> None:
+    text = Path(path).read_text("utf-8")
+    assert old in text
+    Path(path).write_text(text.replace(old, new), "utf-8")
+
+
+def test_the_recorded_mission_shows_r1_with_the_stops_that_a_person_sees_in_it(
+    fretc: Fretc,
+) -> None:
+    run = fretc("audit", "run.mcap")
+    assert run == Run(
+        0,
+        "run.mcap\n"
+        "  ✔ R1  satisfied     held, 98 triggers, answered after 0.00 s (median), "
+        "39.80 s (longest)\n",
+        "wrote build/evidence.json\n",
+    )
+    (result,) = evidence()["results"]
+    triggers = [moment["seconds"] for moment in result["triggers"]]
+    # traces/README.md: stops requested at 5.5, 21.5 and 64.2 s, by the scan just before.
+    assert {5.5, 21.5, 64.2} <= set(triggers)
+    assert not [t for t in triggers if 9.5 < t < 21.0]
+
+
+def test_the_evidence_fits_its_schema_and_is_the_same_again(fretc: Fretc) -> None:
+    fretc("audit", "run.mcap")
+    first = Path("build/evidence.json").read_bytes()
+    jsonschema.validate(evidence(), SCHEMA)
+    fretc("audit", "run.mcap")
+    assert Path("build/evidence.json").read_bytes() == first
+
+
+def test_json_goes_to_standard_output_as_one_array(fretc: Fretc) -> None:
+    run = fretc("audit", "run.mcap", "--format", "json")
+    assert json.loads(run.out) == evidence()["results"]
+
+
+def test_a_bound_makes_the_slow_answer_a_violation(fretc: Fretc) -> None:
+    change("requirements/r1.fret", "shall eventually", "shall within 300 milliseconds")
+    run = fretc("audit", "run.mcap")
+    assert run.status == 1
+    assert "  ✘ R1  violated      broken from " in run.out
+    (result,) = evidence()["results"]
+    first = result["violations"][0]
+    assert first["trigger"] is not None
+    assert set(first["values"]) == {"clearance", "vx", "wz"}
+
+
+def test_one_changed_byte_in_the_middle_changes_the_hash_and_is_no_pass(fretc: Fretc) -> None:
+    fretc("audit", "run.mcap")
+    before = evidence()["results"][0]["hashes"]["log"]
+    data = bytearray(Path("run.mcap").read_bytes())
+    data[len(data) // 2] ^= 1
+    Path("run.mcap").write_bytes(data)
+    run = fretc("audit", "run.mcap")
+    (result,) = evidence()["results"]
+    assert (run.status, result["verdict"]) == (3, "no data")
+    assert result["hashes"]["log"] != before
+    assert result["health"]["intact"] is False
+    assert run.err.startswith("F404 warning: the log is damaged near byte ")
+
+
+def test_a_log_that_ends_in_the_middle_is_bad_input(fretc: Fretc) -> None:
+    data = Path("run.mcap").read_bytes()
+    Path("cut.mcap").write_bytes(data[: len(data) // 2])
+    run = fretc("audit", "cut.mcap")
+    assert run.status == 2
+    assert run.err.startswith("F403 the log breaks off after byte ")
+    assert not Path("build").exists()
+
+
+def test_an_unreadable_log_keeps_the_evidence_of_the_last_audit(fretc: Fretc) -> None:
+    fretc("audit", "run.mcap")
+    before = Path("build/evidence.json").read_bytes()
+    assert fretc("audit", "rnu.mcap").status == 2
+    assert Path("build/evidence.json").read_bytes() == before
+
+
+def test_a_bad_log_beside_a_good_one_is_in_the_evidence_and_in_the_status(fretc: Fretc) -> None:
+    Path("bad.mcap").write_bytes(b"no log")
+    run = fretc("audit", "run.mcap", "bad.mcap")
+    assert run.status == 2
+    verdicts = [(result["run"], result["verdict"]) for result in evidence()["results"]]
+    assert verdicts == [("run.mcap", "satisfied"), ("bad.mcap", "no data")]
+    jsonschema.validate(evidence(), SCHEMA)
+
+
+def test_a_topic_that_is_not_in_the_log_is_told_at_its_binding(fretc: Fretc) -> None:
+    change("requirements/bindings.toml", '"/scan.ranges[:]"', '"/scna.ranges[:]"')
+    run = fretc("audit", "run.mcap")
+    assert run.status == 2
+    assert run.err.splitlines()[:5] == [
+        "F405 the topic `/scna` is not in the log",
+        "  --> requirements/bindings.toml:9:13",
+        '   | path      = "/scna.ranges[:]"',
+        "   |             ^^^^^^^^^^^^^^^^^",
+        "help: did you mean `/scan`?",
+    ]
+
+
+def test_a_proposition_without_a_binding_is_told_at_the_sentence(fretc: Fretc) -> None:
+    change("requirements/r1.fret", "satisfy stopped", "satisfy halted")
+    run = fretc("audit", "run.mcap")
+    assert run == Run(
+        2,
+        "",
+        "F304 `halted` of R1 has no binding in requirements/bindings.toml\n"
+        "  --> requirements/r1.fret:11:58\n"
+        "   | whenever too_close agilex_agent shall eventually satisfy halted\n"
+        "   |                                                          ^^^^^^\n"
+        "help: add `[proposition.halted]` there\n",
+    )
+
+
+def test_a_bound_that_the_sensor_cannot_see_is_told(fretc: Fretc) -> None:
+    change("requirements/bindings.toml", 'reduce    = "outline"', 'reduce    = "min"')
+    run = fretc("audit", "run.mcap")
+    assert (run.status, evidence()["results"][0]["verdict"]) == (3, "vacuous")
+    assert run.err.startswith(
+        "F311 warning: `too_close` compares `clearance` with 0.05 m, and `/scan` reports nothing "
+        "nearer than 0.12 m"
+    )
+
+
+def test_a_retired_requirement_is_not_audited(fretc: Fretc) -> None:
+    change("requirements/r1.fret", '"approved"', '"retired"')
+    assert fretc("audit", "run.mcap") == Run(2, "", "F909 there is no requirement to audit\n")
+
+
+def test_without_bindings_nothing_can_be_audited(fretc: Fretc) -> None:
+    Path("requirements/bindings.toml").unlink()
+    run = fretc("audit", "run.mcap")
+    assert run.status == 2
+    assert run.err.startswith("F304 no bindings say what the propositions mean in the messages\n")
