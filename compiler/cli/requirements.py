@@ -1,0 +1,192 @@
+"""The commands about requirements: formalize and emit, format, import."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from compiler.cli.group import DEFAULT, Compile
+from compiler.cli.output import BAD, SHOWN, VIOLATION, deliver, say, stop
+from fretish.diagnostic import Code, Diagnostic, has_errors
+
+if TYPE_CHECKING:
+    from compiler.project import Project
+    from compiler.targets.target import Options
+
+_EMITS = ("ltl", "monitor", "ajpf", "json", "fret-json")
+_NOTATIONS = ("plain", "fret", "spot", "nusmv", "latex")
+
+
+@click.command(DEFAULT, cls=Compile, hidden=True)
+@click.argument("files", nargs=-1, required=True, metavar="FILE...")
+@click.option(
+    "--emit",
+    "kinds",
+    multiple=True,
+    type=click.Choice(_EMITS),
+    help="Make this kind of file; may be given several times.",
+)
+@click.option("-o", "--output", default="build", show_default=True, help="Folder; `-` prints.")
+@click.option("--bindings", help="bindings.toml; the one beside the first FILE if not given.")
+@click.option(
+    "--format",
+    "form",
+    type=click.Choice(("text", "json")),
+    default="text",
+    show_default=True,
+    help="Form of the formulas.",
+)
+@click.option(
+    "--notation",
+    type=click.Choice(_NOTATIONS),
+    default="plain",
+    show_default=True,
+    help="Spelling of the formulas.",
+)
+@click.option("--simplify", is_flag=True, help="Show a simplified formula beside the exact one.")
+def compile_(
+    files: tuple[str, ...],
+    kinds: tuple[str, ...],
+    output: str,
+    bindings: str | None,
+    form: str,
+    notation: str,
+    simplify: bool,
+) -> None:
+    """Parse and formalize requirements; make files of them.
+
+    FILE holds one or more requirements; `-` is standard input.
+    """
+    from compiler.project import load
+
+    project = load(files, bindings)
+    say(project.diagnostics)
+    as_json = form == "json" and set(kinds) <= {"ltl"}
+    if as_json and _only_failed(project):
+        _deliver_formulas(project, output if kinds else "-")
+        raise SystemExit(BAD if has_errors(project.diagnostics) else SHOWN)
+    if has_errors(project.diagnostics):
+        raise SystemExit(BAD)
+    from compiler.targets.target import Options
+
+    options = Options(notation, simplify, tuple(f.requirement for f in project.failed))
+    if kinds:
+        _emit(project, dict.fromkeys(kinds), output, options)
+    else:
+        _print_formulas(project, options)
+
+
+def _only_failed(project: Project) -> bool:
+    """Whether every error is that of a sentence: the list of formulas then carries it."""
+    told = [failed.diagnostic for failed in project.failed]
+    return all(d in told for d in project.diagnostics if d.is_error)
+
+
+def _deliver_formulas(project: Project, output: str) -> None:
+    """The array of `--emit ltl --format json`, in the order of the files."""
+    from compiler.record import failed, formulas
+    from compiler.templating import to_json
+
+    found = {id(rule.requirement): formulas(rule) for rule in project.rules}
+    found |= {id(f.requirement): failed(f.requirement, f.diagnostic) for f in project.failed}
+    text = to_json([found[id(r)] for r in project.requirements])
+    deliver({"ltl.json": f"{text}\n"}, output)
+
+
+def _print_formulas(project: Project, options: Options) -> None:
+    from compiler.targets.ltl import text
+
+    click.echo("\n".join(text(rule, options) for rule in project.rules), nl=False)
+
+
+def _emit(project: Project, kinds: dict[str, None], output: str, options: Options) -> None:
+    from compiler.targets import TARGETS
+
+    targets = [TARGETS[kind] for kind in kinds]
+    refused = [
+        diagnostic
+        for target in targets
+        for rule in project.rules
+        if (diagnostic := target.refuse(rule)) is not None
+    ]
+    if refused:
+        stop(*refused)
+    files = [artifact for target in targets for artifact in target.emit(project.rules, options)]
+    deliver({str(artifact.path): artifact.text for artifact in files}, output)
+
+
+@click.command(short_help="Put sentences into their canonical wording.")
+@click.argument("files", nargs=-1, required=True, metavar="FILE...")
+@click.option("--check", is_flag=True, help="Write nothing; exit with 1 if a file would change.")
+@click.option("-o", "--output", type=click.Choice(("-",)), help="`-` prints in place of writing.")
+def fmt(files: tuple[str, ...], check: bool, output: str | None) -> None:
+    """Put the sentences of requirement files into their canonical wording."""
+    from compiler.formatting import formatted
+
+    done, wrong = formatted(files)
+    if wrong:
+        stop(*wrong)
+    changed = [file for file in done if file.before != file.after]
+    if output == "-":
+        click.echo("".join(file.after for file in done), nl=False)
+    elif check:
+        for file in changed:
+            click.echo(f"would change {file.path}", err=True)
+        raise SystemExit(VIOLATION if changed else SHOWN)
+    else:
+        for file in changed:
+            path = Path(file.path)
+            deliver({path.name: file.after}, str(path.parent))
+
+
+@click.command("import", short_help="Read requirements that FRET exported.")
+@click.argument("file", metavar="FILE")
+@click.option(
+    "-o", "--output", default="requirements", show_default=True, help="Folder; `-` prints."
+)
+@click.option("--id-column", help="CSV: the column of the ids.")
+@click.option("--text-column", help="CSV: the column of the sentences or texts.")
+@click.option("--project-column", help="CSV: the column of the projects.")
+@click.option("--force", is_flag=True, help="Write over files that are there.")
+def import_(
+    file: str,
+    output: str,
+    id_column: str | None,
+    text_column: str | None,
+    project_column: str | None,
+    force: bool,
+) -> None:
+    """Read requirements that FRET exported: JSON, or a CSV.
+
+    Writes a `.fret` file for each project, and `bindings.toml` with FRET's variables. Formulas are
+    not taken over: they are made from the sentences.
+    """
+    from compiler.exchange import read_export
+    from compiler.files import read
+
+    source = read(file)
+    if isinstance(source, Diagnostic):
+        stop(source)
+        return
+    asked = {"id": id_column, "text": text_column, "project": project_column}
+    result = read_export(source, {part: name for part, name in asked.items() if name})
+    say(result.diagnostics)
+    if has_errors(result.diagnostics):
+        raise SystemExit(BAD)
+    files = {str(artifact.path): artifact.text for artifact in result.artifacts}
+    there = [path for path in files if (Path(output) / path).exists()]
+    if there and output != "-" and not force:
+        stop(_exists(str(Path(output) / there[0])))
+    deliver(files, output)
+    counts = f"{result.requirements} requirements, {result.variables} variables"
+    click.echo(f"imported {counts}", err=True)
+
+
+def _exists(path: str) -> Diagnostic:
+    return Diagnostic(
+        Code.NOT_WRITTEN,
+        f"`{path}` is there already",
+        help="name another folder with `-o`, or write over it with `--force`",
+    )

@@ -1,0 +1,172 @@
+"""The commands about runs: record, audit, report."""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import click
+
+from compiler.cli.output import BAD, NOT_SHOWN, SHOWN, VIOLATION, deliver, not_written, say, stop
+from fretish.diagnostic import Code, Diagnostic, has_errors
+
+
+@click.command(short_help="Audit recorded runs against all requirements.")
+@click.argument("logs", nargs=-1, required=True, metavar="LOG...")
+@click.option(
+    "--requirements", default="requirements", show_default=True, help="Folder, or one file."
+)
+@click.option("--bindings", help="bindings.toml; the one in the requirements' folder if not given.")
+@click.option(
+    "--evidence", default="build/evidence.json", show_default=True, help="Where evidence goes."
+)
+@click.option(
+    "--format", "form", type=click.Choice(("text", "json")), default="text", show_default=True
+)
+def audit(
+    logs: tuple[str, ...], requirements: str, bindings: str | None, evidence: str, form: str
+) -> None:
+    """Audit recorded runs against all requirements.
+
+    LOG is an MCAP file. Each run and requirement gets a verdict: satisfied, violated,
+    inconclusive, vacuous or no data; the evidence goes to a JSON file.
+    """
+    from compiler.auditing import audit_logs
+    from compiler.project import beside, load, requirement_files
+
+    files = requirement_files(requirements)
+    if isinstance(files, Diagnostic):
+        stop(files)
+        return
+    project = load(files, bindings or beside(requirements, "bindings.toml"))
+    say(project.diagnostics)
+    if has_errors(project.diagnostics):
+        raise SystemExit(BAD)
+    result = audit_logs(project, logs)
+    say(result.diagnostics)
+    if not result.results:
+        raise SystemExit(BAD)
+    path = Path(evidence)
+    if result.read:  # a mistyped name must not cost the evidence of the last audit
+        deliver({path.name: result.evidence}, str(path.parent))
+    click.echo(result.as_json if form == "json" else _coloured(result.text), nl=False)
+    if has_errors(result.diagnostics):
+        raise SystemExit(BAD)
+    raise SystemExit(VIOLATION if result.violated else SHOWN if result.shown else NOT_SHOWN)
+
+
+def _coloured(lines: Sequence[tuple[str, str | None]]) -> str:
+    """The lines, each in its colour where standard output is a terminal that wants colours."""
+    plain = not sys.stdout.isatty() or "NO_COLOR" in os.environ
+    return "".join(
+        f"{text if plain or colour is None else click.style(text, fg=colour)}\n"
+        for text, colour in lines
+    )
+
+
+@click.command(short_help="Trace hazard to verdict in one HTML file.")
+@click.option("--html", "html", default="build/report.html", show_default=True, help="The report.")
+@click.option("--json", "json_", help="Also write what the report says as JSON.")
+@click.option(
+    "--requirements", default="requirements", show_default=True, help="Folder, or one file."
+)
+@click.option("--bindings", help="bindings.toml; the one in the requirements' folder if not given.")
+@click.option("--hazards", help="hazards.toml; the one in the requirements' folder if not given.")
+@click.option("--evidence", default="build/evidence.json", show_default=True)
+def report(
+    html: str,
+    json_: str | None,
+    requirements: str,
+    bindings: str | None,
+    hazards: str | None,
+    evidence: str,
+) -> None:
+    """Trace hazard, requirement, formula, artefact, run and verdict in one HTML file."""
+    from compiler.project import beside, load, requirement_files
+    from compiler.report import make
+
+    files = requirement_files(requirements)
+    if isinstance(files, Diagnostic):
+        stop(files)
+        return
+    project = load(
+        files,
+        bindings or beside(requirements, "bindings.toml"),
+        hazards or beside(requirements, "hazards.toml"),
+    )
+    made = make(project, evidence)
+    say([*project.diagnostics, *made.diagnostics])
+    if made.html is None or made.json is None:
+        raise SystemExit(BAD)
+    for path, text in ((html, made.html), (json_, made.json)):
+        if path is not None:
+            deliver({Path(path).name: text}, str(Path(path).parent))
+
+
+@click.command(short_help="Record a mission of the simulated robot.")
+@click.option("--out", required=True, help="The MCAP file to record.")
+@click.option("--seed", default=1, show_default=True, type=click.IntRange(min=0))
+@click.option(
+    "--duration",
+    default=240.0,
+    show_default=True,
+    type=click.FloatRange(min=0, min_open=True),
+    help="Simulated seconds after which the mission is given up.",
+)
+def simulate(out: str, seed: int, duration: float) -> None:
+    """Let the simulated robot drive its mission and record it.
+
+    Needs the extra `sim`: pip install 'fretc[sim]'.
+    """
+    from simulation import missing
+
+    absent = missing()
+    if absent:
+        stop(_missing_extra(absent))
+    from simulation.mission import record
+
+    path = Path(out)
+    if path.is_dir():
+        stop(not_written(out, "it is a directory"))
+    with _progress(duration) as tell:
+        try:
+            mission = record(path, seed, duration, tell)
+        except OSError as error:
+            stop(not_written(out, error.strerror or str(error)))
+            return
+    click.echo(f"wrote {out}", err=True)
+    click.echo(
+        f"seed {mission.seed}: {mission.duration:.1f} s, "
+        f"{mission.goals_reached} of {mission.goals_total} goals, {mission.stops} stops, "
+        f"least clearance {mission.true_clearance * 100:.1f} cm, {mission.messages} messages"
+    )
+
+
+def _progress(seconds: float) -> Any:
+    """A context manager that gives a function to tell the simulated seconds to."""
+    from contextlib import contextmanager
+
+    @contextmanager
+    def shown() -> Any:
+        if not sys.stderr.isatty():
+            yield None
+            return
+        with click.progressbar(
+            length=int(seconds * 10), label="simulating", file=sys.stderr
+        ) as bar:
+            yield lambda now: bar.update(int(now * 10) - bar.pos)
+
+    return shown()
+
+
+def _missing_extra(absent: Sequence[str]) -> Diagnostic:
+    names = " and ".join(f"`{name}`" for name in absent)
+    return Diagnostic(
+        Code.MISSING_EXTRA,
+        f"the simulated robot needs {names}",
+        help="install the extra: pip install 'fretc[sim]' "
+        "(in a checkout: .venv/bin/pip install '.[sim]')",
+    )
