@@ -16,6 +16,7 @@ from compiler.formula import (
     Formula,
     Globally,
     Interval,
+    children,
     longest_bound,
     rebuild,
 )
@@ -59,11 +60,20 @@ def simplified(formula: Formula) -> str | None:
     shorter = spot.tl_simplifier(spot.tl_simplifier_options(3)).simplify(outline)
     assert spot.are_equivalent(outline, shorter), "Spot's simplification is not equivalent"
     text = str(shorter)
+    size = spot.length(shorter)
     for name, bounded in reversed(opaque.items()):
+        size += text.count(name) * (_length(bounded) - 1)
         text = text.replace(name, f"({printing.text(bounded, printing.SPOT)})")
     if longest_bound(formula) <= _PROVABLE_BOUND:
         assert same_language(text, printing.future(formula)), "simplification is not equivalent"
-    return text if len(text) < len(printing.text(formula, printing.SPOT)) else None
+    exact = printing.text(formula, printing.SPOT)
+    return text if size < _length(formula) and len(text) < len(exact) else None
+
+
+def _length(formula: Formula) -> int:
+    """How many operators and propositions, as Spot counts them: `a & b & c` has five."""
+    parts = children(formula)
+    return max(1, len(parts) - 1) + sum(map(_length, parts))
 
 
 def _hide(formula: Formula, opaque: dict[str, Formula]) -> Formula:

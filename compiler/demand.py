@@ -15,10 +15,9 @@ from functools import partial
 from typing import Protocol, assert_never
 
 from compiler import formula as f
-from compiler.printing import is_compound
+from compiler.printing import identifier, is_compound
 from fretish import expressions as e
 from fretish import syntax as s
-from fretish.printer import identifier
 
 
 class Kind(Enum):
@@ -207,7 +206,7 @@ def _atom(expression: e.Expression) -> str:
         case e.Call(name, args):
             return f"{identifier(name)}({','.join(_atom(arg) for arg in args)})"
         case e.Name(id):
-            return identifier(id)
+            return identifier(id)  # as everywhere in formulas: `a.b` is `a_DOT_b`
         case e.Number(digits):
             return digits
         case e.Truth(value):

@@ -74,6 +74,8 @@ def _from_json(source: Source) -> Import:
         data = json.loads(source.text)
     except json.JSONDecodeError as error:
         return _failed(f"it is not JSON: {error.msg.lower()}", source, error.pos)
+    except ValueError as error:  # a number of more digits than Python reads
+        return _failed(f"it is not JSON: {error}", source)
     except RecursionError:
         return _failed("it is nested too deep", source)
     parts = _parts(data)
@@ -116,6 +118,8 @@ def _requirements(
     records: Iterable[Mapping[str, Any]], source: Source, said: list[Diagnostic]
 ) -> Iterator[Imported]:
     taken: set[str] = set()
+    ids: dict[tuple[str, str], str] = {}
+    kept: list[tuple[str, str, Mapping[str, Any]]] = []
     for number, record in enumerate(records, 1):
         reqid, fulltext = _text(record.get("reqid")), _text(record.get("fulltext")).strip()
         if not fulltext:
@@ -123,19 +127,34 @@ def _requirements(
             continue
         project = _text(record.get("project"))
         id = _unique(_id(reqid or f"requirement-{number}"), project, taken)
-        yield Imported(id, fulltext, _header(id, record), project)
+        ids[project, reqid] = id
+        kept.append((id, fulltext, record))
+    for id, fulltext, record in kept:
+        project = _text(record.get("project"))
+        yield Imported(id, _unfenced(fulltext), _header(id, record, ids), project)
         said.extend(_unread(id, fulltext))
 
 
-def _header(id: str, record: Mapping[str, Any]) -> dict[str, Any]:
+def _unfenced(text: str) -> str:
+    """A line `+++` would end the sentence and begin a header: it is moved in by a space."""
+    return re.sub(r"^\ufeff?(?=\+\+\+)", " ", text, flags=re.MULTILINE)
+
+
+def _header(
+    id: str, record: Mapping[str, Any], ids: Mapping[tuple[str, str], str]
+) -> dict[str, Any]:
     """The `.fret` header; what fretc does not use goes below `fret`."""
     kept = {key: _text(record.get(key)) for key in _KEPT}
     if kept["reqid"] == id:
         del kept["reqid"]
-    parent = _text(record.get("parent_reqid"))
+    stated = _text(record.get("parent_reqid"))
+    named = [part.strip() for part in stated.split(",") if part.strip()]
+    parents = [ids.get((kept["project"], name), name) for name in named]
+    if ", ".join(parents) != stated:
+        kept["parent_reqid"] = stated
     header: dict[str, Any] = {
         "id": id,
-        "parents": [part.strip() for part in parent.split(",") if part.strip()],
+        "parents": parents,
         "rationale": _text(record.get("rationale")),
         "status": STATUSES.get(kept["status"], "draft"),
         "fret": {key: value for key, value in kept.items() if value},
@@ -170,7 +189,8 @@ def _unique(id: str, project: str, taken: set[str]) -> str:
 
 def _text(value: Any) -> str:
     """FRET writes lists and null where there is no text."""
-    return value if isinstance(value, str) else "" if value in (None, [], {}) else str(value)
+    text = value if isinstance(value, str) else "" if value in (None, [], {}) else str(value)
+    return text.encode("utf-8", "replace").decode()  # half of a character is none
 
 
 def _documents(requirements: Sequence[Imported]) -> Iterator[Artifact]:
@@ -178,14 +198,15 @@ def _documents(requirements: Sequence[Imported]) -> Iterator[Artifact]:
     by_project: dict[str, list[Imported]] = {}
     for requirement in requirements:
         by_project.setdefault(requirement.project, []).append(requirement)
+    taken: set[str] = set()
     for project, members in sorted(by_project.items()):
         text = "\n".join(_pair(member) for member in members)
-        yield Artifact(PurePosixPath(f"{_id(project or 'requirements').lower()}.fret"), text)
+        name = _unique(_id(project or "requirements").lower(), "", taken)
+        yield Artifact(PurePosixPath(f"{name}.fret"), text)
 
 
 def _pair(requirement: Imported) -> str:
-    wording = re.sub(r"\s*\n\s*", "\n", requirement.fulltext)
-    return f"+++\n{tomli_w.dumps(requirement.header)}+++\n{wording}\n"
+    return f"+++\n{tomli_w.dumps(requirement.header)}+++\n{requirement.fulltext}\n"
 
 
 # Variables -------------------------------------------------------------------------------------
@@ -199,7 +220,7 @@ def _variables(records: Iterable[Mapping[str, Any]]) -> dict[str, dict[str, Any]
         if not name or record.get("modeldoc") is True:
             continue
         kept = {
-            key: _text(value) if not isinstance(value, list) else json.dumps(value)
+            key: _plain(value)
             for key, value in sorted(record.items())
             if key not in _VARIABLE_FIELDS | _NOT_KEPT and value not in ("", None, [], {}, False)
         }
@@ -212,6 +233,17 @@ def _variables(records: Iterable[Mapping[str, Any]]) -> dict[str, dict[str, Any]
         }
         tables.setdefault(name, {key: value for key, value in table.items() if value})
     return tables
+
+
+def _plain(value: Any) -> Any:
+    """As TOML has it: texts, numbers, and lists of them; what it lacks as JSON text."""
+    if isinstance(value, str):
+        return _text(value)
+    if isinstance(value, int | float):
+        return value
+    if isinstance(value, list) and None not in value:
+        return [_plain(item) for item in value]
+    return json.dumps(value)
 
 
 def _of_project(record: Mapping[str, Any]) -> dict[str, str]:
@@ -242,14 +274,16 @@ _GUESSES = {
 
 def _from_csv(source: Source, columns: Mapping[str, str]) -> Import:
     try:
-        rows = list(csv.DictReader(io.StringIO(source.text), strict=True))
+        reader = csv.DictReader(io.StringIO(source.text), restkey="", strict=True)
+        rows = list(reader)
+        names = [name for name in reader.fieldnames or () if name]
     except csv.Error as error:
         return _failed(f"it is not CSV: {error}", source)
     if not rows:
         return _failed(
             "it has a header and no rows" if source.text.strip() else "it is empty", source
         )
-    chosen = _columns(list(rows[0]), columns, source)
+    chosen = _columns(names, columns, source)
     if isinstance(chosen, Diagnostic):
         return Import((), (chosen,))
     said: list[Diagnostic] = []

@@ -43,6 +43,8 @@ def formatted(paths: Sequence[str]) -> tuple[tuple[Formatted, ...], tuple[Diagno
         wrong.extend(mistakes)
         text = source.text
         for requirement in sorted(found, key=lambda r: -r.wording.start):
+            if requirement.is_free_text:
+                continue
             tree = parse(requirement.wording)
             if isinstance(tree, Diagnostic):
                 wrong.append(tree)
@@ -55,6 +57,13 @@ def formatted(paths: Sequence[str]) -> tuple[tuple[Formatted, ...], tuple[Diagno
 
 def _wrapped(text: str) -> str:
     """Lines of at most 100 characters, broken at spaces; a quoted name is never broken."""
-    lines = textwrap.wrap(text, _WIDTH, break_long_words=False, break_on_hyphens=False)
+    lines = textwrap.wrap(
+        text,
+        _WIDTH,
+        expand_tabs=False,
+        replace_whitespace=False,
+        break_long_words=False,
+        break_on_hyphens=False,
+    )
     whole = "\n".join(lines)
     return whole if all(line.count('"') % 2 == 0 for line in lines) else text

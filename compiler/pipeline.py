@@ -10,7 +10,7 @@ from compiler.demand import obligation
 from compiler.formula import endless
 from compiler.future import future, probabilistic
 from compiler.past import past, watch
-from compiler.printing import identifier, is_compound
+from compiler.printing import identifier
 from compiler.rule import Rule
 from fretish import expressions as e
 from fretish import units
@@ -56,9 +56,7 @@ def formalize(
 def _clash(rule: Rule) -> Diagnostic | None:
     """F116: formulas spell `a.b` as `a_DOT_b`, and another name is spelt so already."""
     spelt: dict[str, str] = {}
-    for name in rule.propositions:
-        if is_compound(name):
-            continue
+    for name in rule.variables:
         first = spelt.setdefault(identifier(name), name)
         if first != name:
             return Diagnostic(

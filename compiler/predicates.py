@@ -36,9 +36,6 @@ from compiler.past import first_marker
 from fretish import expressions as e
 from fretish.syntax import ScopeKind
 
-PAST = frozenset({"persisted", "occurred", "prevOcc", "preBool", "FTP"})
-FUTURE = frozenset({"persists", "occurs", "nextOcc"})
-
 _Bounded = Callable[[int, int, Formula], Formula]
 _Pair = Callable[[Formula, Formula], Formula]
 

@@ -21,7 +21,6 @@ _COMPOUND = re.compile(r"(?:[A-Za-z][A-Za-z0-9_.%]*)?\(.*\)", re.DOTALL)
 
 def identifier(name: str) -> str:
     """A variable's name as FRET writes it in formulas: `a.b` becomes `a_DOT_b`."""
-    assert not is_compound(name)
     return "".join(map(_mangled, name))
 
 

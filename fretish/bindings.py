@@ -404,7 +404,7 @@ class _Reader:
             for key in ("component", "type", "role", "text")
         }
         kept = self._field(table, (*at, "fret"), dict, "a table of texts") or {}
-        return Variable(name, **texts, fret={key: str(value) for key, value in kept.items()})
+        return Variable(name, **texts, fret=kept)
 
     def _kind(self, table: Mapping[str, Any], at: tuple[str, ...]) -> str:
         kind = table.get("kind", "")

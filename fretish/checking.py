@@ -54,6 +54,16 @@ def too_deep(sentence: Sentence) -> Diagnostic:
     )
 
 
+def calls(expression: e.Expression) -> Iterator[str]:
+    """The name of each function and predicate that the expression calls."""
+    waiting = [expression]
+    while waiting:
+        part = waiting.pop()
+        if isinstance(part, e.Call):
+            yield part.name
+        waiting.extend(reversed(e.children(part)))
+
+
 def check_names(sentence: Sentence) -> Diagnostic | None:
     """F109 for the first name that is a reserved word."""
     for expression in conditions(sentence):
@@ -158,20 +168,35 @@ def _wrong_kind(boolean: bool, span: Span | None) -> Diagnostic:
     )
 
 
-TEMPORAL_PREDICATES = frozenset(
-    "preBool preInt preReal persisted occurred prevOcc persists occurs nextOcc".split()
-)
+LOOK_BACK = frozenset("preBool persisted occurred prevOcc FTP".split())
+LOOK_AHEAD = frozenset("persists occurs nextOcc".split())
+_NUMBERS_BACK = frozenset({"preInt", "preReal"})
 
 
 def temporal_predicates(sentence: Sentence) -> Iterator[Diagnostic]:
-    """F202 for each temporal predicate: it stays an uninterpreted proposition."""
+    """F202 for each temporal predicate: formulas that look the other way cannot say it."""
+    said: set[str] = set()
     for expression in conditions(sentence):
         for id, span in _named(expression):
-            if id in TEMPORAL_PREDICATES or id == "FTP":
-                yield Diagnostic(
-                    Code.PREDICATE_NOT_FORMALIZED,
-                    f"`{id}` is left in the formulas as a proposition",
-                    span,
-                    help="a trace must give its value; fretc does not formalize it yet",
-                    severity=Severity.WARNING,
-                )
+            if id in said or id not in LOOK_BACK | LOOK_AHEAD | _NUMBERS_BACK:
+                continue
+            said.add(id)
+            yield _one_way(id, span)
+
+
+def _one_way(id: str, span: Span | None) -> Diagnostic:
+    if id in _NUMBERS_BACK:
+        what, mend = "it stays in the formulas as it is", "a trace must give the comparison's value"
+    elif id in LOOK_BACK:
+        what = "PT says what it means, and in FT it stays a proposition"
+        mend = "read PT, or check with a monitor"
+    else:
+        what = "FT says what it means, and in PT it stays a proposition"
+        mend = "read FT; a monitor cannot look ahead"
+    return Diagnostic(
+        Code.PREDICATE_NOT_FORMALIZED,
+        f"`{id}` looks {'ahead' if id in LOOK_AHEAD else 'back'}: {what}",
+        span,
+        help=mend,
+        severity=Severity.WARNING,
+    )

@@ -10,6 +10,7 @@ import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from enum import StrEnum
+from typing import Any
 
 from fretish.clock import Clock
 from fretish.expressions import Expression
@@ -159,7 +160,7 @@ class Variable:
     role: str = ""
     """`input`, `output`, `internal`, `mode`, `function`, or nothing."""
     text: str = ""
-    fret: Mapping[str, str] = field(default_factory=dict)
+    fret: Mapping[str, Any] = field(default_factory=dict)
     """What FRET keeps of it and fretc does not use."""
 
 

@@ -47,7 +47,10 @@ class Code(Enum):
     FREE_TEXT = ("F114", "free text is kept and not formalized")
 
     DUPLICATE_ID = ("F201", "two requirements have the same id")
-    PREDICATE_NOT_FORMALIZED = ("F202", "a temporal predicate is left uninterpreted")
+    PREDICATE_NOT_FORMALIZED = (
+        "F202",
+        "a temporal predicate looks one way in time only",
+    )
     EDGE_TRIGGER = ("F204", "`when` and `if` trigger where the condition becomes true")
     NO_TIMING = ("F205", "no timing means eventually")
     SHORT_SCOPE = ("F206", "a deadline behind the end of its scope requires nothing")

@@ -79,11 +79,12 @@ _UNIT_NAMES = {
 _STARTS_EXPRESSION = frozenset(
     {"ID", "QUOTED", "NUMBER", "TRUE", "FALSE", "_BANG", "LPAR", "MINUS"}
 )
-_OPERATORS = {"not": "!", "and": "&", "or": "|", "true": "true", "false": "false"}
+_OPERATORS = {"not": "!", "true": "true", "false": "false"}
 _TIMINGS = frozenset(
     {"IMMEDIATELY", "INITIALLY", "FINALLY", "EVENTUALLY", "ALWAYS", "NEVER", "WITHIN", "FOR"}
 )
 _COMPARISONS = ("LESS", "AT_MOST", "GREATER", "AT_LEAST", "EQUAL", "UNEQUAL")
+_AMOUNT = {"WITHIN": " 3 seconds", "FOR": " 3 seconds"}
 _SHALL = ("should", "must", "will", "shal", "has", "needs")
 
 
@@ -134,6 +135,13 @@ def unknown_character(text: Span, at: int) -> Diagnostic:
 
 def bad_duration(span: Span) -> Diagnostic:
     """F108 for a number that is negative, broken or in scientific notation."""
+    if span.text.startswith("-"):
+        return Diagnostic(
+            Code.BAD_DURATION,
+            "a duration cannot be negative",
+            span,
+            help="count from the trigger on: 0 is the trigger itself",
+        )
     return Diagnostic(
         Code.BAD_DURATION,
         f"a duration counts whole units, and `{span.text}` is no whole number",
@@ -193,10 +201,19 @@ def _other_language(u: Unexpected) -> Diagnostic | None:
     if doubled is not None and u.before is not None:
         span = u.before.span.to(u.met.span)
         return _instead(span, doubled)
+    if u.met.kind in ("AND", "OR"):
+        return _word_for_operator(u)
     spelt = _OPERATORS.get(u.met.word.lower())
     if spelt is None or not u.wants("ID", "_AMPERSAND") or u.wants("SHALL", "WHENEVER"):
         return None
     return _instead(u.met.span, spelt)
+
+
+def _word_for_operator(u: Unexpected) -> Diagnostic | None:
+    """`p and q`: the words join conditions only, each with a word of its own."""
+    if u.before is None or u.wants("ID"):
+        return None
+    return _instead(u.met.span, "&" if u.met.kind == "AND" else "|")
 
 
 def _instead(span: Span, spelt: str) -> Diagnostic:
@@ -317,7 +334,7 @@ def _order(u: Unexpected) -> Diagnostic | None:
             Code.NOT_FRETISH,
             "the timing stands before `satisfy`",
             u.met.span,
-            help=f"write `{u.met.word} satisfy ...`",
+            help=f"write `{u.met.word}{_AMOUNT.get(u.met.kind, '')} satisfy ...`",
         )
     if u.met.kind == "WITH" and u.wants("SHALL", "WHENEVER"):
         return Diagnostic(

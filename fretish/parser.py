@@ -250,12 +250,13 @@ class _Build(Transformer_NonRecursive[Token, Any]):
     def condition(self, meta: Any, children: list[Any]) -> s.Condition:
         """`and` and `or` associate to the left with equal rank; one trigger makes all a trigger."""
         first, *rest = _parts(children)
-        expression, kind = first.expression, first.kind
+        expression, kind, word = first.expression, first.kind, first.word
         for disjoined, item in rest:
             join = e.either if disjoined else e.both
             expression = join(expression, item.expression)
-            kind = kind if item.kind is s.ConditionKind.HOLDING else item.kind
-        return s.Condition(kind, expression, first.word, _meta_span(meta))
+            if kind is s.ConditionKind.HOLDING:
+                kind, word = item.kind, item.word  # the word that makes it a trigger, if any
+        return s.Condition(kind, expression, word, _meta_span(meta))
 
     def component(self, meta: Any, children: list[Any]) -> _Component:
         (name,) = _parts(children)

@@ -43,7 +43,7 @@ def surprises(sentence: s.Sentence) -> Iterator[Diagnostic]:
             Code.FIRST_RUN_ONLY,
             f"only the first stretch of `{m}` counts; later ones change nothing",
             scope.span,
-            f"use a condition, `when !({m})`, to begin anew each time",
+            f"use a condition, `upon !({m})`, to begin anew each time",
         )
     if scope.kind is s.ScopeKind.BEFORE:
         yield _warning(

@@ -129,7 +129,7 @@ def fmt(files: tuple[str, ...], check: bool, output: str | None) -> None:
     if wrong:
         stop(*wrong)
     changed = [file for file in done if file.before != file.after]
-    if output == "-":
+    if output == "-" or files == ("-",):
         click.echo("".join(file.after for file in done), nl=False)
     elif check:
         for file in changed:

@@ -10,7 +10,6 @@ from typing import Any
 from compiler import printing
 from compiler.artifact import Artifact
 from compiler.exchange import STATUSES
-from compiler.record import wording
 from compiler.rule import Rule
 from compiler.targets.target import DEFAULT, Options, Target
 from compiler.templating import render
@@ -29,14 +28,21 @@ _SPACE = uuid.UUID("6ba7b811-9dad-11d1-80b4-00c04fd430c8")
 def emit(rules: Sequence[Rule], options: Options = DEFAULT) -> tuple[Artifact, ...]:
     """`fret.json` with all rules: `{"requirements": [...], "variables": [...]}`."""
     content = {
-        "requirements": [
-            *(requirement(rule.requirement, rule) for rule in rules),
-            *(requirement(written, None) for written in options.free_texts),
-        ],
+        "requirements": [requirement(written, rule) for written, rule in _ordered(rules, options)],
         "variables": variables(rules),
     }
     text = render("fret-json/fret.json.j2", content=content)
     return (Artifact(PurePosixPath("fret.json"), text),)
+
+
+def _ordered(rules: Sequence[Rule], options: Options) -> list[tuple[Requirement, Rule | None]]:
+    """Rules and free texts in the order of their files, and of each file."""
+    pairs: list[tuple[Requirement, Rule | None]] = [(rule.requirement, rule) for rule in rules]
+    pairs += [(written, None) for written in options.free_texts]
+    files = list(dict.fromkeys(written.wording.source.name for written, _ in pairs))
+    return sorted(
+        pairs, key=lambda pair: (files.index(pair[0].wording.source.name), pair[0].wording.start)
+    )
 
 
 def requirement(written: Requirement, rule: Rule | None) -> dict[str, Any]:
@@ -44,12 +50,12 @@ def requirement(written: Requirement, rule: Rule | None) -> dict[str, Any]:
     kept = written.fret
     return {
         "reqid": kept.get("reqid", written.id),
-        "parent_reqid": ", ".join(written.parents),
+        "parent_reqid": kept.get("parent_reqid", ", ".join(written.parents)),
         "project": kept.get("project", ""),
         "rationale": written.rationale,
         "comments": kept.get("comments", ""),
         "status": _status(written),
-        "fulltext": wording(written),
+        "fulltext": written.wording.text,
         "semantics": semantics(rule) if rule else {"type": "freeForm"},
         "input": {},
         "_id": _id(written),
@@ -162,7 +168,7 @@ def _variable(glossary: Variable | None, project: str, component: str, name: str
         "component_name": component,
         "variable_name": name,
         "reqs": [],
-        "dataType": (glossary.type if glossary else "") or "boolean",
+        "dataType": glossary.type if glossary else "",
         "idType": glossary.role.capitalize() if glossary else "",
         "moduleName": "",
         "description": glossary.text if glossary else "",

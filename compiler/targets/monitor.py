@@ -19,7 +19,7 @@ from compiler.program import locals_of, program
 from compiler.rule import Rule
 from compiler.targets.target import DEFAULT, Options, Target, not_expressible, stem
 from compiler.templating import render
-from fretish.checking import conditions
+from fretish.checking import LOOK_AHEAD, calls, conditions
 from fretish.clock import assumed_ticks
 from fretish.depth import depth
 from fretish.diagnostic import Code, Diagnostic
@@ -40,6 +40,11 @@ def refuse(rule: Rule) -> Diagnostic | None:
             rule,
             f"more than {_MOST_LEVELS} operators within each other",
             "give parts of the expression names of their own",
+        )
+    ahead = next((n for e in conditions(rule.sentence) for n in calls(e) if n in LOOK_AHEAD), None)
+    if ahead is not None:
+        return not_expressible(
+            "a monitor", rule, f"`{ahead}`", "it looks ahead: state it by a timing, or look back"
         )
     if rule.pctl is not None:
         return not_expressible(

@@ -1,0 +1,467 @@
+"""`--emit fret-json`: what FRET imports, and what comes back from it."""
+
+import json
+import sys
+import uuid
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from compiler import cli
+
+
+@dataclass(frozen=True)
+class Run:
+    status: int
+    out: str
+    err: str
+
+
+Fretc = Callable[..., Run]
+
+
+@pytest.fixture
+def fretc(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> Fretc:
+    """Run the command in an empty folder."""
+    monkeypatch.chdir(tmp_path)
+
+    def run(*arguments: str) -> Run:
+        monkeypatch.setattr(sys, "argv", ["fretc", *arguments])
+        with pytest.raises(SystemExit) as exit_:
+            cli.main()
+        printed = capsys.readouterr()
+        assert "Traceback" not in printed.err
+        assert "F999" not in printed.err
+        return Run(int(str(exit_.value.code or 0)), printed.out, printed.err)
+
+    return run
+
+
+def write(path: str, text: str) -> str:
+    Path(path).parent.mkdir(parents=True, exist_ok=True)
+    Path(path).write_bytes(text.encode())
+    return path
+
+
+def emitted(fretc: Fretc, *files: str) -> dict[str, Any]:
+    run = fretc(*files, "--emit", "fret-json", "-o", "-")
+    assert run.status == 0, run.err
+    content: dict[str, Any] = json.loads(run.out)
+    return content
+
+
+def only(fretc: Fretc, text: str) -> dict[str, Any]:
+    """FRET's record of the one requirement of a text."""
+    (record,) = emitted(fretc, write("r.fret", text))["requirements"]
+    assert isinstance(record, dict)
+    return record
+
+
+# One requirement ------------------------------------------------------------------------------
+
+WRITTEN = """\
++++
+id = "R-1"
+title = "Stop"
+parents = ["HAZ-1", "SYS-2"]
+rationale = "Obstacles are hard."
+status = "approved"
+
+[fret]
+project = "Rover"
+comments = "reviewed"
+status = "completed"
+_id = "1f-2e"
+reqid = "R 1"
++++
+in m mode, when p the rover shall within 3 ticks satisfy q & x > 3
+"""
+
+
+def test_a_requirement_is_a_record_of_fret(fretc: Fretc) -> None:
+    record = only(fretc, WRITTEN)
+    semantics = record.pop("semantics")
+    assert semantics.pop("description").startswith("In every stretch of ticks on which `m` is true")
+    assert record == {
+        "reqid": "R 1",
+        "parent_reqid": "HAZ-1, SYS-2",
+        "project": "Rover",
+        "rationale": "Obstacles are hard.",
+        "comments": "reviewed",
+        "status": "completed",
+        "fulltext": "in m mode, when p the rover shall within 3 ticks satisfy q & x > 3",
+        "input": {},
+        "_id": "1f-2e",
+    }
+    assert {key: semantics[key] for key in semantics if "TextRange" not in key} == {
+        "type": "nasa",
+        "scope": {"type": "in"},
+        "condition": "regular",
+        "probability": "null",
+        "timing": "within",
+        "response": "satisfaction",
+        "variables": ["m", "p", "q", "x"],
+        "scope_mode": "m",
+        "qualifier_word": "when",
+        "pre_condition": "(p)",
+        "regular_condition": "(p)",
+        "post_condition": "(q & x > 3)",
+        "duration": "3",
+        "timingText": "within 3 ticks",
+        "component_name": "rover",
+        "component": "rover",
+        "ft": FINITE,
+        "ftExpanded": FINITE,
+        "ftInfAUExpanded": "G(m & !p & !X !m & X p -> X(F[0,3](q & (x > 3)) | F[0,2] X !m))"
+        " & G(!m & X m -> X(p -> F[0,3](q & (x > 3)) | F[0,2] X !m))"
+        " & (m -> p -> F[0,3](q & (x > 3)) | F[0,2] X !m)",
+        "pt": PAST,
+        "ptExpanded": PAST,
+    }
+
+
+FINITE = (
+    "LAST V (m & !p & !(LAST | X !m) & X p -> X(F[0,3](q & (x > 3)) | F[0,2](LAST | X !m)))"
+    " & LAST V (!LAST & !m & X m -> X(p -> F[0,3](q & (x > 3)) | F[0,2](LAST | X !m)))"
+    " & (m -> p -> F[0,3](q & (x > 3)) | F[0,2](LAST | X !m))"
+)
+PAST = (
+    "H(m & O[3,3](m & p & ((m & Z !m) | Y !p) & !(q & (x > 3)))"
+    " -> O[0,2]((m & Z !m) | (q & (x > 3))))"
+)
+
+
+@pytest.mark.parametrize(
+    ("sentence", "fields"),
+    [
+        ("the sw shall satisfy q", {"timing": "null", "condition": "null"}),
+        ("only after m the sw shall never satisfy q", {"scope": {"type": "onlyAfter"}}),
+        ("whenever p the sw shall until s satisfy q", {"stop_condition": "(s)"}),
+        ("whenever p the sw shall before s | r satisfy q", {"stop_condition": "(s | r)"}),
+        ("whenever p sw shall for 2 hours satisfy q", {"duration": "2", "timing": "for"}),
+        ("unless p sw shall always satisfy q", {"qualifier_word": "unless"}),
+        (
+            "the sw shall with probability >= 0.95 eventually satisfy q",
+            {"probability": "bound", "pctlExpanded": "P>=1 [ P>=0.95 [ (F q) ] ]"},
+        ),
+    ],
+)
+def test_a_sentence_has_the_keys_of_fret(
+    fretc: Fretc, sentence: str, fields: dict[str, Any]
+) -> None:
+    semantics = only(fretc, sentence)["semantics"]
+    assert {key: semantics[key] for key in fields} == fields
+
+
+@pytest.mark.parametrize(
+    "sentence",
+    [
+        "in m mode, when p the rover shall within 3 ticks satisfy q",
+        "in   m   mode,\n  when p\n  the rover\tshall   within 3   ticks satisfy q",
+    ],
+)
+def test_the_ranges_are_about_the_text_as_it_is_written_there(fretc: Fretc, sentence: str) -> None:
+    """First and last character of each part, both included."""
+    record = only(fretc, f'+++\nid = "R1"\n+++\n{sentence}\n')
+    semantics, text = record["semantics"], record["fulltext"]
+    parts = {}
+    for name in ("scope", "condition", "component", "timing"):
+        start, end = semantics[f"{name}TextRange"]
+        parts[name] = " ".join(text[start : end + 1].split())
+    assert parts == {
+        "scope": "in m mode",
+        "condition": "when p",
+        "component": "rover",
+        "timing": "within 3 ticks",
+    }
+
+
+def test_fret_has_no_bounded_since(fretc: Fretc) -> None:
+    record = only(fretc, "in m mode whenever occurred(1,3,p) the sw shall immediately satisfy q")
+    for name in ("pt", "ptExpanded"):
+        assert " S " in record["semantics"][name]
+        assert "S[" not in record["semantics"][name]
+
+
+def test_a_name_keeps_its_spaces(fretc: Fretc) -> None:
+    record = only(fretc, 'the sw  shall always satisfy "two  words"')
+    assert record["fulltext"] == 'the sw  shall always satisfy "two  words"'
+
+
+def test_free_text_has_no_meaning(fretc: Fretc) -> None:
+    record = only(fretc, '+++\nid = "R1"\n+++\n"It should\nlook nice."\n')
+    assert record["fulltext"] == '"It should\nlook nice."'
+    assert record["semantics"] == {"type": "freeForm"}
+
+
+@pytest.mark.parametrize(
+    ("ours", "kept", "theirs"),
+    [
+        ("draft", "", ""),
+        ("draft", "paused", "paused"),
+        ("draft", "completed", ""),  # it is no longer so
+        ("approved", "completed", "completed"),
+        ("approved", "paused", "completed"),
+        ("approved", "", "completed"),
+        ("retired", "", "deprecated"),
+        ("retired", "deprecated", "deprecated"),
+    ],
+)
+def test_the_status_is_that_of_the_header(fretc: Fretc, ours: str, kept: str, theirs: str) -> None:
+    fret = f'\n[fret]\nstatus = "{kept}"' if kept else ""
+    record = only(fretc, f'+++\nstatus = "{ours}"{fret}\n+++\nthe sw shall always satisfy p\n')
+    assert record["status"] == theirs
+
+
+def test_a_requirement_that_fret_has_not_seen_always_has_the_same_id_there(fretc: Fretc) -> None:
+    text = '+++\nid = "{}"\n+++\nthe sw shall always satisfy p\n'
+    first, again, other = (only(fretc, text.format(id))["_id"] for id in ("R1", "R1", "R2"))
+    assert first == again != other
+    assert str(uuid.UUID(first)) == first
+
+
+# Variables ------------------------------------------------------------------------------------
+
+BINDINGS = """\
+[variable.p]
+component = "rover"
+type = "boolean"
+role = "output"
+text = "the wheels stand"
+
+[variable.p.fret]
+assignment = "speed = 0.0"
+project = "Rover"
+
+[variable.unused]
+component = "arm"
+type = "integer"
+role = "mode"
+"""
+
+
+def variables(fretc: Fretc, *sentences: str, bindings: str = "") -> dict[str, dict[str, Any]]:
+    if bindings:
+        write("bindings.toml", bindings)
+    pairs = [f'+++\nid = "R{i}"\n+++\n{sentence}\n' for i, sentence in enumerate(sentences)]
+    content = emitted(fretc, write("r.fret", "\n".join(pairs)))
+    ids = {record["_id"]: record["reqid"] for record in content["requirements"]}
+    found = {}
+    for record in content["variables"]:
+        record["reqs"] = [ids[id] for id in record["reqs"]]
+        found[record["variable_name"]] = record
+    assert len(found) == len(content["variables"])
+    return found
+
+
+def test_a_variable_is_a_record_of_fret(fretc: Fretc) -> None:
+    found = variables(
+        fretc,
+        "whenever p the rover shall always satisfy q",
+        "the rover shall always satisfy p",
+        bindings=BINDINGS,
+    )
+    assert list(found) == ["p", "q", "unused"]
+    assert found["p"] == {
+        "project": "",
+        "component_name": "rover",
+        "variable_name": "p",
+        "reqs": ["R0", "R1"],
+        "dataType": "boolean",
+        "idType": "Output",
+        "moduleName": "",
+        "description": "the wheels stand",
+        "assignment": "speed = 0.0",
+        "modeRequirement": "",
+        "modeldoc": False,
+        "completed": False,
+        "_id": "roverp",
+    }
+    assert (found["q"]["reqs"], found["q"]["idType"]) == (["R0"], "")
+    unused = found["unused"]
+    assert (unused["reqs"], unused["component_name"], unused["dataType"], unused["idType"]) == (
+        [],
+        "arm",
+        "integer",
+        "Mode",
+    )
+
+
+def test_the_same_name_of_two_components_is_two_variables(fretc: Fretc) -> None:
+    first = write("a.fret", "the arm shall always satisfy p")
+    second = write("b.fret", "the leg shall always satisfy p")
+    found = emitted(fretc, first, second)["variables"]
+    assert [(v["component_name"], v["_id"], len(v["reqs"])) for v in found] == [
+        ("arm", "armp", 1),
+        ("leg", "legp", 1),
+    ]
+
+
+def test_a_number_is_not_said_to_be_a_truth_value(fretc: Fretc) -> None:
+    """Nothing declares x; the sentence compares it with a number."""
+    found = variables(fretc, "the sw shall always satisfy x > 3")
+    assert found["x"]["dataType"] != "boolean"
+
+
+def test_a_bound_proposition_tells_its_role_and_its_text(fretc: Fretc) -> None:
+    bindings = (
+        '[clock]\ntick = "1 s"\n'
+        '[signal.v]\npath = "/v.data"\nunit = "m/s"\n'
+        '[proposition.p]\nexpr = "v > 1 m/s"\nrole = "output"\ntext = "moving"\n'
+    )
+    found = variables(fretc, "the sw shall always satisfy p", bindings=bindings)
+    assert (found["p"]["idType"], found["p"]["description"]) == ("Output", "moving")
+
+
+# There and back -------------------------------------------------------------------------------
+
+EXPORT: dict[str, Any] = {
+    "requirements": [
+        {
+            "reqid": "R 1",
+            "parent_reqid": "HAZ-1",
+            "project": "Rover",
+            "rationale": 'Say "no".\n+++\nBack\\slash',
+            "comments": "to be reviewed",
+            "fulltext": "Whenever too_close the rover shall within 3 ticks satisfy stopped.",
+            "status": "completed",
+            "semantics": {"type": "nasa", "ft": "(G stale)"},
+            "input": {},
+            "_id": "u-1",
+        },
+        {
+            "reqid": "R2",
+            "parent_reqid": "R 1",
+            "project": "Rover",
+            "rationale": "",
+            "comments": "",
+            "fulltext": '"It should look nice."',
+            "status": "paused",
+            "semantics": {"type": "freeForm"},
+            "input": {},
+            "_id": "u-2",
+        },
+        {
+            "reqid": "R3",
+            "parent_reqid": "",
+            "project": "Rover",
+            "rationale": "",
+            "comments": "",
+            "fulltext": "when p the rover shall always satisfy stopped",
+            "status": "",
+            "semantics": {},
+            "input": {},
+            "_id": "u-3",
+        },
+    ],
+    "variables": [
+        {
+            "_id": f"Roverrover{name}",
+            "project": "Rover",
+            "component_name": "rover",
+            "variable_name": name,
+            "reqs": reqs,
+            "dataType": "boolean",
+            "idType": kind,
+            "moduleName": "",
+            "description": f"about {name}",
+            "assignment": "",
+            "copilotAssignment": "a && b",
+            "modeRequirement": "",
+            "modeldoc": False,
+            "modeldoc_id": "",
+            "completed": False,
+        }
+        for name, kind, reqs in (
+            ("too_close", "Input", ["u-1"]),
+            ("stopped", "Output", ["u-1", "u-3"]),
+            ("p", "Internal", ["u-3"]),
+        )
+    ],
+}
+
+
+def there_and_back(fretc: Fretc, content: Any) -> tuple[dict[str, str], Any, dict[str, str]]:
+    """The files of an import, the export made of them, and the files of its import."""
+
+    def files(folder: str) -> dict[str, str]:
+        return {path.name: path.read_text("utf-8") for path in Path(folder).iterdir()}
+
+    assert fretc("import", write("first.json", json.dumps(content)), "-o", "first").status == 0
+    again = emitted(fretc, *sorted(str(path) for path in Path("first").glob("*.fret")))
+    assert fretc("import", write("second.json", json.dumps(again)), "-o", "second").status == 0
+    return files("first"), again, files("second")
+
+
+@pytest.mark.parametrize(
+    "order", [(0, 1, 2), (0, 2, 1)], ids=["free text between", "free text last"]
+)
+def test_import_emit_import_gives_the_same_files(fretc: Fretc, order: tuple[int, ...]) -> None:
+    ordered = [EXPORT["requirements"][i] for i in order]
+    first, _, second = there_and_back(fretc, {**EXPORT, "requirements": ordered})
+    assert set(first) == {"rover.fret", "bindings.toml"}
+    assert second == first
+
+
+def test_each_requirement_comes_back_with_its_own_fields(fretc: Fretc) -> None:
+    """All but the formulas, which are made anew."""
+
+    def known(records: Any) -> dict[str, Any]:
+        plain = [{k: v for k, v in record.items() if k != "semantics"} for record in records]
+        return {record["_id"]: record for record in plain}
+
+    _, again, _ = there_and_back(fretc, EXPORT)
+    assert known(again["requirements"]) == known(EXPORT["requirements"])
+
+
+def test_the_requirements_come_back_in_their_order(fretc: Fretc) -> None:
+    _, again, _ = there_and_back(fretc, EXPORT)
+    assert [record["_id"] for record in again["requirements"]] == ["u-1", "u-2", "u-3"]
+
+
+def test_each_variable_comes_back_with_its_requirements(fretc: Fretc) -> None:
+    _, again, _ = there_and_back(fretc, EXPORT)
+    fields = ("_id", "reqs", "dataType", "idType", "description", "copilotAssignment")
+    expected = [{key: v[key] for key in fields} for v in EXPORT["variables"]]
+    found = [{key: v[key] for key in fields} for v in again["variables"]]
+    assert sorted(found, key=str) == sorted(expected, key=str)
+
+
+@pytest.mark.parametrize(
+    ("field", "value"),
+    [
+        ("assignmentVariables", ["a", "b"]),
+        ("modeldoc_vectorIndex", 3),
+        ("smvAssignment", "a & b"),
+        ("tool", "Simulink"),
+        ("moduleName", "Arm"),
+        ("dataType", "int32"),
+        ("dataType", ""),
+        ("idType", "Function"),
+        ("idType", ""),
+    ],
+)
+def test_a_field_of_a_variable_comes_back_as_it_was(
+    fretc: Fretc, field: str, value: object
+) -> None:
+    variable = {**EXPORT["variables"][0], field: value}
+    _, again, _ = there_and_back(fretc, {**EXPORT, "variables": [variable]})
+    (found,) = [v for v in again["variables"] if v["variable_name"] == "too_close"]
+    assert found[field] == value
+
+
+def test_free_text_comes_back_letter_by_letter(fretc: Fretc) -> None:
+    text = '"First.\n\n  - second,   \\ third\n"'
+    record = {**EXPORT["requirements"][1], "fulltext": text}
+    _, again, _ = there_and_back(fretc, {"requirements": [record], "variables": []})
+    assert again["requirements"][0]["fulltext"] == text
+
+
+def test_free_text_alone_can_be_emitted(fretc: Fretc) -> None:
+    _, again, _ = there_and_back(fretc, [EXPORT["requirements"][1]])
+    assert [record["reqid"] for record in again["requirements"]] == ["R2"]
