@@ -29,6 +29,21 @@ def rows(heading: str, cells: int) -> list[tuple[str, ...]]:
     return [row[1:-1] for row in found]
 
 
+def columns_of(trace: str) -> dict[str, str]:
+    return {name: digits for name, _, digits in (part.partition("=") for part in trace.split())}
+
+
+def verdict(sentence: str, trace: str) -> bool:
+    """Ours, at the end of the trace."""
+    columns = columns_of(trace)
+    length = len(next(iter(columns.values())))
+    points = [{name: digits[t] == "1" for name, digits in columns.items()} for t in range(length)]
+    ((requirement,), _) = requirements(Source("r.fret", sentence))
+    rule, said = formalize(requirement, None)
+    assert rule is not None, said
+    return holds(rule.pt, points, length - 1)
+
+
 @pytest.mark.parametrize(
     ("why", "sentence", "fret", "trace", "ours", "theirs"),
     rows("The same sentence, another formula", 6),
@@ -36,16 +51,24 @@ def rows(heading: str, cells: int) -> list[tuple[str, ...]]:
 def test_the_trace_has_the_verdicts_that_the_table_gives(
     why: str, sentence: str, fret: str, trace: str, ours: str, theirs: str
 ) -> None:
-    columns = {name: digits for name, _, digits in (part.partition("=") for part in trace.split())}
+    columns = columns_of(trace)
     length = len(next(iter(columns.values())))
-    points = [{name: digits[t] == "1" for name, digits in columns.items()} for t in range(length)]
-    ((requirement,), _) = requirements(Source("r.fret", sentence))
-    rule, _ = formalize(requirement, None)
-    assert rule is not None
     word = {name: [int(digit) for digit in digits] for name, digits in columns.items()}
     theirs_at_end = bool(values(parse_notation(fret), word, length)[-1])
-    verdicts = (holds(rule.pt, points, length - 1), theirs_at_end)
-    assert verdicts == (ours == "true", theirs == "true"), why
+    assert (verdict(sentence, trace), theirs_at_end) == (ours == "true", theirs == "true"), why
+
+
+@pytest.mark.parametrize(
+    ("sentence", "trace", "ours"),
+    [
+        *rows("The same sentence, and no formula in FRET", 3),
+        *rows("The same sentence, grouped in two ways by FRET", 3),
+    ],
+)
+def test_the_sentence_says_of_the_trace_what_the_table_says(
+    sentence: str, trace: str, ours: str
+) -> None:
+    assert verdict(sentence, trace) is (ours == "true")
 
 
 @pytest.mark.parametrize(("sentence", "fret", "code"), rows("Refused here, accepted by FRET", 3))
