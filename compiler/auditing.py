@@ -162,6 +162,8 @@ def _audit_log(
 
 def _hash_of(log: str) -> dict[str, str]:
     """SHA-256 of a log that could not be read as one, where its bytes can be."""
+    if not Path(log).is_file():
+        return {}
     try:
         with Path(log).open("rb") as file:
             return {"log": hashlib.file_digest(file, "sha256").hexdigest()}

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import hashlib
 import os
+import stat
 import tempfile
-from collections.abc import Iterable
+from collections.abc import Mapping
 from pathlib import Path
 
-from compiler.artifact import Artifact
 from fretish.diagnostic import Code, Diagnostic, suggestion
 from fretish.source import Source
 
@@ -65,27 +65,29 @@ def _nearest(path: str) -> str:
     return f"did you mean `{folder / near}`?" if near else "check the name and the folder"
 
 
-def write(artifacts: Iterable[Artifact], folder: Path) -> Diagnostic | None:
-    """Write all of them below the folder: each under a temporary name first, then renamed.
+def write(files: Mapping[Path, str]) -> Diagnostic | None:
+    """Write all of them: each under a temporary name first, then renamed.
 
-    Nothing half-written stays behind: when one cannot be written, none is put in place.
+    Nothing half-written stays behind: when one cannot be written, none is put in place. A link is
+    followed, a file keeps its permissions, and what is no regular file is never replaced.
     """
     waiting: list[tuple[Path, Path]] = []
-    path = folder
+    path = Path()
     try:
-        for artifact in artifacts:
-            path = folder / artifact.path
-            path.parent.mkdir(parents=True, exist_ok=True)
-            if path.is_dir():
-                raise IsADirectoryError(None, "there is a directory of that name")
-            waiting.append((_temporary(path, artifact.text), path))
+        for path, text in files.items():
+            real = Path(os.path.realpath(path))
+            real.parent.mkdir(parents=True, exist_ok=True)
+            if real.exists() and not real.is_file():
+                kind = "a directory of that name" if real.is_dir() else "something else there"
+                raise OSError(None, f"there is {kind}")
+            waiting.append((_temporary(real, text), real))
         for temporary, path in waiting:
             temporary.replace(path)
     except OSError as error:
         return Diagnostic(
             Code.NOT_WRITTEN,
             f"`{path}` cannot be written: {error.strerror or error}",
-            help="name another place with `-o`, or mend this one",
+            help="name another place, or mend this one",
         )
     finally:
         for temporary, _ in waiting:
@@ -94,18 +96,25 @@ def write(artifacts: Iterable[Artifact], folder: Path) -> Diagnostic | None:
 
 
 def _temporary(path: Path, text: str) -> Path:
-    handle, name = tempfile.mkstemp(prefix=f".{path.name}.", suffix=".tmp", dir=path.parent)
+    handle, name = tempfile.mkstemp(prefix=f".{path.name[:100]}.", suffix=".tmp", dir=path.parent)
     temporary = Path(name)
     try:
         with os.fdopen(handle, "w", encoding="utf-8", newline="\n") as file:
             file.write(text)
-        mask = os.umask(0)
-        os.umask(mask)
-        temporary.chmod(0o666 & ~mask)
+        temporary.chmod(_permissions(path))
     except BaseException:
         temporary.unlink(missing_ok=True)
         raise
     return temporary
+
+
+def _permissions(path: Path) -> int:
+    """Those of the file that is there; of a new one, what the user's mask leaves."""
+    if path.exists():
+        return stat.S_IMODE(path.stat().st_mode)
+    mask = os.umask(0)
+    os.umask(mask)
+    return 0o666 & ~mask
 
 
 def sha256(text: str) -> str:

@@ -261,10 +261,17 @@ def or_(*args: Formula) -> Formula:
 def _flat(kind: type[And] | type[Or], args: tuple[Formula, ...]) -> list[Formula]:
     """The arguments in their order, each once; compared, not hashed: unequal trees differ early."""
     flat: list[Formula] = []
+    atoms: set[Atom] = set()
+    others: list[Formula] = []
     for arg in args:
         for part in arg.args if isinstance(arg, kind) else (arg,):
-            if part not in flat:
-                flat.append(part)
+            if part in (atoms if isinstance(part, Atom) else others):
+                continue
+            flat.append(part)
+            if isinstance(part, Atom):
+                atoms.add(part)
+            else:
+                others.append(part)
     return flat
 
 

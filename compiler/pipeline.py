@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Mapping, Sequence
 from fractions import Fraction
 
@@ -198,7 +199,7 @@ def _constants(expression: e.Expression) -> set[_Exact]:
 
 def unbound(rule: Rule, declarations: Declarations) -> Iterator[Diagnostic]:
     """F304 for every proposition of the sentence that the bindings do not have."""
-    for name in rule.propositions:
+    for name in rule.watched:
         if name in declarations.propositions:
             continue
         near = suggestion(name, declarations.propositions)
@@ -220,15 +221,15 @@ def _place(rule: Rule, name: str) -> Span:
 
 
 def duplicates(requirements: Sequence[Requirement]) -> Iterator[Diagnostic]:
-    """F201 for every id that comes again; ids differ by more than capitals: they name files."""
+    """F201 for every id that comes again; capitals, `-`, `_` and `.` do not tell files apart."""
     first: dict[str, Requirement] = {}
     for requirement in requirements:
-        earlier = first.setdefault(requirement.id.lower(), requirement)
+        earlier = first.setdefault(re.sub(r"[-.]", "_", requirement.id.lower()), requirement)
         if earlier is not requirement:
             place = earlier.place("id")
             yield Diagnostic(
                 Code.DUPLICATE_ID,
                 f"the id `{requirement.id}` is taken: {place.source.name}:{place.line}",
                 requirement.place("id"),
-                help="give each requirement an id of its own (capitals do not tell ids apart)",
+                help="give each an id of its own; capitals, `-`, `_` and `.` do not count",
             )

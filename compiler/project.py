@@ -121,7 +121,7 @@ def beside(folder: str, name: str) -> str | None:
 def _beside(paths: Sequence[str], name: str) -> str | None:
     first = next((path for path in paths if path != "-"), None)
     path = Path(first).parent / name if first else None
-    return str(path) if path is not None and path.is_file() else None
+    return str(path) if path is not None and path.exists() else None
 
 
 def _declarations(

@@ -6,7 +6,7 @@ import hashlib
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from compiler.formula import Formula, atoms
+from compiler.formula import FALSE, Formula, atoms
 from compiler.past import Watch
 from fretish.checking import conditions
 from fretish.clock import Clock
@@ -53,6 +53,14 @@ class Rule:
         watched = (self.watch.trigger, self.watch.breach, self.watch.owed, self.watch.fails)
         formulas = (self.ft_infinite, self.ft_finite, self.pt, *watched)
         return tuple(dict.fromkeys(name for formula in formulas for name in atoms(formula)))
+
+    @property
+    def watched(self) -> tuple[str, ...]:
+        """The propositions that a monitor needs: predicates that look back are none of them."""
+        watch = self.watch
+        signals = (watch.trigger, watch.breach, watch.owed, watch.fails, watch.answer or FALSE)
+        needed = {name for signal in signals for name in atoms(signal)}
+        return tuple(name for name in self.propositions if name in needed)
 
     @property
     def variables(self) -> tuple[str, ...]:

@@ -158,6 +158,8 @@ def dimension(whole: e.Expression, kinds: Mapping[str, Kind], place: Span) -> Ki
         case e.Call(name, args, span):
             if name not in FUNCTIONS:
                 return _unknown_function(name, span or place)
+            if name == "abs" and len(args) != 1:
+                return _wrong_kind("`abs` takes one number", whole, span or place)
             return _numbers(list(args), kinds, span or place)
         case _:
             return _truths(e.children(whole), kinds, place)

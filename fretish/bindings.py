@@ -123,7 +123,8 @@ class _Reader:
         value = table.get(at[-1])
         if value is None or (isinstance(value, kind) and not (kind is int and value is True)):
             return value
-        self._say(Code.BAD_BINDING_FIELD, f"`{at[-1]}` must be {what}", self.tables.value(*at))
+        place = self.tables.value(*at)
+        self._say(Code.BAD_BINDING_FIELD, f"`{at[-1]}` must be {what}", place, f"write {what}")
         return None
 
     def _choice(

@@ -142,6 +142,13 @@ def bad_duration(span: Span) -> Diagnostic:
             span,
             help="count from the trigger on: 0 is the trigger itself",
         )
+    if span.text.isdigit():
+        return Diagnostic(
+            Code.BAD_DURATION,
+            "a duration has at most 15 digits",
+            span,
+            help="count a larger unit",
+        )
     return Diagnostic(
         Code.BAD_DURATION,
         f"a duration counts whole units, and `{span.text}` is no whole number",

@@ -274,7 +274,7 @@ class _Build(Transformer_NonRecursive[Token, Any]):
     def duration(self, meta: Any, children: list[Token]) -> s.Duration:
         *digits, unit = children
         text = "".join(digits)
-        if not text.isdigit():
+        if not text.isdigit() or len(text) > 15:
             raise _MistakeError(bad_duration(_span(children[0], digits[-1])))
         return s.Duration(int(text), _UNITS[unit.type], _meta_span(meta))
 

@@ -89,7 +89,7 @@ def read(text: Span, code: Code, what: str) -> Tables | Diagnostic:
     """
     try:
         return Tables(text, tomllib.loads(text.text.replace("\r\n", "\n")))
-    except tomllib.TOMLDecodeError as error:
+    except (ValueError, RecursionError) as error:  # TOML, or a number or nesting beyond Python's
         match = re.search(r"\(at line (\d+), column (\d+)\)", str(error))
         at = _offset(text.text, int(match[1]), int(match[2])) if match else len(text.text)
         reason = re.sub(r"\s*\(at [^)]*\)", "", str(error))

@@ -107,13 +107,13 @@ def _power(base: str, exponent: int) -> str:
     return base if exponent == 1 else f"{base}^{exponent}"
 
 
-_DURATION = re.compile(r"\s*(\d+(?:\.\d+)?)\s*(ns|us|ms|s|min|h)\s*")
+_DURATION = re.compile(r"\s*(\d{1,30}(?:\.\d{1,30})?)\s*(ns|us|ms|s|min|h)\s*")
 
 
 def nanoseconds(text: str) -> int | None:
-    """`100 ms` → 100 000 000; None where it is no whole number of nanoseconds."""
+    """`100 ms` → 100 000 000; None where it is no whole number, or over a hundred years."""
     match = _DURATION.fullmatch(text)
     if match is None:
         return None
     exact = Fraction(match[1]) * _UNITS[match[2]].factor * 10**9
-    return int(exact) if exact.denominator == 1 else None
+    return int(exact) if exact.denominator == 1 and exact < 2**62 else None

@@ -11,9 +11,11 @@ from __future__ import annotations
 # kernel begins here
 import argparse
 import csv
+import io
 import itertools
 import json
 import os
+import re
 import sys
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
@@ -279,7 +281,8 @@ def read_rows(text: Iterable[str], names: Sequence[str], source: str) -> Iterato
     if first is None:
         raise InputError(f"{source}: the trace is empty")
     lines = itertools.chain([first.removeprefix("\ufeff")], lines)
-    read = _json_rows if first.lstrip("\ufeff \t").startswith("{") else _csv_rows
+    is_json = re.match(r'\s*\{\s*["}]', first.removeprefix("\ufeff")) is not None
+    read = _json_rows if is_json else _csv_rows
     tick: int | None = None
     for place, row in read(lines, names, source):
         if "tick" in row and "tick" not in names:
@@ -372,18 +375,25 @@ def main(monitors: Sequence[type[Monitor]], arguments: Sequence[str] | None = No
     Returns:
         0 all satisfied, 1 a violation, 2 bad use or input, 3 something is not shown.
     """
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="backslashreplace")
     options = _parser(monitors).parse_args(arguments)
     try:
         status = max(
             (_report(monitor(), path, options) for path in options.trace for monitor in monitors),
             key=(0, 3, 1, 2).index,
         )
+        if sys.stdout is None:
+            raise InputError("standard output is closed")
         sys.stdout.flush()
         return status
     except InputError as error:
         print(error, file=sys.stderr)
         return 2
-    except BrokenPipeError:
+    except OSError as error:  # standard output is full, or its reader has gone
+        if not isinstance(error, BrokenPipeError):
+            print(f"standard output cannot be written: {error.strerror}", file=sys.stderr)
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return 2
     except KeyboardInterrupt:
@@ -439,6 +449,8 @@ def _report(monitor: Monitor, path: str, options: argparse.Namespace) -> int:
 def _opened(path: str) -> TextIO:
     try:
         if path == "-":
+            if sys.stdin is None:
+                raise InputError("standard input is closed")
             return open(sys.stdin.fileno(), encoding="utf-8", newline="", closefd=False)
         return open(path, encoding="utf-8", newline="")
     except OSError as error:

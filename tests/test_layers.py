@@ -75,9 +75,11 @@ def test_the_kernel_needs_the_standard_library_only() -> None:
         "collections",
         "csv",
         "dataclasses",
+        "io",
         "itertools",
         "json",
         "os",
+        "re",
         "sys",
         "typing",
     }

@@ -7,14 +7,16 @@ not shown; 130 stopped by Ctrl-C.
 from __future__ import annotations
 
 import os
+import signal
 import sys
+import threading
 from pathlib import Path
 
 import click
 
 from compiler import __version__
 from compiler.cli.group import DEFAULT, Commands
-from compiler.cli.output import BAD, INTERRUPTED, SHOWN, say
+from compiler.cli.output import BAD, INTERRUPTED, SHOWN, not_written, say, say_line
 from compiler.cli.requirements import compile_, fmt, import_
 from compiler.cli.runs import audit, report, simulate
 from fretish.diagnostic import Code, Diagnostic
@@ -36,10 +38,13 @@ for _command in (compile_, fmt, import_, audit, report, simulate):
 
 def main() -> None:
     """What the `fretc` command runs: no traceback ever reaches a user."""
+    _prepare()
     try:
-        status = cli.main(prog_name="fretc", standalone_mode=False)
+        _run()
         sys.stdout.flush()
-        raise SystemExit(status if isinstance(status, int) else SHOWN)
+        raise SystemExit(SHOWN)
+    except click.exceptions.Exit as exit_:
+        raise SystemExit(exit_.exit_code) from None
     except click.exceptions.NoArgsIsHelpError as error:
         click.echo(error.format_message())
         raise SystemExit(SHOWN) from None
@@ -47,19 +52,44 @@ def main() -> None:
         say([_bad_usage(error)])
         raise SystemExit(BAD) from None
     except (click.Abort, KeyboardInterrupt):
-        click.echo("stopped", err=True)
+        say_line("stopped")
         raise SystemExit(INTERRUPTED) from None
-    except BrokenPipeError:
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        raise SystemExit(BAD) from None
     except RecursionError:
         say([_too_deep()])
+        raise SystemExit(BAD) from None
+    except OSError as error:
+        _no_output(error)
         raise SystemExit(BAD) from None
     except Exception as error:
         if "FRETC_TRACEBACK" in os.environ:
             raise
         say([_internal(error)])
         raise SystemExit(BAD) from None
+
+
+def _prepare() -> None:
+    """Closed or narrow streams and a termination must cost neither the exit status nor files."""
+    for name in ("stdout", "stderr"):
+        stream = getattr(sys, name)
+        if stream is None:
+            setattr(sys, name, open(os.devnull, "w", encoding="utf-8"))  # noqa: SIM115
+        elif hasattr(stream, "reconfigure"):
+            stream.reconfigure(errors="backslashreplace")
+    if threading.current_thread() is threading.main_thread():
+        signal.signal(signal.SIGTERM, signal.default_int_handler)
+
+
+def _run() -> None:
+    """Not click's own `main`: that takes a closed pipe for exit status 1, a violation."""
+    with cli.make_context("fretc", sys.argv[1:]) as context:
+        cli.invoke(context)
+
+
+def _no_output(error: OSError) -> None:
+    """Whoever read standard output has gone, or it cannot be written."""
+    if not isinstance(error, BrokenPipeError):
+        say([not_written("standard output", error.strerror or str(error))])
+    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 def _too_deep() -> Diagnostic:

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import os
+from collections.abc import Iterable, Mapping, Sequence
+from contextlib import suppress
 from pathlib import Path
+from typing import NoReturn
 
 import click
 
@@ -14,7 +17,7 @@ SHOWN, VIOLATION, BAD, NOT_SHOWN, INTERRUPTED = 0, 1, 2, 3, 130
 """Exit status: all shown, a violation, bad use or input, something not shown, Ctrl-C."""
 
 
-def stop(*diagnostics: Diagnostic) -> None:
+def stop(*diagnostics: Diagnostic) -> NoReturn:
     """Say it and exit with 2."""
     say(diagnostics)
     raise SystemExit(BAD)
@@ -23,25 +26,40 @@ def stop(*diagnostics: Diagnostic) -> None:
 def say(diagnostics: Sequence[Diagnostic]) -> None:
     """Print them on standard error."""
     if diagnostics:
-        click.echo(render_all(diagnostics), err=True)
+        say_line(render_all(diagnostics))
 
 
-def deliver(files: dict[str, str], output: str) -> None:
-    """Print the texts (`-`), or write them below the folder and name them."""
-    from pathlib import PurePosixPath
+def say_line(text: str) -> None:
+    """Print a line on standard error; where that cannot be, the exit status still tells."""
+    with suppress(OSError):
+        click.echo(text, err=True)
 
-    from compiler.artifact import Artifact
+
+def deliver(files: Mapping[Path, str], protected: Iterable[str] = ()) -> None:
+    """Write the texts, all or none, and name them.
+
+    Args:
+        files: where each text goes; `-` prints it.
+        protected: files that are read, which no output may replace.
+    """
     from compiler.files import write
 
-    if output == "-":
-        click.echo("".join(files.values()), nl=False)
-        return
-    artifacts = [Artifact(PurePosixPath(path), text) for path, text in files.items()]
-    wrong = write(artifacts, Path(output))
+    inputs = {os.path.realpath(path): path for path in protected if path != "-"}
+    targets = [os.path.realpath(path) for path in files]
+    for path, target in zip(files, targets, strict=True):
+        if target in inputs:
+            stop(not_written(str(path), f"it is `{inputs[target]}`, which is read"))
+        if targets.count(target) > 1:
+            stop(not_written(str(path), "two outputs would go there"))
+    printed = files.get(Path("-"))
+    if printed is not None:
+        click.echo(printed, nl=False)
+    written = {path: text for path, text in files.items() if path != Path("-")}
+    wrong = write(written)
     if wrong is not None:
         stop(wrong)
-    for path in files:
-        click.echo(f"wrote {Path(output) / path}", err=True)
+    for path in written:
+        say_line(f"wrote {path}")
 
 
 def not_written(path: str, why: str) -> Diagnostic:

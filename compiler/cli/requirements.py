@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -92,7 +93,7 @@ def _deliver_formulas(project: Project, output: str) -> None:
     found = {id(rule.requirement): formulas(rule) for rule in project.rules}
     found |= {id(f.requirement): failed(f.requirement, f.diagnostic) for f in project.failed}
     text = to_json([found[id(r)] for r in project.requirements])
-    deliver({"ltl.json": f"{text}\n"}, output)
+    deliver({Path(output) / "ltl.json" if output != "-" else Path("-"): f"{text}\n"})
 
 
 def _print_formulas(project: Project, options: Options) -> None:
@@ -113,8 +114,9 @@ def _emit(project: Project, kinds: dict[str, None], output: str, options: Option
     ]
     if refused:
         stop(*refused)
+    say([d for target in targets for rule in project.rules if (d := target.remark(rule))])
     files = [artifact for target in targets for artifact in target.emit(project.rules, options)]
-    deliver({str(artifact.path): artifact.text for artifact in files}, output)
+    _deliver_all({str(artifact.path): artifact.text for artifact in files}, output)
 
 
 @click.command(short_help="Put sentences into their canonical wording.")
@@ -138,7 +140,7 @@ def fmt(files: tuple[str, ...], check: bool, output: str | None) -> None:
     else:
         for file in changed:
             path = Path(file.path)
-            deliver({path.name: file.after}, str(path.parent))
+            deliver({path: file.after})
 
 
 @click.command("import", short_help="Read requirements that FRET exported.")
@@ -179,9 +181,17 @@ def import_(
     there = [path for path in files if (Path(output) / path).exists()]
     if there and output != "-" and not force:
         stop(_exists(str(Path(output) / there[0])))
-    deliver(files, output)
+    _deliver_all(files, output)
     counts = f"{result.requirements} requirements, {result.variables} variables"
     click.echo(f"imported {counts}", err=True)
+
+
+def _deliver_all(files: Mapping[str, str], output: str) -> None:
+    """Below the folder; or one after the other on standard output, for `-`."""
+    if output == "-":
+        deliver({Path("-"): "".join(files.values())})
+    else:
+        deliver({Path(output) / path: text for path, text in files.items()})
 
 
 def _exists(path: str) -> Diagnostic:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 import sys
 from collections.abc import Sequence
@@ -49,9 +50,8 @@ def audit(
     say(result.diagnostics)
     if not result.results:
         raise SystemExit(BAD)
-    path = Path(evidence)
     if result.read:  # a mistyped name must not cost the evidence of the last audit
-        deliver({path.name: result.evidence}, str(path.parent))
+        deliver({Path(evidence): result.evidence}, (*logs, *files))
     click.echo(result.as_json if form == "json" else _coloured(result.text), nl=False)
     if has_errors(result.diagnostics):
         raise SystemExit(BAD)
@@ -101,9 +101,12 @@ def report(
     say([*project.diagnostics, *made.diagnostics])
     if made.html is None or made.json is None:
         raise SystemExit(BAD)
-    for path, text in ((html, made.html), (json_, made.json)):
-        if path is not None:
-            deliver({Path(path).name: text}, str(Path(path).parent))
+    if json_ is not None and os.path.realpath(json_) == os.path.realpath(html):
+        stop(not_written(json_, "two outputs would go there"))
+    forms = {Path(html): made.html} | ({Path(json_): made.json} if json_ is not None else {})
+    deliver(forms, (evidence, *files))
+    if has_errors([*project.diagnostics, *made.diagnostics]):
+        raise SystemExit(BAD)
 
 
 @click.command(short_help="Record a mission of the simulated robot.")
@@ -128,9 +131,11 @@ def simulate(out: str, seed: int, duration: float) -> None:
         stop(_missing_extra(absent))
     from simulation.mission import record
 
-    path = Path(out)
-    if path.is_dir():
-        stop(not_written(out, "it is a directory"))
+    path = Path(os.path.realpath(out))
+    if path.exists() and not path.is_file():
+        stop(not_written(out, "it is no regular file"))
+    if out == "-" or not math.isfinite(duration):
+        stop(not_written(out, "a log is a file, and a mission ends"))
     with _progress(duration) as tell:
         try:
             mission = record(path, seed, duration, tell)

@@ -19,10 +19,11 @@ from compiler.program import locals_of, program
 from compiler.rule import Rule
 from compiler.targets.target import DEFAULT, Options, Target, not_expressible, stem
 from compiler.templating import render
+from fretish import syntax as s
 from fretish.checking import LOOK_AHEAD, calls, conditions
 from fretish.clock import assumed_ticks
 from fretish.depth import depth
-from fretish.diagnostic import Code, Diagnostic
+from fretish.diagnostic import Code, Diagnostic, Severity
 
 _KERNEL_BEGINS = "# kernel begins here\n"
 _IMPORTS_END = re.compile(r"\n\n(?=[A-Z])")
@@ -63,6 +64,30 @@ def refuse(rule: Rule) -> Diagnostic | None:
     )
 
 
+def remark(rule: Rule) -> Diagnostic | None:
+    """F203: whatever has happened, what follows can still make the verdict either way.
+
+    So it is with 12 of FRET's 288 templates: a demand for ever later at each trigger, on a stretch
+    that ends with the run. Source: Pnueli, Zaks, PSL model checking and run-time verification via
+    testers, FM 2006 (monitorability).
+    """
+    sentence = rule.sentence
+    scope = sentence.scope.kind if sentence.scope else None
+    if sentence.condition is None:
+        return None
+    later = scope in (None, s.ScopeKind.AFTER) and isinstance(sentence.timing, s.Eventually)
+    negated = scope is s.ScopeKind.ONLY_BEFORE and isinstance(sentence.timing, s.Always | s.Never)
+    if not later and not negated:
+        return None
+    return Diagnostic(
+        Code.NEVER_DECIDED,
+        f"no run, however long, can violate {rule.id} or confirm it: it sets no bound",
+        sentence.timing_span or rule.requirement.wording,
+        help="state a bound: `within 200 milliseconds` in place of `eventually`",
+        severity=Severity.WARNING,
+    )
+
+
 def emit(rules: Sequence[Rule], options: Options = DEFAULT) -> tuple[Artifact, ...]:
     """`<id>_monitor.py` for each rule; it needs Python 3.11 and nothing else."""
     return tuple(
@@ -72,7 +97,7 @@ def emit(rules: Sequence[Rule], options: Options = DEFAULT) -> tuple[Artifact, .
 
 def text(rule: Rule) -> str:
     """The monitor's Python source."""
-    parameters = _parameters(rule.propositions)
+    parameters = _parameters(rule.watched)
     imports, kernel = _kernel()
     return render(
         "monitor/monitor.py.j2",
@@ -147,4 +172,4 @@ def _spoken(text: str) -> str:
     return re.sub(r"_+", "_", name) or "p"
 
 
-TARGET = Target("monitor", "a standalone runtime monitor in Python", emit, refuse)
+TARGET = Target("monitor", "a standalone runtime monitor in Python", emit, refuse, remark)

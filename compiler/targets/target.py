@@ -42,6 +42,8 @@ class Target:
     summary: str
     emit: Emit
     refuse: Callable[[Rule], Diagnostic | None] = lambda rule: None
+    remark: Callable[[Rule], Diagnostic | None] = lambda rule: None
+    """What a user of the output should know; it does not keep it from being made."""
     per_rule: bool = True
     """False where all rules go into one file, for exchange with another tool."""
 

@@ -124,7 +124,16 @@ def test_one_bad_sentence_among_several_is_an_error_object_in_the_array(fretc: F
 
 def test_emitted_files_go_to_build_and_are_named(fretc: Fretc) -> None:
     run = fretc(write("r1.fret", R1), "--emit", "monitor", "--emit", "ajpf")
-    assert run == Run(0, "", "wrote build/r1_monitor.py\nwrote build/r1.psl\n")
+    assert run == Run(
+        0,
+        "",
+        "F203 warning: no run, however long, can violate r1 or confirm it: it sets no bound\n"
+        "  --> r1.fret:1:39\n"
+        f"   | {R1}\n"
+        "   |                                       ^^^^^^^^^^\n"
+        "help: state a bound: `within 200 milliseconds` in place of `eventually`\n"
+        "wrote build/r1_monitor.py\nwrote build/r1.psl\n",
+    )
     assert sorted(path.name for path in Path("build").iterdir()) == ["r1.psl", "r1_monitor.py"]
 
 
@@ -148,7 +157,7 @@ def test_one_target_that_refuses_keeps_every_file_from_being_written(fretc: Fret
 
 def test_an_output_that_cannot_be_written_leaves_nothing_behind(fretc: Fretc) -> None:
     write("build/r1.psl/in_the_way", "")
-    run = fretc(write("r1.fret", R1), "--emit", "monitor", "--emit", "ajpf")
+    run = fretc(write("r1.fret", R1), "--emit", "json", "--emit", "ajpf")
     assert run.status == 2
     assert run.err.startswith("F905 `build/r1.psl` cannot be written: there is a directory")
     assert [path.name for path in Path("build").iterdir()] == ["r1.psl"]

@@ -782,6 +782,6 @@ def test_unusual_names_are_columns(programs: Path) -> None:
     done = call(programs, "names", "--help").stdout.decode()
     columns = done.split("columns: ")[1].splitlines()[0]
     assert columns == "l, class, I, x.y, (a_SPC_b > 3)"
-    trace = 'l,class,I,x.y,(a_SPC_b > 3)\n1,0,0,1,1\n0,0,1,1,1\n0,0,0,1,1\n0,0,0,0,1\n'
+    trace = "l,class,I,x.y,(a_SPC_b > 3)\n1,0,0,1,1\n0,0,1,1,1\n0,0,0,1,1\n0,0,0,0,1\n"
     done = call(programs, "names", "-", "--format", "json", stdin=trace.encode()).stdout.decode()
     assert json.loads(done)["violations"] == [[3, 3]]
