@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import hashlib
 import os
+import secrets
 import stat
-import tempfile
 from collections.abc import Mapping
 from pathlib import Path
 
@@ -80,7 +80,10 @@ def write(files: Mapping[Path, str]) -> Diagnostic | None:
             if real.exists() and not real.is_file():
                 kind = "a directory of that name" if real.is_dir() else "something else there"
                 raise OSError(None, f"there is {kind}")
-            waiting.append((_temporary(real, text), real))
+            # Known before it is made: an interruption at any moment finds it here.
+            temporary = real.parent / f".{real.name[:100]}.{secrets.token_hex(4)}.tmp"
+            waiting.append((temporary, real))
+            _fill(temporary, text, like=real)
         for temporary, path in waiting:
             temporary.replace(path)
     except OSError as error:
@@ -95,26 +98,12 @@ def write(files: Mapping[Path, str]) -> Diagnostic | None:
     return None
 
 
-def _temporary(path: Path, text: str) -> Path:
-    handle, name = tempfile.mkstemp(prefix=f".{path.name[:100]}.", suffix=".tmp", dir=path.parent)
-    temporary = Path(name)
-    try:
-        with os.fdopen(handle, "w", encoding="utf-8", newline="\n") as file:
-            file.write(text)
-        temporary.chmod(_permissions(path))
-    except BaseException:
-        temporary.unlink(missing_ok=True)
-        raise
-    return temporary
-
-
-def _permissions(path: Path) -> int:
-    """Those of the file that is there; of a new one, what the user's mask leaves."""
-    if path.exists():
-        return stat.S_IMODE(path.stat().st_mode)
-    mask = os.umask(0)
-    os.umask(mask)
-    return 0o666 & ~mask
+def _fill(temporary: Path, text: str, *, like: Path) -> None:
+    """Write a new file, with the permissions of the one that it will replace, if there is one."""
+    with temporary.open("x", encoding="utf-8", newline="\n") as file:
+        if like.exists():
+            temporary.chmod(stat.S_IMODE(like.stat().st_mode))
+        file.write(text)
 
 
 def sha256(text: str) -> str:
