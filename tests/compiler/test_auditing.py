@@ -2,50 +2,25 @@
 
 import json
 import shutil
-import sys
-from collections.abc import Callable
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import jsonschema  # type: ignore[import-untyped]
 import pytest
 
-from compiler import cli
+from tests.command import Fretc, Run
 
 ROOT = Path(__file__).parent.parent.parent
 MISSION = ROOT / "traces/mission-seed15.mcap"
 SCHEMA = json.loads((ROOT / "templates/json/evidence.schema.json").read_text("utf-8"))
 
 
-@dataclass(frozen=True)
-class Run:
-    status: int
-    out: str
-    err: str
-
-
-Fretc = Callable[..., Run]
-
-
 @pytest.fixture
-def fretc(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path
-) -> Fretc:
+def fretc(fretc: Fretc) -> Fretc:
     """Run the command in a folder with the repository's requirements and its log."""
-    monkeypatch.chdir(tmp_path)
     shutil.copytree(ROOT / "requirements", "requirements")
     shutil.copy(MISSION, "run.mcap")
-
-    def run(*arguments: str) -> Run:
-        monkeypatch.setattr(sys, "argv", ["fretc", *arguments])
-        with pytest.raises(SystemExit) as exit_:
-            cli.main()
-        printed = capsys.readouterr()
-        assert "Traceback" not in printed.err
-        return Run(int(str(exit_.value.code or 0)), printed.out, printed.err)
-
-    return run
+    return fretc
 
 
 def evidence() -> Any:

@@ -3,50 +3,14 @@
 import json
 import subprocess
 import sys
-from collections.abc import Callable
-from dataclasses import dataclass
 from pathlib import Path
 
 import pytest
 
-from compiler import cli
+from tests.command import Fretc, Run, runner, write
 
 ROOT = Path(__file__).parent.parent.parent
 R1 = "whenever too_close agilex_agent shall eventually satisfy stopped"
-
-
-@dataclass(frozen=True)
-class Run:
-    status: int
-    out: str
-    err: str
-
-
-Fretc = Callable[..., Run]
-
-
-@pytest.fixture
-def fretc(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path
-) -> Fretc:
-    """Run the command in an empty folder."""
-    monkeypatch.chdir(tmp_path)
-
-    def run(*arguments: str) -> Run:
-        monkeypatch.setattr(sys, "argv", ["fretc", *arguments])
-        with pytest.raises(SystemExit) as exit_:
-            cli.main()
-        printed = capsys.readouterr()
-        assert "Traceback" not in printed.err
-        return Run(int(str(exit_.value.code or 0)), printed.out, printed.err)
-
-    return run
-
-
-def write(path: str, text: str) -> str:
-    Path(path).parent.mkdir(parents=True, exist_ok=True)
-    Path(path).write_text(text, encoding="utf-8")
-    return path
 
 
 # Formulas ------------------------------------------------------------------------------------
@@ -232,13 +196,14 @@ def test_a_bad_option_is_explained_without_a_traceback(fretc: Fretc) -> None:
 
 
 def test_an_unexpected_fault_of_our_own_is_told_as_such(
-    fretc: Fretc, monkeypatch: pytest.MonkeyPatch
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path
 ) -> None:
     def broken(*_: object) -> None:
         raise ZeroDivisionError("by purpose")
 
     monkeypatch.setattr("compiler.project.load", broken)
-    run = fretc(write("r1.fret", R1))
+    monkeypatch.chdir(tmp_path)
+    run = runner(monkeypatch, capsys, fault=True)(write("r1.fret", R1))
     assert run.status == 2
     assert run.err.startswith("F999 fretc itself is at fault: ZeroDivisionError in test_cli.py:")
 

@@ -1,55 +1,18 @@
 """FRET's exports, and CSV, become `.fret` files and bindings that fretc reads."""
 
 import json
-import sys
 import time
-from collections.abc import Callable
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import pytest
 
-from compiler import cli
 from compiler.project import Project, load
 from fretish import documents
 from fretish.diagnostic import Code
 from fretish.documents import Requirement
 from fretish.source import Source
-
-
-@dataclass(frozen=True)
-class Run:
-    status: int
-    out: str
-    err: str
-
-
-Fretc = Callable[..., Run]
-
-
-@pytest.fixture
-def fretc(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path
-) -> Fretc:
-    """Run the command in an empty folder."""
-    monkeypatch.chdir(tmp_path)
-
-    def run(*arguments: str) -> Run:
-        monkeypatch.setattr(sys, "argv", ["fretc", *arguments])
-        with pytest.raises(SystemExit) as exit_:
-            cli.main()
-        printed = capsys.readouterr()
-        assert "Traceback" not in printed.err
-        assert "F999" not in printed.err
-        return Run(int(str(exit_.value.code or 0)), printed.out, printed.err)
-
-    return run
-
-
-def write(path: str, text: str) -> str:
-    Path(path).write_bytes(text.encode())
-    return path
+from tests.command import Fretc, Run, write
 
 
 def export(content: Any) -> str:

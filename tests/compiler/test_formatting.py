@@ -1,54 +1,18 @@
 """`fretc fmt`: canonical sentences, and everything around them as it was."""
 
 import json
-import sys
-from collections.abc import Callable
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import pytest
 
-from compiler import cli
 from fretish.parser import parse
 from fretish.printer import sentence
 from fretish.source import Source
 from fretish.syntax import Sentence
+from tests.command import Fretc, Run, write
 
 FORMS = Path(__file__).parents[1] / "data/fret_surface_forms.json"
-
-
-@dataclass(frozen=True)
-class Run:
-    status: int
-    out: str
-    err: str
-
-
-Fretc = Callable[..., Run]
-
-
-@pytest.fixture
-def fretc(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path
-) -> Fretc:
-    """Run the command in an empty folder."""
-    monkeypatch.chdir(tmp_path)
-
-    def run(*arguments: str) -> Run:
-        monkeypatch.setattr(sys, "argv", ["fretc", *arguments])
-        with pytest.raises(SystemExit) as exit_:
-            cli.main()
-        printed = capsys.readouterr()
-        assert "Traceback" not in printed.err
-        return Run(int(str(exit_.value.code or 0)), printed.out, printed.err)
-
-    return run
-
-
-def write(path: str, text: str) -> str:
-    Path(path).write_bytes(text.encode())
-    return path
 
 
 def read(path: str) -> str:

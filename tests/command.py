@@ -1,0 +1,44 @@
+"""The command as its users meet it: what one run prints, and what it exits with."""
+
+import sys
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+import pytest
+
+from compiler import cli
+
+
+@dataclass(frozen=True)
+class Run:
+    status: int
+    out: str
+    err: str
+
+
+Fretc = Callable[..., Run]
+
+
+def runner(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], *, fault: bool = False
+) -> Fretc:
+    """Run the command in this process. No run shows a traceback, nor (but for `fault`) F999."""
+
+    def run(*arguments: str) -> Run:
+        monkeypatch.setattr(sys, "argv", ["fretc", *arguments])
+        with pytest.raises(SystemExit) as exit_:
+            cli.main()
+        printed = capsys.readouterr()
+        assert "Traceback" not in printed.err
+        assert fault or "F999" not in printed.err
+        return Run(int(str(exit_.value.code or 0)), printed.out, printed.err)
+
+    return run
+
+
+def write(path: str, text: str) -> str:
+    """Write a file byte for byte, with the folders it needs; return its path."""
+    Path(path).parent.mkdir(parents=True, exist_ok=True)
+    Path(path).write_bytes(text.encode())
+    return path
