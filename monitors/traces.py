@@ -11,7 +11,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from fretish.declarations import Aggregate, Declarations
+from fretish import expressions
+from fretish.declarations import Aggregate, Declarations, Proposition
 from monitors.propositions import UNKNOWN, States, Steps, evaluate, truth_values
 from monitors.samples import Recording, Times
 
@@ -97,19 +98,39 @@ def _column(
 ) -> Column:
     proposition = declarations.propositions[name]
     steps = evaluate(proposition, declarations, recording)
-    values = truth_values(_seen(steps, ticks, proposition.aggregate, first))
+    begun = None if first is None else (first, _heard(proposition, recording))
+    values = truth_values(_seen(steps, ticks, proposition.aggregate, begun))
     default = proposition.on_unknown
     return tuple(default if value is None else value for value in values)
 
 
-def _seen(steps: Steps, ticks: Times, aggregate: Aggregate, first: int | None) -> States:
-    """The state of each tick, shape (ticks,); the first tick sees what came from `first` on."""
+def _heard(proposition: Proposition, recording: Recording) -> int:
+    """From when on what is unknown of it is told by the log, not by a topic yet to begin."""
+    names = {name.id for name in expressions.names(proposition.expression)}
+    samples = [recording.samples.get(name) for name in names]
+    begins = [
+        int(signal.times[0]) if signal is not None and len(signal.times) else recording.end_ns
+        for signal in samples
+    ]
+    lost = min((start for start, _ in recording.gaps), default=recording.end_ns)
+    return min(max(begins, default=recording.start_ns), lost)
+
+
+def _seen(
+    steps: Steps, ticks: Times, aggregate: Aggregate, begun: tuple[int, int] | None
+) -> States:
+    """The state of each tick, shape (ticks,).
+
+    `begun` is when the log began, from where on the first tick sees, and when all the signals had:
+    what is unknown only because a topic is yet to begin says nothing of the first tick.
+    """
     before, upto = _windows(steps.times, ticks)
-    if first is not None and len(ticks):
-        # What is unknown only because its topic has not begun yet says nothing of the first tick.
-        begun = int(np.searchsorted(steps.times, first, "left"))
-        known = np.flatnonzero(steps.states[begun : upto[0]] != UNKNOWN)
-        before[0] = begun + int(known[0]) if len(known) else max(begun, int(upto[0]) - 1)
+    if begun is not None and len(ticks):
+        first = int(np.searchsorted(steps.times, begun[0], "left"))
+        inside = slice(first, int(upto[0]))
+        told = (steps.states[inside] != UNKNOWN) | (steps.times[inside] >= begun[1])
+        found = np.flatnonzero(told)
+        before[0] = first + int(found[0]) if len(found) else max(first, int(upto[0]) - 1)
     held = np.where(before > 0, steps.states[before - 1], UNKNOWN).astype(np.int8)
     filled = upto > before
     if not filled.any():

@@ -171,6 +171,8 @@ def slow_tick(times: list[int], values: list[Value], low: int, high: int, how: s
     st.integers(0, 20),
 )
 @example([(0, LOW), (0, HIGH)], "any", 10, 0)
+@example([(0, NAN), (0, LOW)], "all", 1, 0)
+@example([(0, NAN), (0, HIGH)], "any", 1, 0)
 def test_aggregation_agrees_with_the_definition(
     pairs: list[tuple[int, float]], aggregate: str, period: int, start: int
 ) -> None:
@@ -212,11 +214,11 @@ def two_topics(second_begins: int) -> Recording:
     return replace(log, samples=samples, topics=topics)
 
 
-BOTH = (
-    bindings("any")
-    .replace("x < 5", "x < 5 and y < 5")
-    .replace("[proposition.p]", '[signal.y]\npath = "/y.data"\n[proposition.p]')
-)
+def with_y(text: str) -> str:
+    return text.replace("[proposition.p]", '[signal.y]\npath = "/y.data"\n[proposition.p]')
+
+
+BOTH = with_y(bindings("any")).replace("x < 5", "x < 5 and y < 5")
 
 
 def test_the_first_tick_waits_for_a_topic_that_begins_less_than_a_tick_later() -> None:
@@ -229,3 +231,19 @@ def test_a_topic_that_begins_later_than_that_leaves_the_ticks_before_it_unknown(
     found = trace(declare(BOTH), two_topics(15), ["p"])
     assert found.timeline.times.tolist() == [0, 10, 20, 30, 40, 50]
     assert found.columns["p"] == (None, None, True, True, True, True)
+
+
+@pytest.mark.parametrize(("aggregate", "then"), [("any", HIGH), ("all", LOW)])
+def test_the_first_tick_is_unknown_where_a_sample_within_it_is(aggregate: str, then: float) -> None:
+    log = replace(two_topics(4), samples={"x": Samples(np.array([0, 3]), np.array([NAN, then]))})
+    assert trace(declare(with_y(bindings(aggregate))), log, ["p"]).columns["p"][0] is None
+
+
+@pytest.mark.parametrize(("aggregate", "then"), [("any", HIGH), ("all", LOW)])
+def test_the_first_tick_is_unknown_where_part_of_it_is_lost(aggregate: str, then: float) -> None:
+    declarations = declare(with_y(bindings(aggregate)))
+    late = Samples(np.array([3]), np.array([then]))
+    log = replace(two_topics(4), samples={"x": late})
+    assert trace(declarations, log, ["p"]).columns["p"][0] is (aggregate == "all")
+    lost = replace(log, gaps=((1, 2),))
+    assert trace(declarations, lost, ["p"]).columns["p"][0] is None
