@@ -89,7 +89,8 @@ def audit_logs(project: Project, logs: Sequence[str]) -> Audit:
     wrong = _not_auditable(rules, declarations)
     if wrong or declarations is None:
         return Audit((), "", tuple(wrong))
-    watched = [_watched(rule, declarations) for rule in rules]
+    bindings = fingerprint(declarations)
+    watched = [_watched(rule, bindings) for rule in rules]
     results: list[Mapping[str, Any]] = []
     said: list[Diagnostic] = []
     read = 0
@@ -98,7 +99,12 @@ def audit_logs(project: Project, logs: Sequence[str]) -> Audit:
         results.extend(found)
         said.extend(told)
         read += could_be_read
-    return Audit(tuple(results), _evidence(rules, declarations, results), tuple(said), read)
+    return Audit(
+        tuple(results),
+        _evidence(rules, declarations.source.name, bindings, results),
+        tuple(said),
+        read,
+    )
 
 
 def _not_auditable(rules: Sequence[Rule], declarations: Declarations | None) -> list[Diagnostic]:
@@ -127,13 +133,13 @@ def _not_auditable(rules: Sequence[Rule], declarations: Declarations | None) -> 
     return [*(diagnostic for diagnostic in refused if diagnostic), *missing]
 
 
-def _watched(rule: Rule, declarations: Declarations) -> Watched:
+def _watched(rule: Rule, bindings: str) -> Watched:
     text = monitors.text(rule)
     return Watched(
         load(f"{rule.id}_monitor", text),
         {
             "sentence": rule.fingerprint,
-            "bindings": fingerprint(declarations),
+            "bindings": bindings,
             "monitor": sha256(text),
         },
     )
@@ -172,13 +178,13 @@ def _hash_of(log: str) -> dict[str, str]:
 
 
 def _evidence(
-    rules: Sequence[Rule], declarations: Declarations, results: Sequence[Mapping[str, Any]]
+    rules: Sequence[Rule], file: str, bindings: str, results: Sequence[Mapping[str, Any]]
 ) -> str:
     """The evidence file: the same inputs give the same bytes."""
     content = {
         "schema": SCHEMA,
         "fretc": __version__,
-        "bindings": {"file": declarations.source.name, "sha256": fingerprint(declarations)},
+        "bindings": {"file": file, "sha256": bindings},
         "requirements": [
             {"id": rule.id, "sentence": wording(rule.requirement), "sha256": rule.fingerprint}
             for rule in rules

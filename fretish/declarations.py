@@ -13,7 +13,7 @@ from enum import StrEnum
 from typing import Any
 
 from fretish.clock import Clock
-from fretish.expressions import Expression
+from fretish.expressions import Expression, names
 from fretish.source import Source, Span
 from fretish.units import Unit
 
@@ -147,6 +147,11 @@ class Proposition:
     aggregate: Aggregate = Aggregate.LAST
     on_unknown: bool | None = None
     span: Span | None = field(default=None, compare=False, repr=False)
+
+    @property
+    def signals(self) -> tuple[str, ...]:
+        """The names of the signals that it reads, in the order of their first use."""
+        return tuple(dict.fromkeys(name.id for name in names(self.expression)))
 
 
 @dataclass(frozen=True, slots=True)

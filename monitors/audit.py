@@ -9,7 +9,6 @@ from statistics import median
 
 import numpy as np
 
-from fretish import expressions as e
 from fretish.declarations import Declarations
 from fretish.units import base_name
 from monitors import kernel
@@ -31,9 +30,9 @@ def signals_of(declarations: Declarations, propositions: Sequence[str]) -> tuple
     """The names of the signals that the propositions read, in the order of their first use."""
     return tuple(
         dict.fromkeys(
-            name.id
+            name
             for proposition in propositions
-            for name in e.names(declarations.propositions[proposition].expression)
+            for name in declarations.propositions[proposition].signals
         )
     )
 

@@ -77,10 +77,7 @@ def evaluate(proposition: Proposition, declarations: Declarations, recording: Re
     Returns:
         Steps from `recording.start_ns` on; the later ones up to `recording.end_ns`.
     """
-    signals = {
-        name: declarations.signals[name]
-        for name in sorted({name.id for name in e.names(proposition.expression)})
-    }
+    signals = {name: declarations.signals[name] for name in proposition.signals}
     history = _history(signals, recording)
     steps = _steps(proposition.expression, history)
     kept = steps.times <= max(recording.end_ns, recording.start_ns)

@@ -11,7 +11,6 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from fretish import expressions
 from fretish.declarations import Aggregate, Declarations, Proposition
 from monitors.propositions import UNKNOWN, States, Steps, evaluate, truth_values
 from monitors.samples import Recording, Times
@@ -106,8 +105,7 @@ def _column(
 
 def _heard(proposition: Proposition, recording: Recording) -> int:
     """From when on what is unknown of it is told by the log, not by a topic yet to begin."""
-    names = {name.id for name in expressions.names(proposition.expression)}
-    samples = [recording.samples.get(name) for name in names]
+    samples = [recording.samples.get(name) for name in proposition.signals]
     begins = [
         int(signal.times[0]) if signal is not None and len(signal.times) else recording.end_ns
         for signal in samples

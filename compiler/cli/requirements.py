@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import click
 
 from compiler.cli.group import DEFAULT, Compile
-from compiler.cli.output import BAD, SHOWN, VIOLATION, deliver, say, stop
+from compiler.cli.output import BAD, SHOWN, VIOLATION, deliver, say, say_line, stop
 from fretish.diagnostic import Code, Diagnostic, has_errors
 
 if TYPE_CHECKING:
@@ -135,7 +135,7 @@ def fmt(files: tuple[str, ...], check: bool, output: str | None) -> None:
         click.echo("".join(file.after for file in done), nl=False)
     elif check:
         for file in changed:
-            click.echo(f"would change {file.path}", err=True)
+            say_line(f"would change {file.path}")
         raise SystemExit(VIOLATION if changed else SHOWN)
     else:
         for file in changed:
@@ -171,7 +171,6 @@ def import_(
     source = read(file)
     if isinstance(source, Diagnostic):
         stop(source)
-        return
     asked = {"id": id_column, "text": text_column, "project": project_column}
     result = read_export(source, {part: name for part, name in asked.items() if name})
     say(result.diagnostics)
@@ -183,7 +182,7 @@ def import_(
         stop(_exists(str(Path(output) / there[0])))
     _deliver_all(files, output)
     counts = f"{result.requirements} requirements, {result.variables} variables"
-    click.echo(f"imported {counts}", err=True)
+    say_line(f"imported {counts}")
 
 
 def _deliver_all(files: Mapping[str, str], output: str) -> None:

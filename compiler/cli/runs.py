@@ -11,7 +11,17 @@ from typing import Any
 
 import click
 
-from compiler.cli.output import BAD, NOT_SHOWN, SHOWN, VIOLATION, deliver, not_written, say, stop
+from compiler.cli.output import (
+    BAD,
+    NOT_SHOWN,
+    SHOWN,
+    VIOLATION,
+    deliver,
+    not_written,
+    say,
+    say_line,
+    stop,
+)
 from fretish.diagnostic import Code, Diagnostic, has_errors
 
 
@@ -41,7 +51,6 @@ def audit(
     files = requirement_files(requirements)
     if isinstance(files, Diagnostic):
         stop(files)
-        return
     project = load(files, bindings or beside(requirements, "bindings.toml"))
     say(project.diagnostics)
     if has_errors(project.diagnostics):
@@ -91,7 +100,6 @@ def report(
     files = requirement_files(requirements)
     if isinstance(files, Diagnostic):
         stop(files)
-        return
     project = load(
         files,
         bindings or beside(requirements, "bindings.toml"),
@@ -141,8 +149,7 @@ def simulate(out: str, seed: int, duration: float) -> None:
             mission = record(path, seed, duration, tell)
         except OSError as error:
             stop(not_written(out, error.strerror or str(error)))
-            return
-    click.echo(f"wrote {out}", err=True)
+    say_line(f"wrote {out}")
     click.echo(
         f"seed {mission.seed}: {mission.duration:.1f} s, "
         f"{mission.goals_reached} of {mission.goals_total} goals, {mission.stops} stops, "

@@ -24,7 +24,6 @@ from compiler.report.views import (
     SignalView,
 )
 from compiler.rule import Rule
-from fretish import expressions
 from fretish.clock import Clock
 from fretish.declarations import Declarations, Proposition, Signal
 from fretish.diagnostic import Diagnostic
@@ -129,14 +128,13 @@ def _proposition(name: str, declared: Declarations | None) -> PropositionView:
     bound = declared.propositions.get(name) if declared else None
     if bound is None or declared is None:
         return PropositionView(name, False, "", "", "", ())
-    used = dict.fromkeys(each.id for each in expressions.names(bound.expression))
     return PropositionView(
         name=name,
         is_bound=True,
         text=bound.text,
         expression=_written(declared, name),
         properties=_properties(bound),
-        signals=tuple(_signal(declared.signals[each]) for each in used),
+        signals=tuple(_signal(declared.signals[each]) for each in bound.signals),
     )
 
 
