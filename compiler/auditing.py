@@ -20,7 +20,7 @@ from compiler.templating import to_json
 from fretish.declarations import Declarations
 from fretish.diagnostic import Code, Diagnostic
 from monitors import kernel
-from monitors.audit import Watched, audit, examined, signals_of
+from monitors.audit import Engine, Watched, audit, examined, signals_of
 from monitors.evidence import SCHEMA, as_record, unread
 from monitors.loading import load
 from monitors.recordings import read
@@ -77,12 +77,17 @@ class Audit:
         return tuple(lines)
 
 
-def audit_logs(project: Project, logs: Sequence[str]) -> Audit:
+ENGINES: Mapping[str, Engine] = {"columns": kernel.evaluate, "online": kernel.stepped}
+"""How monitors are run: whole traces at once, or step by step."""
+
+
+def audit_logs(project: Project, logs: Sequence[str], engine: str = "columns") -> Audit:
     """Audit every log against every requirement that is not retired.
 
     Args:
         project: read without errors.
         logs: paths of MCAP files.
+        engine: one of `ENGINES`; the results are the same.
     """
     rules = [rule for rule in project.rules if rule.requirement.status != "retired"]
     declarations = project.declarations
@@ -95,7 +100,7 @@ def audit_logs(project: Project, logs: Sequence[str]) -> Audit:
     said: list[Diagnostic] = []
     read = 0
     for log in dict.fromkeys(logs):
-        found, told, could_be_read = _audit_log(log, declarations, watched)
+        found, told, could_be_read = _audit_log(log, declarations, watched, ENGINES[engine])
         results.extend(found)
         said.extend(told)
         read += could_be_read
@@ -146,7 +151,7 @@ def _watched(rule: Rule, bindings: str) -> Watched:
 
 
 def _audit_log(
-    log: str, declarations: Declarations, watched: Sequence[Watched]
+    log: str, declarations: Declarations, watched: Sequence[Watched], engine: Engine
 ) -> tuple[list[dict[str, Any]], list[Diagnostic], bool]:
     """The results of one log, what there is to say of it, and whether it could be read."""
     names = tuple(dict.fromkeys(name for w in watched for name in w.monitor.PROPOSITIONS))
@@ -155,14 +160,14 @@ def _audit_log(
         hashes = _hash_of(log)
         return (
             [
-                unread(log, w.monitor.REQUIREMENT, recording, {**hashes, **w.hashes})
+                unread(log, w.monitor.REQUIREMENTS[0].id, recording, {**hashes, **w.hashes})
                 for w in watched
             ],
             [recording],
             False,
         )
     recording = examined(recording, declarations, names)
-    evidence = audit(recording, declarations, watched)
+    evidence = audit(recording, declarations, watched, engine)
     return [as_record(e) for e in evidence], list(recording.findings), True
 
 

@@ -51,14 +51,20 @@ class Watch:
     """A demand begins here."""
     breach: Formula
     """A demand is broken here: nothing that follows can repair it."""
+    doom: Formula
+    """Demands are open here that no endless trace meets, though none of them is broken yet."""
     owed: Formula
-    """A demand is open here: what follows decides it."""
+    """A demand is open here: what follows decides it, where none has been broken before."""
     fails: Formula
     """The trace would violate the sentence if it ended here, though it is not lost yet."""
+    settled: Formula
+    """Nothing that follows on an infinite trace can break a demand, where none has been broken."""
     answer: Formula | None
     """The response that settles a demand, where a demand waits for one."""
     horizon: int | None
     """Ticks from a trigger to its deadline; None: there is no deadline."""
+    renewed: bool
+    """A trigger replaces the demand of the trigger before it: only the latest one is open."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,6 +79,15 @@ class _Stage:
     """A demand begins here (and the tick lies inside)."""
     leaves: Formula
     """It is the first tick after an interval."""
+    over: Formula
+    """No interval is here or follows."""
+    recurs: bool
+    """Demands can begin at more than one tick."""
+
+    @property
+    def endless(self) -> bool:
+        """The interval lasts for ever once it has begun."""
+        return self.leaves == FALSE
 
     def open(self, kept: Formula, ago: Interval = EVER) -> Formula:
         """A trigger of this interval, `ago` ticks back, since which `kept` has held."""
@@ -94,15 +109,22 @@ def past(obligation: Obligation) -> Formula:
 def watch(obligation: Obligation) -> Watch:
     """The signals of a monitor; counting operators look back from now, never from a deadline."""
     stage, demand = _stage(obligation), obligation.demand
-    waits = demand.kind in (Kind.EVENTUALLY, Kind.WITHIN, Kind.AFTER)
+    breach = or_(_broken(demand, stage), _broken_at_end(demand, stage))
+    owed, fails = _owed(demand, stage), _fails(demand, stage)
     return Watch(
         trigger=stage.trigger,
-        breach=or_(_broken(demand, stage), _broken_at_end(demand, stage)),
-        owed=_owed(demand, stage),
-        fails=_fails(demand, stage),
-        answer=demand.response if waits else None,
+        breach=breach,
+        doom=_doom(demand, stage),
+        owed=owed,
+        fails=fails,
+        settled=TRUE if breach == owed == fails == FALSE else _settled(demand, stage),
+        answer=demand.response if demand.kind in _WAITING else None,
         horizon=_horizon(demand),
+        renewed=demand.kind in (Kind.NEXT, Kind.FOR, Kind.NOT_AFTER),
     )
+
+
+_WAITING = (Kind.EVENTUALLY, Kind.WITHIN, Kind.AFTER)
 
 
 # Scope and condition -----------------------------------------------------------------------
@@ -122,7 +144,24 @@ def _stage(obligation: Obligation) -> _Stage:
             trigger = and_(inside, p, enters)
         case _:
             assert_never(obligation.condition)
-    return _Stage(inside, left, trigger, leaves)
+    over = _over(obligation.scope, obligation.mode)
+    recurs = obligation.condition is not None or obligation.scope in _REPEATED
+    return _Stage(inside, left, trigger, leaves, over, recurs)
+
+
+_REPEATED = (ScopeKind.IN, ScopeKind.NOT_IN, ScopeKind.ONLY_IN)
+"""Scopes with an interval for each stretch of the mode."""
+
+
+def _over(scope: ScopeKind | None, m: Formula) -> Formula:
+    """The scope's one interval has ended, or can never begin."""
+    match scope:
+        case ScopeKind.BEFORE:
+            return once(m)
+        case ScopeKind.ONLY_AFTER:
+            return once(and_(not_(m), previous(m)))
+        case _:
+            return FALSE
 
 
 def _interval(scope: ScopeKind | None, m: Formula) -> tuple[Formula, Formula, Formula]:
@@ -262,13 +301,58 @@ def _owed(demand: Demand, stage: _Stage) -> Formula:
             return stage.open(TRUE)
         case Kind.EVENTUALLY:
             return stage.open(not_(q))
-        case Kind.WITHIN:
-            return stage.open(not_(q), Interval(0, n - 1)) if n else FALSE
+        case Kind.WITHIN | Kind.AFTER:
+            return stage.open(not_(q))  # one that is overdue has been broken before
         case Kind.FOR:
             return stage.open(TRUE, Interval(0, n - 1)) if n else FALSE
-        case Kind.AFTER | Kind.NOT_AFTER:
+        case Kind.NOT_AFTER:
             return stage.open(not_(q), Interval(0, n))
         case Kind.IMMEDIATELY | Kind.ALWAYS | Kind.UNTIL | Kind.BEFORE:
+            return FALSE
+        case _:
+            assert_never(demand.kind)
+
+
+def _doom(demand: Demand, stage: _Stage) -> Formula:
+    """Demands are open that cannot all be met.
+
+    Where an interval can end before the deadline, its end would void them.
+    """
+    if not stage.endless:
+        return FALSE
+    if demand.kind is Kind.AFTER and stage.recurs:
+        # The response may not come up to n ticks after this trigger, and must come before that.
+        return and_(stage.trigger, previous(stage.open(not_(demand.response))))
+    impossible = demand.kind in _WAITING and demand.response == FALSE
+    return stage.trigger if impossible else FALSE
+
+
+def _settled(demand: Demand, stage: _Stage) -> Formula:
+    """Every demand has been met, and no other can begin."""
+    if demand.kind is Kind.FINALLY and stage.endless:
+        return TRUE  # an interval without an end has no last tick
+    return stage.over if stage.recurs else or_(stage.over, _met(demand, stage))
+
+
+def _met(demand: Demand, stage: _Stage) -> Formula:
+    """The one demand, of the first tick of the interval, has been met or has passed."""
+    q, n = demand.response, demand.ticks
+    match demand.kind:
+        case Kind.IMMEDIATELY:
+            return once(stage.left)
+        case Kind.NEXT:
+            return once(stage.left, Interval(1, None))
+        case Kind.FOR:
+            return once(stage.left, Interval(n, None))
+        case Kind.EVENTUALLY | Kind.WITHIN | Kind.BEFORE:
+            return once(and_(stage.inside, q))
+        case Kind.UNTIL:
+            return once(and_(stage.inside, demand.stop))
+        case Kind.AFTER:
+            return once(stage.left, Interval(n + 1, None))
+        case Kind.NOT_AFTER:
+            return or_(once(and_(stage.inside, q)), once(stage.left, Interval(n + 1, None)))
+        case Kind.FINALLY | Kind.ALWAYS:
             return FALSE
         case _:
             assert_never(demand.kind)

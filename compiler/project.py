@@ -109,8 +109,19 @@ def requirement_files(folder: str) -> list[str] | Diagnostic:
         Code.NO_SUCH_FILE,
         f"{what} `{folder}`",
         Source(folder, "").span(),
-        help="name the folder with `--requirements`",
+        help="name the folder that your requirements are in",
     )
+
+
+def listed(paths: Sequence[str]) -> list[str] | Diagnostic:
+    """The files, with those of a folder in its place; each once."""
+    found: dict[str, None] = {}
+    for path in paths:
+        files = requirement_files(path) if path != "-" and Path(path).is_dir() else [path]
+        if isinstance(files, Diagnostic):
+            return files
+        found.update(dict.fromkeys(files))
+    return list(found)
 
 
 def beside(folder: str, name: str) -> str | None:

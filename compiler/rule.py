@@ -50,17 +50,28 @@ class Rule:
 
         A formula may lack some: `finally` says nothing of an infinite run.
         """
-        watched = (self.watch.trigger, self.watch.breach, self.watch.owed, self.watch.fails)
-        formulas = (self.ft_infinite, self.ft_finite, self.pt, *watched)
+        formulas = (self.ft_infinite, self.ft_finite, self.pt, *self._signals)
         return tuple(dict.fromkeys(name for formula in formulas for name in atoms(formula)))
 
     @property
     def watched(self) -> tuple[str, ...]:
         """The propositions that a monitor needs: predicates that look back are none of them."""
-        watch = self.watch
-        signals = (watch.trigger, watch.breach, watch.owed, watch.fails, watch.answer or FALSE)
-        needed = {name for signal in signals for name in atoms(signal)}
+        needed = {name for signal in self._signals for name in atoms(signal)}
         return tuple(name for name in self.propositions if name in needed)
+
+    @property
+    def _signals(self) -> tuple[Formula, ...]:
+        watch = self.watch
+        answer = watch.answer if watch.answer is not None else FALSE
+        return (
+            watch.trigger,
+            watch.breach,
+            watch.doom,
+            watch.owed,
+            watch.fails,
+            watch.settled,
+            answer,
+        )
 
     @property
     def variables(self) -> tuple[str, ...]:

@@ -13,16 +13,20 @@ from fretish.declarations import Declarations
 from fretish.units import base_name
 from monitors import kernel
 from monitors.evidence import Evidence, Moment, Violation, health
+from monitors.kernel import Column, Monitor, Outcome
 from monitors.samples import Recording
 from monitors.signals import blind_zones
-from monitors.traces import Column, Timeline, Trace, trace
+from monitors.traces import Timeline, Trace, trace
+
+Engine = Callable[[Monitor, Mapping[str, Column], int, str], tuple[Outcome, ...]]
+"""Monitor, columns, ticks and the verdict on what is open at the end → what was shown."""
 
 
 @dataclass(frozen=True, slots=True)
 class Watched:
     """A requirement's monitor, with the hashes of what it was made from."""
 
-    monitor: kernel.Monitor
+    monitor: Monitor
     hashes: Mapping[str, str]
 
 
@@ -50,36 +54,43 @@ def examined(
 
 
 def audit(
-    recording: Recording, declarations: Declarations, watched: Sequence[Watched]
+    recording: Recording,
+    declarations: Declarations,
+    watched: Sequence[Watched],
+    engine: Engine = kernel.evaluate,
 ) -> tuple[Evidence, ...]:
     """The evidence of one run for each monitor, in their order.
 
     Args:
         recording: read with all signals of all the monitors' propositions.
         declarations: every proposition of the monitors is declared.
-        watched: the monitors.
+        watched: the monitors, each of one requirement.
+        engine: how the monitors are run; what they show is the same.
     """
     names = dict.fromkeys(name for w in watched for name in w.monitor.PROPOSITIONS)
     seen = trace(declarations, recording, tuple(names))
-    return tuple(_evidence(recording, declarations, seen, w) for w in watched)
+    return tuple(_evidence(recording, declarations, seen, w, engine) for w in watched)
 
 
 def _evidence(
-    recording: Recording, declarations: Declarations, seen: Trace, watched: Watched
+    recording: Recording,
+    declarations: Declarations,
+    seen: Trace,
+    watched: Watched,
+    engine: Engine,
 ) -> Evidence:
     monitor = watched.monitor
     columns = {name: seen.columns[name] for name in monitor.PROPOSITIONS}
-    count = len(seen.timeline.times)
-    rows = ({name: column[i] for name, column in columns.items()} for i in range(count))
-    outcome = kernel.run(monitor, rows, str(declarations.clock.end))
-    undone = _undone(monitor, columns, seen, outcome)
+    ticks = len(seen.timeline.times)
+    (outcome,) = engine(monitor, columns, ticks, str(declarations.clock.end))
+    undone = _undone(monitor, columns, seen, outcome, engine)
     at = partial(_moment, seen.timeline)
     signals = signals_of(declarations, tuple(monitor.PROPOSITIONS))
     verdict = _weakened(outcome.verdict, recording, undone=undone)
     latencies = tuple(at(k).seconds - at(t).seconds for t, k in outcome.answers)
     evidence = Evidence(
         run=recording.name,
-        requirement=monitor.REQUIREMENT,
+        requirement=monitor.REQUIREMENTS[0].id,
         verdict=verdict,
         reason="",
         outcome=outcome,
@@ -104,7 +115,11 @@ _SHOWN = (kernel.SATISFIED, kernel.VACUOUS)
 
 
 def _undone(
-    monitor: kernel.Monitor, columns: Mapping[str, Column], seen: Trace, outcome: kernel.Outcome
+    monitor: Monitor,
+    columns: Mapping[str, Column],
+    seen: Trace,
+    outcome: Outcome,
+    engine: Engine,
 ) -> bool:
     """Whether what came after the last whole tick makes another verdict of a shown one.
 
@@ -112,11 +127,13 @@ def _undone(
     """
     if outcome.verdict not in _SHOWN or seen.cut is None:
         return False
-    rows = [dict(zip(columns, row, strict=True)) for row in zip(*columns.values(), strict=True)]
+    ticks = len(seen.timeline.times)
     cut = {name: seen.cut[name] for name in columns}
-    if not rows or cut == rows[-1]:
+    if not ticks or cut == {name: column.at(ticks - 1) for name, column in columns.items()}:
         return False
-    return kernel.run(monitor, [*rows, cut]).verdict != outcome.verdict
+    longer = {name: column.followed(cut[name], ticks) for name, column in columns.items()}
+    (then,) = engine(monitor, longer, ticks + 1, kernel.INCONCLUSIVE)
+    return then.verdict != outcome.verdict
 
 
 def _weakened(verdict: str, recording: Recording, *, undone: bool) -> str:
@@ -133,7 +150,7 @@ def _moment(timeline: Timeline, tick: int) -> Moment:
 
 def _violation(
     run: tuple[int, int],
-    outcome: kernel.Outcome,
+    outcome: Outcome,
     at: Callable[[int], Moment],
     recording: Recording,
     signals: Sequence[str],

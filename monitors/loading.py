@@ -17,7 +17,7 @@ def load(name: str, text: str) -> Monitor:
         text: what `--emit monitor` wrote.
 
     Raises:
-        ValueError: the text defines no `MONITORS`.
+        ValueError: the text defines no `MONITOR`.
     """
     module = ModuleType(f"_fretc_{name}")
     # Dataclasses look up their module by name while the text is being executed.
@@ -26,7 +26,7 @@ def load(name: str, text: str) -> Monitor:
         exec(compile(text, name, "exec"), module.__dict__)
     finally:
         del sys.modules[module.__name__]
-    monitors = getattr(module, "MONITORS", None)
-    if not monitors:
+    monitor = getattr(module, "MONITOR", None)
+    if not isinstance(monitor, type):
         raise ValueError(f"{name} is no generated monitor")
-    return cast(Monitor, monitors[0]())
+    return cast(Monitor, monitor())

@@ -12,10 +12,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fretish.declarations import Aggregate, Declarations, Proposition
-from monitors.propositions import UNKNOWN, States, Steps, evaluate, truth_values
+from monitors.kernel import Column
+from monitors.propositions import FALSE, TRUE, UNKNOWN, States, Steps, evaluate, truth_values
 from monitors.samples import Recording, Times
-
-Column = tuple[bool | None, ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,7 +31,7 @@ class Timeline:
 
 @dataclass(frozen=True, slots=True)
 class Trace:
-    """One column for each proposition, each with one entry for each tick.
+    """One column for each proposition: bit i is its truth at tick i.
 
     `cut` is what a tick would see that was cut short by the end of the log: what came after the
     last whole tick. No duration counts it. None where nothing came after that.
@@ -62,11 +61,21 @@ def trace(declarations: Declarations, recording: Recording, names: Collection[st
     is_cut = len(ticks.times) > 0 and recording.end_ns > ticks.times[-1]
     times = np.append(ticks.times, recording.end_ns) if is_cut else ticks.times
     first = recording.start_ns if ticks.period is not None else None
-    columns = {name: _column(name, declarations, recording, times, first) for name in names}
+    seen = {name: _states(name, declarations, recording, times, first) for name in names}
+    count = len(ticks.times)
+    columns = {name: packed(states[:count]) for name, states in seen.items()}
     if not is_cut:
         return Trace(ticks, columns, None)
-    whole = {name: column[:-1] for name, column in columns.items()}
-    return Trace(ticks, whole, {name: column[-1] for name, column in columns.items()})
+    return Trace(ticks, columns, {name: truth_values(s[-1:])[0] for name, s in seen.items()})
+
+
+def packed(states: States) -> Column:
+    """The states, shape (ticks,), as one bit a tick."""
+    return Column(_bits(states == TRUE), _bits(states == UNKNOWN))
+
+
+def _bits(values: NDArray[np.bool_]) -> int:
+    return int.from_bytes(np.packbits(values, bitorder="little").tobytes(), "little")
 
 
 def timeline(declarations: Declarations, recording: Recording) -> Timeline:
@@ -92,15 +101,16 @@ def _start(declarations: Declarations, recording: Recording, period: int) -> int
     return last if 0 <= last - recording.start_ns < period else recording.start_ns
 
 
-def _column(
+def _states(
     name: str, declarations: Declarations, recording: Recording, ticks: Times, first: int | None
-) -> Column:
+) -> States:
     proposition = declarations.propositions[name]
     steps = evaluate(proposition, declarations, recording)
     begun = None if first is None else (first, _heard(proposition, recording))
-    values = truth_values(_seen(steps, ticks, proposition.aggregate, begun))
-    default = proposition.on_unknown
-    return tuple(default if value is None else value for value in values)
+    states = _seen(steps, ticks, proposition.aggregate, begun)
+    if proposition.on_unknown is not None:
+        states[states == UNKNOWN] = TRUE if proposition.on_unknown else FALSE
+    return states
 
 
 def _heard(proposition: Proposition, recording: Recording) -> int:

@@ -47,6 +47,7 @@ _NOTATIONS = ("plain", "fret", "spot", "nusmv", "latex")
     help="Spelling of the formulas.",
 )
 @click.option("--simplify", is_flag=True, help="Show a simplified formula beside the exact one.")
+@click.option("--one-file", is_flag=True, help="Put the monitors of all requirements in one file.")
 def compile_(
     files: tuple[str, ...],
     kinds: tuple[str, ...],
@@ -55,14 +56,18 @@ def compile_(
     form: str,
     notation: str,
     simplify: bool,
+    one_file: bool,
 ) -> None:
     """Parse and formalize requirements; make files of them.
 
-    FILE holds one or more requirements; `-` is standard input.
+    FILE holds one or more requirements, or is a folder of such files; `-` is standard input.
     """
-    from compiler.project import load
+    from compiler.project import listed, load
 
-    project = load(files, bindings)
+    paths = listed(files)
+    if isinstance(paths, Diagnostic):
+        stop(paths)
+    project = load(paths, bindings)
     say(project.diagnostics)
     as_json = form == "json" and set(kinds) <= {"ltl"}
     if as_json and _only_failed(project):
@@ -72,7 +77,8 @@ def compile_(
         raise SystemExit(BAD)
     from compiler.targets.target import Options
 
-    options = Options(notation, simplify, tuple(f.requirement for f in project.failed))
+    free_texts = tuple(f.requirement for f in project.failed)
+    options = Options(notation, simplify, one_file, free_texts)
     if kinds:
         _emit(project, dict.fromkeys(kinds), output, options)
     else:
@@ -126,8 +132,12 @@ def _emit(project: Project, kinds: dict[str, None], output: str, options: Option
 def fmt(files: tuple[str, ...], check: bool, output: str | None) -> None:
     """Put the sentences of requirement files into their canonical wording."""
     from compiler.formatting import formatted
+    from compiler.project import listed
 
-    done, wrong = formatted(files)
+    paths = listed(files)
+    if isinstance(paths, Diagnostic):
+        stop(paths)
+    done, wrong = formatted(paths)
     if wrong:
         stop(*wrong)
     changed = [file for file in done if file.before != file.after]

@@ -37,8 +37,20 @@ from fretish.diagnostic import Code, Diagnostic, has_errors
 @click.option(
     "--format", "form", type=click.Choice(("text", "json")), default="text", show_default=True
 )
+@click.option(
+    "--engine",
+    type=click.Choice(("columns", "online")),
+    default="columns",
+    show_default=True,
+    help="Run the monitors over whole logs at once, or step by step; what they show is the same.",
+)
 def audit(
-    logs: tuple[str, ...], requirements: str, bindings: str | None, evidence: str, form: str
+    logs: tuple[str, ...],
+    requirements: str,
+    bindings: str | None,
+    evidence: str,
+    form: str,
+    engine: str,
 ) -> None:
     """Audit recorded runs against all requirements.
 
@@ -55,7 +67,7 @@ def audit(
     say(project.diagnostics)
     if has_errors(project.diagnostics):
         raise SystemExit(BAD)
-    result = audit_logs(project, logs)
+    result = audit_logs(project, logs, engine)
     say(result.diagnostics)
     if not result.results:
         raise SystemExit(BAD)

@@ -1,22 +1,23 @@
-"""`--emit monitor`: a standalone Python file, straight-line code over the watch of a rule.
+"""`--emit monitor`: a standalone Python file, straight-line code over the watches of rules.
 
-Every temporal sub-formula has one variable on each rail (`must`, `may`), stepped at every tick;
-the text of `monitors/kernel.py` is copied in, so the file needs the standard library and nothing
-else.
+Every temporal sub-formula has one variable, stepped at every tick, and one column over whole
+traces; rules in one file share what they have in common. The text of `monitors/kernel/` is copied
+in, so the file needs the standard library and nothing else.
 """
 
 from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Sequence
-from importlib.resources import files
+from dataclasses import dataclass
 from keyword import iskeyword
 from pathlib import PurePosixPath
 
 from compiler import __version__, printing
 from compiler.artifact import Artifact
-from compiler.program import locals_of, program
+from compiler.program import MARKS, Program, locals_of, marks_of, negation, program
 from compiler.rule import Rule
+from compiler.runtime import kernel
 from compiler.targets.target import DEFAULT, Options, Target, not_expressible, stem
 from compiler.templating import render
 from fretish import syntax as s
@@ -24,9 +25,6 @@ from fretish.checking import LOOK_AHEAD, calls, conditions
 from fretish.clock import assumed_ticks
 from fretish.depth import depth
 from fretish.diagnostic import Code, Diagnostic, Severity
-
-_KERNEL_BEGINS = "# kernel begins here\n"
-_IMPORTS_END = re.compile(r"\n\n(?=[A-Z])")
 
 
 def refuse(rule: Rule) -> Diagnostic | None:
@@ -89,79 +87,135 @@ def remark(rule: Rule) -> Diagnostic | None:
 
 
 def emit(rules: Sequence[Rule], options: Options = DEFAULT) -> tuple[Artifact, ...]:
-    """`<id>_monitor.py` for each rule; it needs Python 3.11 and nothing else."""
+    """`<id>_monitor.py` for each rule, or one file; they need Python 3.11 and nothing else."""
+    if options.one_file:
+        return (Artifact(PurePosixPath("monitors.py"), text(*rules)),)
     return tuple(
         Artifact(PurePosixPath(f"{_module(stem(rule))}_monitor.py"), text(rule)) for rule in rules
     )
 
 
-def text(rule: Rule) -> str:
-    """The monitor's Python source."""
-    parameters = _parameters(rule.watched)
-    imports, kernel = _kernel()
+def text(*rules: Rule) -> str:
+    """The Python source of one monitor for all of the rules.
+
+    Args:
+        rules: at least one, each with an id of its own, and all on one clock.
+    """
+    names = tuple(dict.fromkeys(name for rule in rules for name in rule.watched))
+    prefixes = _prefixes([rule.id for rule in rules])
+    parameters = _parameters(names, prefixes.values())
+    made = program({rule.id: rule.watch for rule in rules}, parameters, prefixes)
+    runtime = kernel()
+    inputs = [_Input(name, parameters[name], _is_negated(name, made)) for name in names]
     return render(
         "monitor/monitor.py.j2",
-        id=rule.id,
+        title=", ".join(rule.id for rule in rules),
+        class_name=_class_name(rules[0].id) if len(rules) == 1 else "All",
         version=__version__,
-        sentence=" ".join(rule.requirement.wording.text.split()),
-        fingerprint=rule.fingerprint,
-        tick=str(rule.clock) if rule.clock else "not declared",
-        ft=printing.readable(rule.ft_infinite),
-        finite=printing.readable(rule.ft_finite),
-        pt=printing.readable(rule.pt),
-        class_name=_class_name(rule.id),
-        horizon=rule.watch.horizon,
-        parameters=parameters,
-        program=program(rule.watch, parameters),
-        imports=imports,
-        kernel=kernel,
+        rules=[_described(rule) for rule in rules],
+        tick=str(rules[0].clock) if rules[0].clock else "not declared",
+        inputs=inputs,
+        row=_tuple([p.name for p in inputs]),
+        program=made,
+        slots=_slots(made),
+        told=made.told,
+        marks=MARKS,
+        verdicts="Verdict" if len(rules) == 1 else "tuple[Verdict, ...]",
+        imports=runtime.imports,
+        kernel=runtime.text,
     )
 
 
-def _kernel() -> tuple[str, str]:
-    """The imports and the rest of the kernel's text."""
-    source = files("monitors").joinpath("kernel.py").read_text(encoding="utf-8")
-    _, found, body = source.partition(_KERNEL_BEGINS)
-    assert found, "the kernel lost its mark"
-    imports, rest = _IMPORTS_END.split(body, maxsplit=1)
-    return imports.strip(), rest.strip()
+def _tuple(names: Sequence[str]) -> str:
+    return f"({', '.join(names)}{',' * (len(names) == 1)})"
+
+
+def _slots(made: Program) -> list[str]:
+    """All that a rail keeps, numbers in names in their order."""
+    kept = {name for told in made.told for name in marks_of(told.prefix)}
+    names = {"doubt", "tick", *(cell.name for cell in made.cells), *kept}
+    return sorted(names, key=_natural)
+
+
+def _natural(name: str) -> list[str]:
+    """Numbers within names are in their own order."""
+    return [part.zfill(9) if part.isdigit() else part for part in re.split(r"(\d+)", name)]
+
+
+@dataclass(frozen=True, slots=True)
+class _Input:
+    """One proposition of a step."""
+
+    proposition: str
+    name: str
+    negated: bool
+    """Whether its negation is needed too."""
+
+
+def _is_negated(proposition: str, made: Program) -> bool:
+    return any(used.proposition == proposition and not used.positive for used in made.literals)
+
+
+def _described(rule: Rule) -> dict[str, object]:
+    return {
+        "id": rule.id,
+        "sentence": " ".join(rule.requirement.wording.text.split()),
+        "fingerprint": rule.fingerprint,
+        "horizon": rule.watch.horizon,
+        "ft": printing.readable(rule.ft_infinite),
+        "finite": printing.readable(rule.ft_finite),
+        "pt": printing.readable(rule.pt),
+    }
 
 
 def _class_name(id: str) -> str:
+    name = _identifier(id)
+    return f"{name[0].upper()}{name[1:]}"
+
+
+def _identifier(id: str) -> str:
     name = re.sub(r"\W", "_", id, flags=re.ASCII)
-    name = name if name[0].isalpha() else f"R{name}"
-    return f"{name[0].upper()}{name[1:]}Monitor"
+    return name if name[0].isalpha() else f"R{name}"
 
 
 def _module(name: str) -> str:
     return re.sub(r"[^a-z0-9_]", "_", name)
 
 
+def _prefixes(ids: Iterable[str]) -> dict[str, str]:
+    """An identifier for each id, all different."""
+    prefixes: dict[str, str] = {}
+    for id in ids:
+        prefix = _identifier(id).lower()
+        while prefix in prefixes.values():
+            prefix += "_"
+        prefixes[id] = prefix
+    return prefixes
+
+
 _MOST_LEVELS = 60
 _SPOKEN = {"<=": "_le_", ">=": "_ge_", "!=": "_ne_", "<": "_lt_", ">": "_gt_", "=": "_eq_"}
-_TAKEN = frozenset({"self", "Window", "History", "Verdict", "Truth", "rails", "first"})
+_TAKEN = frozenset(
+    "self every known doubt tick rows row must may first kept_first refused Signals Marks previous "
+    "weak_previous once historically since released since_from since_between released_between "
+    "SATISFIED VIOLATED PENDING".split()
+)
+"""What the generated functions call their own, and what they call."""
 
 
-def _parameters(names: Iterable[str]) -> dict[str, str]:
+def _parameters(names: Iterable[str], prefixes: Iterable[str]) -> dict[str, str]:
     """A parameter of `step` for each proposition: its name as an identifier, all different."""
+    taken = {*_TAKEN, *(name for prefix in prefixes for name in marks_of(prefix))}
     parameters: dict[str, str] = {}
     for name in names:
         parameter = printing.identifier(name) if not printing.is_compound(name) else _spoken(name)
         if not parameter[0].isalpha():
             parameter = f"p_{parameter}"
-        while _clashes(parameter, parameters.values()):
+        while iskeyword(parameter) or not taken.isdisjoint({parameter, negation(parameter)}):
             parameter += "_"
+        taken.update(locals_of([parameter]))
         parameters[name] = parameter
     return parameters
-
-
-def _clashes(parameter: str, others: Iterable[str]) -> bool:
-    """Whether the name, or one of its rails, is another name of the generated step."""
-    return (
-        iskeyword(parameter)
-        or not locals_of([parameter]).isdisjoint(_TAKEN)
-        or not locals_of([parameter]).isdisjoint(locals_of(others))
-    )
 
 
 def _spoken(text: str) -> str:

@@ -20,6 +20,8 @@ class Options:
     """A name of `printing.DIALECTS`."""
     simplify: bool = False
     """Whether a simplified form stands beside the exact one."""
+    one_file: bool = False
+    """Whether the monitors of all rules go into one file."""
     free_texts: tuple[Requirement, ...] = ()
     """Requirements without a rule, which only formats for exchange carry."""
 

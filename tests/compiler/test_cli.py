@@ -158,12 +158,19 @@ def test_a_missing_file_is_named_with_its_neighbour(fretc: Fretc) -> None:
     )
 
 
-def test_a_directory_is_no_requirement(fretc: Fretc) -> None:
+def test_a_directory_stands_for_the_requirements_in_it(fretc: Fretc) -> None:
     write("folder/r1.fret", R1)
-    assert fretc("folder/") == Run(
+    write("folder/notes.txt", "no requirement")
+    assert fretc("folder/") == fretc("folder/r1.fret")
+
+
+def test_a_directory_without_requirements_is_refused(fretc: Fretc) -> None:
+    Path("folder").mkdir()
+    assert fretc("folder") == Run(
         2,
         "",
-        "F902 `folder/` is a directory\n  --> folder/\nhelp: name the files in it: `folder/*`\n",
+        "F901 no requirement (`*.fret`) is in `folder`\n  --> folder\n"
+        "help: name the folder that your requirements are in\n",
     )
 
 

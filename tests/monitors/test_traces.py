@@ -6,9 +6,10 @@ import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
+from monitors.kernel.columns import truths
 from monitors.propositions import evaluate
 from monitors.samples import Recording, Samples, Topic
-from monitors.traces import timeline, trace
+from monitors.traces import Trace, timeline, trace
 from tests.monitors.logs import MS, S, declare
 
 Value = bool | None
@@ -35,11 +36,16 @@ def recording(
     )
 
 
+def values(found: Trace) -> list[Value]:
+    """The column of p."""
+    return truths(found.columns["p"], len(found.timeline.times))
+
+
 def column(
     pairs: Sequence[tuple[int, float]], aggregate: str, end: int = 50, extra: str = ""
 ) -> list[Value]:
-    found = trace(declare(bindings(aggregate, extra=extra)), recording(pairs, end=end), ["p"])
-    return list(found.columns["p"])
+    declarations = declare(bindings(aggregate, extra=extra))
+    return values(trace(declarations, recording(pairs, end=end), ["p"]))
 
 
 LOW, HIGH, NAN = 1.0, 9.0, float("nan")
@@ -131,24 +137,24 @@ def test_a_clock_by_message_ticks_with_each_of_them() -> None:
     found = trace(declarations, log, ["p"])
     assert found.timeline.period is None
     assert found.timeline.times.tolist() == [5, 20, 21]
-    assert found.columns["p"] == (False, True, False)
+    assert values(found) == [False, True, False]
 
 
 def test_messages_with_equal_times_are_a_tick_each_with_its_own_sample() -> None:
     declarations = declare(bindings("any", tick="/x"))
     log = recording([(5, HIGH), (9, LOW), (9, HIGH), (9, HIGH)], ticks=[5, 9, 9, 9])
-    assert trace(declarations, log, ["p"]).columns["p"] == (False, True, False, False)
+    assert values(trace(declarations, log, ["p"])) == [False, True, False, False]
 
 
 def test_the_last_of_equal_ticks_sees_all_that_is_left() -> None:
     declarations = declare(bindings("any", tick="/y"))
     log = recording([(9, HIGH), (9, HIGH), (9, LOW), (11, HIGH)], ticks=[9, 9, 12])
-    assert trace(declarations, log, ["p"]).columns["p"] == (False, True, False)
+    assert values(trace(declarations, log, ["p"])) == [False, True, False]
 
 
 def test_a_clock_without_messages_has_no_ticks() -> None:
     declarations = declare(bindings("any", tick="/y"))
-    assert trace(declarations, recording([(9, HIGH)]), ["p"]).columns["p"] == ()
+    assert values(trace(declarations, recording([(9, HIGH)]), ["p"])) == []
 
 
 def slow_tick(times: list[int], values: list[Value], low: int, high: int, how: str) -> Value:
@@ -187,7 +193,7 @@ def test_aggregation_agrees_with_the_definition(
     ]
     found = trace(declarations, log, ["p"])
     whole = found.timeline.times.tolist()
-    seen = [*found.columns["p"], *(found.cut.values() if found.cut is not None else ())]
+    seen = [*values(found), *(found.cut.values() if found.cut is not None else ())]
     assert whole == list(range(log.start_ns, 62, period))
     assert seen == expected
 
@@ -199,7 +205,7 @@ def test_ten_minutes_are_a_column_of_6001_ticks(expression: str) -> None:
     samples = {"x": Samples(times, np.sin(times / S) * 10)}
     log = replace(recording([], end=600 * S), samples=samples)
     declarations = declare(text)
-    assert len(trace(declarations, log, ["p"]).columns["p"]) == 6001
+    assert len(values(trace(declarations, log, ["p"]))) == 6001
 
 
 def two_topics(second_begins: int) -> Recording:
@@ -224,19 +230,20 @@ BOTH = with_y(bindings("any")).replace("x < 5", "x < 5 and y < 5")
 def test_the_first_tick_waits_for_a_topic_that_begins_less_than_a_tick_later() -> None:
     found = trace(declare(BOTH), two_topics(3), ["p"])
     assert found.timeline.times.tolist() == [3, 13, 23, 33, 43, 53]
-    assert found.columns["p"] == (True,) * 6
+    assert values(found) == [True] * 6
 
 
 def test_a_topic_that_begins_later_than_that_leaves_the_ticks_before_it_unknown() -> None:
     found = trace(declare(BOTH), two_topics(15), ["p"])
     assert found.timeline.times.tolist() == [0, 10, 20, 30, 40, 50]
-    assert found.columns["p"] == (None, None, True, True, True, True)
+    assert values(found) == [None, None, True, True, True, True]
 
 
 @pytest.mark.parametrize(("aggregate", "then"), [("any", HIGH), ("all", LOW)])
 def test_the_first_tick_is_unknown_where_a_sample_within_it_is(aggregate: str, then: float) -> None:
     log = replace(two_topics(4), samples={"x": Samples(np.array([0, 3]), np.array([NAN, then]))})
-    assert trace(declare(with_y(bindings(aggregate))), log, ["p"]).columns["p"][0] is None
+    declarations = declare(with_y(bindings(aggregate)))
+    assert values(trace(declarations, log, ["p"]))[0] is None
 
 
 @pytest.mark.parametrize(("aggregate", "then"), [("any", HIGH), ("all", LOW)])
@@ -244,6 +251,6 @@ def test_the_first_tick_is_unknown_where_part_of_it_is_lost(aggregate: str, then
     declarations = declare(with_y(bindings(aggregate)))
     late = Samples(np.array([3]), np.array([then]))
     log = replace(two_topics(4), samples={"x": late})
-    assert trace(declarations, log, ["p"]).columns["p"][0] is (aggregate == "all")
+    assert values(trace(declarations, log, ["p"]))[0] is (aggregate == "all")
     lost = replace(log, gaps=((1, 2),))
-    assert trace(declarations, lost, ["p"]).columns["p"][0] is None
+    assert values(trace(declarations, lost, ["p"]))[0] is None

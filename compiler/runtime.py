@@ -1,0 +1,72 @@
+"""The text of the run time, as it is copied into every generated monitor."""
+
+from __future__ import annotations
+
+import ast
+from dataclasses import dataclass
+from functools import cache
+from importlib.resources import files
+
+_MODULES = ("verdicts", "columns", "stepping", "outcomes", "tables", "command")
+"""Of `monitors.kernel`, each after those that it needs."""
+
+
+@dataclass(frozen=True, slots=True)
+class Runtime:
+    """The modules of the kernel as one."""
+
+    imports: str
+    """Of the standard library only."""
+    text: str
+
+
+@cache
+def kernel() -> Runtime:
+    """All modules of the kernel, one after the other, below one head of imports."""
+    imports: dict[str, set[str]] = {}
+    texts: list[str] = []
+    for module in _MODULES:
+        source = files("monitors.kernel").joinpath(f"{module}.py").read_text(encoding="utf-8")
+        tree = ast.parse(source)
+        last = _collect(tree, imports)
+        texts.append("\n".join(source.splitlines()[last:]).strip())
+    return Runtime(_head(imports), "\n\n\n".join(texts))
+
+
+def _collect(tree: ast.Module, imports: dict[str, set[str]]) -> int:
+    """Add what a module imports of the standard library; gives the line after which code begins."""
+    last = 0
+    for node in tree.body:
+        if isinstance(node, ast.Import):
+            imports.update({alias.name: set() for alias in node.names})
+        elif isinstance(node, ast.ImportFrom):
+            if node.module not in ("__future__", None) and not str(node.module).startswith(
+                "monitors"
+            ):
+                imports.setdefault(f"from {node.module}", set()).update(a.name for a in node.names)
+        elif not (isinstance(node, ast.Expr) and node is tree.body[0]):
+            break
+        assert node.end_lineno is not None
+        last = node.end_lineno
+    return last
+
+
+def _head(imports: dict[str, set[str]]) -> str:
+    plain = [f"import {name}" for name in sorted(imports) if not name.startswith("from ")]
+    some = [
+        _from(name, sorted(found, key=_constants_first))
+        for name, found in sorted(imports.items())
+        if name.startswith("from ")
+    ]
+    return "\n".join([*plain, *some])
+
+
+def _from(module: str, names: list[str]) -> str:
+    line = f"{module} import {', '.join(names)}"
+    if len(line) <= 88:
+        return line
+    return "\n".join([f"{module} import (", *(f"    {name}," for name in names), ")"])
+
+
+def _constants_first(name: str) -> tuple[bool, str]:
+    return not name.isupper(), name

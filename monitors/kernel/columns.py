@@ -1,0 +1,194 @@
+"""Past-time operators over whole traces: a column is an integer, bit i is its truth at tick i.
+
+`every` is the column that is true at every tick of the trace, so its length says how long the
+trace is. The cost of an operator is a few passes over the memory of a column; of one with bounds,
+log2 of the bound. Sources: `since` by the carry of an addition: Reynolds, in Warren, Hacker's
+Delight, 2013, section 2; windows by doubling: van Herk, Pattern Recognition Letters 13 (1992).
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator, Sequence
+from typing import NamedTuple
+
+from monitors.kernel.verdicts import Truth
+
+LARGE = 1 << 19
+"""Ticks from which on a column is a block that the C library treats in another way."""
+
+
+def reuse_memory() -> None:
+    """Let the C library keep the memory of large columns for the next ones.
+
+    glibc asks the system for each block from 128 kB on, and gives it back at once, which costs more
+    than to compute it. A larger block that has been freed raises this limit: see mallopt(3),
+    M_MMAP_THRESHOLD. Nothing is written to it, so it takes no memory.
+    """
+    bytes(31 << 20)
+
+
+class Column(NamedTuple):
+    """The truth of one proposition at each tick; where neither bit is set it is false."""
+
+    true: int
+    unknown: int
+    """No bit of it is one of `true`."""
+
+    def at(self, tick: int) -> Truth:
+        """The truth value at one tick."""
+        return None if self.unknown >> tick & 1 else bool(self.true >> tick & 1)
+
+    def followed(self, value: Truth, ticks: int) -> Column:
+        """The column with one more value, after its `ticks` others."""
+        return Column(self.true | (value is True) << ticks, self.unknown | (value is None) << ticks)
+
+
+def column(codes: bytes | bytearray) -> Column:
+    """The column of one code a tick: 0 false, 1 true, 2 unknown."""
+    if not codes:
+        return Column(0, 0)
+    backwards = codes[::-1]
+    true = int(backwards.translate(_TRUE), 2)
+    return Column(true, int(backwards.translate(_UNKNOWN), 2) if 2 in codes else 0)
+
+
+_TRUE = bytes.maketrans(b"\0\1\2", b"010")
+_UNKNOWN = bytes.maketrans(b"\0\1\2", b"001")
+
+
+def code(value: Truth) -> int:
+    """The code of a truth value; anything else is a mistake of the caller."""
+    if value is None:
+        return 2
+    if value is True or value is False:
+        return int(value)
+    raise TypeError(f"a truth value is True, False or None (unknown), not {value!r}")
+
+
+def columns_of(rows: Iterable[Sequence[Truth]], count: int) -> tuple[int, tuple[Column, ...]]:
+    """The length and the columns of a table with `count` truth values in each row, one row a tick.
+
+    Raises:
+        TypeError: a value is not True, False or None.
+        ValueError: a row has more or fewer values.
+    """
+    codes = [bytearray() for _ in range(count)]
+    ticks = 0
+    for row in rows:
+        ticks += 1
+        for values, value in zip(codes, row, strict=True):
+            values.append(code(value))
+    return ticks, tuple(map(column, codes))
+
+
+def truths(column: Column, ticks: int) -> list[Truth]:
+    """The truth value at each tick."""
+    true, unknown = set(ticks_of(column.true)), set(ticks_of(column.unknown))
+    return [None if tick in unknown else tick in true for tick in range(ticks)]
+
+
+def ticks_of(column: int) -> Iterator[int]:
+    """The ticks at which it is true, in order; the cost is that of its memory and of these."""
+    data = column.to_bytes((column.bit_length() + 7) // 8, "little")
+    for byte in re.finditer(rb"[^\0]", data):
+        first = 8 * byte.start()
+        for bit in _BITS[data[byte.start()]]:
+            yield first + bit
+
+
+_BITS = tuple(tuple(bit for bit in range(8) if byte >> bit & 1) for byte in range(256))
+
+
+def runs_of(column: int) -> tuple[tuple[int, int], ...]:
+    """Its maximal runs of true ticks, each as (first, last)."""
+    edges = ticks_of(column ^ column << 1)
+    return tuple((first, after - 1) for first, after in zip(edges, edges, strict=True))
+
+
+# Operators, in the order of their cost ---------------------------------------------------------
+
+
+def previous(arg: int, every: int) -> int:
+    """`Y arg`; false at tick 0."""
+    return arg << 1 & every
+
+
+def weak_previous(arg: int, every: int) -> int:
+    """`Z arg`; true at tick 0."""
+    return (arg << 1 | 1) & every
+
+
+def since(left: int, right: int) -> int:
+    """`left S right`: a bit of `right` starts a carry, and `left` passes it on."""
+    passes = left | right
+    return (passes ^ right ^ passes + right) >> 1
+
+
+def released(left: int, right: int) -> int:
+    """`!(!left S !right)`: right, from the last tick at which left held too, or from tick 0 on."""
+    starts = left & right
+    return (right ^ starts ^ right + starts + 1) >> 1
+
+
+def once(arg: int, lo: int, hi: int | None, every: int) -> int:
+    """`O[lo,hi] arg`."""
+    if lo >= every.bit_length():
+        return 0  # no tick of the trace is so long ago
+    arg = arg << lo & every if lo else arg
+    return _from_first(arg, every) if hi is None else _smeared(arg, hi - lo, every)
+
+
+def historically(arg: int, lo: int, hi: int | None, every: int) -> int:
+    """`H[lo,hi] arg`."""
+    return every ^ once(every ^ arg, lo, hi, every)
+
+
+def since_from(held: int, left: int, right: int, lo: int, every: int) -> int:
+    """`left S[lo,inf) right`, where `held` is `left S right`."""
+    if lo >= every.bit_length():
+        return 0
+    if right | left == left:  # then it began lo ticks ago or more if it has held since
+        return _lasting(held, lo)
+    return held << lo & historically(left, 0, lo - 1, every) if lo else held
+
+
+def since_between(left: int, right: int, lo: int, hi: int | None, every: int) -> int:
+    """`left S[lo,hi] right`."""
+    held = since(left, right)
+    if hi is None:
+        return since_from(held, left, right, lo, every)
+    if lo >= every.bit_length():
+        return 0
+    held &= _smeared(right, hi - lo, every)
+    return held << lo & historically(left, 0, lo - 1, every) if lo else held
+
+
+def released_between(left: int, right: int, lo: int, hi: int | None, every: int) -> int:
+    """`!(!left S[lo,hi] !right)`."""
+    return every ^ since_between(every ^ left, every ^ right, lo, hi, every)
+
+
+def _from_first(arg: int, every: int) -> int:
+    """True from the first tick of `arg` on."""
+    return every ^ (arg ^ arg - 1) >> 1 if arg else 0
+
+
+def _smeared(arg: int, more: int, every: int) -> int:
+    """True at each tick of `arg` and for `more` ticks after it."""
+    more, done = min(more, every.bit_length()), 0
+    while done < more:
+        step = min(done + 1, more - done)
+        arg |= arg << step
+        done += step
+    return arg & every
+
+
+def _lasting(arg: int, more: int) -> int:
+    """True where `arg` is true and was at each of the `more` ticks before."""
+    done = 0
+    while done < more:
+        step = min(done + 1, more - done)
+        arg &= arg << step
+        done += step
+    return arg

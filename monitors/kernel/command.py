@@ -1,0 +1,130 @@
+"""The command line of a generated monitor."""
+
+from __future__ import annotations
+
+import argparse
+import io
+import json
+import os
+import sys
+from collections.abc import Sequence
+from typing import TextIO
+
+from monitors.kernel.columns import columns_of
+from monitors.kernel.outcomes import Outcome, evaluate, stepped
+from monitors.kernel.stepping import Monitor
+from monitors.kernel.tables import InputError, read_rows
+from monitors.kernel.verdicts import (
+    EXIT_STATUS,
+    INCONCLUSIVE,
+    NO_DATA,
+    SATISFIED,
+    VACUOUS,
+    VIOLATED,
+)
+
+
+def main(monitor: type[Monitor], arguments: Sequence[str] | None = None) -> int:
+    """Run the monitor over tables of propositions and print the verdicts.
+
+    Returns:
+        0 all satisfied, 1 a violation, 2 bad use or input, 3 something is not shown.
+    """
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="backslashreplace")
+    options = _parser(monitor).parse_args(arguments)
+    try:
+        statuses = [_report(monitor(), path, options) for path in options.trace]
+        status = max(statuses, key=(0, 3, 1, 2).index)
+        if sys.stdout is None:
+            raise InputError("standard output is closed")
+        sys.stdout.flush()
+        return status
+    except InputError as error:
+        print(error, file=sys.stderr)
+        return 2
+    except OSError as error:  # standard output is full, or its reader has gone
+        if not isinstance(error, BrokenPipeError):
+            print(f"standard output cannot be written: {error.strerror}", file=sys.stderr)
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return 2
+    except KeyboardInterrupt:
+        return 130
+
+
+def _parser(monitor: type[Monitor]) -> argparse.ArgumentParser:
+    sentences = "\n".join(f"  {r.id}: {r.sentence}" for r in monitor.REQUIREMENTS)
+    parser = argparse.ArgumentParser(
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+        description=_literal(f"Monitor of\n{sentences}"),
+        epilog=_literal(
+            f"columns: {', '.join(monitor.PROPOSITIONS)}\n"
+            "exit status: 0 satisfied, 1 violated, 2 bad use or input, 3 not shown"
+        ),
+    )
+    parser.add_argument(
+        "trace",
+        nargs="+",
+        help="CSV with a header, or JSON lines; one row a tick; `-` is standard input",
+    )
+    parser.add_argument("--format", choices=("text", "json"), default="text")
+    parser.add_argument(
+        "--end",
+        choices=(INCONCLUSIVE.value, VIOLATED.value),
+        default=INCONCLUSIVE.value,
+        help="what a demand is that is open at the end of the trace",
+    )
+    parser.add_argument(
+        "--engine",
+        choices=("columns", "online"),
+        default="columns",
+        help="whole traces at once, or step by step: the outcome is the same",
+    )
+    return parser
+
+
+def _literal(text: str) -> str:
+    """The text as argparse shows it unchanged: it formats only where `%(prog)` comes."""
+    return text.replace("%", "%%") if "%(prog)" in text else text
+
+
+def _report(monitor: Monitor, path: str, options: argparse.Namespace) -> int:
+    source = "<stdin>" if path == "-" else path
+    names = tuple(monitor.PROPOSITIONS)
+    with _opened(path) as text:
+        try:
+            ticks, columns = columns_of(read_rows(text, names, source), len(names))
+        except UnicodeDecodeError:
+            raise InputError(f"{source}: the trace is not UTF-8 text") from None
+    run = stepped if options.engine == "online" else evaluate
+    outcomes = run(monitor, dict(zip(names, columns, strict=True)), ticks, options.end)
+    for outcome in outcomes:
+        if options.format == "json":
+            print(json.dumps(outcome.as_json()))
+        else:
+            print(f"{source}: {outcome.requirement}: {_sentence(outcome)}")
+    return max((EXIT_STATUS[outcome.verdict] for outcome in outcomes), key=(0, 3, 1).index)
+
+
+def _opened(path: str) -> TextIO:
+    try:
+        if path == "-":
+            if sys.stdin is None:
+                raise InputError("standard input is closed")
+            return open(sys.stdin.fileno(), encoding="utf-8", newline="", closefd=False)
+        return open(path, encoding="utf-8", newline="")
+    except OSError as error:
+        raise InputError(f"{path}: {error.strerror or error}") from None
+
+
+def _sentence(outcome: Outcome) -> str:
+    count = f"{len(outcome.triggers)} trigger{'' if len(outcome.triggers) == 1 else 's'}"
+    details = {
+        SATISFIED: count,
+        VIOLATED: "ticks " + ", ".join(f"{a}..{b}" for a, b in outcome.violations),
+        INCONCLUSIVE: f"{count}, {len(outcome.open)} open at the end",
+        VACUOUS: "never triggered",
+        NO_DATA: f"unknown at ticks {', '.join(f'{a}..{b}' for a, b in outcome.unknown) or '-'}",
+    }
+    return f"{outcome.verdict} ({details[outcome.verdict]})"

@@ -1,0 +1,195 @@
+"""What whole traces show of the requirements, from the columns of their signals."""
+
+from __future__ import annotations
+
+from bisect import bisect_right
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from monitors.kernel.columns import (
+    LARGE,
+    Column,
+    column,
+    columns_of,
+    reuse_memory,
+    runs_of,
+    ticks_of,
+    truths,
+)
+from monitors.kernel.stepping import Monitor, Row, finite_verdict, literals_of
+from monitors.kernel.verdicts import (
+    INCONCLUSIVE,
+    NO_DATA,
+    VIOLATED,
+    Requirement,
+    Signals,
+    Truth,
+    Verdict,
+    at_end,
+    truth,
+)
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """One requirement over one whole trace; ticks count from 0, intervals include both ends."""
+
+    requirement: str
+    ticks: int
+    verdict: Verdict
+    finite: Truth
+    """FRET's verdict on the finite trace."""
+    first_violation: int | None
+    violations: tuple[tuple[int, int], ...]
+    """Runs of ticks at which a demand was broken, or was overdue and still unanswered."""
+    unknown: tuple[tuple[int, int], ...]
+    """Runs of ticks at which it cannot be known whether a demand was broken."""
+    triggers: tuple[int, ...]
+    answers: tuple[tuple[int, int], ...]
+    """Trigger and first answer to it, where a demand waits for one and it came."""
+    open: tuple[tuple[int, int | None], ...]
+    """Trigger and deadline (None: there is none) of each demand that is open at the end."""
+
+    def as_json(self) -> dict[str, Any]:
+        """Plain values, in a fixed order of keys."""
+        return {
+            "requirement": self.requirement,
+            "ticks": self.ticks,
+            "verdict": self.verdict,
+            "finite": self.finite,
+            "first_violation": self.first_violation,
+            "violations": [list(run) for run in self.violations],
+            "unknown": [list(run) for run in self.unknown],
+            "triggers": list(self.triggers),
+            "answers": [list(pair) for pair in self.answers],
+            "open": [{"trigger": t, "deadline": d} for t, d in self.open],
+        }
+
+
+def evaluate(
+    monitor: Monitor, columns: Mapping[str, Column], ticks: int, end: str = INCONCLUSIVE
+) -> tuple[Outcome, ...]:
+    """The column program over a whole trace; the monitor's own state is not touched.
+
+    Args:
+        monitor: any monitor.
+        columns: one for each proposition.
+        ticks: the length of the trace.
+        end: what a demand is that is open at the end: `inconclusive` or `violated`.
+
+    Raises:
+        KeyError: a proposition has no column.
+    """
+    if ticks >= LARGE:
+        reuse_memory()
+    every = (1 << ticks) - 1
+    must = may = monitor.columns(every, **literals_of(monitor, columns, every, doubt=False))
+    if any(columns[name].unknown for name in monitor.PROPOSITIONS):
+        may = monitor.columns(every, **literals_of(monitor, columns, every, doubt=True))
+    return tuple(
+        _outcome(requirement, ticks, certain, possible, end)
+        for requirement, certain, possible in zip(monitor.REQUIREMENTS, must, may, strict=True)
+    )
+
+
+def stepped(
+    monitor: Monitor, columns: Mapping[str, Column], ticks: int, end: str = INCONCLUSIVE
+) -> tuple[Outcome, ...]:
+    """The same as `evaluate`, by stepping the monitor from tick 0 over every tick.
+
+    Args, raises: as for `evaluate`.
+    """
+    monitor.reset()
+    told = [truths(columns[name], ticks) for name in monitor.PROPOSITIONS]
+    must: list[tuple[Signals[bool], ...]] = []
+    may: list[tuple[Signals[bool], ...]] = []
+    for tick in range(ticks):
+        monitor.advance([tuple(values[tick] for values in told)])
+        must.append(monitor.must.signals())
+        may.append(monitor.may.signals())
+    return tuple(
+        _outcome(requirement, ticks, _gathered(must, i), _gathered(may, i), end)
+        for i, requirement in enumerate(monitor.REQUIREMENTS)
+    )
+
+
+def _gathered(steps: Sequence[tuple[Signals[bool], ...]], place: int) -> Signals[int]:
+    """The signals of one requirement at each tick, as columns."""
+    if not steps:
+        return Signals(*(0 for _ in Signals._fields))
+    values = zip(*(step[place] for step in steps), strict=True)
+    return Signals(*(column(bytes(value)).true for value in values))
+
+
+def outcomes(monitor: Monitor, rows: Iterable[Row], end: str = INCONCLUSIVE) -> tuple[Outcome, ...]:
+    """`evaluate` over rows of truth values in the order of `PROPOSITIONS`.
+
+    Raises:
+        TypeError: a value is not True, False or None.
+        ValueError: a row has more or fewer values.
+    """
+    names = tuple(monitor.PROPOSITIONS)
+    ticks, columns = columns_of(rows, len(names))
+    return evaluate(monitor, dict(zip(names, columns, strict=True)), ticks, end)
+
+
+def _outcome(
+    requirement: Requirement, ticks: int, must: Signals[int], may: Signals[int], end: str
+) -> Outcome:
+    last = ticks - 1
+    lost, lost_perhaps = must.breach | must.doom, may.breach | may.doom
+    owed = truth(_at(must.owed, last), _at(may.owed, last))
+    triggers = tuple(ticks_of(must.trigger))
+    violations = runs_of(lost)
+    verdict = NO_DATA
+    if ticks:
+        violated = truth(lost != 0, lost_perhaps != 0)
+        verdict = at_end(violated, owed, truth(must.trigger != 0, may.trigger != 0))
+    if end == VIOLATED and verdict == INCONCLUSIVE:
+        verdict, violations = VIOLATED, ((last, last),)
+    horizon = requirement.horizon
+    answers, waiting = _answered(triggers, must.answer, may.owed, ticks)
+    deadlines = [(trigger, None if horizon is None else trigger + horizon) for trigger in waiting]
+    broken = truth(must.breach != 0, may.breach != 0)
+    fails = truth(_at(must.fails, last), _at(may.fails, last))
+    return Outcome(
+        requirement=requirement.id,
+        ticks=ticks,
+        verdict=verdict,
+        finite=finite_verdict(broken, fails) if ticks else None,
+        first_violation=violations[0][0] if violations else None,
+        violations=violations,
+        unknown=runs_of(lost_perhaps ^ lost),
+        triggers=triggers,
+        answers=tuple((t, k) for t, k in answers if horizon is None or k - t <= horizon),
+        open=tuple((t, d) for t, d in deadlines if d is None or d > last),
+    )
+
+
+def _at(column: int, tick: int) -> bool:
+    """Its truth at a tick; before the first, nothing is true."""
+    return tick >= 0 and bool(column >> tick & 1)
+
+
+def _answered(
+    triggers: tuple[int, ...], answer: int, owed: int, ticks: int
+) -> tuple[tuple[tuple[int, int], ...], tuple[int, ...]]:
+    """Each trigger with its answer; and the triggers that still wait at the end.
+
+    A trigger waits as long as a demand may be open, up to the first answer.
+    """
+    answered = answer.to_bytes((ticks + 7) // 8, "little")
+    unanswered = runs_of(owed & ~answer)
+    starts = [first for first, _ in unanswered]
+    pairs: list[tuple[int, int]] = []
+    waiting: list[int] = []
+    for trigger in triggers:
+        place = bisect_right(starts, trigger) - 1
+        waits = place >= 0 and trigger <= unanswered[place][1]
+        then = unanswered[place][1] + 1 if waits else trigger
+        if then == ticks:
+            waiting.append(trigger)
+        elif answered[then >> 3] >> (then & 7) & 1:
+            pairs.append((trigger, then))
+    return tuple(pairs), tuple(waiting)

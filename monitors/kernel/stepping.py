@@ -1,0 +1,300 @@
+"""The base of every generated monitor: two rails, stepped tick by tick.
+
+What holds for certain and what may hold are two runs of the same code: a rail. Every operator is
+monotone in the propositions and in their negations, so each rail is stepped by itself, and an
+unknown counts as false on the one and as true on the other. While nothing has been unknown both
+are one. Source: Kleene, Introduction to Metamathematics, 1952, section 64 (strong three-valued
+logic).
+"""
+
+from __future__ import annotations
+
+import copy
+import itertools
+from collections import deque
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from operator import itemgetter
+from typing import Any, ClassVar, NamedTuple, NoReturn, Protocol
+
+from monitors.kernel.columns import Column
+from monitors.kernel.verdicts import (
+    PENDING,
+    SATISFIED,
+    VIOLATED,
+    Requirement,
+    Signals,
+    Truth,
+    Verdict,
+    at_end,
+    truth,
+)
+
+Row = Sequence[Truth]
+"""The truth of each proposition at one tick, in the order of `PROPOSITIONS`."""
+
+
+class Marks(NamedTuple):
+    """Ticks that a rail remembers of one requirement; -1: none."""
+
+    broken: int
+    """The first tick at which a demand was broken."""
+    doomed: int
+    """The first tick at which demands were open that nothing can meet."""
+    last: int
+    """The last trigger."""
+    open: int
+    """The trigger of the oldest demand that is open; of the latest where a new one replaces it."""
+
+    @property
+    def violated(self) -> int:
+        """The tick at which the violation is certain; -1: it is not."""
+        ticks = [tick for tick in (self.broken, self.doomed) if tick >= 0]
+        return min(ticks, default=-1)
+
+
+class Rail(Protocol):
+    """A generated rail: straight-line code, its state in slots."""
+
+    __slots__: tuple[str, ...]
+    CELLS: ClassVar[tuple[str, ...]]
+    """The slots that what follows depends on; the others only remember."""
+    doubt: bool
+    tick: int
+
+    def __init__(self, doubt: bool = False) -> None:
+        """Before the first tick."""
+
+    def advance(self, rows: Iterable[Sequence[Any]]) -> bool:
+        """Step every row; whether all was known in them."""
+
+    def signals(self) -> tuple[Signals[bool], ...]:
+        """What the last tick told, for each requirement."""
+
+    def marks(self) -> tuple[Marks, ...]:
+        """What is remembered, for each requirement."""
+
+
+class Window:
+    """`left S[lo,hi] right` in ticks; memory: the runs of `right` inside of the window."""
+
+    __slots__ = ("hi", "lo", "now", "runs")
+
+    def __init__(self, lo: int, hi: int) -> None:
+        self.lo, self.hi = lo, hi
+        self.now = -1
+        self.runs: deque[list[int]] = deque()
+
+    def step(self, left: bool, right: bool) -> bool:
+        """Whether right held `lo..hi` ticks ago, and left ever since."""
+        self.now += 1
+        if not left:
+            self.runs.clear()
+        if right:
+            if self.runs and self.runs[-1][1] == self.now - 1:
+                self.runs[-1][1] = self.now
+            else:
+                self.runs.append([self.now, self.now])
+        while self.runs and self.runs[0][1] < self.now - self.hi:
+            self.runs.popleft()
+        return bool(self.runs) and self.runs[0][0] <= self.now - self.lo
+
+    def state(self) -> tuple[tuple[int, int], ...]:
+        """The runs, each as ages (oldest, youngest); ages above `hi` are all one."""
+        return tuple((min(self.now - a, self.hi), self.now - b) for a, b in self.runs)
+
+    def restore(self, state: Sequence[Sequence[int]]) -> None:
+        """Go back to a state."""
+        self.now = self.hi
+        self.runs = deque([self.now - a, self.now - b] for a, b in state)
+
+
+class Standing(NamedTuple):
+    """What would be said of a requirement if the trace ended now."""
+
+    requirement: str
+    verdict: Verdict
+    finite: Truth
+    """FRET's verdict on the finite trace up to here."""
+    first_violation: int | None
+    open: int | None
+    """The trigger of the oldest demand that is open for certain."""
+    deadline: int | None
+    """The last tick at which that can be decided; None where there is no deadline."""
+
+
+class Monitor:
+    """Steps propositions and tells verdicts; a generated class adds `step` and `run`."""
+
+    REQUIREMENTS: ClassVar[tuple[Requirement, ...]]
+    PROPOSITIONS: ClassVar[Mapping[str, str]]
+    """Each proposition with its parameter of `step`."""
+    LITERALS: ClassVar[tuple[tuple[str, str, bool], ...]]
+    """Each parameter of `columns`, with its proposition, and False where it is negated."""
+    RAIL: ClassVar[type[Rail]]
+    columns: Callable[..., tuple[Signals[int], ...]]
+    """The signals of whole traces, for each requirement: of `every`, the column that is true at
+    every tick, and a keyword for each of `LITERALS`."""
+
+    def __init__(self) -> None:
+        self.reset()
+
+    def reset(self) -> None:
+        """Forget everything: the next step is tick 0."""
+        self.must = self.may = self.RAIL()
+
+    @property
+    def tick(self) -> int:
+        """The last tick; -1 before the first."""
+        return self.must.tick
+
+    def state(self) -> dict[str, Any]:
+        """Everything that is remembered, as plain values that JSON can hold."""
+        return {
+            "requirements": {r.id: r.fingerprint for r in self.REQUIREMENTS},
+            "must": _saved(self.must),
+            "may": _saved(self.may) if self.may is not self.must else None,
+        }
+
+    def restore(self, state: Mapping[str, Any]) -> None:
+        """Go on from what `state` gave.
+
+        Raises:
+            ValueError: it is no state of this monitor.
+        """
+        if state.get("requirements") != {r.id: r.fingerprint for r in self.REQUIREMENTS}:
+            raise ValueError("the state is not one of this monitor: other requirements")
+        must, may = self.RAIL(), self.RAIL(doubt=True)
+        _restored(must, state.get("must"))
+        if state.get("may") is not None:
+            _restored(may, state["may"])
+        self.must, self.may = must, must if state.get("may") is None else may
+
+    def standings(self) -> tuple[Standing, ...]:
+        """What would be said of each requirement if the trace ended now."""
+        if self.tick < 0:
+            nothing = (Verdict.NO_DATA, None, None, None, None)
+            return tuple(Standing(r.id, *nothing) for r in self.REQUIREMENTS)
+        told = zip(
+            self.must.marks(),
+            self.may.marks(),
+            self.must.signals(),
+            self.may.signals(),
+            strict=True,
+        )
+        return tuple(map(_standing, self.REQUIREMENTS, *zip(*told, strict=True)))
+
+    def _fork(self) -> None:
+        """From now on what may hold differs from what holds for certain."""
+        if self.may is self.must:
+            self.may = copy.deepcopy(self.must)
+            self.may.doubt = True
+
+    def advance(self, rows: Iterable[Row | Mapping[str, Truth]]) -> None:
+        """Step every row, in pieces: one rail after the other.
+
+        Raises:
+            KeyError: a row has no value for a proposition.
+            TypeError: a value is not True, False or None.
+            ValueError: a row has more or fewer values than there are propositions.
+        """
+        waiting = iter(rows)
+        while piece := list(itertools.islice(waiting, 4096)):
+            known = self._in_order(piece)
+            if self.may is self.must:
+                before = copy.deepcopy(self.must)
+                if self.must.advance(known):
+                    continue
+                before.doubt = True
+                self.may = before
+            else:
+                self.must.advance(known)
+            self.may.advance(known)
+
+    def _in_order(self, rows: list[Any]) -> list[Row]:
+        """Rows by name as rows in the order of `PROPOSITIONS`."""
+        if not isinstance(rows[0], Mapping):
+            return rows
+        names = tuple(self.PROPOSITIONS)
+        if len(names) < 2:
+            return [tuple(row[name] for name in names) for row in rows]
+        return list(map(itemgetter(*names), rows))
+
+    def verdicts(self) -> tuple[Verdict, ...]:
+        """Of each requirement, whatever follows: satisfied or violated; or pending."""
+        told = zip(self.must.marks(), self.may.marks(), self.must.signals(), strict=True)
+        return tuple(
+            VIOLATED
+            if must.violated >= 0
+            else SATISFIED
+            if certain.settled and may.violated < 0
+            else PENDING
+            for must, may, certain in told
+        )
+
+
+def _standing(
+    requirement: Requirement,
+    must: Marks,
+    may: Marks,
+    certain: Signals[bool],
+    possible: Signals[bool],
+) -> Standing:
+    broken = truth(must.broken >= 0, may.broken >= 0)
+    violated = truth(must.violated >= 0, may.violated >= 0)
+    opened = must.open if must.open >= 0 else None
+    deadline = None
+    if opened is not None and requirement.horizon is not None:
+        deadline = opened + requirement.horizon
+    return Standing(
+        requirement.id,
+        at_end(violated, truth(certain.owed, possible.owed), truth(must.last >= 0, may.last >= 0)),
+        finite_verdict(broken, truth(certain.fails, possible.fails)),
+        must.violated if must.violated >= 0 else None,
+        opened,
+        deadline,
+    )
+
+
+def finite_verdict(broken: Truth, fails: Truth) -> Truth:
+    """FRET's verdict on a finite trace: nothing was broken, and it may end here."""
+    if broken or fails:
+        return False
+    return True if broken is False and fails is False else None
+
+
+def refused(name: str, value: object) -> NoReturn:
+    """A value that is no truth value came in."""
+    raise TypeError(f"`{name}` is True, False or None (unknown), not {value!r}")
+
+
+def literals_of(
+    monitor: Monitor | type[Monitor], columns: Mapping[str, Column], every: int, doubt: bool
+) -> dict[str, int]:
+    """The columns of the literals on one rail."""
+    found = {}
+    for name, proposition, positive in monitor.LITERALS:
+        true, unknown = columns[proposition]
+        sure = true if positive else every ^ (true | unknown)
+        found[name] = sure | unknown if doubt else sure
+    return found
+
+
+def _saved(rail: Rail) -> dict[str, Any]:
+    values = {name: getattr(rail, name) for name in rail.__slots__}
+    return {
+        name: value.state() if isinstance(value, Window) else value
+        for name, value in values.items()
+    }
+
+
+def _restored(rail: Rail, state: Any) -> None:
+    if not isinstance(state, Mapping) or set(state) != set(rail.__slots__):
+        raise ValueError("the state is not one of this monitor: other cells")
+    for name, value in state.items():
+        there = getattr(rail, name)
+        if isinstance(there, Window):
+            there.restore(value)
+        elif type(value) is type(there):
+            setattr(rail, name, value)
+        else:
+            raise ValueError(f"the state is not one of this monitor: `{name}` is {value!r}")

@@ -1,0 +1,120 @@
+"""Reading tables of propositions: CSV with a header, or JSON lines; one row a tick."""
+
+from __future__ import annotations
+
+import csv
+import itertools
+import json
+import re
+from collections.abc import Iterable, Iterator, Sequence
+from typing import Any
+
+from monitors.kernel.verdicts import Truth
+
+
+class InputError(Exception):
+    """A trace that cannot be read, with its place in words."""
+
+
+_WORDS: dict[str, Truth] = {"": None, "0": False, "1": True, "false": False, "true": True}
+
+
+def read_rows(
+    text: Iterable[str], names: Sequence[str], source: str
+) -> Iterator[tuple[Truth, ...]]:
+    """The rows of a table: CSV with a header, or JSON lines where the first line is an object.
+
+    Values are 0, 1, true, false, or nothing (null in JSON): unknown. A column `tick` may count
+    the rows; it must grow by one from row to row. Other columns are passed over.
+
+    Raises:
+        InputError: a column is missing, a value is no truth value, ticks jump.
+    """
+    lines = iter(text)
+    first = next((line for line in lines if line.strip()), None)
+    if first is None:
+        raise InputError(f"{source}: the trace is empty")
+    lines = itertools.chain([first.removeprefix("\ufeff")], lines)
+    is_json = re.match(r'\s*\{\s*["}]', first.removeprefix("\ufeff")) is not None
+    read = _json_rows if is_json else _csv_rows
+    tick: int | None = None
+    for place, row in read(lines, names, source):
+        if "tick" in row and "tick" not in names:
+            tick = _next_tick(row["tick"], tick, place)
+        yield tuple(_truth(row[name], name, place) for name in names)
+
+
+def _csv_rows(
+    lines: Iterable[str], names: Sequence[str], source: str
+) -> Iterator[tuple[str, dict[str, Any]]]:
+    table = csv.reader(lines, strict=True)
+    try:
+        header = [name.strip() for name in next(table)]
+        _check_columns(header, names, f"{source}:1")
+        for values in table:
+            place = f"{source}:{table.line_num}"
+            if not values and len(header) > 1:
+                continue  # an empty line; in a table of one column it is an unknown value
+            values = values or [""]
+            if len(values) != len(header):
+                raise InputError(f"{place}: {len(values)} values for {len(header)} columns")
+            yield place, dict(zip(header, values, strict=True))
+    except csv.Error as error:
+        raise InputError(f"{source}:{table.line_num}: {error}") from None
+
+
+def _json_rows(
+    lines: Iterable[str], names: Sequence[str], source: str
+) -> Iterator[tuple[str, dict[str, Any]]]:
+    for number, line in enumerate(lines, 1):
+        if not line.strip():
+            continue
+        try:
+            row = json.loads(line, object_pairs_hook=_distinct)
+        except (ValueError, RecursionError) as error:
+            raise InputError(f"{source}:{number}: not JSON: {error}") from None
+        if not isinstance(row, dict):
+            raise InputError(f"{source}:{number}: a line must hold one object")
+        _check_columns(row, names, f"{source}:{number}")
+        yield f"{source}:{number}", row
+
+
+def _distinct(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+    found = dict(pairs)
+    if len(found) < len(pairs):
+        raise ValueError("a key comes twice")
+    return found
+
+
+def _check_columns(found: Iterable[str], names: Sequence[str], place: str) -> None:
+    columns = list(found)
+    for name in names:
+        if name not in columns:
+            raise InputError(
+                f"{place}: there is no column `{name}`; there are {', '.join(columns) or 'none'}"
+            )
+        if columns.count(name) > 1:
+            raise InputError(f"{place}: there are two columns `{name}`")
+
+
+def _truth(value: Any, name: str, place: str) -> Truth:
+    if value is None or isinstance(value, bool):
+        return value
+    word = str(value).strip().lower()
+    if word not in _WORDS:
+        raise InputError(
+            f"{place}: column `{name}`: `{value}` is no truth value; "
+            "write 0, 1, true, false, or nothing for unknown"
+        )
+    return _WORDS[word]
+
+
+def _next_tick(value: Any, before: int | None, place: str) -> int:
+    try:
+        tick = int(str(value))
+    except ValueError:
+        raise InputError(f"{place}: column `tick`: `{value}` is no whole number") from None
+    if before is not None and tick != before + 1:
+        what = "goes back" if tick <= before else "leaves ticks out"
+        raise InputError(f"{place}: column `tick` {what}: {before}, then {tick}")
+    return tick

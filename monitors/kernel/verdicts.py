@@ -1,0 +1,78 @@
+"""Truth with unknowns, verdicts, and what of a requirement is watched at each tick."""
+
+from __future__ import annotations
+
+from enum import StrEnum
+from typing import Generic, NamedTuple, TypeVar
+
+Truth = bool | None
+"""True, False, or None: unknown."""
+
+
+class Verdict(StrEnum):
+    """What a trace says of a requirement.
+
+    While it runs: satisfied or violated, whatever follows, or pending (LTL3). When it has ended:
+    satisfied, violated, inconclusive, vacuous or no data. Source: Bauer, Leucker, Schallhart,
+    Runtime verification for LTL and TLTL, TOSEM 20 (2011), section 2.
+    """
+
+    SATISFIED = "satisfied"
+    VIOLATED = "violated"
+    PENDING = "pending"
+    INCONCLUSIVE = "inconclusive"
+    VACUOUS = "vacuous"
+    NO_DATA = "no data"
+
+
+SATISFIED, VIOLATED, PENDING = Verdict.SATISFIED, Verdict.VIOLATED, Verdict.PENDING
+INCONCLUSIVE, VACUOUS, NO_DATA = Verdict.INCONCLUSIVE, Verdict.VACUOUS, Verdict.NO_DATA
+EXIT_STATUS = {SATISFIED: 0, VIOLATED: 1, INCONCLUSIVE: 3, VACUOUS: 3, NO_DATA: 3}
+
+T = TypeVar("T")
+
+
+class Signals(NamedTuple, Generic[T]):
+    """What a monitor tells of one requirement: a truth value a tick, or whole columns of them."""
+
+    trigger: T
+    """A demand begins here."""
+    breach: T
+    """A demand is broken here: nothing that follows can repair it."""
+    doom: T
+    """Demands are open here that no endless trace meets, though none of them is broken yet."""
+    owed: T
+    """A demand is open after this tick (where none has been broken before)."""
+    fails: T
+    """The trace would violate the requirement if it ended here, though it is not lost yet."""
+    settled: T
+    """Nothing that follows can break a demand any more."""
+    answer: T
+    """The response comes here, where a demand waits for one."""
+
+
+class Requirement(NamedTuple):
+    """Which requirement a monitor watches."""
+
+    id: str
+    sentence: str
+    fingerprint: str
+    """SHA-256 of the canonical sentence."""
+    horizon: int | None
+    """Ticks from a trigger to its deadline; None where there is no deadline."""
+
+
+def truth(must: bool, may: bool) -> Truth:
+    """What holds for certain and what may hold, as one truth value."""
+    return must if must == may else None
+
+
+def at_end(broken: Truth, owed: Truth, triggered: Truth) -> Verdict:
+    """The verdict of a trace that ends here."""
+    if broken is not False:
+        return VIOLATED if broken else NO_DATA
+    if owed is not False:
+        return INCONCLUSIVE if owed else NO_DATA
+    if triggered is not False:
+        return SATISFIED if triggered else NO_DATA
+    return VACUOUS

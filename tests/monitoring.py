@@ -1,0 +1,100 @@
+"""Generated monitors in tests: made from sentences, stepped, and read at each tick."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+from compiler.pipeline import formalize
+from compiler.rule import Rule
+from compiler.targets import monitor as target
+from fretish.clock import Clock
+from fretish.declarations import Declarations
+from fretish.documents import Requirement
+from fretish.source import Source
+from monitors.kernel import Column, Monitor, Outcome, evaluate
+from monitors.kernel.columns import columns_of
+from monitors.kernel.verdicts import Truth, truth
+from monitors.loading import load
+
+
+@dataclass(frozen=True)
+class Step:
+    """What a monitor tells after one tick."""
+
+    tick: int
+    decided: str
+    """Whatever follows: satisfied, violated, or pending."""
+    verdict: str
+    """If the trace ended here."""
+    finite: Truth
+    first_violation: int | None
+    trigger: Truth
+    breach: Truth
+    doom: Truth
+    owed: Truth
+    fails: Truth
+    settled: Truth
+    answer: Truth
+
+
+def rule(sentence: str, id: str = "R1", clock: Clock | None = None) -> Rule:
+    """The rule of a sentence."""
+    source = Source("r.fret", sentence)
+    declared = Declarations(Source("bindings.toml", ""), clock, {}, {}) if clock else None
+    made, said = formalize(Requirement(id, source.span()), declared)
+    assert made is not None, said
+    return made
+
+
+def emitted(*sentences: str, clock: Clock | None = None) -> str:
+    """The text of one monitor for all of them; they are called R1, R2, ..."""
+    rules = [rule(sentence, f"R{i}", clock) for i, sentence in enumerate(sentences, 1)]
+    return target.text(*rules)
+
+
+def monitor(*sentences: str) -> Monitor:
+    """The monitor that their text makes."""
+    return load("monitor.py", emitted(*sentences))
+
+
+def steps(machine: Monitor, columns: Mapping[str, Sequence[Truth]], place: int = 0) -> list[Step]:
+    """Step over columns by name; what is told of the requirement at that place."""
+    machine.reset()
+    names = tuple(machine.PROPOSITIONS)
+    length = len(next(iter(columns.values())))
+    found = []
+    for tick in range(length):
+        machine.advance([tuple(columns[name][tick] for name in names)])
+        assert machine.tick == tick
+        found.append(step(machine, place))
+    return found
+
+
+def step(machine: Monitor, place: int = 0) -> Step:
+    """What it tells now."""
+    standing = machine.standings()[place]
+    signals = zip(machine.must.signals()[place], machine.may.signals()[place], strict=True)
+    return Step(
+        machine.tick,
+        machine.verdicts()[place],
+        standing.verdict,
+        standing.finite,
+        standing.first_violation,
+        *(truth(must, may) for must, may in signals),
+    )
+
+
+def packed(columns: Mapping[str, Sequence[Truth]]) -> tuple[int, dict[str, Column]]:
+    """The length of the columns, and each as integers."""
+    ticks, made = columns_of(zip(*columns.values(), strict=True), len(columns))
+    return ticks, dict(zip(columns, made, strict=True))
+
+
+def over(
+    machine: Monitor, columns: Mapping[str, Sequence[Truth]], end: str = "inconclusive"
+) -> Outcome:
+    """The column program over a whole trace, for a monitor of one requirement."""
+    ticks, made = packed(columns)
+    (outcome,) = evaluate(machine, made, ticks, end)
+    return outcome

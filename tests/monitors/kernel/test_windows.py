@@ -1,0 +1,60 @@
+"""Windows: the bounded since of a step, from its definition."""
+
+from itertools import product
+
+import pytest
+from hypothesis import example, given
+from hypothesis import strategies as st
+
+from monitors.kernel.stepping import Window
+
+
+def since(left: list[bool], right: list[bool], lo: int, hi: int, at: int) -> bool:
+    """`left S[lo,hi] right`, from its definition."""
+    return any(right[j] and all(left[j + 1 : at + 1]) for j in range(at + 1) if lo <= at - j <= hi)
+
+
+@given(st.integers(0, 4), st.integers(0, 4), st.lists(st.tuples(st.booleans(), st.booleans())))
+@example(0, 2, [(True, True), (True, False), (True, False), (True, False)])
+@example(2, 1, [(True, True), (False, False), (True, False), (True, False)])
+@example(1, 0, [(False, True), (False, True), (True, False)])
+def test_a_window_is_the_bounded_since_of_its_definition(
+    lo: int, more: int, rows: list[tuple[bool, bool]]
+) -> None:
+    left, right = [row[0] for row in rows], [row[1] for row in rows]
+    window = Window(lo, lo + more)
+    stepped = [window.step(*row) for row in rows]
+    assert stepped == [since(left, right, lo, lo + more, at) for at in range(len(rows))]
+
+
+@pytest.mark.parametrize("lo", range(4))
+@pytest.mark.parametrize("more", range(3))
+def test_a_window_is_its_definition_on_every_short_trace(lo: int, more: int) -> None:
+    for rows in product(product((False, True), repeat=2), repeat=5):
+        left, right = [row[0] for row in rows], [row[1] for row in rows]
+        window = Window(lo, lo + more)
+        stepped = [window.step(*row) for row in rows]
+        assert stepped == [since(left, right, lo, lo + more, at) for at in range(5)], rows
+
+
+@pytest.mark.parametrize("hi", [3, 10**6])
+def test_a_window_remembers_runs_and_not_ticks(hi: int) -> None:
+    window = Window(hi, hi)
+    for _ in range(10_000):
+        window.step(left=True, right=True)
+    assert len(window.runs) == 1
+
+
+@given(st.integers(0, 4), st.integers(0, 4), st.lists(st.tuples(st.booleans(), st.booleans())))
+def test_a_window_goes_on_from_its_state(lo: int, more: int, rows: list[tuple[bool, bool]]) -> None:
+    window, other = Window(lo, lo + more), Window(lo, lo + more)
+    for row in rows:
+        other.restore(window.state())
+        assert other.step(*row) == window.step(*row)
+        assert other.state() == window.state()
+
+
+def test_the_state_of_a_window_does_not_tell_when_it_is() -> None:
+    window = Window(2, 3)
+    states = [(window.step(left=True, right=True), window.state())[1] for _ in range(10)]
+    assert len(set(states)) == 4
