@@ -1,0 +1,4 @@
+extern bool b;
+extern bool a;
+void verdict(bool verdict_arg0);
+void step(void);
