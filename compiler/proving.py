@@ -3,13 +3,13 @@
 The monitor and the reference automaton of the sentence (`compiler.counters`) run in lock step
 over all letters until no new pair of states appears. Both are finite, so this is exact: for
 traces of any length and at the bound as it is. Source: Hopcroft, Karp, A linear algorithm for
-testing equivalence of finite automata, Cornell TR 71-114 (1971), without their merging of states.
+testing equivalence of finite automata, Cornell TR 71-114 (1971).
 """
 
 from __future__ import annotations
 
 from collections.abc import Hashable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import product
 from typing import Protocol
 
@@ -56,18 +56,20 @@ class Proved:
     """The monitor and the automaton say the same at every tick of every trace."""
 
     states: int
-    """Pairs of a state of the automaton and one of the monitor."""
+    """Pairs of a state of the automaton and one of the monitor that had to be looked at."""
     steps: int
     """Steps of the monitor that were compared."""
 
 
 @dataclass(frozen=True, slots=True)
 class Refuted:
-    """A shortest trace at whose last tick they differ."""
+    """A trace at whose last tick they differ."""
 
     word: tuple[Valuation, ...]
     expected: Judgement
     found: Judgement
+    shortest: bool = True
+    """No shorter trace tells them apart; False where there were too many pairs to know."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -94,7 +96,7 @@ def prove(
         ticks: what its duration counts; without meaning where it has none.
         atoms: the order of the values in a letter, by the names that formulas have for them;
             at least every atom of the sentence.
-        limit: the most states of the automaton, and the most pairs.
+        limit: the most states of the automaton, and the most pairs that are looked at.
 
     Raises:
         KeyError: an atom of the sentence is not among `atoms`.
@@ -109,7 +111,7 @@ def prove(
         automaton = explore(template(sentence, ticks), letters.values(), limit)
     except TooManyStatesError:
         return NotChecked(f"the automaton has more than {limit} states")
-    return _in_lock_step(machine, _Reference.of(automaton, letters), limit)
+    return _compared(machine, _Reference.of(automaton, letters), limit)
 
 
 def _temporal(sentence: s.Sentence) -> str | None:
@@ -222,12 +224,72 @@ class _Reference:
         )
 
 
+def _compared(machine: Machine, reference: _Reference, limit: int) -> Proved | Refuted | NotChecked:
+    """Whether they are equal, by classes of states; if not, a shortest word, by all pairs."""
+    start = machine.save()
+    found = _in_lock_step(machine, reference, _Classes(len(reference.moves)), limit)
+    if not isinstance(found, Refuted):
+        return found
+    machine.load(start)
+    shortest = _in_lock_step(machine, reference, _Pairs(), limit)
+    return shortest if isinstance(shortest, Refuted) else replace(found, shortest=False)
+
+
+class _Known(Protocol):
+    """The pairs of states that need not be looked at again."""
+
+    def add(self, state: int, saved: Hashable) -> bool:
+        """Whether the pair is new; it is known from now on."""
+
+
+class _Pairs:
+    """Every pair for itself."""
+
+    def __init__(self) -> None:
+        self._seen: set[tuple[int, Hashable]] = set()
+
+    def add(self, state: int, saved: Hashable) -> bool:
+        """Whether the pair is new; it is known from now on."""
+        before = len(self._seen)
+        self._seen.add((state, saved))
+        return len(self._seen) > before
+
+
+class _Classes:
+    """Sets of states that must be equal if all pairs are: what follows from others is known.
+
+    There are no more new pairs than states on both sides together, where the pairs that can be
+    reached may be as many as their product.
+    """
+
+    def __init__(self, states: int) -> None:
+        self._parents = list(range(states))
+        self._numbers: dict[Hashable, int] = {}
+
+    def add(self, state: int, saved: Hashable) -> bool:
+        """Whether the pair is new; it is known from now on."""
+        number = self._numbers.setdefault(saved, len(self._parents))
+        if number == len(self._parents):
+            self._parents.append(number)
+        left, right = self._root(state), self._root(number)
+        self._parents[left] = right
+        return left != right
+
+    def _root(self, number: int) -> int:
+        parents = self._parents
+        while parents[number] != number:
+            parents[number] = parents[parents[number]]
+            number = parents[number]
+        return number
+
+
 def _in_lock_step(
-    machine: Machine, reference: _Reference, limit: int
+    machine: Machine, reference: _Reference, known: _Known, limit: int
 ) -> Proved | Refuted | NotChecked:
-    """Breadth first, so that the first difference has a shortest word."""
+    """Breadth first through the pairs that are new, from the present state of the machine."""
     start = (0, machine.save())
-    pairs, seen = [start], {start}
+    known.add(*start)
+    pairs = [start]
     origins: list[tuple[int, Valuation] | None] = [None]
     steps = 0
     for place, (state, saved) in enumerate(pairs):  # grows while it is read
@@ -242,10 +304,9 @@ def _in_lock_step(
                 return Refuted((*_word(origins, place), valuation), expected, found)
             if expected[0] == "violated":
                 continue
-            pair = (after, machine.save())
-            if pair not in seen:
-                seen.add(pair)
-                pairs.append(pair)
+            reached = machine.save()
+            if known.add(after, reached):
+                pairs.append((after, reached))
                 origins.append((place, valuation))
         if len(pairs) > limit:
             return NotChecked(f"the automaton and the monitor have more than {limit} states")
