@@ -239,7 +239,7 @@ class State(NamedTuple):
 
     phase: Phase
     held: bool
-    """The condition held, where a later tick of the interval asks; else false."""
+    """The condition held at this tick of an interval; false where its next tick does not ask."""
     counted: int
     """What the counter of the timing says; 0 outside of intervals."""
 
@@ -273,14 +273,18 @@ def step(template: Template, state: State, m: bool, p: bool, q: bool, s: bool) -
 
 
 def _triggers(condition: ConditionKind | None, p: bool, *, first: bool, held: bool) -> bool:
-    """Whether a demand begins at a tick of an interval, its first one or a later one."""
+    """Whether a demand begins at a tick of an interval.
+
+    A condition that was true before the interval, too, triggers at its first tick: `held` only
+    tells of ticks of the same interval.
+    """
     match condition:
         case None:
             return first
         case ConditionKind.HOLDING:
             return p
         case ConditionKind.TRIGGER:
-            return p and (first or not held)
+            return p and not held
         case _:
             assert_never(condition)
 
