@@ -53,7 +53,7 @@ class Machine(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class Proved:
-    """The monitor and the automaton say the same at every tick of every trace."""
+    """They say the same at every tick of every trace, up to the first violation."""
 
     states: int
     """Pairs of a state of the automaton and one of the monitor that had to be looked at."""
