@@ -68,7 +68,7 @@ class Watch:
 
 
 @dataclass(frozen=True, slots=True)
-class _Stage:
+class Stage:
     """Where a sentence is enforced, and where its demands begin."""
 
     inside: Formula
@@ -101,14 +101,14 @@ class _Stage:
 
 def past(obligation: Obligation) -> Formula:
     """The formula about the trace up to now, with the operators that FRET has."""
-    stage, demand = _stage(obligation), obligation.demand
+    stage, demand = staged(obligation), obligation.demand
     broken = or_(_broken_plainly(demand, stage), _broken_at_end(demand, stage))
     return and_(historically(_unless(broken)), _unless(_fails(demand, stage)))
 
 
 def watch(obligation: Obligation) -> Watch:
     """The signals of a monitor; counting operators look back from now, never from a deadline."""
-    stage, demand = _stage(obligation), obligation.demand
+    stage, demand = staged(obligation), obligation.demand
     breach = or_(_broken(demand, stage), _broken_at_end(demand, stage))
     owed, fails = _owed(demand, stage), _fails(demand, stage)
     return Watch(
@@ -130,7 +130,8 @@ _WAITING = (Kind.EVENTUALLY, Kind.WITHIN, Kind.AFTER)
 # Scope and condition -----------------------------------------------------------------------
 
 
-def _stage(obligation: Obligation) -> _Stage:
+def staged(obligation: Obligation) -> Stage:
+    """The scope and the condition of a sentence, as formulas about the ticks up to now."""
     inside, left, leaves = _interval(obligation.scope, obligation.mode)
     p = obligation.trigger
     match obligation.condition:
@@ -146,7 +147,7 @@ def _stage(obligation: Obligation) -> _Stage:
             assert_never(obligation.condition)
     over = _over(obligation.scope, obligation.mode)
     recurs = obligation.condition is not None or obligation.scope in _REPEATED
-    return _Stage(inside, left, trigger, leaves, over, recurs)
+    return Stage(inside, left, trigger, leaves, over, recurs)
 
 
 _REPEATED = (ScopeKind.IN, ScopeKind.NOT_IN, ScopeKind.ONLY_IN)
@@ -197,7 +198,7 @@ def first_marker(scope: ScopeKind | None, m: Formula) -> Formula:
 # Demands -----------------------------------------------------------------------------------
 
 
-def _broken(demand: Demand, stage: _Stage) -> Formula:
+def _broken(demand: Demand, stage: Stage) -> Formula:
     """A demand is broken here; a missed deadline stays broken until the answer comes."""
     q, n = demand.response, demand.ticks
     match demand.kind:
@@ -215,12 +216,12 @@ def _broken(demand: Demand, stage: _Stage) -> Formula:
             return _broken_plainly(demand, stage)
 
 
-def _overdue(q: Formula, n: int, stage: _Stage) -> Formula:
+def _overdue(q: Formula, n: int, stage: Stage) -> Formula:
     """A trigger n ticks ago or more has had no answer yet."""
     return stage.open(not_(q), Interval(n, None))
 
 
-def _broken_plainly(demand: Demand, stage: _Stage) -> Formula:
+def _broken_plainly(demand: Demand, stage: Stage) -> Formula:
     """As `_broken`, with the operators of FRET: a deadline is missed at one tick."""
     q, s, n = demand.response, demand.stop, demand.ticks
     match demand.kind:
@@ -251,32 +252,32 @@ def _broken_plainly(demand: Demand, stage: _Stage) -> Formula:
             assert_never(demand.kind)
 
 
-def _missed(q: Formula, n: int, stage: _Stage) -> Formula:
+def _missed(q: Formula, n: int, stage: Stage) -> Formula:
     """A trigger exactly n ticks ago, in this interval, has had no answer up to now."""
     asked = once(and_(stage.trigger, not_(q)), Interval(n, n))
     answered = once(or_(stage.left, q), Interval(0, n - 1)) if n else FALSE
     return and_(stage.inside, asked, not_(answered))
 
 
-def _recent(n: int, stage: _Stage) -> Formula:
+def _recent(n: int, stage: Stage) -> Formula:
     """A trigger of this interval lies no more than n ticks back."""
     recently = once(stage.trigger, Interval(0, n))
     return recently if stage.inside == TRUE else and_(recently, stage.open(TRUE))
 
 
-def _began(n: int, stage: _Stage) -> Formula:
+def _began(n: int, stage: Stage) -> Formula:
     """The interval began no more than n ticks ago."""
     return once(stage.left, Interval(0, n))
 
 
-def _broken_at_end(demand: Demand, stage: _Stage) -> Formula:
+def _broken_at_end(demand: Demand, stage: Stage) -> Formula:
     """The interval is over, and its last tick left a demand unmet."""
     if stage.leaves == FALSE:
         return FALSE
     return and_(stage.leaves, previous(_fails(demand, stage)))
 
 
-def _fails(demand: Demand, stage: _Stage) -> Formula:
+def _fails(demand: Demand, stage: Stage) -> Formula:
     """The interval may not end here."""
     match demand.kind:
         case Kind.FINALLY:
@@ -287,7 +288,7 @@ def _fails(demand: Demand, stage: _Stage) -> Formula:
             return FALSE
 
 
-def _owed(demand: Demand, stage: _Stage) -> Formula:
+def _owed(demand: Demand, stage: Stage) -> Formula:
     """A demand waits for what follows.
 
     Demands without a deadline that only forbid (`always`, `until`, `before`) wait for nothing:
@@ -313,7 +314,7 @@ def _owed(demand: Demand, stage: _Stage) -> Formula:
             assert_never(demand.kind)
 
 
-def _doom(demand: Demand, stage: _Stage) -> Formula:
+def _doom(demand: Demand, stage: Stage) -> Formula:
     """Demands are open that cannot all be met.
 
     Where an interval can end before the deadline, its end would void them.
@@ -323,18 +324,17 @@ def _doom(demand: Demand, stage: _Stage) -> Formula:
     if demand.kind is Kind.AFTER and stage.recurs:
         # The response may not come up to n ticks after this trigger, and must come before that.
         return and_(stage.trigger, previous(stage.open(not_(demand.response))))
-    impossible = demand.kind in _WAITING and demand.response == FALSE
-    return stage.trigger if impossible else FALSE
+    return FALSE
 
 
-def _settled(demand: Demand, stage: _Stage) -> Formula:
+def _settled(demand: Demand, stage: Stage) -> Formula:
     """Every demand has been met, and no other can begin."""
     if demand.kind is Kind.FINALLY and stage.endless:
         return TRUE  # an interval without an end has no last tick
     return stage.over if stage.recurs else or_(stage.over, _met(demand, stage))
 
 
-def _met(demand: Demand, stage: _Stage) -> Formula:
+def _met(demand: Demand, stage: Stage) -> Formula:
     """The one demand, of the first tick of the interval, has been met or has passed."""
     q, n = demand.response, demand.ticks
     match demand.kind:

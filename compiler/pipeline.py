@@ -7,6 +7,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from fractions import Fraction
 
 from compiler import predicates
+from compiler.anticipation import anticipated
 from compiler.demand import obligation
 from compiler.formula import endless
 from compiler.future import future, probabilistic
@@ -88,7 +89,7 @@ def _rule(
         ft_infinite=endless(finite),
         ft_finite=finite,
         pt=past(back),
-        watch=watch(back),
+        watch=anticipated(sentence, back, watch(back)),
         pctl=probabilistic(ahead, odds.op, odds.digits) if odds else None,
         glossary=_glossary(declarations),
     )

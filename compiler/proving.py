@@ -10,10 +10,8 @@ from __future__ import annotations
 
 from collections.abc import Hashable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from itertools import product
 from typing import Protocol
 
-from compiler import formula as f
 from compiler.counters import (
     Automaton,
     Letter,
@@ -22,17 +20,9 @@ from compiler.counters import (
     explore,
     template,
 )
-from compiler.demand import Uninterpreted, boolean
-from fretish import expressions as e
+from compiler.letters import MOST_ATOMS, Valuation, meanings, temporal_predicate
 from fretish import syntax as s
-from fretish.checking import LOOK_AHEAD, LOOK_BACK, calls, conditions
-from fretish.depth import deep
 
-MOST_ATOMS = 12
-"""Each doubles the letters: 4 096 steps for each pair of states."""
-
-Valuation = tuple[bool, ...]
-"""The truth values of the atoms at one tick, in a given order."""
 Judgement = tuple[str, bool]
 """A verdict (`violated`, `satisfied` or `pending`, as of infinite traces), and whether the trace
 satisfies the sentence, as FRET judges finite traces, if it ends here."""
@@ -101,7 +91,7 @@ def prove(
     Raises:
         KeyError: an atom of the sentence is not among `atoms`.
     """
-    predicate = _temporal(sentence)
+    predicate = temporal_predicate(sentence)
     if predicate is not None:
         return NotChecked(f"`{predicate}` speaks of other ticks, and the automaton knows one")
     if len(atoms) > MOST_ATOMS:
@@ -112,85 +102,6 @@ def prove(
     except TooManyStatesError:
         return NotChecked(f"the automaton has more than {limit} states")
     return _compared(machine, _Reference.of(automaton, letters), limit)
-
-
-def _temporal(sentence: s.Sentence) -> str | None:
-    """The first temporal predicate of the sentence."""
-    for expression in conditions(sentence):
-        for name in calls(expression):
-            if name in LOOK_BACK | LOOK_AHEAD:
-                return name
-        if any(name.id == "FTP" for name in e.names(expression)):
-            return "FTP"
-    return None
-
-
-# Letters --------------------------------------------------------------------------------------
-
-
-@deep
-def meanings(sentence: s.Sentence, atoms: Sequence[str]) -> Mapping[Valuation, Letter]:
-    """What each valuation of the atoms makes of mode, condition, response and stop condition.
-
-    Each expression is read once, as a column of bits: bit k is its value in the k-th valuation.
-    """
-    valuations = tuple(product((False, True), repeat=len(atoms)))
-    every = (1 << len(valuations)) - 1
-    columns = {
-        name: sum(valuation[i] << k for k, valuation in enumerate(valuations))
-        for i, name in enumerate(atoms)
-    }
-    scope, condition, timing = sentence.scope, sentence.condition, sentence.timing
-    m, p, q, stop = [
-        0 if expression is None else _column(_formula(expression), columns, every)
-        for expression in (
-            scope.mode if scope else None,
-            condition.expression if condition else None,
-            sentence.response,
-            timing.stop if isinstance(timing, s.Until | s.Before) else None,
-        )
-    ]
-    return {
-        valuation: (bool(m >> k & 1), bool(p >> k & 1), bool(q >> k & 1), bool(stop >> k & 1))
-        for k, valuation in enumerate(valuations)
-    }
-
-
-def _formula(expression: e.Expression) -> f.Formula:
-    return boolean(expression, Uninterpreted().alone())
-
-
-def _column(formula: f.Formula, columns: Mapping[str, int], every: int) -> int:
-    """The values of a formula without temporal operators, in all valuations at once."""
-
-    def read(part: f.Formula) -> int:
-        return _column(part, columns, every)
-
-    match formula:
-        case f.Const(value):
-            return every if value else 0
-        case f.Atom(name):
-            return columns[name]
-        case f.Not(arg):
-            return every ^ read(arg)
-        case f.And(args):
-            column = every
-            for arg in args:
-                column &= read(arg)
-            return column
-        case f.Or(args):
-            column = 0
-            for arg in args:
-                column |= read(arg)
-            return column
-        case f.Xor(left, right):
-            return read(left) ^ read(right)
-        case f.Implies(left, right):
-            return every ^ read(left) | read(right)
-        case f.Iff(left, right):
-            return every ^ read(left) ^ read(right)
-        case _:
-            raise AssertionError(f"not a truth value of one tick: {formula}")
 
 
 # Lock step ------------------------------------------------------------------------------------

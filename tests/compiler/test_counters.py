@@ -28,8 +28,8 @@ from compiler.counters import (
     template,
 )
 from compiler.counters import Template as Counted
+from compiler.letters import meanings
 from compiler.pipeline import formalize
-from compiler.proving import meanings
 from compiler.rule import Rule
 from fretish import syntax as s
 from fretish.documents import requirements

@@ -9,13 +9,12 @@ from hypothesis import strategies as st
 
 from compiler import formula as f
 from compiler.demand import Uninterpreted, boolean
+from compiler.letters import Valuation, meanings
 from compiler.proving import (
     Judgement,
     NotChecked,
     Proved,
     Refuted,
-    Valuation,
-    meanings,
     prove,
 )
 from compiler.semantics import holds

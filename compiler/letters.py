@@ -1,0 +1,110 @@
+"""The letters of a sentence: what the truth of its atoms at one tick makes of its parts.
+
+Parts may share atoms, so not every combination of their values can occur.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from itertools import product
+
+from compiler import formula as f
+from compiler.counters import Letter
+from compiler.demand import Uninterpreted, boolean
+from fretish import expressions as e
+from fretish import syntax as s
+from fretish.checking import LOOK_AHEAD, LOOK_BACK, calls, conditions
+from fretish.depth import deep
+
+MOST_ATOMS = 12
+"""Each doubles the letters: 4 096 steps for each pair of states."""
+
+Valuation = tuple[bool, ...]
+"""The truth values of the atoms at one tick, in a given order."""
+
+
+def temporal_predicate(sentence: s.Sentence) -> str | None:
+    """The first predicate that speaks of other ticks: letters tell too little of it."""
+    for expression in conditions(sentence):
+        for name in calls(expression):
+            if name in LOOK_BACK | LOOK_AHEAD:
+                return name
+        if any(name.id == "FTP" for name in e.names(expression)):
+            return "FTP"
+    return None
+
+
+@deep
+def meanings(sentence: s.Sentence, atoms: Sequence[str]) -> Mapping[Valuation, Letter]:
+    """What each valuation of the atoms makes of mode, condition, response and stop condition.
+
+    Each expression is read once, as a column of bits: bit k is its value in the k-th valuation.
+    """
+    valuations = tuple(product((False, True), repeat=len(atoms)))
+    every = (1 << len(valuations)) - 1
+    columns = {
+        name: sum(valuation[i] << k for k, valuation in enumerate(valuations))
+        for i, name in enumerate(atoms)
+    }
+    m, p, q, stop = [
+        0 if expression is None else _column(_formula(expression), columns, every)
+        for expression in _parts(sentence)
+    ]
+    return {
+        valuation: (bool(m >> k & 1), bool(p >> k & 1), bool(q >> k & 1), bool(stop >> k & 1))
+        for k, valuation in enumerate(valuations)
+    }
+
+
+def atoms_of(sentence: s.Sentence) -> tuple[str, ...]:
+    """The atoms of the sentence, by the names that formulas have for them."""
+    formulas = [_formula(expression) for expression in _parts(sentence) if expression is not None]
+    return tuple(dict.fromkeys(name for formula in formulas for name in f.atoms(formula)))
+
+
+def _parts(sentence: s.Sentence) -> tuple[e.Expression | None, ...]:
+    """Mode, condition, response and stop condition; None where it has none."""
+    scope, condition, timing = sentence.scope, sentence.condition, sentence.timing
+    return (
+        scope.mode if scope else None,
+        condition.expression if condition else None,
+        sentence.response,
+        timing.stop if isinstance(timing, s.Until | s.Before) else None,
+    )
+
+
+def _formula(expression: e.Expression) -> f.Formula:
+    return boolean(expression, Uninterpreted().alone())
+
+
+def _column(formula: f.Formula, columns: Mapping[str, int], every: int) -> int:
+    """The values of a formula without temporal operators, in all valuations at once."""
+
+    def read(part: f.Formula) -> int:
+        return _column(part, columns, every)
+
+    match formula:
+        case f.Const(value):
+            return every if value else 0
+        case f.Atom(name):
+            return columns[name]
+        case f.Not(arg):
+            return every ^ read(arg)
+        case f.And(args):
+            column = every
+            for arg in args:
+                column &= read(arg)
+            return column
+        case f.Or(args):
+            column = 0
+            for arg in args:
+                column |= read(arg)
+            return column
+        case f.Xor(left, right):
+            return read(left) ^ read(right)
+        case f.Implies(left, right):
+            return every ^ read(left) | read(right)
+        case f.Iff(left, right):
+            return every ^ read(left) ^ read(right)
+        case _:
+            raise AssertionError(f"not a truth value of one tick: {formula}")
