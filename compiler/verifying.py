@@ -27,6 +27,10 @@ DRAWN = 20
 _LONGEST = 2_000
 
 
+class NotAMonitorError(Exception):
+    """The text cannot be executed as a generated monitor; it says why."""
+
+
 @dataclass(frozen=True, slots=True)
 class Disagreement:
     """A trace on which the column program and the steps differ."""
@@ -55,10 +59,9 @@ def verified(rule: Rule, text: str, limit: int = 10**6) -> Verified:
         limit: the most states that are looked at.
 
     Raises:
-        ValueError: the text is no generated monitor.
-        SyntaxError: it is no Python.
+        NotAMonitorError: the text is no generated monitor.
     """
-    monitor = load(f"{rule.id}_monitor", text)
+    monitor = _loaded(f"{rule.id}_monitor", text)
     strange = _strange(text, monitor)
     if strange is not None:
         return Verified(rule.id, (), NotChecked(strange))
@@ -73,6 +76,14 @@ def verified(rule: Rule, text: str, limit: int = 10**6) -> Verified:
     compared, word = _columns_compared(monitor, rule.ticks or 0)
     found = result if word is None else Disagreement(word)
     return Verified(rule.id, atoms, found, compared)
+
+
+def _loaded(name: str, text: str) -> Monitor:
+    """Whatever the text does when it is executed is told as its mistake."""
+    try:
+        return load(name, text)
+    except (Exception, SystemExit) as error:
+        raise NotAMonitorError(f"{type(error).__name__}: {error}") from None
 
 
 # Steps ----------------------------------------------------------------------------------------

@@ -92,6 +92,7 @@ class Code(Enum):
     STALE_EVIDENCE = ("F504", "the evidence is about another requirement, binding or log")
 
     NOT_EXPRESSIBLE = ("F601", "the target cannot express the requirement")
+    BAD_MONITOR = ("F602", "the file is no generated monitor")
 
     NO_SUCH_FILE = ("F901", "there is no such file")
     IS_A_DIRECTORY = ("F902", "the file is a directory")
