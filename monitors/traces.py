@@ -71,10 +71,11 @@ def trace(declarations: Declarations, recording: Recording, names: Collection[st
 
 def packed(states: States) -> Column:
     """The states, shape (ticks,), as one bit a tick."""
-    return Column(_bits(states == TRUE), _bits(states == UNKNOWN))
+    return Column(bits(states == TRUE), bits(states == UNKNOWN))
 
 
-def _bits(values: NDArray[np.bool_]) -> int:
+def bits(values: NDArray[np.bool_]) -> int:
+    """Truth values, shape (ticks,), as an integer: bit i is the one at tick i."""
     return int.from_bytes(np.packbits(values, bitorder="little").tobytes(), "little")
 
 

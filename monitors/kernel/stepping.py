@@ -9,7 +9,6 @@ logic).
 
 from __future__ import annotations
 
-import copy
 import itertools
 from collections import deque
 from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -122,6 +121,10 @@ class Standing(NamedTuple):
     """The last tick at which that can be decided; None where there is no deadline."""
 
 
+_FEW = 64
+"""Rows for which it is cheaper to look for unknowns than to keep a copy of the rail."""
+
+
 class Monitor:
     """Steps propositions and tells verdicts; a generated class adds `step` and `run`."""
 
@@ -186,8 +189,7 @@ class Monitor:
     def _fork(self) -> None:
         """From now on what may hold differs from what holds for certain."""
         if self.may is self.must:
-            self.may = copy.deepcopy(self.must)
-            self.may.doubt = True
+            self.may = _doubting(self.must)
 
     def advance(self, rows: Iterable[Row | Mapping[str, Truth]]) -> None:
         """Step every row, in pieces: one rail after the other.
@@ -200,15 +202,19 @@ class Monitor:
         waiting = iter(rows)
         while piece := list(itertools.islice(waiting, 4096)):
             known = self._in_order(piece)
-            if self.may is self.must:
-                before = copy.deepcopy(self.must)
-                if self.must.advance(known):
-                    continue
-                before.doubt = True
-                self.may = before
-            else:
+            if self.may is not self.must:
                 self.must.advance(known)
-            self.may.advance(known)
+                self.may.advance(known)
+            elif len(known) < _FEW:
+                if any(None in row for row in known):
+                    self._fork()
+                    self.may.advance(known)
+                self.must.advance(known)
+            else:
+                before = _doubting(self.must)
+                if not self.must.advance(known):
+                    self.may = before
+                    before.advance(known)
 
     def _in_order(self, rows: list[Any]) -> list[Row]:
         """Rows by name as rows in the order of `PROPOSITIONS`."""
@@ -277,6 +283,18 @@ def literals_of(
         sure = true if positive else every ^ (true | unknown)
         found[name] = sure | unknown if doubt else sure
     return found
+
+
+def _doubting(rail: Rail) -> Rail:
+    """A rail in the same state, on which an unknown counts as true."""
+    other = type(rail)(doubt=True)
+    for name in rail.__slots__:
+        there, value = getattr(other, name), getattr(rail, name)
+        if isinstance(there, Window):
+            there.restore(value.state())
+        elif name != "doubt":
+            setattr(other, name, value)
+    return other
 
 
 def _saved(rail: Rail) -> dict[str, Any]:

@@ -1,0 +1,384 @@
+"""Generated monitors: whole traces and single ticks, against each other's bounds and against peers.
+
+    python -m benchmarks.monitoring [--ticks N] [--no-peers]
+
+Prints tables of CPU time; no test asserts them. Peers are an extra: pip install -e '.[peers]'.
+"""
+
+from __future__ import annotations
+
+import argparse
+import statistics
+import time
+import tracemalloc
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from benchmarks.peers import PEERS, WORKLOADS, Columns, Evaluation, Peer, rate, speed
+from compiler import formula as f
+from compiler.past import Watch
+from compiler.pipeline import formalize
+from compiler.rule import Rule
+from compiler.targets.monitor import text
+from fretish.documents import Requirement
+from fretish.source import Source
+from monitors.kernel import Column, Monitor, evaluate
+from monitors.kernel.columns import once, reuse_memory
+from monitors.loading import load
+from monitors.traces import bits
+
+STEPS = 200_000
+"""Ticks of which single steps are timed."""
+
+# What is monitored ----------------------------------------------------------------------------
+
+
+def rule(sentence: str, id: str = "R1") -> Rule:
+    made, said = formalize(Requirement(id, Source("b.fret", sentence).span()), None)
+    assert made is not None, said
+    return made
+
+
+def always(trigger: f.Formula, demanded: f.Formula) -> Rule:
+    """`H(trigger -> demanded)` as a monitor: FRETish has no `since` of its own."""
+    breach = f.and_(trigger, f.not_(demanded))
+    watch = Watch(trigger, breach, f.FALSE, f.FALSE, f.FALSE, f.FALSE, None, 0, renewed=False)
+    return replace(rule("whenever a sw shall immediately satisfy b"), watch=watch)
+
+
+A, B, C = f.Atom("a"), f.Atom("b"), f.Atom("c")
+
+
+def workload_rules() -> Mapping[str, Rule]:
+    return {
+        "W1": rule("whenever a sw shall eventually satisfy b"),
+        "W2": rule("whenever a sw shall within 10 ticks satisfy b"),
+        "W3": always(A, f.once(B, f.Interval(0, 100))),
+        "W4": always(f.and_(A, f.previous(f.not_(A))), f.since(f.not_(C), B)),
+    }
+
+
+def mixed(count: int, names: int = 12) -> list[Rule]:
+    """W5: requirements of many forms, bounds to 1 000, on a few propositions."""
+    forms = (
+        "whenever p{0} sw shall within {n} ticks satisfy p{1}",
+        "in p{2} mode, upon p{0} sw shall for {n} ticks satisfy p{1}",
+        "upon p{0} sw shall until p{2} satisfy p{1}",
+        "after p{2} mode, whenever p{0} sw shall immediately satisfy p{1}",
+        "when not in p{2} mode, upon p{0} sw shall after {n} ticks satisfy p{1}",
+        "only in p{2} mode sw shall eventually satisfy p{1}",
+        "upon p{0} sw shall before p{2} satisfy p{1}",
+        "before p{2} mode, whenever p{0} sw shall at the next timepoint satisfy p{1}",
+        "whenever p{0} sw shall always satisfy p{1}",
+        "upon p{0} sw shall eventually satisfy p{1}",
+    )
+    found = []
+    for i in range(count):
+        places = [(7 * i + 3 * k) % names for k in range(3)]
+        bound = (10, 100, 1000)[i % 3] - i // len(forms) % 9
+        found.append(rule(forms[i % len(forms)].format(*places, n=bound), f"R{i + 1}"))
+    return found
+
+
+def monitor(*rules: Rule) -> Monitor:
+    return load("monitor.py", text(*rules))
+
+
+# Measuring ------------------------------------------------------------------------------------
+
+
+def seconds(run: Callable[[], object], runs: int = 5) -> float:
+    """Median CPU time, after one run to warm up."""
+    run()
+    times = []
+    for _ in range(runs):
+        start = time.process_time()
+        run()
+        times.append(time.process_time() - start)
+    return statistics.median(times)
+
+
+def repeated(run: Callable[[], object], least: float = 0.02) -> float:
+    """CPU time of one run, from as many as take some hundredths of a second."""
+    start = time.process_time()
+    run()
+    count = max(1, int(least / max(time.process_time() - start, 1e-7)))
+
+    def several() -> None:
+        for _ in range(count):
+            run()
+
+    return seconds(several) / count
+
+
+def from_numpy(columns: Columns) -> dict[str, Column]:
+    """Boolean arrays, shape (ticks,), as one bit a tick."""
+    return {name: Column(bits(values), 0) for name, values in columns.items()}
+
+
+def truths(machine: Monitor, literals: Mapping[str, int], every: int) -> int:
+    """What the peers tell too: the truth at each tick, as if the trace ended there."""
+    (signals,) = machine.columns(every, **literals)
+    lost = once(signals.breach, 0, None, every) if signals.breach else 0
+    return every ^ (lost | signals.fails)
+
+
+def literals_of(machine: Monitor, columns: Mapping[str, Column], every: int) -> dict[str, int]:
+    return {
+        name: columns[proposition].true if positive else every ^ columns[proposition].true
+        for name, proposition, positive in machine.LITERALS
+    }
+
+
+def table(title: str, head: Sequence[str], rows: Iterable[Sequence[object]]) -> None:
+    print(f"\n{title}")
+    cells = [list(map(str, head)), *([str(cell) for cell in row] for row in rows)]
+    widths = [max(len(row[i]) for row in cells) for i in range(len(head))]
+    for row in cells:
+        print("  " + "  ".join(cell.rjust(width) for cell, width in zip(row, widths, strict=True)))
+
+
+# Whole traces ---------------------------------------------------------------------------------
+
+
+def offline(ticks: int) -> dict[str, tuple[float, float]]:
+    """Millions of ticks per second: evaluation alone, and with the conversion from NumPy."""
+    found, rows = {}, []
+    reuse_memory()
+    for name, made in workload_rules().items():
+        machine = monitor(made)
+        arrays = WORKLOADS[name].columns(ticks)
+        columns, every = from_numpy(arrays), (1 << ticks) - 1
+        literals = literals_of(machine, columns, every)
+        a, b = columns["a"].true, columns["b"].true
+        one, add = repeated(lambda a=a, b=b: a & b), repeated(lambda a=a, b=b: a + b)
+        alone = repeated(lambda m=machine, x=literals, e=every: truths(m, x, e))
+        whole = repeated(lambda m=machine, x=columns: evaluate(m, x, ticks))
+        converted = alone + repeated(lambda x=arrays: from_numpy(x))
+        found[name] = ticks / alone / 1e6, ticks / converted / 1e6
+        rows.append(
+            (
+                name,
+                f"{alone * 1e3:.3f}",
+                f"{found[name][0]:,.0f}",
+                f"{alone / one:.0f}",
+                f"{alone / add:.1f}",
+                f"{found[name][1]:,.0f}",
+                f"{whole * 1e3:.1f}",
+            )
+        )
+    head = ("", "alone ms", "M ticks/s", "x a & b", "x a + b", "from NumPy", "outcome ms")
+    table(f"Whole traces, {ticks:,} ticks, one core", head, rows)
+    return found
+
+
+def bounds(ticks: int) -> None:
+    """What a long bound costs, against one of 10."""
+    arrays = {**WORKLOADS["W2"].columns(ticks)}
+    columns, every = from_numpy(arrays), (1 << ticks) - 1
+    rows = []
+    for bound in (10, 100, 1_000, 100_000):
+        machine = monitor(rule(f"whenever a sw shall within {bound} ticks satisfy b"))
+        past = monitor(always(A, f.once(B, f.Interval(0, bound))))
+        times = []
+        for made in (machine, past):
+            literals = literals_of(made, columns, every)
+            times.append(repeated(lambda m=made, x=literals: truths(m, x, every)))
+        rows.append([f"{bound:,}", *times])
+    first = rows[0]
+    table(
+        f"Bounds, {ticks:,} ticks: ms and multiples of a bound of 10",
+        ("bound", "G(a -> F[0,n] b)", "", "H(a -> O[0,n] b)", ""),
+        [
+            (n, f"{w * 1e3:.3f}", f"{w / first[1]:.1f}", f"{o * 1e3:.3f}", f"{o / first[2]:.1f}")
+            for n, w, o in rows
+        ],
+    )
+
+
+def against_peers(ticks: int, ours: Mapping[str, tuple[float, float]]) -> None:
+    """Our rate divided by theirs."""
+    rows = []
+    for peer in PEERS:
+        missing = peer.missing()
+        if missing:
+            print(f"\n{peer.name}: {missing}")
+            continue
+        for name in peer.formulas:
+            theirs = speed(peer, name, ticks, runs=3)
+            alone, converted = ours[name]
+            rows.append(
+                (
+                    peer.name,
+                    name,
+                    f"{theirs.ticks:,}",
+                    f"{theirs.alone:.2f}",
+                    f"{alone / theirs.alone:,.0f}",
+                    f"{converted / theirs.from_numpy:,.0f}",
+                )
+            )
+    head = ("peer", "", "its ticks", "M ticks/s", "ours: times alone", "times from NumPy")
+    table(f"Peers, our rates at {ticks:,} ticks", head, rows)
+
+
+# Single ticks ---------------------------------------------------------------------------------
+
+
+def empty(**propositions: bool | None) -> None:
+    """What a call costs that does nothing."""
+
+
+def stepping(step: Callable[..., object], rows: Sequence[Mapping[str, Any]]) -> float:
+    """Microseconds a call, without the loop around it."""
+
+    def calls() -> None:
+        for row in rows:
+            step(**row)
+
+    def loop() -> None:
+        for _ in rows:
+            pass
+
+    return (seconds(calls) - seconds(loop)) / len(rows) * 1e6
+
+
+def online() -> None:
+    """Microseconds a tick, in a batch and step by step; two-valued and with unknowns."""
+    rows = []
+    for name, made in workload_rules().items():
+        arrays = {
+            n: values[:STEPS].tolist() for n, values in WORKLOADS[name].columns(STEPS).items()
+        }
+        names = tuple(load("m", text(made)).PROPOSITIONS)
+        known = [tuple(arrays[n][i] for n in names) for i in range(STEPS)]
+        unknown = [
+            tuple(None if (i + k) % 5 == 0 else v for k, v in enumerate(r))
+            for i, r in enumerate(known)
+        ]
+        by_name = [[dict(zip(names, row, strict=True)) for row in x] for x in (known, unknown)]
+        call = stepping(empty, by_name[0])
+        batch = [
+            seconds(lambda m=made, x=x: monitor(m).run(x)) / STEPS * 1e6 for x in (known, unknown)
+        ]
+        steps = [stepping(monitor(made).step, x) for x in by_name]
+        rows.append(
+            (
+                name,
+                f"{batch[0]:.3f}",
+                f"{steps[0]:.3f}",
+                f"{steps[0] / call:.1f}",
+                f"{batch[1]:.3f}",
+                f"{batch[1] / batch[0]:.2f}",
+                f"{steps[1]:.3f}",
+                f"{steps[1] / steps[0]:.2f}",
+            )
+        )
+    head = ("", "run us", "step us", "x empty call", "unknown: run", "x", "step", "x")
+    table(f"Single ticks, {STEPS:,} of them", head, rows)
+
+
+def peers_online() -> None:
+    """The peers that can be stepped from Python, in microseconds a tick."""
+    rows = []
+    for peer in PEERS:
+        if not peer.missing():
+            for name in peer.formulas:
+                told = _peer_step(peer, name)
+                if told is not None:
+                    rows.append((peer.name, name, f"{told:.2f}"))
+    table("Peers by steps from Python", ("peer", "", "us a tick"), rows)
+
+
+def _peer_step(peer: Peer, name: str) -> float | None:
+    if peer.prepare_steps(name) is None:
+        return None
+    from benchmarks.peers import rows as letters
+    from benchmarks.peers import stepping as steps_of
+
+    inputs = letters({n: v[:20_000] for n, v in WORKLOADS[name].columns(20_000).items()})
+    evaluation: Evaluation = steps_of(peer, name, inputs)
+    return 1 / rate(evaluation, len(inputs), 3)
+
+
+def many() -> None:
+    """W5, and one file of up to 1 000 requirements: microseconds a tick and requirement."""
+    rows = []
+    generator = np.random.default_rng(1)
+    for count in (1, 20, 100, 1_000):
+        rules = mixed(count)
+        start = time.process_time()
+        made = text(*rules)
+        written = time.process_time() - start
+        machine = load("m", made)
+        ticks = max(200, 100_000 // count)
+        values = generator.random((ticks, len(machine.PROPOSITIONS))) < 0.3
+        table_rows = [tuple(row) for row in values.tolist()]
+        spent = seconds(lambda m=machine, x=table_rows: m.run(x), 3) / ticks / count * 1e6
+        names = tuple(machine.PROPOSITIONS.values())
+        named = [dict(zip(names, row, strict=True)) for row in table_rows]
+        single = stepping(machine.step, named) / count
+        rows.append(
+            (
+                f"{count:,}",
+                f"{written / count * 1e3:.2f}",
+                f"{len(made) // 1024:,}",
+                f"{spent:.3f}",
+                f"{single:.3f}",
+            )
+        )
+    head = ("requirements", "ms each to write", "kB", "run us each", "step us each")
+    table("Many requirements in one file (mixed, bounds to 1 000)", head, rows)
+
+
+# Memory and compiling -------------------------------------------------------------------------
+
+
+def memory() -> None:
+    """What a monitor holds after 10^3 and after 10^7 ticks."""
+    machine = monitor(rule("in c mode, upon a sw shall within 1000 ticks satisfy b"))
+    generator = np.random.default_rng(2)
+    piece = [tuple(row) for row in (generator.random((10_000, 3)) < 0.5).tolist()]
+    machine.advance(piece[:1_000])
+    tracemalloc.start()
+    machine.advance(piece[:1_000])
+    before = tracemalloc.get_traced_memory()[0]
+    for _ in range(1_000):
+        machine.advance(piece)
+    after = tracemalloc.get_traced_memory()[0]
+    tracemalloc.stop()
+    print(f"\nMemory: {after - before:+,} bytes from 10^3 to {machine.tick + 1:,} ticks")
+
+
+def compiling() -> None:
+    """From a sentence to the text of its monitor, after import."""
+    rows = []
+    for bound in (10, 10**6):
+        sentence = f"in m mode, upon p sw shall within {bound} ticks satisfy q"
+        spent = seconds(lambda s=sentence: [text(rule(s)) for _ in range(20)]) / 20
+        rows.append((f"{bound:,}", f"{spent * 1e3:.2f}"))
+    table("Compiling one requirement", ("bound", "ms"), rows)
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--ticks", type=int, nargs="*", default=[10**6, 10**7])
+    parser.add_argument("--no-peers", action="store_true")
+    options = parser.parse_args()
+    for ticks in options.ticks:
+        ours = offline(ticks)
+        if not options.no_peers:
+            against_peers(ticks, ours)
+    bounds(max(options.ticks))
+    online()
+    if not options.no_peers:
+        peers_online()
+    many()
+    compiling()
+    memory()
+
+
+if __name__ == "__main__":
+    main()
