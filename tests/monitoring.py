@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
+from compiler import formula as f
+from compiler.past import Watch
 from compiler.pipeline import formalize
 from compiler.rule import Rule
 from compiler.targets import monitor as target
@@ -98,3 +100,10 @@ def over(
     ticks, made = packed(columns)
     (outcome,) = evaluate(machine, made, ticks, end)
     return outcome
+
+
+def of_formula(formula: f.Formula) -> Monitor:
+    """A monitor whose trigger is a past-time formula and whose answer is its negation."""
+    no = f.FALSE
+    watch = Watch(formula, no, no, no, no, no, f.Not(formula), None, renewed=False)
+    return load("monitor.py", target.text(replace(rule("the sw shall satisfy q"), watch=watch)))
