@@ -31,28 +31,28 @@ def read_rows(
         InputError: a column is missing, a value is no truth value, ticks jump.
     """
     lines = iter(text)
-    first = next((line for line in lines if line.strip()), None)
-    if first is None:
+    number, first = next(((i, line) for i, line in enumerate(lines, 1) if line.strip()), (0, ""))
+    if not number:
         raise InputError(f"{source}: the trace is empty")
     lines = itertools.chain([first.removeprefix("\ufeff")], lines)
     is_json = re.match(r'\s*\{\s*["}]', first.removeprefix("\ufeff")) is not None
     read = _json_rows if is_json else _csv_rows
     tick: int | None = None
-    for place, row in read(lines, names, source):
+    for place, row in read(lines, names, source, number):
         if "tick" in row and "tick" not in names:
             tick = _next_tick(row["tick"], tick, place)
         yield tuple(_truth(row[name], name, place) for name in names)
 
 
 def _csv_rows(
-    lines: Iterable[str], names: Sequence[str], source: str
+    lines: Iterable[str], names: Sequence[str], source: str, number: int
 ) -> Iterator[tuple[str, dict[str, Any]]]:
     table = csv.reader(lines, strict=True)
     try:
         header = [name.strip() for name in next(table)]
-        _check_columns(header, names, f"{source}:1")
+        _check_columns(header, names, f"{source}:{number}")
         for values in table:
-            place = f"{source}:{table.line_num}"
+            place = f"{source}:{number - 1 + table.line_num}"
             if not values and len(header) > 1:
                 continue  # an empty line; in a table of one column it is an unknown value
             values = values or [""]
@@ -60,13 +60,13 @@ def _csv_rows(
                 raise InputError(f"{place}: {len(values)} values for {len(header)} columns")
             yield place, dict(zip(header, values, strict=True))
     except csv.Error as error:
-        raise InputError(f"{source}:{table.line_num}: {error}") from None
+        raise InputError(f"{source}:{number - 1 + table.line_num}: {error}") from None
 
 
 def _json_rows(
-    lines: Iterable[str], names: Sequence[str], source: str
+    lines: Iterable[str], names: Sequence[str], source: str, number: int
 ) -> Iterator[tuple[str, dict[str, Any]]]:
-    for number, line in enumerate(lines, 1):
+    for number, line in enumerate(lines, number):
         if not line.strip():
             continue
         try:

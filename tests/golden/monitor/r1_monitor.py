@@ -11,7 +11,6 @@
 from __future__ import annotations
 
 import argparse
-import copy
 import csv
 import io
 import itertools
@@ -382,6 +381,10 @@ class Standing(NamedTuple):
     """The last tick at which that can be decided; None where there is no deadline."""
 
 
+_FEW = 64
+"""Rows for which it is cheaper to look for unknowns than to keep a copy of the rail."""
+
+
 class Monitor:
     """Steps propositions and tells verdicts; a generated class adds `step` and `run`."""
 
@@ -446,8 +449,7 @@ class Monitor:
     def _fork(self) -> None:
         """From now on what may hold differs from what holds for certain."""
         if self.may is self.must:
-            self.may = copy.deepcopy(self.must)
-            self.may.doubt = True
+            self.may = _doubting(self.must)
 
     def advance(self, rows: Iterable[Row | Mapping[str, Truth]]) -> None:
         """Step every row, in pieces: one rail after the other.
@@ -460,15 +462,19 @@ class Monitor:
         waiting = iter(rows)
         while piece := list(itertools.islice(waiting, 4096)):
             known = self._in_order(piece)
-            if self.may is self.must:
-                before = copy.deepcopy(self.must)
-                if self.must.advance(known):
-                    continue
-                before.doubt = True
-                self.may = before
-            else:
+            if self.may is not self.must:
                 self.must.advance(known)
-            self.may.advance(known)
+                self.may.advance(known)
+            elif len(known) < _FEW:
+                if any(None in row for row in known):
+                    self._fork()
+                    self.may.advance(known)
+                self.must.advance(known)
+            else:
+                before = _doubting(self.must)
+                if not self.must.advance(known):
+                    self.may = before
+                    before.advance(known)
 
     def _in_order(self, rows: list[Any]) -> list[Row]:
         """Rows by name as rows in the order of `PROPOSITIONS`."""
@@ -537,6 +543,18 @@ def literals_of(
         sure = true if positive else every ^ (true | unknown)
         found[name] = sure | unknown if doubt else sure
     return found
+
+
+def _doubting(rail: Rail) -> Rail:
+    """A rail in the same state, on which an unknown counts as true."""
+    other = type(rail)(doubt=True)
+    for name in rail.__slots__:
+        there, value = getattr(other, name), getattr(rail, name)
+        if isinstance(there, Window):
+            there.restore(value.state())
+        elif name != "doubt":
+            setattr(other, name, value)
+    return other
 
 
 def _saved(rail: Rail) -> dict[str, Any]:
@@ -743,28 +761,28 @@ def read_rows(
         InputError: a column is missing, a value is no truth value, ticks jump.
     """
     lines = iter(text)
-    first = next((line for line in lines if line.strip()), None)
-    if first is None:
+    number, first = next(((i, line) for i, line in enumerate(lines, 1) if line.strip()), (0, ""))
+    if not number:
         raise InputError(f"{source}: the trace is empty")
     lines = itertools.chain([first.removeprefix("\ufeff")], lines)
     is_json = re.match(r'\s*\{\s*["}]', first.removeprefix("\ufeff")) is not None
     read = _json_rows if is_json else _csv_rows
     tick: int | None = None
-    for place, row in read(lines, names, source):
+    for place, row in read(lines, names, source, number):
         if "tick" in row and "tick" not in names:
             tick = _next_tick(row["tick"], tick, place)
         yield tuple(_truth(row[name], name, place) for name in names)
 
 
 def _csv_rows(
-    lines: Iterable[str], names: Sequence[str], source: str
+    lines: Iterable[str], names: Sequence[str], source: str, number: int
 ) -> Iterator[tuple[str, dict[str, Any]]]:
     table = csv.reader(lines, strict=True)
     try:
         header = [name.strip() for name in next(table)]
-        _check_columns(header, names, f"{source}:1")
+        _check_columns(header, names, f"{source}:{number}")
         for values in table:
-            place = f"{source}:{table.line_num}"
+            place = f"{source}:{number - 1 + table.line_num}"
             if not values and len(header) > 1:
                 continue  # an empty line; in a table of one column it is an unknown value
             values = values or [""]
@@ -772,13 +790,13 @@ def _csv_rows(
                 raise InputError(f"{place}: {len(values)} values for {len(header)} columns")
             yield place, dict(zip(header, values, strict=True))
     except csv.Error as error:
-        raise InputError(f"{source}:{table.line_num}: {error}") from None
+        raise InputError(f"{source}:{number - 1 + table.line_num}: {error}") from None
 
 
 def _json_rows(
-    lines: Iterable[str], names: Sequence[str], source: str
+    lines: Iterable[str], names: Sequence[str], source: str, number: int
 ) -> Iterator[tuple[str, dict[str, Any]]]:
-    for number, line in enumerate(lines, 1):
+    for number, line in enumerate(lines, number):
         if not line.strip():
             continue
         try:
@@ -985,7 +1003,8 @@ class R1Rail:
     def advance(self, rows: Iterable[Sequence[Any]]) -> bool:
         """Step every row; whether all was known in them."""
         known = True
-        doubt, tick = self.doubt, self.tick
+        doubt = self.doubt
+        tick = self.tick
         since_1 = self.since_1
         r1_last = self.r1_last
         r1_open = self.r1_open

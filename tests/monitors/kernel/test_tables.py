@@ -55,6 +55,8 @@ def test_a_name_with_a_comma_is_one_column() -> None:
     [
         ("", "t.csv: the trace is empty"),
         ("\n \n", "t.csv: the trace is empty"),
+        ("\n\np,q\n1,0\n\n1\n", "t.csv:6: 1 values for 2 columns"),
+        ('\n{"p": 1, "q": 1}\n[1]\n', "t.csv:3: a line must hold one object"),
         ("p\n1\n", "t.csv:1: there is no column `q`; there are p"),
         ("p,q,q\n1,0,0\n", "t.csv:1: there are two columns `q`"),
         (
