@@ -794,9 +794,9 @@ def _csv_rows(
 
 
 def _json_rows(
-    lines: Iterable[str], names: Sequence[str], source: str, number: int
+    lines: Iterable[str], names: Sequence[str], source: str, first: int
 ) -> Iterator[tuple[str, dict[str, Any]]]:
-    for number, line in enumerate(lines, number):
+    for number, line in enumerate(lines, first):
         if not line.strip():
             continue
         try:
