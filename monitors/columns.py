@@ -18,9 +18,35 @@ from fretish.source import Span
 from monitors import findings
 from monitors.container import Stream
 from monitors.damage import LATEST
-from monitors.decoding import Decode, decoder, short_type, stamp
+from monitors.decoding import short_type
+from monitors.extraction import Extract, Extraction
 from monitors.samples import Gap, Numbers, Times
-from monitors.signals import FieldError, nearest, sample
+
+_MOST, _MOST_BYTES = 4096, 2**22
+"""Messages, and bytes of them, that are read at once."""
+
+
+@dataclass(slots=True)
+class Pending:
+    """Messages of one stream that are still to be read."""
+
+    stream: Stream
+    logs: list[int] = field(default_factory=list)
+    publishes: list[int] = field(default_factory=list)
+    payloads: list[bytes] = field(default_factory=list)
+    size: int = 0
+
+    def add(self, log_time: int, publish_time: int, payload: bytes) -> None:
+        """One more."""
+        self.logs.append(log_time)
+        self.publishes.append(publish_time)
+        self.payloads.append(payload)
+        self.size += len(payload)
+
+    @property
+    def full(self) -> bool:
+        """Whether they should be read before another comes."""
+        return len(self.logs) >= _MOST or self.size >= _MOST_BYTES
 
 
 @dataclass(slots=True)
@@ -39,6 +65,7 @@ class Column:
     values: dict[str, array[float]] = field(default_factory=dict)
     wrong: dict[str, Diagnostic] = field(default_factory=dict)
     """Why there are no samples of a signal."""
+    pending: Pending | None = None
     undecoded: int = 0
     unstamped: int = 0
 
@@ -70,7 +97,7 @@ class Columns:
         self._wanted = wanted
         self._bound = {signal.path.topic for signal in declarations.signals.values()}
         self._bound |= {self._clock.topic} if self._clock.topic else set()
-        self._decoders: dict[int, Decode | None] = {}
+        self._extractions: dict[int, Extraction] = {}
 
     # Messages
 
@@ -92,75 +119,74 @@ class Columns:
                 column.refuse(signal, findings.wrong_type(signal, type_))
 
     def add(self, stream: Stream, log_time: int, publish_time: int, payload: memoryview) -> None:
-        """One message; only those of bound topics are decoded."""
+        """One message; those of bound topics are kept, to be read with others of their kind."""
         column = self.topics[stream.channel.topic]
         if not column.bound:
             column.logs.append(log_time)
             return
-        message = None
-        if column.signals or self._clock.time is TimeSource.HEADER_STAMP:
-            message = self._decoded(column, stream, payload)
-        time = self._time(column, log_time, publish_time, message)
-        if time >= LATEST:
-            column.undecoded += 1
+        pending = column.pending
+        if pending is None or pending.stream != stream:
+            self._settle(column)
+            pending = column.pending = Pending(stream)
+        read = bool(column.signals) or self._clock.time is TimeSource.HEADER_STAMP
+        pending.add(log_time, publish_time, bytes(payload) if read else b"")
+        if pending.full:
+            self._settle(column)
+
+    def settle(self) -> None:
+        """Read the messages that wait: no other follows."""
+        for column in self.topics.values():
+            self._settle(column)
+
+    def _settle(self, column: Column) -> None:
+        pending, column.pending = column.pending, None
+        if pending is None:
             return
-        column.logs.append(log_time)
-        column.times.append(time)
+        extract = self._extract(column, pending)
+        logs = np.array(pending.logs, np.int64)
+        times = self._times(column, pending, extract, logs)
+        kept = times < LATEST
+        column.undecoded += int((~kept).sum())
+        column.logs.frombytes(logs[kept].tobytes())
+        column.times.frombytes(times[kept].tobytes())
+        for signal in column.signals:
+            values = column.values.setdefault(signal.name, array("d"))
+            values.frombytes(extract.values[signal.name][kept].tobytes())
+
+    def _extract(self, column: Column, pending: Pending) -> Extract:
+        """What the signals ask for; one with something wrong gets no samples."""
+        count = len(pending.logs)
+        if not column.signals and self._clock.time is not TimeSource.HEADER_STAMP:
+            return Extract.empty(count, ())
+        id = pending.stream.channel.id
+        if id not in self._extractions:
+            self._extractions[id] = Extraction(pending.stream, column.signals)
+        extraction = self._extractions[id]
+        extract = extraction.extract(pending.payloads)
         for signal in tuple(column.signals):
-            self._sample(column, signal, message)
+            if signal.name in extraction.wrong:
+                column.refuse(signal, extraction.wrong[signal.name])
+        if extraction.reads:
+            column.undecoded += int((~extract.decoded).sum())
+        for name, least in extract.nearest.items():
+            self.nearest[name] = min(least, self.nearest.get(name, least))
+        return extract
 
-    def _decoded(self, column: Column, stream: Stream, payload: memoryview) -> object | None:
-        id = stream.channel.id
-        if id not in self._decoders:
-            self._decoders[id] = self._decoder(column, stream)
-        decode = self._decoders[id]
-        if decode is None:
-            return None
-        try:
-            return decode(bytes(payload))
-        except Exception:  # the decoder trusts each byte, and each may be wrong
-            column.undecoded += 1
-            return None
-
-    def _decoder(self, column: Column, stream: Stream) -> Decode | None:
-        found = decoder(stream)
-        if not isinstance(found, str):
-            return found
-        for signal in tuple(column.signals):
-            column.refuse(signal, findings.unknown_encoding(signal, found))
-        return None
-
-    def _time(
-        self, column: Column, log_time: int, publish_time: int, message: object | None
-    ) -> int:
-        """When the message was, on the declared clock."""
+    def _times(self, column: Column, pending: Pending, extract: Extract, logs: Times) -> Times:
+        """When the messages were, on the declared clock."""
         match self._clock.time:
             case TimeSource.LOG_TIME:
-                return log_time
+                return logs
             case TimeSource.PUBLISH_TIME:
-                return publish_time
+                return np.array(pending.publishes, np.uint64).clip(max=LATEST).astype(np.int64)
             case TimeSource.HEADER_STAMP:
-                stamped = stamp(message)
-                if stamped is not None:
-                    return stamped
-                if message is None and column.times:
-                    return column.times[-1]
-                column.unstamped += message is not None
-                return log_time
-
-    def _sample(self, column: Column, signal: Signal, message: object | None) -> None:
-        values = column.values.setdefault(signal.name, array("d"))
-        if message is None:
-            values.append(float("nan"))
-            return
-        try:
-            values.append(sample(signal, message))
-        except FieldError as error:
-            column.refuse(signal, findings.no_field(signal, error))
-            return
-        least = nearest(signal, message)
-        if least is not None:
-            self.nearest[signal.name] = min(least, self.nearest.get(signal.name, least))
+                column.unstamped += int((extract.decoded & ~extract.stamped).sum())
+                times = np.where(extract.stamped, extract.stamps, logs)
+                last = column.times[-1] if column.times else None
+                for i in np.flatnonzero(~extract.decoded):  # as the message before it
+                    before = times[i - 1] if i else last
+                    times[i] = logs[i] if before is None else before
+                return times
 
     # The results
 

@@ -12,6 +12,8 @@ from dataclasses import replace
 from io import StringIO
 
 from monitors.container import Stream
+from monitors.definitions import types
+from monitors.layouts import Shape
 from monitors.signals import fields
 
 Decode = Callable[[bytes], object]
@@ -40,6 +42,19 @@ def decoder(stream: Stream) -> Decode | str:
                 return f"its messages are encoded as `{encoding}`, defined in `{schema.encoding}`"
     except Exception:  # the parsers trust the definition
         return "the definition of its messages cannot be read"
+
+
+def shape(stream: Stream) -> Shape | None:
+    """How the messages of a stream are laid out; None where only its decoder knows."""
+    schema = stream.schema
+    if schema is None:
+        return None
+    ros1 = schema.encoding == "ros1msg"
+    try:
+        known = types(schema.name, schema.data.decode(), ros1=ros1)
+    except ValueError:  # no UTF-8, or nothing that is laid out
+        return None
+    return Shape(short_type(schema.name), known, cdr=not ros1)
 
 
 def _ros2(stream: Stream) -> Decode:

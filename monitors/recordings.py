@@ -77,6 +77,7 @@ def _read(
     columns = Columns(declarations, wanted)
     walk = Walk(stream, size, columns)
     walk.run()
+    columns.settle()
     unusable = _unusable(walk, place)
     if unusable is not None:
         return unusable

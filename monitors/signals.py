@@ -70,7 +70,8 @@ def sample(signal: Signal, message: object) -> float:
     if readings is None or np.isnan(readings).all():
         return float("nan")
     if signal.reduce is Reduce.OUTLINE:
-        return _clearance(signal, message, readings)
+        start, step = _sibling(message, "angle_min"), _sibling(message, "angle_increment")
+        return clearance(signal, readings, start, step)
     measured = readings[~np.isnan(readings)]
     return _reduced(signal.reduce, measured) * factor
 
@@ -221,15 +222,21 @@ def _reduced(reduce: Reduce | None, readings: Numbers) -> float:
             raise AssertionError(f"{reduce} takes more than the numbers")
 
 
-def _clearance(signal: Signal, message: object, readings: Numbers) -> float:
-    """Metres from the footprint to the nearest end of a beam; inf where all are far."""
+def clearance(signal: Signal, readings: Numbers, start: float, step: float) -> float:
+    """Metres from the footprint to the nearest end of a beam; inf where all are far.
+
+    Args:
+        signal: with `outline`.
+        readings: of each beam in turn; NaN where one is dropped.
+        start: radians, the angle of the first beam.
+        step: radians from a beam to the next.
+    """
     if np.isneginf(readings).any():
         return 0.0
     beams = np.isfinite(readings)
     if not beams.any():
         return float("inf")
-    increment = _sibling(message, "angle_increment")
-    angles = _sibling(message, "angle_min") + increment * np.arange(len(readings), dtype=float)
+    angles = start + step * np.arange(len(readings), dtype=float)
     ranges = readings[beams] * float(signal.unit.factor)
     ends = places(ranges, angles[beams], signal.sensor)
     return float(distances(ends, signal.footprint).min())

@@ -1,0 +1,142 @@
+"""Message definitions of ROS 1 and ROS 2: text → what stands in a payload, in its order.
+
+Sources: ROS 2 interface definitions, https://docs.ros.org/en/humble/Concepts/Basic/About-Interfaces.html;
+ROS 1 messages, https://wiki.ros.org/msg.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+NUMBERS: Mapping[str, str] = {
+    "bool": "?",
+    "int8": "i1",
+    "uint8": "u1",
+    "int16": "<i2",
+    "uint16": "<u2",
+    "int32": "<i4",
+    "uint32": "<u4",
+    "int64": "<i8",
+    "uint64": "<u8",
+    "float32": "<f4",
+    "float64": "<f8",
+}
+"""NumPy's name of each primitive type."""
+
+_ALIASES = {True: {"byte": "int8", "char": "uint8"}, False: {"byte": "uint8", "char": "int8"}}
+"""What ROS 1 (True) and the decoder of ROS 2 take these for."""
+
+TEXTS = frozenset({"string"})
+_TIMES = {
+    "time": (("secs", "uint32"), ("nsecs", "uint32")),
+    "duration": (("secs", "int32"), ("nsecs", "int32")),
+}
+_ROS2_TIMES = {
+    "builtin_interfaces/Time": (("sec", "int32"), ("nanosec", "uint32")),
+    "builtin_interfaces/Duration": (("sec", "int32"), ("nanosec", "uint32")),
+}
+
+_SEPARATOR = re.compile(r"={3,}\s*")
+_NEXT = re.compile(r"MSG:\s*(\S+)\s*")
+_FIELD = re.compile(
+    r"(?P<type>[A-Za-z][\w/]*)(?P<most><=\d+)?"
+    r"(?P<array>\[(?:<=)?(?P<count>\d*)\])?\s+(?P<name>[A-Za-z]\w*)(?P<rest>[\s=].*)?"
+)
+
+
+class DefinitionError(ValueError):
+    """The definition holds something that is not laid out here."""
+
+
+@dataclass(frozen=True, slots=True)
+class Field:
+    """One field of a message."""
+
+    name: str
+    type: str
+    """A key of `NUMBERS`, `string`, or the full name of a type."""
+    many: bool
+    count: int | None
+    """Of an array with a fixed length; None: its length stands before it."""
+
+
+Types = Mapping[str, tuple[Field, ...]]
+"""The fields of each type, by its full name: `sensor_msgs/LaserScan`."""
+
+
+def types(name: str, definition: str, *, ros1: bool) -> Types:
+    """All types that a message is made of.
+
+    Args:
+        name: of the message; with or without `msg/` in it.
+        definition: its text, with those of the types in it below lines of `=`.
+        ros1: whether it is of ROS 1.
+
+    Raises:
+        DefinitionError: a line, or a type, is not known.
+    """
+    found: dict[str, tuple[Field, ...]] = dict(_builtin(ros1=ros1))
+    for full, lines in _sections(_short(name), definition):
+        package = full.partition("/")[0]
+        read = (_field(line, package, ros1=ros1) for line in lines)
+        found.setdefault(full, tuple(field for field in read if field is not None))
+    for fields in found.values():
+        for field in fields:
+            if field.type not in NUMBERS and field.type not in TEXTS and field.type not in found:
+                raise DefinitionError(f"the type `{field.type}` is not defined")
+    return found
+
+
+def _builtin(*, ros1: bool) -> dict[str, tuple[Field, ...]]:
+    known = _TIMES if ros1 else _ROS2_TIMES
+    return {
+        name: tuple(Field(part, type_, many=False, count=None) for part, type_ in parts)
+        for name, parts in known.items()
+    }
+
+
+def _short(name: str) -> str:
+    return name.replace("/msg/", "/")
+
+
+def _sections(name: str, definition: str) -> list[tuple[str, list[str]]]:
+    """Each type with its lines; those without anything in them are left out."""
+    sections: list[tuple[str, list[str]]] = [(name, [])]
+    for line in definition.splitlines():
+        bare = line.strip()
+        following = _NEXT.fullmatch(bare)
+        if following:
+            sections.append((_short(following[1]), []))
+        elif bare and not bare.startswith("#") and not _SEPARATOR.fullmatch(bare):
+            sections[-1][1].append(bare)
+    return sections
+
+
+def _field(line: str, package: str, *, ros1: bool) -> Field | None:
+    """The field of a line; None for a constant."""
+    match = _FIELD.fullmatch(line.split("#")[0].strip() if "=" not in line else line.strip())
+    if match is None:
+        raise DefinitionError(f"`{line}` is no field")
+    rest = (match["rest"] or "").strip()
+    if rest.startswith("="):
+        return None
+    if ros1 and rest and not rest.startswith("#"):
+        raise DefinitionError(f"`{line}` is no field")
+    type_ = _resolved(_short(match["type"]), package, ros1=ros1)
+    many = match["array"] is not None
+    bounded = many and "<=" in match["array"]
+    count = int(match["count"]) if many and match["count"] and not bounded else None
+    return Field(match["name"], type_, many, count)
+
+
+def _resolved(name: str, package: str, *, ros1: bool) -> str:
+    name = _ALIASES[ros1].get(name, name)
+    if name in NUMBERS or name in TEXTS or "/" in name:
+        return name
+    if ros1 and name in _TIMES:
+        return name
+    if ros1 and name == "Header":
+        return "std_msgs/Header"
+    return f"{package}/{name}"

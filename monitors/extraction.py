@@ -1,0 +1,215 @@
+"""Payloads of one stream → the numbers that its signals ask for, many messages at once.
+
+Fields are taken from their places in the payloads. The first messages are decoded by the official
+decoder too, and where that says anything else, it reads the whole stream: it is slower, and the
+reference.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fretish.declarations import Reduce, Signal
+from fretish.diagnostic import Diagnostic
+from monitors import findings
+from monitors.container import Stream
+from monitors.decoding import Decode, decoder, shape, stamp
+from monitors.layouts import Batch, Group, Shape, Where, groups
+from monitors.readings import nearest, samples, siblings
+from monitors.samples import Numbers, Times
+from monitors.signals import RANGE_MIN, FieldError, sample
+from monitors.signals import nearest as nearest_of_one
+
+_CHECKED = 8
+"""Layouts of a stream of which the official decoder reads three messages too."""
+_STAMPS = (("sec", "nanosec"), ("secs", "nsecs"))
+"""Names of the fields of a stamp, in ROS 2 and in ROS 1."""
+
+
+@dataclass(slots=True)
+class Extract:
+    """What some messages of a stream hold, all in their order."""
+
+    values: dict[str, Numbers]
+    """Of each signal, shape (messages,); NaN where unknown, or not decoded."""
+    decoded: NDArray[np.bool_]
+    stamps: Times
+    stamped: NDArray[np.bool_]
+    nearest: dict[str, float] = field(default_factory=dict)
+
+    @classmethod
+    def empty(cls, count: int, signals: Iterable[Signal]) -> Extract:
+        """Of messages that are still to be read."""
+        return cls(
+            {signal.name: np.full(count, np.nan) for signal in signals},
+            np.zeros(count, bool),
+            np.zeros(count, np.int64),
+            np.zeros(count, bool),
+        )
+
+    def near(self, signal: Signal, least: float | None) -> None:
+        """Some messages state a least distance."""
+        if least is not None:
+            self.nearest[signal.name] = min(least, self.nearest.get(signal.name, least))
+
+
+class Extraction:
+    """Reads one stream."""
+
+    def __init__(self, stream: Stream, signals: Sequence[Signal]) -> None:
+        self.signals = list(signals)
+        """Those that can be read; one with something wrong is taken out."""
+        self.wrong: dict[str, Diagnostic] = {}
+        self._checks = _CHECKED
+        found = decoder(stream)
+        self._decode: Decode | None = None if isinstance(found, str) else found
+        self._shape = shape(stream) if self._decode is not None else None
+        if isinstance(found, str):
+            for signal in signals:
+                self._refuse(signal, findings.unknown_encoding(signal, found))
+
+    @property
+    def reads(self) -> bool:
+        """Whether anything can be decoded."""
+        return self._decode is not None
+
+    def extract(self, payloads: Sequence[bytes]) -> Extract:
+        """What the messages hold."""
+        extract = Extract.empty(len(payloads), self.signals)
+        if self._decode is None:
+            return extract
+        slow = range(len(payloads)) if self._shape is None else self._at_once(payloads, extract)
+        for row in slow:
+            self._one_by_one(row, payloads[row], extract)
+        return extract
+
+    def _refuse(self, signal: Signal, diagnostic: Diagnostic) -> None:
+        self.signals.remove(signal)
+        self.wrong[signal.name] = diagnostic
+
+    # By the official decoder
+
+    def _one_by_one(self, row: int, payload: bytes, extract: Extract) -> None:
+        message = self._message(payload)
+        if message is None:
+            return
+        extract.decoded[row] = True
+        time = stamp(message)
+        if time is not None:
+            extract.stamps[row], extract.stamped[row] = time, True
+        for signal in tuple(self.signals):
+            try:
+                extract.values[signal.name][row] = sample(signal, message)
+            except FieldError as error:
+                self._refuse(signal, findings.no_field(signal, error))
+                continue
+            extract.near(signal, nearest_of_one(signal, message))
+
+    def _message(self, payload: bytes) -> object | None:
+        assert self._decode is not None
+        try:
+            return self._decode(payload)
+        except Exception:  # the decoder trusts each byte, and each may be wrong
+            return None
+
+    # By places
+
+    def _at_once(self, payloads: Sequence[bytes], extract: Extract) -> Sequence[int]:
+        """Read all messages that fit a layout; gives the rows that are left."""
+        assert self._shape is not None
+        batch = Batch.of(payloads)
+        left: list[int] = []
+        for group in groups(self._shape, batch, self._wanted(self._shape)):
+            if self._shape is None or not self._taken(batch, group, payloads, extract):
+                left.extend(group.rows.tolist())
+        return sorted(left)
+
+    def _wanted(self, shape: Shape) -> tuple[Where, ...]:
+        wanted: dict[Where, None] = {}
+        for signal in self.signals:
+            wanted[signal.path.fields] = None
+            wanted.update({(name,): None for name in siblings(signal)})
+            if shape.has((RANGE_MIN,)):
+                wanted[RANGE_MIN,] = None
+        wanted.update(dict.fromkeys(_stamp_places(shape)))
+        return tuple(wanted)
+
+    def _taken(
+        self, batch: Batch, group: Group, payloads: Sequence[bytes], extract: Extract
+    ) -> bool:
+        """Read the messages of one layout, unless the official decoder reads them otherwise."""
+        if group.layout is None or self._shape is None:
+            return False
+        numbers = {w: batch.gathered(group.rows, f) for w, f in group.layout.found.items()}
+        if self._checks:
+            self._checks -= 1
+            last = len(group.rows) - 1
+            rows = {0, last // 2, last}
+            if not all(self._agrees(place, group, payloads, numbers) for place in rows):
+                self._shape = None
+                return False
+        self._fill(group.rows, numbers, extract)
+        return True
+
+    def _agrees(
+        self,
+        place: int,
+        group: Group,
+        payloads: Sequence[bytes],
+        numbers: Mapping[Where, NDArray[np.generic]],
+    ) -> bool:
+        """Whether both ways read the same of one message of the group."""
+        slow, fast = (Extract.empty(1, self.signals) for _ in range(2))
+        before = len(self.wrong)
+        self._one_by_one(0, payloads[int(group.rows[place])], slow)
+        if len(self.wrong) != before or not slow.decoded[0]:
+            return False
+        one = {where: found[place : place + 1] for where, found in numbers.items()}
+        self._fill(np.zeros(1, np.int64), one, fast)
+        return (
+            all(
+                np.array_equal(slow.values[s.name], fast.values[s.name], equal_nan=True)
+                for s in self.signals
+            )
+            and bool(slow.stamped[0] == fast.stamped[0])
+            and bool(slow.stamps[0] == fast.stamps[0])
+            and slow.nearest == fast.nearest
+        )
+
+    def _fill(
+        self,
+        rows: NDArray[np.int64],
+        numbers: Mapping[Where, NDArray[np.generic]],
+        extract: Extract,
+    ) -> None:
+        extract.decoded[rows] = True
+        columns = {where: _matrix(found) for where, found in numbers.items()}
+        for signal in self.signals:
+            beside = {name: columns[name,][:, 0] for name in siblings(signal)}
+            values = samples(signal, columns[signal.path.fields], beside)
+            extract.values[signal.name][rows] = values
+            if (RANGE_MIN,) in columns and signal.reduce in (Reduce.MIN, Reduce.OUTLINE):
+                extract.near(signal, nearest(signal, columns[RANGE_MIN,][:, 0]))
+        places = _stamp_places(self._shape) if self._shape is not None else ()
+        if places:
+            seconds, nanoseconds = (numbers[place].astype(np.int64) for place in places)
+            extract.stamps[rows] = seconds * 10**9 + nanoseconds
+            extract.stamped[rows] = True
+
+
+def _matrix(numbers: NDArray[np.generic]) -> Numbers:
+    """One row for each message."""
+    return numbers.astype(np.float64).reshape(len(numbers), -1)
+
+
+def _stamp_places(shape: Shape) -> tuple[Where, ...]:
+    """Seconds and nanoseconds of `header.stamp`, where the messages have one."""
+    for names in _STAMPS:
+        places = tuple(("header", "stamp", name) for name in names)
+        if all(map(shape.has, places)):
+            return places
+    return ()

@@ -1,0 +1,230 @@
+"""Where in a payload the wanted fields stand: found once, then checked for many messages at once.
+
+Fields stand one after the other, and strings and arrays have their lengths before them. Messages
+of one topic mostly have the same lengths, and so the same layout: the first of them is walked,
+and the others are held against the lengths that were met on the way. Nothing is decoded that is not
+wanted.
+
+Sources: OMG DDSI-RTPS and CDR (plain CDR, XCDR version 1); ROS 1 serialization,
+https://wiki.ros.org/roscpp/Overview/MessagesSerializationAndAdaptingTypes.
+"""
+
+from __future__ import annotations
+
+import struct
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from monitors.definitions import NUMBERS, TEXTS, Field, Types
+
+Bytes = NDArray[np.uint8]
+Places = NDArray[np.int64]
+Where = tuple[str, ...]
+"""The names of fields from the message down."""
+
+_LENGTH = struct.Struct("<I")
+_PADDING = 7
+"""Bytes that may follow the last field of CDR."""
+_MOST_CHECKS = 64
+"""A message with more lengths than so is of no layout that others share."""
+
+
+class LayoutError(ValueError):
+    """The payload does not fit its definition, or a field is not there."""
+
+
+@dataclass(frozen=True, slots=True)
+class Found:
+    """A wanted field within a payload."""
+
+    at: int
+    """Its first byte."""
+    dtype: str
+    count: int | None
+    """How many numbers an array holds; None for a number alone."""
+
+
+@dataclass(frozen=True, slots=True)
+class Layout:
+    """What all messages of one shape have in common."""
+
+    size: int
+    """Bytes of the payload."""
+    marks: tuple[tuple[int, str, int], ...]
+    """Places, types and values of the lengths on the way, and of what marks plain CDR."""
+    found: Mapping[Where, Found]
+
+
+class Shape:
+    """The type of a topic's messages."""
+
+    def __init__(self, name: str, types: Types, *, cdr: bool) -> None:
+        self._name, self._types, self._cdr = name, types, cdr
+
+    def has(self, where: Where) -> bool:
+        """Whether there is a number at that place of each message."""
+        fields = self._types[self._name]
+        for depth, name in enumerate(where, 1):
+            field = next((field for field in fields if field.name == name), None)
+            if field is None or field.many:
+                return False
+            if depth == len(where):
+                return field.type in NUMBERS
+            fields = self._types.get(field.type, ())
+        return False
+
+    def layout(self, payload: memoryview, wanted: Sequence[Where]) -> Layout:
+        """Where the wanted fields of one payload are.
+
+        Args:
+            payload: a whole message; of CDR with the four bytes before it.
+            wanted: numbers, or arrays of numbers.
+
+        Raises:
+            LayoutError: the payload has another length than its fields, or is not plain
+                little-endian CDR; or a wanted field is not there, or holds no numbers.
+        """
+        walk = _Walk(payload, self._types, frozenset(wanted), cdr=self._cdr)
+        try:
+            walk.message(self._name, ())
+        except struct.error:
+            raise LayoutError("the payload is cut off") from None
+        if not 0 <= len(payload) - walk.at <= (_PADDING if self._cdr else 0):
+            raise LayoutError("the payload has another length than its fields")
+        missing = [where for where in wanted if where not in walk.found]
+        if missing:
+            raise LayoutError(f"there are no numbers in `{'.'.join(missing[0])}`")
+        return Layout(len(payload), tuple(walk.marks), walk.found)
+
+
+class _Walk:
+    """One way through a payload."""
+
+    def __init__(
+        self, payload: memoryview, types: Types, wanted: frozenset[Where], *, cdr: bool
+    ) -> None:
+        self.at = 0
+        self.marks: list[tuple[int, str, int]] = []
+        self.found: dict[Where, Found] = {}
+        self._payload, self._types, self._wanted, self._cdr = payload, types, wanted, cdr
+        if cdr:
+            if bytes(payload[:2]) != b"\0\1":
+                raise LayoutError("it is not plain little-endian CDR")
+            self.marks.append((0, ">u2", 1))
+            self.at = 4
+
+    def message(self, name: str, where: Where) -> None:
+        """All fields of a type; ROS 2 writes a byte for a type without any."""
+        if self._cdr and not self._types[name]:
+            self.at += 1
+        for field in self._types[name]:
+            self._field(field, (*where, field.name))
+
+    def _field(self, field: Field, where: Where) -> None:
+        count = (self._length() if field.count is None else field.count) if field.many else None
+        if field.type in NUMBERS:
+            self._numbers(NUMBERS[field.type], count, where)
+        elif field.type in TEXTS:
+            for _ in range(1 if count is None else self._bounded(count)):
+                length = self._length()
+                self.at += length
+        elif count is None:
+            self.message(field.type, where)
+        else:
+            for _ in range(self._bounded(count)):
+                self.message(field.type, ("[]",))  # no wanted field is below
+
+    def _numbers(self, dtype: str, count: int | None, where: Where) -> None:
+        size = np.dtype(dtype).itemsize
+        if self._cdr and count != 0:  # what is not there needs no alignment
+            self.at += -(self.at - 4) % size
+        if where in self._wanted:
+            self.found[where] = Found(self.at, dtype, count)
+        self.at += size if count is None else size * count
+
+    def _length(self) -> int:
+        if self._cdr:
+            self.at += -self.at % 4
+        (length,) = _LENGTH.unpack_from(self._payload, self.at)
+        self.marks.append((self.at, "<u4", length))
+        self.at += 4
+        return int(length)
+
+    def _bounded(self, count: int) -> int:
+        """Each element of an array takes a byte at least, or it is not counted one by one."""
+        if count > len(self._payload):
+            raise LayoutError("the payload is cut off")
+        return count
+
+
+# Many messages --------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True)
+class Batch:
+    """Payloads in one piece of memory: `data[starts[i] : starts[i] + sizes[i]]`."""
+
+    data: Bytes
+    starts: Places
+    sizes: Places
+
+    @classmethod
+    def of(cls, payloads: Sequence[bytes | memoryview]) -> Batch:
+        """The payloads, one behind the other."""
+        sizes = np.fromiter(map(len, payloads), np.int64, len(payloads))
+        starts = np.cumsum(sizes) - sizes
+        # Some bytes more, so that a gather at any start stays within the data.
+        return cls(np.frombuffer(b"".join([*payloads, b"\0" * 8]), np.uint8), starts, sizes)
+
+    def payload(self, i: int) -> memoryview:
+        """One of them."""
+        start = int(self.starts[i])
+        return self.data[start : start + int(self.sizes[i])].data
+
+    def gathered(self, rows: Places, found: Found) -> NDArray[np.generic]:
+        """The field in each of the rows, shape (rows,), or (rows, count) for an array."""
+        dtype = np.dtype(found.dtype)
+        width = dtype.itemsize * (1 if found.count is None else found.count)
+        window = np.lib.stride_tricks.as_strided(
+            self.data, (len(self.data) - max(width, 1) + 1, width), (1, 1), writeable=False
+        )
+        taken = np.ascontiguousarray(window[self.starts[rows] + found.at])
+        numbers = taken != 0 if dtype == np.bool_ else taken.view(dtype)
+        return numbers[:, 0] if found.count is None else numbers
+
+
+@dataclass(frozen=True, slots=True)
+class Group:
+    """Messages of one layout; None where they fit no layout."""
+
+    rows: Places
+    layout: Layout | None
+
+
+def groups(shape: Shape, batch: Batch, wanted: Sequence[Where]) -> Iterator[Group]:
+    """All messages of the batch, those of one layout together."""
+    left = np.arange(len(batch.starts))
+    while len(left):
+        try:
+            layout = shape.layout(batch.payload(int(left[0])), wanted)
+        except LayoutError:
+            yield Group(left[:1], None)
+            left = left[1:]
+            continue
+        same = _same(batch, left, layout)
+        yield Group(left[same], layout)
+        left = left[~same]
+
+
+def _same(batch: Batch, rows: Places, layout: Layout) -> NDArray[np.bool_]:
+    """Which of the rows have the layout; the first one has."""
+    same: NDArray[np.bool_] = batch.sizes[rows] == layout.size
+    if len(layout.marks) > _MOST_CHECKS:
+        same[1:] = False
+        return same
+    for at, dtype, value in layout.marks:
+        same[same] = batch.gathered(rows[same], Found(at, dtype, None)) == value
+    return same
