@@ -16,6 +16,8 @@ from fretish.source import Source
 def read(path: str) -> Source | Diagnostic:
     """The text of a file (`-`: standard input), or what keeps it from being read."""
     try:
+        if not path:
+            raise FileNotFoundError
         if path == "-":
             with open(0, "rb", closefd=False) as stdin:
                 return Source("<stdin>", stdin.read().decode("utf-8-sig"))

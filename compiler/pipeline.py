@@ -49,25 +49,25 @@ def formalize(
         rule = _rule(requirement, sentence, ticks, declarations)
     except RecursionError:  # some versions of Python bound it below what `deep` asks for
         return None, (too_deep(sentence),)
-    clash = _clash(rule)
+    clash = next(clashes([rule]), None)
     if clash is not None:
         return None, (clash,)
     return rule, tuple(_remarks(requirement, sentence, declarations))
 
 
-def _clash(rule: Rule) -> Diagnostic | None:
+def clashes(rules: Sequence[Rule]) -> Iterator[Diagnostic]:
     """F116: formulas spell `a.b` as `a_DOT_b`, and another name is spelt so already."""
     spelt: dict[str, str] = {}
-    for name in rule.variables:
-        first = spelt.setdefault(identifier(name), name)
-        if first != name:
-            return Diagnostic(
-                Code.NAME_CLASH,
-                f"`{first}` and `{name}` would be one name in formulas: `{identifier(name)}`",
-                _place(rule, name),
-                help="rename one of them",
-            )
-    return None
+    for rule in rules:
+        for name in rule.variables:
+            first = spelt.setdefault(identifier(name), name)
+            if first != name:
+                yield Diagnostic(
+                    Code.NAME_CLASH,
+                    f"`{first}` and `{name}` would be one name in formulas: `{identifier(name)}`",
+                    _place(rule, name),
+                    help="rename one of them",
+                )
 
 
 def _rule(

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import hashlib
 import json
+import os
 import tomllib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from compiler.files import read
+from compiler.files import read, unreadable
 from compiler.pipeline import duplicates, formalize
 from compiler.rule import Rule
 from fretish.bindings import read_bindings
@@ -98,13 +99,18 @@ def _reason(remarks: Sequence[Diagnostic]) -> Diagnostic:
 
 def requirement_files(folder: str) -> list[str] | Diagnostic:
     """The `.fret` files of a folder, sorted; or the one file, where it is a file."""
-    place = Path(folder)
-    if place.is_file():
-        return [folder]
-    files = sorted(str(path) for path in place.glob("*.fret"))
-    if files:
-        return files
-    what = "no requirement (`*.fret`) is in" if place.is_dir() else "there is no folder"
+    try:
+        if not _is_folder(folder):
+            return [folder] if Path(folder).is_file() else _no_requirements(folder, "no folder")
+        names = sorted(name for name in os.listdir(folder) if name.endswith(".fret"))
+    except OSError as error:
+        return unreadable(folder, error)
+    found = [str(Path(folder) / name) for name in names]
+    return [path for path in found if not _is_folder(path)] or _no_requirements(folder, "")
+
+
+def _no_requirements(folder: str, missing: str) -> Diagnostic:
+    what = "there is no folder" if missing else "no requirement (`*.fret`) is in"
     return Diagnostic(
         Code.NO_SUCH_FILE,
         f"{what} `{folder}`",
@@ -113,26 +119,32 @@ def requirement_files(folder: str) -> list[str] | Diagnostic:
     )
 
 
+def _is_folder(path: str) -> bool:
+    """An empty name is none, though Python takes it for the present folder."""
+    return bool(path) and path != "-" and os.path.isdir(path)
+
+
 def listed(paths: Sequence[str]) -> list[str] | Diagnostic:
-    """The files, with those of a folder in its place; each once."""
-    found: dict[str, None] = {}
+    """The files, with those of a folder in its place; each once, however it is spelt."""
+    found: dict[str, str] = {}
     for path in paths:
-        files = requirement_files(path) if path != "-" and Path(path).is_dir() else [path]
+        files = requirement_files(path) if _is_folder(path) else [path]
         if isinstance(files, Diagnostic):
             return files
-        found.update(dict.fromkeys(files))
-    return list(found)
+        for file in files:
+            found.setdefault(os.path.realpath(file) if file != "-" else file, file)
+    return list(found.values())
 
 
 def beside(folder: str, name: str) -> str | None:
     """The path of a file in the requirements folder, where it is there."""
-    return _beside([folder if Path(folder).is_file() else str(Path(folder) / "any")], name)
+    return _beside([folder if os.path.isfile(folder) else str(Path(folder) / "any")], name)
 
 
 def _beside(paths: Sequence[str], name: str) -> str | None:
     first = next((path for path in paths if path != "-"), None)
-    path = Path(first).parent / name if first else None
-    return str(path) if path is not None and path.exists() else None
+    path = str(Path(first).parent / name) if first else None
+    return path if path is not None and os.path.exists(path) else None
 
 
 def _declarations(

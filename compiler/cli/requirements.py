@@ -64,6 +64,8 @@ def compile_(
     """
     from compiler.project import listed, load
 
+    if one_file and "monitor" not in kinds:
+        stop(Diagnostic(Code.BAD_USAGE, "`--one-file` is for `--emit monitor`", help="add it"))
     paths = listed(files)
     if isinstance(paths, Diagnostic):
         stop(paths)
@@ -109,6 +111,7 @@ def _print_formulas(project: Project, options: Options) -> None:
 
 
 def _emit(project: Project, kinds: dict[str, None], output: str, options: Options) -> None:
+    from compiler.pipeline import clashes
     from compiler.targets import TARGETS
 
     targets = [TARGETS[kind] for kind in kinds]
@@ -118,6 +121,8 @@ def _emit(project: Project, kinds: dict[str, None], output: str, options: Option
         for rule in project.rules
         if (diagnostic := target.refuse(rule)) is not None
     ]
+    if options.one_file:
+        refused.extend(clashes(project.rules))
     if refused:
         stop(*refused)
     say([d for target in targets for rule in project.rules if (d := target.remark(rule))])

@@ -7,6 +7,7 @@ in, so the file needs the standard library and nothing else.
 
 from __future__ import annotations
 
+import hashlib
 import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
@@ -117,6 +118,7 @@ def text(*rules: Rule) -> str:
         inputs=inputs,
         row=_tuple([p.name for p in inputs]),
         program=made,
+        digest=_digest(made, rules),
         slots=_slots(made),
         told=made.told,
         marks=MARKS,
@@ -124,6 +126,12 @@ def text(*rules: Rule) -> str:
         imports=runtime.imports,
         kernel=runtime.text,
     )
+
+
+def _digest(made: Program, rules: Sequence[Rule]) -> str:
+    """Of all that gives the cells of a rail their meaning."""
+    told = [(rule.id, rule.fingerprint, rule.ticks) for rule in rules]
+    return hashlib.sha256(repr((__version__, told, made)).encode()).hexdigest()
 
 
 def _tuple(names: Sequence[str]) -> str:

@@ -33,24 +33,40 @@ def main(monitor: type[Monitor], arguments: Sequence[str] | None = None) -> int:
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="backslashreplace")
-    options = _parser(monitor).parse_args(arguments)
     try:
+        options = _parser(monitor).parse_args(arguments)
         statuses = [_report(monitor(), path, options) for path in options.trace]
-        status = max(statuses, key=(0, 3, 1, 2).index)
         if sys.stdout is None:
             raise InputError("standard output is closed")
         sys.stdout.flush()
-        return status
+        return max(statuses, key=(0, 3, 1, 2).index)
     except InputError as error:
-        print(error, file=sys.stderr)
-        return 2
+        _complain(str(error))
     except OSError as error:  # standard output is full, or its reader has gone
         if not isinstance(error, BrokenPipeError):
-            print(f"standard output cannot be written: {error.strerror}", file=sys.stderr)
+            _complain(f"standard output cannot be written: {error.strerror}")
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        return 2
     except KeyboardInterrupt:
         return 130
+    except _FAULTS as error:  # status 1 would say that a requirement is violated
+        _complain(f"the monitor stopped: {type(error).__name__}: {error}")
+    return 2
+
+
+_FAULTS = (
+    ArithmeticError,
+    AttributeError,
+    LookupError,
+    MemoryError,
+    RuntimeError,
+    TypeError,
+    ValueError,
+)
+
+
+def _complain(text: str) -> None:
+    if sys.stderr is not None:
+        print(text, file=sys.stderr)
 
 
 def _parser(monitor: type[Monitor]) -> argparse.ArgumentParser:
@@ -97,6 +113,8 @@ def _report(monitor: Monitor, path: str, options: argparse.Namespace) -> int:
             ticks, columns = columns_of(read_rows(text, names, source), len(names))
         except UnicodeDecodeError:
             raise InputError(f"{source}: the trace is not UTF-8 text") from None
+        except OSError as error:
+            raise InputError(f"{source}: {error.strerror or error}") from None
     run = stepped if options.engine == "online" else evaluate
     outcomes = run(monitor, dict(zip(names, columns, strict=True)), ticks, options.end)
     for outcome in outcomes:

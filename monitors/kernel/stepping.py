@@ -9,7 +9,9 @@ logic).
 
 from __future__ import annotations
 
+import hashlib
 import itertools
+import json
 from collections import deque
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from operator import itemgetter
@@ -116,18 +118,21 @@ class Standing(NamedTuple):
     """FRET's verdict on the finite trace up to here."""
     first_violation: int | None
     open: int | None
-    """The trigger of the oldest demand that is open for certain."""
+    """The trigger of the demand that is open for certain: of the oldest, or of the latest where a
+    new one replaces it (`for`, `next`)."""
     deadline: int | None
     """The last tick at which that can be decided; None where there is no deadline."""
 
 
-_FEW = 64
-"""Rows for which it is cheaper to look for unknowns than to keep a copy of the rail."""
+_PIECE, _FEW = 4096, 64
+"""Rows that are stepped at once; rows in which it is cheaper to look for unknowns than to copy."""
 
 
 class Monitor:
     """Steps propositions and tells verdicts; a generated class adds `step` and `run`."""
 
+    PROGRAM: ClassVar[str]
+    """SHA-256 of the generated code: a state fits no other."""
     REQUIREMENTS: ClassVar[tuple[Requirement, ...]]
     PROPOSITIONS: ClassVar[Mapping[str, str]]
     """Each proposition with its parameter of `step`."""
@@ -152,11 +157,12 @@ class Monitor:
 
     def state(self) -> dict[str, Any]:
         """Everything that is remembered, as plain values that JSON can hold."""
-        return {
-            "requirements": {r.id: r.fingerprint for r in self.REQUIREMENTS},
+        content = {
+            "program": self.PROGRAM,
             "must": _saved(self.must),
             "may": _saved(self.may) if self.may is not self.must else None,
         }
+        return {**content, "sha256": _digest(content)}
 
     def restore(self, state: Mapping[str, Any]) -> None:
         """Go on from what `state` gave.
@@ -164,13 +170,17 @@ class Monitor:
         Raises:
             ValueError: it is no state of this monitor.
         """
-        if state.get("requirements") != {r.id: r.fingerprint for r in self.REQUIREMENTS}:
-            raise ValueError("the state is not one of this monitor: other requirements")
+        content = dict(state) if isinstance(state, Mapping) else {}
+        digest = content.pop("sha256", None)
+        if content.get("program") != self.PROGRAM:
+            raise ValueError("the state is of another monitor, or is none")
+        if digest != _digest(content):
+            raise ValueError("the state was changed after it was saved")
         must, may = self.RAIL(), self.RAIL(doubt=True)
-        _restored(must, state.get("must"))
-        if state.get("may") is not None:
-            _restored(may, state["may"])
-        self.must, self.may = must, must if state.get("may") is None else may
+        _restored(must, content["must"])
+        if content["may"] is not None:
+            _restored(may, content["may"])
+        self.must, self.may = must, must if content["may"] is None else may
 
     def standings(self) -> tuple[Standing, ...]:
         """What would be said of each requirement if the trace ended now."""
@@ -189,10 +199,12 @@ class Monitor:
     def _fork(self) -> None:
         """From now on what may hold differs from what holds for certain."""
         if self.may is self.must:
-            self.may = _doubting(self.must)
+            self.may = _copied(self.must, doubt=True)
 
     def advance(self, rows: Iterable[Row | Mapping[str, Truth]]) -> None:
-        """Step every row, in pieces: one rail after the other.
+        """Step every row, in pieces of some thousand: one rail after the other.
+
+        An exception leaves the monitor at the end of the last whole piece.
 
         Raises:
             KeyError: a row has no value for a proposition.
@@ -200,21 +212,35 @@ class Monitor:
             ValueError: a row has more or fewer values than there are propositions.
         """
         waiting = iter(rows)
-        while piece := list(itertools.islice(waiting, 4096)):
+        while piece := list(itertools.islice(waiting, _PIECE)):
             known = self._in_order(piece)
-            if self.may is not self.must:
-                self.must.advance(known)
+            before = (self.must, self.may) if len(known) == 1 else self._copies()
+            try:
+                self._advance(known)
+            except BaseException:  # whatever it was, both rails stay at one tick
+                self.must, self.may = before
+                raise
+
+    def _advance(self, known: list[Row]) -> None:
+        """Step both rails, or one as long as all is known."""
+        if self.may is not self.must:
+            self.must.advance(known)
+            self.may.advance(known)
+        elif len(known) < _FEW:
+            if any(None in row for row in known):
+                self._fork()
                 self.may.advance(known)
-            elif len(known) < _FEW:
-                if any(None in row for row in known):
-                    self._fork()
-                    self.may.advance(known)
-                self.must.advance(known)
-            else:
-                before = _doubting(self.must)
-                if not self.must.advance(known):
-                    self.may = before
-                    before.advance(known)
+            self.must.advance(known)
+        else:
+            before = _copied(self.must, doubt=True)
+            if not self.must.advance(known):
+                self.may = before
+                before.advance(known)
+
+    def _copies(self) -> tuple[Rail, Rail]:
+        """Both rails as they are now."""
+        must = _copied(self.must, doubt=False)
+        return must, must if self.may is self.must else _copied(self.may, doubt=True)
 
     def _in_order(self, rows: list[Any]) -> list[Row]:
         """Rows by name as rows in the order of `PROPOSITIONS`."""
@@ -285,9 +311,9 @@ def literals_of(
     return found
 
 
-def _doubting(rail: Rail) -> Rail:
-    """A rail in the same state, on which an unknown counts as true."""
-    other = type(rail)(doubt=True)
+def _copied(rail: Rail, *, doubt: bool) -> Rail:
+    """A rail in the same state, on which an unknown counts as `doubt`."""
+    other = type(rail)(doubt=doubt)
     for name in rail.__slots__:
         there, value = getattr(other, name), getattr(rail, name)
         if isinstance(there, Window):
@@ -305,14 +331,20 @@ def _saved(rail: Rail) -> dict[str, Any]:
     }
 
 
-def _restored(rail: Rail, state: Any) -> None:
-    if not isinstance(state, Mapping) or set(state) != set(rail.__slots__):
-        raise ValueError("the state is not one of this monitor: other cells")
+def _digest(content: Mapping[str, Any]) -> str:
+    """Of a state, whether its runs are tuples or, out of JSON, lists."""
+    try:
+        text = json.dumps(content, sort_keys=True, allow_nan=False)
+    except (TypeError, ValueError):
+        return ""
+    return hashlib.sha256(text.encode()).hexdigest()
+
+
+def _restored(rail: Rail, state: Mapping[str, Any]) -> None:
+    """Put what was saved into a rail; its digest has shown that it is whole."""
     for name, value in state.items():
         there = getattr(rail, name)
         if isinstance(there, Window):
             there.restore(value)
-        elif type(value) is type(there):
-            setattr(rail, name, value)
         else:
-            raise ValueError(f"the state is not one of this monitor: `{name}` is {value!r}")
+            setattr(rail, name, value)

@@ -38,9 +38,14 @@ def read_rows(
     is_json = re.match(r'\s*\{\s*["}]', first.removeprefix("\ufeff")) is not None
     read = _json_rows if is_json else _csv_rows
     tick: int | None = None
+    counted: bool | None = None
     for place, row in read(lines, names, source, number):
-        if "tick" in row and "tick" not in names:
-            tick = _next_tick(row["tick"], tick, place)
+        if "tick" not in names:
+            if counted not in (None, "tick" in row):
+                raise InputError(f"{place}: some rows have a `tick` and some have none")
+            counted = "tick" in row
+            if counted:
+                tick = _next_tick(row["tick"], tick, place)
         yield tuple(_truth(row[name], name, place) for name in names)
 
 
@@ -90,11 +95,19 @@ def _check_columns(found: Iterable[str], names: Sequence[str], place: str) -> No
     columns = list(found)
     for name in names:
         if name not in columns:
-            raise InputError(
-                f"{place}: there is no column `{name}`; there are {', '.join(columns) or 'none'}"
-            )
+            known = _short(", ".join(columns)) or "none"
+            raise InputError(f"{place}: there is no column `{name}`; there are {known}")
+    for name in (*names, "tick"):
         if columns.count(name) > 1:
             raise InputError(f"{place}: there are two columns `{name}`")
+
+
+def _short(text: str) -> str:
+    """As much of it as a message has room for."""
+    return text if len(text) <= _ROOM else f"{text[:_ROOM]}..."
+
+
+_ROOM = 200
 
 
 def _truth(value: Any, name: str, place: str) -> Truth:
@@ -103,17 +116,17 @@ def _truth(value: Any, name: str, place: str) -> Truth:
     word = str(value).strip().lower()
     if word not in _WORDS:
         raise InputError(
-            f"{place}: column `{name}`: `{value}` is no truth value; "
+            f"{place}: column `{name}`: `{_short(str(value))}` is no truth value; "
             "write 0, 1, true, false, or nothing for unknown"
         )
     return _WORDS[word]
 
 
 def _next_tick(value: Any, before: int | None, place: str) -> int:
-    try:
-        tick = int(str(value))
-    except ValueError:
-        raise InputError(f"{place}: column `tick`: `{value}` is no whole number") from None
+    text = str(value)
+    if not re.fullmatch(r"\s*-?[0-9]{1,18}\s*", text):
+        raise InputError(f"{place}: column `tick`: `{_short(text)}` is no whole number")
+    tick = int(text)
     if before is not None and tick != before + 1:
         what = "goes back" if tick <= before else "leaves ticks out"
         raise InputError(f"{place}: column `tick` {what}: {before}, then {tick}")

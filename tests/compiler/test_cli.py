@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from monitors.loading import load
 from tests.command import Fretc, Run, runner, write
 
 ROOT = Path(__file__).parent.parent.parent
@@ -282,3 +283,46 @@ def test_the_version_needs_nothing_heavy() -> None:
         [sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=True
     )
     assert run.stdout == "fretc 0.1.0\n[]\n"
+
+
+def test_an_empty_name_is_no_folder(fretc: Fretc) -> None:
+    """It is what an unset shell variable gives."""
+    write("a.fret", R1)
+    for command in ((), ("fmt",), ("verify", "--monitor")):
+        assert fretc(*command, "").out == ""
+        assert "F901 there is no file ``" in fretc(*command, "").err
+    assert Path("a.fret").read_text("utf-8") == R1
+
+
+def test_a_file_that_is_named_twice_is_read_once(fretc: Fretc) -> None:
+    write("ok/a.fret", R1)
+    assert fretc("ok/a.fret", "./ok/a.fret", "ok") == fretc("ok")
+
+
+def test_a_name_that_is_too_long_is_no_fault_of_the_output(fretc: Fretc) -> None:
+    found = fretc("a" * 300 + ".fret")
+    assert found.status == 2
+    assert found.err.startswith("F903")
+
+
+def test_one_file_is_for_monitors(fretc: Fretc) -> None:
+    write("a.fret", R1)
+    for kinds in ((), ("--emit", "ltl")):
+        assert fretc("a.fret", *kinds, "--one-file").err.startswith("F907 `--one-file`")
+
+
+def test_the_monitors_of_a_folder_can_be_one_file(fretc: Fretc) -> None:
+    write("req/a.fret", "whenever p the sw shall within 2 ticks satisfy q")
+    write("req/b.fret", "the sw shall always satisfy q")
+    assert fretc("req", "--emit", "monitor", "--one-file").status == 0
+    machine = load("monitors.py", Path("build/monitors.py").read_text("utf-8"))
+    assert [known.id for known in machine.REQUIREMENTS] == ["a", "b"]
+
+
+def test_names_that_become_one_in_one_file_are_refused(fretc: Fretc) -> None:
+    write("req/a.fret", "the sw shall always satisfy a.b > 3")
+    write("req/b.fret", "the sw shall always satisfy a_DOT_b > 3")
+    assert fretc("req", "--emit", "monitor").status == 0
+    found = fretc("req", "--emit", "monitor", "--one-file")
+    assert (found.status, found.out) == (2, "")
+    assert "F116 `a.b` and `a_DOT_b` would be one name" in found.err

@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import argparse
 import csv
+import hashlib
 import io
 import itertools
 import json
@@ -376,18 +377,21 @@ class Standing(NamedTuple):
     """FRET's verdict on the finite trace up to here."""
     first_violation: int | None
     open: int | None
-    """The trigger of the oldest demand that is open for certain."""
+    """The trigger of the demand that is open for certain: of the oldest, or of the latest where a
+    new one replaces it (`for`, `next`)."""
     deadline: int | None
     """The last tick at which that can be decided; None where there is no deadline."""
 
 
-_FEW = 64
-"""Rows for which it is cheaper to look for unknowns than to keep a copy of the rail."""
+_PIECE, _FEW = 4096, 64
+"""Rows that are stepped at once; rows in which it is cheaper to look for unknowns than to copy."""
 
 
 class Monitor:
     """Steps propositions and tells verdicts; a generated class adds `step` and `run`."""
 
+    PROGRAM: ClassVar[str]
+    """SHA-256 of the generated code: a state fits no other."""
     REQUIREMENTS: ClassVar[tuple[Requirement, ...]]
     PROPOSITIONS: ClassVar[Mapping[str, str]]
     """Each proposition with its parameter of `step`."""
@@ -412,11 +416,12 @@ class Monitor:
 
     def state(self) -> dict[str, Any]:
         """Everything that is remembered, as plain values that JSON can hold."""
-        return {
-            "requirements": {r.id: r.fingerprint for r in self.REQUIREMENTS},
+        content = {
+            "program": self.PROGRAM,
             "must": _saved(self.must),
             "may": _saved(self.may) if self.may is not self.must else None,
         }
+        return {**content, "sha256": _digest(content)}
 
     def restore(self, state: Mapping[str, Any]) -> None:
         """Go on from what `state` gave.
@@ -424,13 +429,17 @@ class Monitor:
         Raises:
             ValueError: it is no state of this monitor.
         """
-        if state.get("requirements") != {r.id: r.fingerprint for r in self.REQUIREMENTS}:
-            raise ValueError("the state is not one of this monitor: other requirements")
+        content = dict(state) if isinstance(state, Mapping) else {}
+        digest = content.pop("sha256", None)
+        if content.get("program") != self.PROGRAM:
+            raise ValueError("the state is of another monitor, or is none")
+        if digest != _digest(content):
+            raise ValueError("the state was changed after it was saved")
         must, may = self.RAIL(), self.RAIL(doubt=True)
-        _restored(must, state.get("must"))
-        if state.get("may") is not None:
-            _restored(may, state["may"])
-        self.must, self.may = must, must if state.get("may") is None else may
+        _restored(must, content["must"])
+        if content["may"] is not None:
+            _restored(may, content["may"])
+        self.must, self.may = must, must if content["may"] is None else may
 
     def standings(self) -> tuple[Standing, ...]:
         """What would be said of each requirement if the trace ended now."""
@@ -449,10 +458,12 @@ class Monitor:
     def _fork(self) -> None:
         """From now on what may hold differs from what holds for certain."""
         if self.may is self.must:
-            self.may = _doubting(self.must)
+            self.may = _copied(self.must, doubt=True)
 
     def advance(self, rows: Iterable[Row | Mapping[str, Truth]]) -> None:
-        """Step every row, in pieces: one rail after the other.
+        """Step every row, in pieces of some thousand: one rail after the other.
+
+        An exception leaves the monitor at the end of the last whole piece.
 
         Raises:
             KeyError: a row has no value for a proposition.
@@ -460,21 +471,35 @@ class Monitor:
             ValueError: a row has more or fewer values than there are propositions.
         """
         waiting = iter(rows)
-        while piece := list(itertools.islice(waiting, 4096)):
+        while piece := list(itertools.islice(waiting, _PIECE)):
             known = self._in_order(piece)
-            if self.may is not self.must:
-                self.must.advance(known)
+            before = (self.must, self.may) if len(known) == 1 else self._copies()
+            try:
+                self._advance(known)
+            except BaseException:  # whatever it was, both rails stay at one tick
+                self.must, self.may = before
+                raise
+
+    def _advance(self, known: list[Row]) -> None:
+        """Step both rails, or one as long as all is known."""
+        if self.may is not self.must:
+            self.must.advance(known)
+            self.may.advance(known)
+        elif len(known) < _FEW:
+            if any(None in row for row in known):
+                self._fork()
                 self.may.advance(known)
-            elif len(known) < _FEW:
-                if any(None in row for row in known):
-                    self._fork()
-                    self.may.advance(known)
-                self.must.advance(known)
-            else:
-                before = _doubting(self.must)
-                if not self.must.advance(known):
-                    self.may = before
-                    before.advance(known)
+            self.must.advance(known)
+        else:
+            before = _copied(self.must, doubt=True)
+            if not self.must.advance(known):
+                self.may = before
+                before.advance(known)
+
+    def _copies(self) -> tuple[Rail, Rail]:
+        """Both rails as they are now."""
+        must = _copied(self.must, doubt=False)
+        return must, must if self.may is self.must else _copied(self.may, doubt=True)
 
     def _in_order(self, rows: list[Any]) -> list[Row]:
         """Rows by name as rows in the order of `PROPOSITIONS`."""
@@ -545,9 +570,9 @@ def literals_of(
     return found
 
 
-def _doubting(rail: Rail) -> Rail:
-    """A rail in the same state, on which an unknown counts as true."""
-    other = type(rail)(doubt=True)
+def _copied(rail: Rail, *, doubt: bool) -> Rail:
+    """A rail in the same state, on which an unknown counts as `doubt`."""
+    other = type(rail)(doubt=doubt)
     for name in rail.__slots__:
         there, value = getattr(other, name), getattr(rail, name)
         if isinstance(there, Window):
@@ -565,17 +590,23 @@ def _saved(rail: Rail) -> dict[str, Any]:
     }
 
 
-def _restored(rail: Rail, state: Any) -> None:
-    if not isinstance(state, Mapping) or set(state) != set(rail.__slots__):
-        raise ValueError("the state is not one of this monitor: other cells")
+def _digest(content: Mapping[str, Any]) -> str:
+    """Of a state, whether its runs are tuples or, out of JSON, lists."""
+    try:
+        text = json.dumps(content, sort_keys=True, allow_nan=False)
+    except (TypeError, ValueError):
+        return ""
+    return hashlib.sha256(text.encode()).hexdigest()
+
+
+def _restored(rail: Rail, state: Mapping[str, Any]) -> None:
+    """Put what was saved into a rail; its digest has shown that it is whole."""
     for name, value in state.items():
         there = getattr(rail, name)
         if isinstance(there, Window):
             there.restore(value)
-        elif type(value) is type(there):
-            setattr(rail, name, value)
         else:
-            raise ValueError(f"the state is not one of this monitor: `{name}` is {value!r}")
+            setattr(rail, name, value)
 
 
 @dataclass(frozen=True)
@@ -768,9 +799,14 @@ def read_rows(
     is_json = re.match(r'\s*\{\s*["}]', first.removeprefix("\ufeff")) is not None
     read = _json_rows if is_json else _csv_rows
     tick: int | None = None
+    counted: bool | None = None
     for place, row in read(lines, names, source, number):
-        if "tick" in row and "tick" not in names:
-            tick = _next_tick(row["tick"], tick, place)
+        if "tick" not in names:
+            if counted not in (None, "tick" in row):
+                raise InputError(f"{place}: some rows have a `tick` and some have none")
+            counted = "tick" in row
+            if counted:
+                tick = _next_tick(row["tick"], tick, place)
         yield tuple(_truth(row[name], name, place) for name in names)
 
 
@@ -820,11 +856,19 @@ def _check_columns(found: Iterable[str], names: Sequence[str], place: str) -> No
     columns = list(found)
     for name in names:
         if name not in columns:
-            raise InputError(
-                f"{place}: there is no column `{name}`; there are {', '.join(columns) or 'none'}"
-            )
+            known = _short(", ".join(columns)) or "none"
+            raise InputError(f"{place}: there is no column `{name}`; there are {known}")
+    for name in (*names, "tick"):
         if columns.count(name) > 1:
             raise InputError(f"{place}: there are two columns `{name}`")
+
+
+def _short(text: str) -> str:
+    """As much of it as a message has room for."""
+    return text if len(text) <= _ROOM else f"{text[:_ROOM]}..."
+
+
+_ROOM = 200
 
 
 def _truth(value: Any, name: str, place: str) -> Truth:
@@ -833,17 +877,17 @@ def _truth(value: Any, name: str, place: str) -> Truth:
     word = str(value).strip().lower()
     if word not in _WORDS:
         raise InputError(
-            f"{place}: column `{name}`: `{value}` is no truth value; "
+            f"{place}: column `{name}`: `{_short(str(value))}` is no truth value; "
             "write 0, 1, true, false, or nothing for unknown"
         )
     return _WORDS[word]
 
 
 def _next_tick(value: Any, before: int | None, place: str) -> int:
-    try:
-        tick = int(str(value))
-    except ValueError:
-        raise InputError(f"{place}: column `tick`: `{value}` is no whole number") from None
+    text = str(value)
+    if not re.fullmatch(r"\s*-?[0-9]{1,18}\s*", text):
+        raise InputError(f"{place}: column `tick`: `{_short(text)}` is no whole number")
+    tick = int(text)
     if before is not None and tick != before + 1:
         what = "goes back" if tick <= before else "leaves ticks out"
         raise InputError(f"{place}: column `tick` {what}: {before}, then {tick}")
@@ -859,24 +903,40 @@ def main(monitor: type[Monitor], arguments: Sequence[str] | None = None) -> int:
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="backslashreplace")
-    options = _parser(monitor).parse_args(arguments)
     try:
+        options = _parser(monitor).parse_args(arguments)
         statuses = [_report(monitor(), path, options) for path in options.trace]
-        status = max(statuses, key=(0, 3, 1, 2).index)
         if sys.stdout is None:
             raise InputError("standard output is closed")
         sys.stdout.flush()
-        return status
+        return max(statuses, key=(0, 3, 1, 2).index)
     except InputError as error:
-        print(error, file=sys.stderr)
-        return 2
+        _complain(str(error))
     except OSError as error:  # standard output is full, or its reader has gone
         if not isinstance(error, BrokenPipeError):
-            print(f"standard output cannot be written: {error.strerror}", file=sys.stderr)
+            _complain(f"standard output cannot be written: {error.strerror}")
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        return 2
     except KeyboardInterrupt:
         return 130
+    except _FAULTS as error:  # status 1 would say that a requirement is violated
+        _complain(f"the monitor stopped: {type(error).__name__}: {error}")
+    return 2
+
+
+_FAULTS = (
+    ArithmeticError,
+    AttributeError,
+    LookupError,
+    MemoryError,
+    RuntimeError,
+    TypeError,
+    ValueError,
+)
+
+
+def _complain(text: str) -> None:
+    if sys.stderr is not None:
+        print(text, file=sys.stderr)
 
 
 def _parser(monitor: type[Monitor]) -> argparse.ArgumentParser:
@@ -923,6 +983,8 @@ def _report(monitor: Monitor, path: str, options: argparse.Namespace) -> int:
             ticks, columns = columns_of(read_rows(text, names, source), len(names))
         except UnicodeDecodeError:
             raise InputError(f"{source}: the trace is not UTF-8 text") from None
+        except OSError as error:
+            raise InputError(f"{source}: {error.strerror or error}") from None
     run = stepped if options.engine == "online" else evaluate
     outcomes = run(monitor, dict(zip(names, columns, strict=True)), ticks, options.end)
     for outcome in outcomes:
@@ -1066,6 +1128,7 @@ class R1Rail:
 class R1Monitor(Monitor):
     """Step it with the propositions of each tick; a verdict comes back."""
 
+    PROGRAM = "8d7c7589b5438a5ad2b6a36b213180485c57f7bc07930b0a0b7845f74678f334"
     REQUIREMENTS = (
         Requirement(
             "R1",

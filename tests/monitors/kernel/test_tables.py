@@ -57,6 +57,16 @@ def test_a_name_with_a_comma_is_one_column() -> None:
         ("\n \n", "t.csv: the trace is empty"),
         ("\n\np,q\n1,0\n\n1\n", "t.csv:6: 1 values for 2 columns"),
         ('\n{"p": 1, "q": 1}\n[1]\n', "t.csv:3: a line must hold one object"),
+        (
+            '{"p":1,"q":0,"tick":0}\n{"p":1,"q":0}\n{"p":0,"q":1,"tick":1}\n',
+            "t.csv:2: some rows have a `tick` and some have none",
+        ),
+        (
+            '{"p":1,"q":0}\n{"p":1,"q":0,"tick":4}\n',
+            "t.csv:2: some rows have a `tick` and some have none",
+        ),
+        ("tick,p,q,tick\n0,1,0,5\n", "t.csv:1: there are two columns `tick`"),
+        ("tick,p,q\n1_0,1,0\n", "t.csv:2: column `tick`: `1_0` is no whole number"),
         ("p\n1\n", "t.csv:1: there is no column `q`; there are p"),
         ("p,q,q\n1,0,0\n", "t.csv:1: there are two columns `q`"),
         (

@@ -1,0 +1,199 @@
+"""Stepping generated monitors: pieces, unknowns, checkpoints, and what a mistake leaves behind."""
+
+import json
+import random
+from collections.abc import Callable, Iterator, Mapping
+from typing import Any
+
+import pytest
+
+from compiler.targets import monitor as target
+from fretish.clock import Clock
+from monitors.kernel import Monitor
+from monitors.kernel.verdicts import Truth
+from monitors.loading import load
+from tests.monitoring import emitted, monitor, rule, step
+
+WINDOW = "sw shall always satisfy (p | occurred(2, 5, q))"
+SENTENCES = (
+    "whenever p sw shall within 3 ticks satisfy q",
+    "in m mode, upon p sw shall after 2 ticks satisfy q",
+    "only in m mode whenever p sw shall after 3 ticks satisfy q",
+    "upon p sw shall for 2 ticks satisfy q",
+    WINDOW,
+)
+Rows = list[tuple[Truth, ...]]
+
+
+def rows(machine: Monitor, count: int, seed: int, unknown: float = 0.1) -> Rows:
+    choose = random.Random(seed)
+    width = len(machine.PROPOSITIONS)
+
+    def value() -> Truth:
+        return None if choose.random() < unknown else choose.random() < 0.4
+
+    return [tuple(value() for _ in range(width)) for _ in range(count)]
+
+
+def told(machine: Monitor) -> tuple[object, ...]:
+    return machine.tick, machine.verdicts(), machine.standings(), step(machine)
+
+
+@pytest.mark.parametrize("sentence", SENTENCES)
+@pytest.mark.parametrize("unknown", [0.0, 0.001, 0.3])
+def test_a_run_is_its_steps_however_it_is_cut(sentence: str, unknown: float) -> None:
+    whole, single, pieces = (monitor(sentence) for _ in range(3))
+    table = rows(whole, 9_000, 3, unknown)
+    whole.advance(table)
+    for row in table:
+        single.advance([row])
+    for first in range(0, len(table), 1_700):
+        pieces.advance(iter(table[first : first + 1_700]))
+    assert told(whole) == told(single) == told(pieces)
+
+
+def test_rows_may_be_given_by_name() -> None:
+    first, second = monitor(*SENTENCES), monitor(*SENTENCES)
+    table = rows(first, 50, 1)
+    first.advance(table)
+    second.advance([dict(zip(second.PROPOSITIONS, row, strict=True)) for row in table])
+    assert first.standings() == second.standings()
+
+
+@pytest.mark.parametrize("sentence", SENTENCES)
+@pytest.mark.parametrize("bad", [1, "true", float("nan")])
+@pytest.mark.parametrize("unknown", [0.0, 0.3])
+def test_a_bad_value_leaves_the_last_whole_piece(sentence: str, bad: Any, unknown: float) -> None:
+    machine, other = monitor(sentence), monitor(sentence)
+    table = rows(machine, 5_000, 5, unknown)
+    broken: Any = [*table[:4_990], (bad,) * len(machine.PROPOSITIONS), *table[4_990:]]
+    with pytest.raises(TypeError, match="is True, False or None"):
+        machine.advance(broken)
+    assert machine.tick == 4_095
+    assert machine.may.tick == machine.must.tick
+    other.advance(table[:4_096])
+    machine.advance(table[4_096:])
+    other.advance(table[4_096:])
+    assert told(machine) == told(other)
+
+
+def test_rows_that_can_be_read_once_leave_no_half_step() -> None:
+    machine = monitor("whenever p sw shall immediately satisfy q")
+    fleeting: Any = (iter(row) for row in [(False, True), (None, False)])
+    with pytest.raises((TypeError, ValueError)):
+        machine.advance(fleeting)
+    assert machine.must.tick == machine.may.tick == -1
+
+
+def test_whatever_stops_a_run_both_rails_stay_together() -> None:
+    def source() -> Iterator[tuple[Truth, ...]]:
+        yield from [(None, True)] * 4_096
+        yield from [(True, True)] * 10
+        raise KeyboardInterrupt
+
+    machine = monitor("whenever p sw shall immediately satisfy q")
+    with pytest.raises(KeyboardInterrupt):
+        machine.advance(source())
+    assert machine.must.tick == machine.may.tick == 4_095
+
+
+# Checkpoints ----------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("unknown", [0.0, 0.2])
+def test_a_monitor_goes_on_from_its_state(unknown: float) -> None:
+    machine = monitor(*SENTENCES)
+    table = rows(machine, 60, 8, unknown)
+    for cut in range(0, 60, 7):
+        whole, restored = monitor(*SENTENCES), monitor(*SENTENCES)
+        whole.advance(table[:cut])
+        restored.restore(json.loads(json.dumps(whole.state())))
+        for row in table[cut:]:
+            whole.advance([row])
+            restored.advance([row])
+            assert told(whole) == told(restored)
+
+
+def made(*named: tuple[str, str], clock: Clock | None = None) -> Monitor:
+    return load("m", target.text(*(rule(text, id, clock) for id, text in named)))
+
+
+A = ("A", "whenever p sw shall within 5 ticks satisfy q")
+B = ("B", "whenever m sw shall within 5 ticks satisfy s")
+
+
+@pytest.mark.parametrize(
+    "other",
+    [
+        lambda: made(B, A),
+        lambda: made(A),
+        lambda: made(A, ("C", B[1])),
+        lambda: made(A, ("B", B[1].replace("5", "6"))),
+    ],
+)
+def test_a_state_fits_no_other_monitor(other: Callable[[], Monitor]) -> None:
+    with pytest.raises(ValueError, match="another monitor"):
+        other().restore(made(A, B).state())
+
+
+def test_a_state_fits_no_other_clock() -> None:
+    text = ("A", "upon p sw shall for 1 second satisfy q")
+    slow, fast = (made(text, clock=Clock(period)) for period in (5 * 10**8, 10**8))
+    with pytest.raises(ValueError, match="another monitor"):
+        fast.restore(slow.state())
+
+
+def changed(state: Mapping[str, Any], *path: str, value: Any) -> dict[str, Any]:
+    copy: dict[str, Any] = json.loads(json.dumps(state))
+    inner = copy
+    for name in path[:-1]:
+        inner = inner[name]
+    inner[path[-1]] = value
+    return copy
+
+
+def test_a_state_that_was_changed_is_refused() -> None:
+    machine = monitor(WINDOW, SENTENCES[0])
+    machine.advance(rows(machine, 30, 4, 0.3))
+    state, before = machine.state(), told(machine)
+    names = [(rail, name) for rail in ("must", "may") for name in state[rail]]
+    wrong: list[Any] = [changed(state, *path, value=-999) for path in names]
+    wrong += [changed(state, "may", value=None), changed(state, "must", "doubt", value=True)]
+    wrong += [{**state, "more": 1}, {**state, "sha256": ""}, {}, [], None, "x", {"program": 3}]
+    for other in wrong:
+        with pytest.raises(ValueError, match="state"):
+            machine.restore(other)
+        assert told(machine) == before
+    assert len(names) > 20
+
+
+def test_reset_forgets_everything() -> None:
+    machine = monitor(*SENTENCES)
+    fresh = machine.state()
+    machine.advance(rows(machine, 40, 2))
+    machine.reset()
+    assert machine.state() == fresh
+
+
+# Several requirements -------------------------------------------------------------------------
+
+
+def test_each_requirement_is_told_as_if_it_were_alone() -> None:
+    together = monitor(*SENTENCES)
+    alone = [monitor(sentence) for sentence in SENTENCES]
+    for row in rows(together, 80, 6):
+        named = dict(zip(together.PROPOSITIONS, row, strict=True))
+        together.advance([named])
+        for single in alone:
+            single.advance([{name: named[name] for name in single.PROPOSITIONS}])
+        assert together.verdicts() == tuple(single.verdicts()[0] for single in alone)
+        for found, single in zip(together.standings(), alone, strict=True):
+            assert found[1:] == single.standings()[0][1:]
+
+
+def test_what_requirements_share_is_computed_once() -> None:
+    text = emitted("whenever p sw shall within 9 ticks satisfy q", "upon m sw shall satisfy s")
+    both = emitted("whenever p sw shall within 9 ticks satisfy q", "whenever p sw shall satisfy q")
+    assert text.count(" S ") > both.count(" S ")
+    assert both.count("oldest_1 = 0") == 1
+    assert "oldest_2" not in both
