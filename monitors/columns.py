@@ -20,6 +20,7 @@ from monitors.container import Stream
 from monitors.damage import LATEST
 from monitors.decoding import short_type
 from monitors.extraction import Extract, Extraction
+from monitors.messages import Messages
 from monitors.samples import Gap, Numbers, Times
 
 _MOST, _MOST_BYTES = 4096, 2**22
@@ -42,6 +43,15 @@ class Pending:
         self.publishes.append(publish_time)
         self.payloads.append(payload)
         self.size += len(payload)
+
+    def add_all(
+        self, logs: Sequence[int], publishes: Sequence[int], payloads: Sequence[bytes]
+    ) -> None:
+        """Some more."""
+        self.logs.extend(logs)
+        self.publishes.extend(publishes)
+        self.payloads.extend(payloads)
+        self.size += sum(map(len, payloads))
 
     @property
     def full(self) -> bool:
@@ -130,6 +140,23 @@ class Columns:
             pending = column.pending = Pending(stream)
         read = bool(column.signals) or self._clock.time is TimeSource.HEADER_STAMP
         pending.add(log_time, publish_time, bytes(payload) if read else b"")
+        if pending.full:
+            self._settle(column)
+
+    def add_all(self, stream: Stream, messages: Messages) -> None:
+        """Messages of one topic, in their order."""
+        column = self.topics[stream.channel.topic]
+        logs = messages.logs.astype(np.int64)
+        if not column.bound:
+            column.logs.frombytes(logs.tobytes())
+            return
+        pending = column.pending
+        if pending is None or pending.stream != stream:
+            self._settle(column)
+            pending = column.pending = Pending(stream)
+        read = bool(column.signals) or self._clock.time is TimeSource.HEADER_STAMP
+        payloads = messages.payloads if read else [b""] * len(logs)
+        pending.add_all(logs.tolist(), messages.publishes.tolist(), payloads)
         if pending.full:
             self._settle(column)
 

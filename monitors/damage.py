@@ -64,6 +64,12 @@ class Damages:
         if self.span is None or not first <= log_time <= latest:
             self.span = min(first, log_time), max(latest, log_time)
 
+    def passed_all(self, earliest: int, latest: int, last: int) -> None:
+        """Whole messages have come between these times, the last one at `last`."""
+        first, end = self.span or (earliest, latest)
+        self.span = min(first, earliest), max(end, latest)
+        self._last = last
+
     def add(
         self,
         at: int,

@@ -15,9 +15,11 @@ from dataclasses import dataclass
 from io import BufferedReader
 from typing import Protocol
 
+import numpy as np
 from mcap.data_stream import ReadDataStream
 from mcap.opcode import Opcode
 from mcap.records import Attachment, Channel, Chunk, DataEnd, Header, Metadata, Schema
+from numpy.typing import NDArray
 
 from monitors.container import (
     BLOCK,
@@ -34,12 +36,13 @@ from monitors.container import (
     unpacked,
 )
 from monitors.damage import LATEST, Damage, Damages
+from monitors.messages import Messages
 from monitors.samples import Gap
 
 _MESSAGE = struct.Struct("<HIQQ")
 """What each message begins with: channel, sequence, log time, publish time."""
-_INDEX, _ENTRY = struct.Struct("<HI"), struct.Struct("<QQ")
-"""What the index of a chunk begins with (channel, length), and its entries: time, place."""
+_INDEX, _ENTRY = struct.Struct("<HI"), np.dtype([("time", "<u8"), ("place", "<u8")])
+"""What the index of a chunk begins with (channel, length), and its entries."""
 _KNOWN = frozenset(Opcode)
 _PASSED_BY: dict[int, Callable[[ReadDataStream], object]] = {
     Opcode.HEADER: Header.read,
@@ -60,14 +63,25 @@ class Sink(Protocol):
         """One whole message."""
         ...
 
+    def add_all(self, stream: Stream, messages: Messages) -> None:
+        """Whole messages of one stream, and none of another stream of its topic between them."""
+        ...
+
 
 @dataclass(frozen=True, slots=True)
 class _Unchecked:
-    """A chunk without CRC: `entries` are the `(time, place)` of its messages by their channel."""
+    """A chunk without CRC."""
 
     at: int
     span: Gap
-    entries: dict[int, list[tuple[int, int]]]
+    messages: Messages
+
+    def entries(self, channel: int) -> NDArray[np.void]:
+        """Time and place of each message of a channel."""
+        some = self.messages.of_channel(channel)
+        entries = np.empty(len(some.starts), _ENTRY)
+        entries["time"], entries["place"] = some.logs, some.starts - HEAD.size
+        return entries
 
 
 class Walk:
@@ -227,48 +241,66 @@ class Walk:
         span = chunk.message_start_time, chunk.message_end_time
         try:
             data = unpacked(chunk)
-            messages = self._inside(at, data, None if chunk.uncompressed_crc else span)
+            messages = self._inside(at, data)
+            if not chunk.uncompressed_crc:
+                self._check(messages, span)
         except BrokenError as error:
             self.damages.add(at, str(error), span)
             return
         self._whole.add(at)
-        for start, end in messages:
-            self._message(at, data, start, end)
+        if not self._at_once(messages):
+            for start, end in zip(messages.starts.tolist(), messages.ends.tolist(), strict=True):
+                self._message(at, data, start, end)
         if not chunk.uncompressed_crc:
             self._unprotected = True
-            entries: dict[int, list[tuple[int, int]]] = {}
-            for start, _ in messages:
-                channel, _, time, _ = _MESSAGE.unpack_from(data, start)
-                entries.setdefault(channel, []).append((time, start - HEAD.size))
-            self._unchecked = _Unchecked(at, span, entries)
+            self._unchecked = _Unchecked(at, span, messages)
 
-    def _inside(self, at: int, data: bytes, span: Gap | None) -> list[tuple[int, int]]:
-        """Where the messages of a chunk are, `data[start:end]` each.
-
-        What a CRC does not protect is held against the `span` that the chunk states.
-        """
-        messages = []
+    def _inside(self, at: int, data: bytes) -> Messages:
+        """The messages of a chunk; its definitions are noted."""
+        starts: list[int] = []
+        ends: list[int] = []
+        strange = False
         for opcode, start, end in frames(data):
             if opcode == Opcode.MESSAGE:
-                if end - start < _MESSAGE.size:
-                    raise BrokenError("a message is cut off")
-                messages.append((start, end))
-                if span is not None:
-                    self._check(data, start, span)
+                starts.append(start)
+                ends.append(end)
             elif opcode == Opcode.SCHEMA:
                 self._define(parse(Schema.read, data[start:end]), at)
             elif opcode == Opcode.CHANNEL:
                 self._declare(parse(Channel.read, data[start:end]), at)
-            elif span is not None:
-                raise BrokenError("a chunk holds a record that does not belong there")
+            else:
+                strange = True
+        messages = Messages.of(data, starts, ends, strange=strange)
+        if (messages.ends - messages.starts < _MESSAGE.size).any():
+            raise BrokenError("a message is cut off")
         return messages
 
-    def _check(self, data: bytes, start: int, span: Gap) -> None:
-        channel, _, log_time, _ = _MESSAGE.unpack_from(data, start)
-        if not span[0] <= log_time <= span[1]:
+    def _check(self, messages: Messages, span: Gap) -> None:
+        """What a CRC does not protect is held against the `span` that the chunk states."""
+        if messages.strange:
+            raise BrokenError("a chunk holds a record that does not belong there")
+        times = messages.logs
+        if ((times < span[0]) | (times > span[1])).any():
             raise BrokenError("a message is of another time than its chunk states")
-        if channel not in self._streams:
+        if any(id not in self._streams for id in np.unique(messages.channels).tolist()):
             raise BrokenError("a message is of a topic that is not declared")
+
+    def _at_once(self, messages: Messages) -> bool:
+        """Hand on all messages of a chunk, topic by topic; not where one of them is odd."""
+        ids = np.unique(messages.channels).tolist()
+        streams = [self._streams[id] for id in ids if id in self._streams]
+        topics = {stream.channel.topic for stream in streams}
+        if len(topics) < len(ids) or (messages.logs >= LATEST).any():
+            return False
+        for id, stream in zip(ids, streams, strict=True):
+            some = messages.of_channel(id)
+            self._counts[id] += len(some.starts)
+            self._sink.add_all(stream, some)
+        if ids:
+            times = messages.logs.astype(np.int64)
+            self.damages.passed(int(times[0]))
+            self.damages.passed_all(int(times.min()), int(times.max()), int(times[-1]))
+        return True
 
     def _index(self, content: bytes) -> None:
         """Hold the index of a chunk without CRC against the messages in it."""
@@ -276,12 +308,12 @@ class Walk:
             raise BrokenError("a record cannot be read")
         channel, length = _INDEX.unpack_from(content)
         padding = len(content) - _INDEX.size - length
-        if length % _ENTRY.size or not 0 <= padding < PADDING:
+        if length % _ENTRY.itemsize or not 0 <= padding < PADDING:
             raise BrokenError("a record cannot be read")
-        if self._unchecked is None:
+        if self._unchecked is None or not length:
             return
-        listed = list(_ENTRY.iter_unpack(content[_INDEX.size : _INDEX.size + length]))
-        if listed and sorted(listed) != sorted(self._unchecked.entries.get(channel, [])):
+        listed = np.frombuffer(content, _ENTRY, length // _ENTRY.itemsize, _INDEX.size)
+        if not np.array_equal(np.sort(listed), np.sort(self._unchecked.entries(channel))):
             what = "the index of a chunk names other messages than are in it"
             self.damages.add(self._unchecked.at, what, self._unchecked.span)
 
