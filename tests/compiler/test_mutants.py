@@ -319,7 +319,7 @@ def test_a_mistake_in_a_formula_is_found_or_proved_to_change_nothing(sentence: s
 
 
 def test_the_sentences_have_every_kind_of_line_and_of_demand() -> None:
-    """Of what templates are made of: `released` comes only from predicates about other ticks."""
+    """`released` and `released_between` come only where parts are no atoms of their own."""
     own = "".join(text[text.index(MARK) :] for text in map(target.text, map(rule, SENTENCES)))
     cells = "youngest_1 oldest_1 since_1 before_1 first differ_1 agree_1 Window".split()
     columns = "previous weak_previous once historically since since_from since_between".split()
