@@ -118,7 +118,7 @@ def watch(obligation: Obligation) -> Watch:
         owed=owed,
         fails=fails,
         settled=TRUE if breach == owed == fails == FALSE else _settled(demand, stage),
-        answer=demand.response if demand.kind in _WAITING else None,
+        answer=and_(stage.inside, demand.response) if demand.kind in _WAITING else None,
         horizon=_horizon(demand),
         renewed=demand.kind in (Kind.NEXT, Kind.FOR, Kind.NOT_AFTER),
     )

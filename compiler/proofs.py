@@ -6,9 +6,11 @@ from collections.abc import Iterator, Sequence
 from itertools import groupby
 from typing import Any, assert_never
 
-from compiler.letters import Valuation
 from compiler.proving import NotChecked, Proved, Refuted
 from compiler.verifying import Disagreement, Verified
+from monitors.kernel.verdicts import Truth
+
+_Word = Sequence[tuple[Truth, ...]]
 
 PROVED, REFUTED, NOT_CHECKED = "proved", "refuted", "not checked"
 
@@ -46,7 +48,7 @@ def as_record(verified: Verified) -> dict[str, Any]:
             assert_never(verified.result)
 
 
-def _trace(atoms: Sequence[str], word: Sequence[Valuation]) -> list[dict[str, bool]]:
+def _trace(atoms: Sequence[str], word: _Word) -> list[dict[str, Truth]]:
     return [dict(zip(atoms, letter, strict=True)) for letter in word]
 
 
@@ -77,14 +79,15 @@ def _judged(verdict: str, finite: bool) -> str:
     return f"{verdict} ({'true' if finite else 'false'} if it ended there)"
 
 
-def _shown(atoms: Sequence[str], word: Sequence[Valuation]) -> Iterator[str]:
+def _shown(atoms: Sequence[str], word: _Word) -> Iterator[str]:
     """The trace, equal ticks together."""
     tick = 0
     for letter, run in groupby(word):
         last = tick + len(list(run)) - 1
         ticks = f"tick {tick}" if last == tick else f"ticks {tick}..{last}"
         values = ", ".join(
-            f"{name} = {int(value)}" for name, value in zip(atoms, letter, strict=True)
+            f"{name} = {'?' if value is None else int(value)}"
+            for name, value in zip(atoms, letter, strict=True)
         )
         yield f"    {ticks}: {values}"
         tick = last + 1

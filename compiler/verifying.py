@@ -2,29 +2,32 @@
 
 The text is executed, stepped over every letter and compared with the counter automaton of the
 sentence (`compiler.proving`). Its steps must depend on nothing but its cells, propositions and
-constants: that is read off its tree first, so a step that looks at the number of the tick cannot
-hide. Its column program is then compared with its steps on drawn traces.
+constants: that is read off its tree first (`compiler.layout`), so a step that looks at the number
+of the tick cannot hide. Its column program is then compared with its steps on drawn traces, some
+of which have unknown values.
 """
 
 from __future__ import annotations
 
-import ast
 import random
 from collections.abc import Hashable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from compiler.layout import strange
 from compiler.letters import Valuation, atoms_of
 from compiler.proving import Judgement, NotChecked, Proved, Refuted, prove
 from compiler.rule import Rule
-from compiler.runtime import kernel
-from monitors.kernel import Column, Monitor, evaluate, stepped
-from monitors.kernel.columns import column
+from monitors.kernel import Column, Monitor
+from monitors.kernel.columns import column, truths
+from monitors.kernel.stepping import literals_of
+from monitors.kernel.verdicts import Truth
 from monitors.loading import load
 
 DRAWN = 20
-"""Traces on which the column program is compared."""
-_LONGEST = 2_000
+"""Traces on which the column program is compared, where the bound is small."""
+_FEWEST, _TICKS = 4, 40_000
+"""At least so many traces; at most so many ticks in all, if there are more traces than that."""
 
 
 class NotAMonitorError(Exception):
@@ -33,9 +36,10 @@ class NotAMonitorError(Exception):
 
 @dataclass(frozen=True, slots=True)
 class Disagreement:
-    """A trace on which the column program and the steps differ."""
+    """A trace on which the column program and the steps differ, at its last tick."""
 
-    word: tuple[Valuation, ...]
+    word: tuple[tuple[Truth, ...], ...]
+    """The values of `atoms`; None: unknown."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,10 +65,10 @@ def verified(rule: Rule, text: str, limit: int = 10**6) -> Verified:
     Raises:
         NotAMonitorError: the text is no generated monitor.
     """
+    reason = strange(text)  # before the text is executed
     monitor = _loaded(f"{rule.id}_monitor", text)
-    strange = _strange(text, monitor)
-    if strange is not None:
-        return Verified(rule.id, (), NotChecked(strange))
+    if reason is not None:
+        return Verified(rule.id, (), NotChecked(reason))
     places = [i for i, known in enumerate(monitor.REQUIREMENTS) if known.id == rule.id]
     if not places:
         return Verified(rule.id, (), NotChecked("the monitor is of other requirements"))
@@ -73,7 +77,7 @@ def verified(rule: Rule, text: str, limit: int = 10**6) -> Verified:
     result = prove(machine, rule.sentence, rule.ticks or 0, atoms, limit)
     if not isinstance(result, Proved):
         return Verified(rule.id, atoms, result)
-    compared, word = _columns_compared(monitor, rule.ticks or 0)
+    compared, word = _columns_compared(monitor, places[0], atoms, rule.ticks or 0)
     found = result if word is None else Disagreement(word)
     return Verified(rule.id, atoms, found, compared)
 
@@ -129,91 +133,67 @@ class _Machine:
         return str(verdict), marks.broken < 0 and not signals.fails
 
 
-# The text -------------------------------------------------------------------------------------
-
-
-def _strange(text: str, monitor: Monitor) -> str | None:
-    """Why the steps of the text may depend on more than cells and propositions."""
-    if kernel().text not in text:
-        return "the run time in it is not the one of this version of fretc"
-    own = text.rpartition(kernel().text)[2]
-    classes = [node for node in ast.parse(own).body if isinstance(node, ast.ClassDef)]
-    found = [f for c in classes for f in c.body if isinstance(f, ast.FunctionDef)]
-    steps = [function for function in found if function.name == "advance"]
-    if len(classes) != 2 or len(steps) != 1:
-        return "it is not laid out as fretc writes it"
-    history = {*monitor.must.__slots__} - {*monitor.must.CELLS, "doubt"}
-    wrong = next(_History(frozenset(history)).misused(steps[0]), None)
-    return f"what it does at a tick depends on `{wrong}`" if wrong else None
-
-
-@dataclass(frozen=True, slots=True)
-class _History:
-    """What a rail remembers beside its cells; no cell may depend on it."""
-
-    names: frozenset[str]
-
-    def misused(self, function: ast.FunctionDef) -> Iterator[str]:
-        """What reads the history and does more than to remember."""
-        for node in ast.walk(function):
-            match node:
-                case ast.If(test) | ast.While(test):
-                    wrong = self._read(test) and not self._remembers(node)
-                case ast.Assign() | ast.AugAssign() | ast.AnnAssign():
-                    wrong = self._read(node.value) and not self._remembers(node)
-                case ast.For():
-                    wrong = self._read(node.iter)
-                case ast.NamedExpr() | ast.Call(ast.Name("getattr" | "setattr" | "vars")):
-                    wrong = True
-                case _:
-                    wrong = False
-            if wrong:
-                yield ast.unparse(node).splitlines()[0]
-
-    def _read(self, node: ast.AST | None) -> bool:
-        return node is not None and any(self._is_part(part) for part in ast.walk(node))
-
-    def _is_part(self, node: ast.AST) -> bool:
-        name = node.id if isinstance(node, ast.Name) else getattr(node, "attr", "")
-        return name in self.names
-
-    def _remembers(self, statement: ast.AST) -> bool:
-        """It only changes the history, or ends a call without rows."""
-        match statement:
-            case ast.Assign(targets):
-                return all(map(self._is_part, targets))
-            case ast.AugAssign(target):
-                return self._is_part(target)
-            case ast.If(_, body, orelse):
-                return all(map(self._remembers, (*body, *orelse)))
-            case ast.Return(ast.Constant(True)):
-                return True
-            case _:
-                return False
-
-
 # Columns --------------------------------------------------------------------------------------
 
 
-def _columns_compared(monitor: Monitor, bound: int) -> tuple[int, tuple[Valuation, ...] | None]:
+def _columns_compared(
+    monitor: Monitor, place: int, atoms: Sequence[str], bound: int
+) -> tuple[int, tuple[tuple[Truth, ...], ...] | None]:
     """The ticks on which both programs agree; and a trace on which they do not."""
     choose = random.Random(bound)
-    length = min(4 * bound + 50, _LONGEST)
-    for _ in range(DRAWN):
-        drawn = {name: _drawn(choose, length) for name in monitor.PROPOSITIONS}
-        if evaluate(monitor, drawn, length) != stepped(monitor, drawn, length):
-            return 0, tuple(_rows(drawn, length))
-    return DRAWN * length, None
+    length = 4 * bound + 50
+    count = min(DRAWN, max(_FEWEST, _TICKS // length))
+    for number in range(count):
+        odds = 0.02 if number % 2 else 0.0
+        drawn = {name: _drawn(choose, length, bound, odds) for name in atoms}
+        wrong = _first_difference(monitor, place, drawn, length)
+        if wrong is not None:
+            return 0, tuple(_rows(drawn, wrong + 1))
+    return count * length, None
 
 
-def _drawn(choose: random.Random, length: int) -> Column:
-    """A column with odds of its own: rare and frequent events both matter."""
-    odds = choose.choice((0.02, 0.2, 0.5, 0.95))
-    return column(bytes(choose.random() < odds for _ in range(length)))
+def _first_difference(
+    monitor: Monitor, place: int, columns: Mapping[str, Column], length: int
+) -> int | None:
+    """The first tick of which both programs do not tell the same signals, on either rail."""
+    every = (1 << length) - 1
+    try:
+        must, may = (
+            monitor.columns(every, **literals_of(monitor, columns, every, doubt))[place]
+            for doubt in (False, True)
+        )
+        beyond = any(column >> length for column in (*must, *may))
+    except Exception:
+        return length - 1
+    if beyond:
+        return length - 1
+    monitor.reset()
+    values = [truths(columns[name], length) for name in monitor.PROPOSITIONS]
+    for tick in range(length):
+        monitor.advance([tuple([column[tick] for column in values])])
+        for rail, told in ((monitor.must, must), (monitor.may, may)):
+            found = [bool(value) for value in rail.signals()[place]]
+            if found != [bool(column >> tick & 1) for column in told]:
+                return tick
+    return None
 
 
-def _rows(columns: Mapping[str, Column], length: int) -> Iterator[Valuation]:
-    return (
-        tuple(bool(column.true >> tick & 1) for column in columns.values())
-        for tick in range(length)
-    )
+def _drawn(choose: random.Random, length: int, bound: int, unknown: float) -> Column:
+    """A column with odds of its own, or of runs about as long as the bound: edges matter."""
+    if choose.random() < 0.5:
+        odds = choose.choice((0.02, 0.2, 0.5, 0.95))
+        codes = bytearray(choose.random() < odds for _ in range(length))
+    else:
+        codes, value = bytearray(), choose.randrange(2)
+        while len(codes) < length:
+            run = choose.choice((1, 1, 2, bound - 1, bound, bound + 1, bound + 2))
+            codes += bytes((value,)) * run
+            value = 1 - value
+        del codes[length:]
+    if unknown:
+        codes = bytearray(2 if choose.random() < unknown else code for code in codes)
+    return column(codes)
+
+
+def _rows(columns: Mapping[str, Column], length: int) -> Iterator[tuple[Truth, ...]]:
+    return (tuple(column.at(tick) for column in columns.values()) for tick in range(length))

@@ -1,0 +1,39 @@
+"""What monitors tell of single demands is what the definition says of them."""
+
+import random
+
+import pytest
+
+from tests.meaning import SCOPES
+from tests.monitoring import monitor, over
+from tests.strategies import templates
+from tests.telling import told
+
+LENGTH, TRACES = 9, 15
+
+
+@pytest.mark.parametrize("scope", SCOPES)
+def test_triggers_answers_violations_and_open_demands_are_those_of_the_definition(
+    scope: str,
+) -> None:
+    for template in templates():
+        if template.scope != scope:
+            continue
+        machine, choose = monitor(template.sentence), random.Random(repr(template))
+        for _ in range(TRACES):
+            odds = {name: choose.choice((0.2, 0.5, 0.8)) for name in template.columns}
+            columns = {name: [choose.random() < odds[name] for _ in range(LENGTH)] for name in odds}
+            found, expected = over(machine, columns), told(template, columns)
+            assert found.triggers == expected.triggers, (template, columns)
+            assert found.answers == expected.answers, (template, columns)
+            assert found.violations == expected.violations, (template, columns)
+            if expected.open is not None:
+                assert found.open == expected.open, (template, columns)
+
+
+def test_a_response_after_the_interval_is_no_answer() -> None:
+    machine = monitor("in m mode whenever p the sw shall within 3 ticks satisfy q")
+    columns = {"m": [True, True, False], "p": [True, False, False], "q": [False, False, True]}
+    assert over(machine, columns).answers == ()
+    columns["m"][2] = True
+    assert over(machine, columns).answers == ((0, 2),)
