@@ -217,8 +217,9 @@ def _is_initial(node: ast.expr) -> bool:
 def _monitor(node: ast.ClassDef, rail: str, names: _Rail) -> Mapping[str, str]:
     """Its propositions with their parameters, once it is known to be as it should."""
     body = _below_docstring(node)
-    _demand(len(body) == 9, node)
-    requirements, propositions, literals, named, must, may, step, run, columns = body
+    _demand(len(body) == 10, node)
+    program, requirements, propositions, literals, named, must, may, step, run, columns = body
+    _demand(isinstance(program, ast.Assign) and _is_text(program, "PROGRAM"), program)
     _check_requirements(requirements, len(names.prefixes))
     inputs = _inputs(propositions)
     given = _literals(literals)
@@ -231,8 +232,7 @@ def _monitor(node: ast.ClassDef, rail: str, names: _Rail) -> Mapping[str, str]:
     _demand(told == f"self.advance(rows)\nreturn self.verdicts(){verdicts}", run)
     parameters = ", ".join(f"{name}: Truth" for name in inputs.values())
     stepped = _function(step, "step", f"self, *, {parameters}" if inputs else "self")
-    told = "\n".join(map(ast.unparse, stepped))
-    _demand(told in map(_normal, _steps(tuple(inputs.values()), alone)), step)
+    _check_step(stepped, tuple(inputs.values()), names.prefixes)
     _check_columns(columns, given)
     return inputs
 
@@ -272,23 +272,56 @@ def _literals(node: ast.stmt) -> tuple[str, ...]:
             return ()
 
 
-def _steps(inputs: Sequence[str], alone: str | None) -> Iterator[str]:
-    """All that `step` may be."""
+def _check_step(body: Sequence[ast.stmt], inputs: Sequence[str], prefixes: Sequence[str]) -> None:
+    """Both rails take the row, and what they remember is told."""
     fork = " or ".join(f"{name} is None" for name in inputs)
     text = f"row = ({', '.join(inputs)}{',' * (len(inputs) == 1)})\n"
     text += f"if {fork}:\n    self._fork()\n" if inputs else ""
     text += "must, may = self.must, self.may\nmust.advance((row,))\n"
-    text += "if may is not must:\n    may.advance((row,))\n"
-    if alone is None:
-        yield f"{text}return self.verdicts()"
+    text += "if may is not must:\n    may.advance((row,))"
+    head = len(ast.parse(text).body)
+    _demand("\n".join(map(ast.unparse, body[:head])) == _normal(text), body[0])
+    if len(prefixes) == 1:
+        told = "\n".join(map(ast.unparse, body[head:]))
+        _demand(told in {_normal(_alone(*form)) for form in _forms(prefixes[0])}, body[head])
         return
+    match body[head:]:
+        case [ast.Return(ast.Tuple(verdicts))] if len(verdicts) == len(prefixes):
+            for prefix, verdict in zip(prefixes, verdicts, strict=True):
+                forms = {_normal(_beside_others(*form)) for form in _forms(prefix)}
+                _demand(ast.unparse(verdict) in forms, verdict)
+        case _:
+            _demand(False, body[head])
+
+
+def _forms(prefix: str) -> Iterator[tuple[str, str | None]]:
+    """When a requirement is violated, and when it is satisfied: what can never be is left out."""
     for doom in (False, True):
-        lost = f"must.{alone}_broken >= 0" + f" or must.{alone}_doomed >= 0" * doom
-        kept = f"may.{alone}_broken < 0" + f" and may.{alone}_doomed < 0" * doom
-        head = f"{text}if {lost}:\n    return VIOLATED\n"
-        yield f"{head}return PENDING"
-        settled = f"if must.{alone}_settled and {kept}:\n    return SATISFIED\n"
-        yield f"{head}{settled}return PENDING"
+        violated, possible = (
+            f"{rail}.{prefix}_broken >= 0" + f" or {rail}.{prefix}_doomed >= 0" * doom
+            for rail in ("must", "may")
+        )
+        yield violated, None
+        yield violated, f"must.{prefix}_settled and not ({possible})"
+
+
+def _alone(violated: str, satisfied: str | None) -> str:
+    text = f"if {violated}:\n    return VIOLATED\n"
+    text += f"if {satisfied}:\n    return SATISFIED\n" if satisfied else ""
+    return f"{text}return PENDING"
+
+
+def _beside_others(violated: str, satisfied: str | None) -> str:
+    rest = f"SATISFIED if {satisfied} else PENDING" if satisfied else "PENDING"
+    return f"VIOLATED if {violated} else {rest}"
+
+
+def _is_text(node: ast.Assign, name: str) -> bool:
+    match node:
+        case ast.Assign([ast.Name(id)], ast.Constant(str())):
+            return id == name
+        case _:
+            return False
 
 
 # A tick ---------------------------------------------------------------------------------------

@@ -9,6 +9,7 @@ of which have unknown values.
 
 from __future__ import annotations
 
+import ast
 import random
 from collections.abc import Hashable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -65,10 +66,11 @@ def verified(rule: Rule, text: str, limit: int = 10**6) -> Verified:
     Raises:
         NotAMonitorError: the text is no generated monitor.
     """
-    reason = strange(text)  # before the text is executed
-    monitor = _loaded(f"{rule.id}_monitor", text)
+    _demand_monitor(text)
+    reason = strange(text)  # nothing else is executed
     if reason is not None:
         return Verified(rule.id, (), NotChecked(reason))
+    monitor = load(f"{rule.id}_monitor", text)
     places = [i for i, known in enumerate(monitor.REQUIREMENTS) if known.id == rule.id]
     if not places:
         return Verified(rule.id, (), NotChecked("the monitor is of other requirements"))
@@ -77,17 +79,24 @@ def verified(rule: Rule, text: str, limit: int = 10**6) -> Verified:
     result = prove(machine, rule.sentence, rule.ticks or 0, atoms, limit)
     if not isinstance(result, Proved):
         return Verified(rule.id, atoms, result)
+    stated = monitor.REQUIREMENTS[places[0]]
+    if (stated.fingerprint, stated.horizon) != (rule.fingerprint, rule.watch.horizon):
+        reason = "it decides the same, but states another sentence or deadline"
+        return Verified(rule.id, atoms, NotChecked(reason))
     compared, word = _columns_compared(monitor, places[0], atoms, rule.ticks or 0)
     found = result if word is None else Disagreement(word)
     return Verified(rule.id, atoms, found, compared)
 
 
-def _loaded(name: str, text: str) -> Monitor:
-    """Whatever the text does when it is executed is told as its mistake."""
+def _demand_monitor(text: str) -> None:
+    """It is Python, and names a monitor."""
     try:
-        return load(name, text)
-    except (Exception, SystemExit) as error:
-        raise NotAMonitorError(f"{type(error).__name__}: {error}") from None
+        tree = ast.parse(text)
+    except (SyntaxError, ValueError, RecursionError) as error:
+        raise NotAMonitorError(f"it is no Python: {error}") from None
+    named = (node.target for node in tree.body if isinstance(node, ast.AnnAssign))
+    if not any(isinstance(target, ast.Name) and target.id == "MONITOR" for target in named):
+        raise NotAMonitorError("it names no `MONITOR`")
 
 
 # Steps ----------------------------------------------------------------------------------------
