@@ -71,16 +71,13 @@ def not_a_log(start: bytes, place: Span) -> Diagnostic:
     )
 
 
-def truncated(cut: int, whole: Gap | None, place: Span) -> Diagnostic:
-    """It has no end; `whole` is the time of the whole messages before byte `cut`."""
-    reach = "no message in it is whole"
-    if whole is not None:
-        reach = f"whole messages go {_seconds(whole[1] - whole[0])} far"
+def truncated(cut: int, place: Span) -> Diagnostic:
+    """It has no end, and no whole message before byte `cut`."""
     return Diagnostic(
         Code.TRUNCATED_LOG,
-        f"the log breaks off after byte {cut}: {reach}",
+        f"the log breaks off after byte {cut}: no message in it is whole",
         place,
-        "keep what is whole with `mcap recover IN -o OUT`, and audit that",
+        "copy the log again from where it was recorded",
     )
 
 
@@ -110,6 +107,15 @@ def too_long(length: int, ticks: int, clock: Clock, place: Span) -> Diagnostic:
 
 def damaged(damage: Damage, gap: Gap | None, origin: int, place: Span) -> Diagnostic:
     """One place; the gap that it has left is told in seconds from `origin`."""
+    if damage.code is Code.TRUNCATED_LOG and gap is not None:
+        return Diagnostic(
+            damage.code,
+            f"the log breaks off after byte {damage.at}: whole messages go "
+            f"{_seconds(gap[0] - origin)} far, and what came then is unknown",
+            place,
+            "what it shows up to there counts, and nothing counts as satisfied",
+            Severity.WARNING,
+        )
     lost = "no message is known to be lost"
     if gap is not None:
         start, end = (_seconds(time - origin) for time in gap)

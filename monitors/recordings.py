@@ -88,10 +88,10 @@ def _read(
 def _unusable(walk: Walk, place: Span) -> Diagnostic | None:
     """What keeps the whole file from being read."""
     damages = walk.damages
-    if walk.cut is not None:
-        return findings.truncated(walk.cut, damages.span, place)
     if damages.span is not None:
         return None
+    if walk.cut is not None:
+        return findings.truncated(walk.cut, place)
     return findings.nothing_whole(damages.kept[0], place) if damages.kept else findings.empty(place)
 
 

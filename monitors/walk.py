@@ -21,6 +21,7 @@ from mcap.opcode import Opcode
 from mcap.records import Attachment, Channel, Chunk, DataEnd, Header, Metadata, Schema
 from numpy.typing import NDArray
 
+from fretish.diagnostic import Code
 from monitors.container import (
     BLOCK,
     HEAD,
@@ -108,6 +109,8 @@ class Walk:
         found = summary(self._stream, self._size)
         if found is None:
             self.cut = self._data(truncated=True)
+            if self.damages.span is not None:
+                self.damages.add(self.cut, "it breaks off", code=Code.TRUNCATED_LOG)
             return
         self._summary = found
         self._schemas.update(found.schemas)

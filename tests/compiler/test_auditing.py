@@ -89,9 +89,35 @@ def test_one_changed_byte_in_the_middle_changes_the_hash_and_is_no_pass(fretc: F
     assert run.err.startswith("F404 warning: the log is damaged near byte ")
 
 
-def test_a_log_that_ends_in_the_middle_is_bad_input(fretc: Fretc) -> None:
+def test_a_log_that_ends_in_the_middle_shows_what_is_whole_and_satisfies_nothing(
+    fretc: Fretc,
+) -> None:
+    data = Path("run.mcap").read_bytes()
+    for part in (0.2, 0.5, 0.9, 0.999):
+        Path("cut.mcap").write_bytes(data[: int(len(data) * part)])
+        run = fretc("audit", "cut.mcap")
+        assert run.status == 3
+        assert run.err.startswith("F403 warning: the log breaks off after byte ")
+        (result,) = evidence()["results"]
+        assert result["verdict"] in ("inconclusive", "no data")
+        assert result["ticks"] > 0
+        jsonschema.validate(evidence(), SCHEMA)
+
+
+def test_a_violation_in_a_log_that_ends_in_the_middle_is_a_violation(fretc: Fretc) -> None:
+    change("requirements/r1.fret", "eventually", "within 1 ticks")
     data = Path("run.mcap").read_bytes()
     Path("cut.mcap").write_bytes(data[: len(data) // 2])
+    assert fretc("audit", "run.mcap").status == 1
+    whole = evidence()["results"][0]["violations"]
+    assert fretc("audit", "cut.mcap").status == 1
+    found = evidence()["results"][0]["violations"]
+    assert found[:-1] == whole[: len(found) - 1]
+    assert found[-1]["first_tick"] == whole[len(found) - 1]["first_tick"]
+
+
+def test_a_log_without_one_whole_message_is_bad_input(fretc: Fretc) -> None:
+    Path("cut.mcap").write_bytes(Path("run.mcap").read_bytes()[:60])
     run = fretc("audit", "cut.mcap")
     assert run.status == 2
     assert run.err.startswith("F403 the log breaks off after byte ")

@@ -16,7 +16,6 @@ from tests.monitors.logs import (
     declare,
     number,
     recorded,
-    refused,
     scan,
     values,
     write,
@@ -59,10 +58,12 @@ def test_a_truncated_log_says_how_far_whole_messages_go(tmp_path: Path) -> None:
     data = path.read_bytes()
     third = chunk_starts(path)[2]
     path.write_bytes(data[: third + 20])
-    assert render(refused(path)) == (
-        f"F403 the log breaks off after byte {third}: whole messages go 0.700 s far\n"
+    (finding,) = recorded(path, X).findings
+    assert render(finding) == (
+        f"F403 warning: the log breaks off after byte {third}: whole messages go 0.700 s far, and "
+        "what came then is unknown\n"
         f"  --> {path}\n"
-        "help: keep what is whole with `mcap recover IN -o OUT`, and audit that"
+        "help: what it shows up to there counts, and nothing counts as satisfied"
     )
 
 
@@ -103,7 +104,7 @@ def test_a_topic_without_messages_is_told_from_one_that_is_not_there() -> None:
 
 
 def test_a_log_cut_before_its_first_whole_message_says_so() -> None:
-    assert findings.truncated(8, None, PLACE).message == (
+    assert findings.truncated(8, PLACE).message == (
         "the log breaks off after byte 8: no message in it is whole"
     )
 

@@ -19,7 +19,6 @@ from tests.monitors.logs import (
     chunk_starts,
     damaged,
     recorded,
-    refused,
     times,
     values,
     write,
@@ -27,13 +26,25 @@ from tests.monitors.logs import (
 
 
 @pytest.mark.parametrize("chunked", [True, False])
-def test_a_log_cut_anywhere_is_refused(tmp_path: Path, chunked: bool) -> None:
+def test_of_a_log_cut_anywhere_the_whole_messages_are_read(tmp_path: Path, chunked: bool) -> None:
     path = write(tmp_path / "log.mcap", TWELVE, per_chunk=4, chunked=chunked)
-    data = path.read_bytes()
+    data, whole = path.read_bytes(), values(recorded(path, X), "x")
+    counts: list[int] = []
     for length in range(1, len(data)):
         path.write_bytes(data[:length])
-        code = refused(path).code
-        assert code is (Code.NOT_A_LOG if length < 8 else Code.TRUNCATED_LOG), length
+        found = read(str(path), X, list(X.signals))
+        if isinstance(found, Diagnostic):
+            assert not counts, length
+            assert found.code is (Code.NOT_A_LOG if length < 8 else Code.TRUNCATED_LOG), length
+            continue
+        seen = values(found, "x")
+        counts.append(len(seen))
+        assert seen == whole[: len(seen)], length
+        assert not found.intact, length
+        assert [finding.code for finding in found.findings] == [Code.TRUNCATED_LOG], length
+        assert found.gaps == ((found.end_ns, found.end_ns),), length
+    assert counts == sorted(counts)
+    assert counts[-1] == len(whole)
 
 
 def test_a_chunk_that_looks_like_another_record_is_missed(tmp_path: Path) -> None:
