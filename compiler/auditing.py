@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -17,6 +18,7 @@ from compiler.record import wording
 from compiler.rule import Rule
 from compiler.targets import monitor as monitors
 from compiler.templating import to_json
+from compiler.workers import each
 from fretish.declarations import Declarations
 from fretish.diagnostic import Code, Diagnostic
 from monitors import kernel
@@ -81,13 +83,21 @@ ENGINES: Mapping[str, Engine] = {"columns": kernel.evaluate, "online": kernel.st
 """How monitors are run: whole traces at once, or step by step."""
 
 
-def audit_logs(project: Project, logs: Sequence[str], engine: str = "columns") -> Audit:
+def audit_logs(
+    project: Project,
+    logs: Sequence[str],
+    engine: str = "columns",
+    jobs: int = 1,
+    tell: Callable[[], None] = lambda: None,
+) -> Audit:
     """Audit every log against every requirement that is not retired.
 
     Args:
         project: read without errors.
         logs: paths of MCAP files.
         engine: one of `ENGINES`; the results are the same.
+        jobs: how many processes share the logs; the results are the same.
+        tell: is called after each log.
     """
     rules = [rule for rule in project.rules if rule.requirement.status != "retired"]
     declarations = project.declarations
@@ -99,8 +109,9 @@ def audit_logs(project: Project, logs: Sequence[str], engine: str = "columns") -
     results: list[Mapping[str, Any]] = []
     said: list[Diagnostic] = []
     read = 0
-    for log in dict.fromkeys(logs):
-        found, told, could_be_read = _audit_log(log, declarations, watched, ENGINES[engine])
+    work = partial(_audit_log, declarations=declarations, watched=watched, engine=ENGINES[engine])
+    for found, told, could_be_read in each(work, tuple(dict.fromkeys(logs)), jobs):
+        tell()
         results.extend(found)
         said.extend(told)
         read += could_be_read

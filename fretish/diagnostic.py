@@ -84,6 +84,7 @@ class Code(Enum):
     COUNT_MISMATCH = ("F410", "the log holds another number of messages than it states")
     OUT_OF_ORDER = ("F411", "the messages of a topic are not in order of time")
     BAD_MESSAGE = ("F412", "a message cannot be decoded")
+    SPLIT_LOG = ("F413", "a run in several files is not read as one")
 
     UNKNOWN_PARENT = ("F501", "a parent is not declared")
     BAD_HAZARDS = ("F502", "the hazards cannot be read")

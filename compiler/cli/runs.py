@@ -26,7 +26,7 @@ from fretish.diagnostic import Code, Diagnostic, has_errors
 
 
 @click.command(short_help="Audit recorded runs against all requirements.")
-@click.argument("logs", nargs=-1, required=True, metavar="LOG...")
+@click.argument("paths", nargs=-1, required=True, metavar="LOG...")
 @click.option(
     "--requirements", default="requirements", show_default=True, help="Folder, or one file."
 )
@@ -44,22 +44,34 @@ from fretish.diagnostic import Code, Diagnostic, has_errors
     show_default=True,
     help="Run the monitors over whole logs at once, or step by step; what they show is the same.",
 )
+@click.option(
+    "--jobs",
+    type=click.IntRange(min=1),
+    default=os.cpu_count() or 1,
+    help="Processes that share the logs; as many as there are cores, if not given.",
+)
 def audit(
-    logs: tuple[str, ...],
+    paths: tuple[str, ...],
     requirements: str,
     bindings: str | None,
     evidence: str,
     form: str,
     engine: str,
+    jobs: int,
 ) -> None:
     """Audit recorded runs against all requirements.
 
-    LOG is an MCAP file. Each run and requirement gets a verdict: satisfied, violated,
-    inconclusive, vacuous or no data; the evidence goes to a JSON file.
+    LOG is an MCAP file, or a folder: all MCAP files below it. Each run and requirement gets a
+    verdict: satisfied, violated, inconclusive, vacuous or no data; the evidence goes to a JSON
+    file.
     """
     from compiler.auditing import audit_logs
+    from compiler.logs import logs as logs_of
     from compiler.project import beside, load, requirement_files
 
+    logs = logs_of(paths)
+    if isinstance(logs, Diagnostic):
+        stop(logs)
     files = requirement_files(requirements)
     if isinstance(files, Diagnostic):
         stop(files)
@@ -67,7 +79,8 @@ def audit(
     say(project.diagnostics)
     if has_errors(project.diagnostics):
         raise SystemExit(BAD)
-    result = audit_logs(project, logs, engine)
+    with _counted(len(logs)) as tell:
+        result = audit_logs(project, logs, engine, jobs, tell)
     say(result.diagnostics)
     if not result.results:
         raise SystemExit(BAD)
@@ -77,6 +90,21 @@ def audit(
     if has_errors(result.diagnostics):
         raise SystemExit(BAD)
     raise SystemExit(VIOLATION if result.violated else SHOWN if result.shown else NOT_SHOWN)
+
+
+def _counted(count: int) -> Any:
+    """A context manager that gives a function to call after each log."""
+    from contextlib import contextmanager
+
+    @contextmanager
+    def shown() -> Any:
+        if count < 2 or not sys.stderr.isatty():
+            yield lambda: None
+            return
+        with click.progressbar(length=count, label="auditing", file=sys.stderr) as bar:
+            yield lambda: bar.update(1)
+
+    return shown()
 
 
 def _coloured(lines: Sequence[tuple[str, str | None]]) -> str:

@@ -187,3 +187,30 @@ def test_without_bindings_nothing_can_be_audited(fretc: Fretc) -> None:
     run = fretc("audit", "run.mcap")
     assert run.status == 2
     assert run.err.startswith("F304 no bindings say what the propositions mean in the messages\n")
+
+
+def test_a_folder_of_logs_gives_the_same_with_any_number_of_processes(fretc: Fretc) -> None:
+    for name in ("a", "b", "deep/c"):
+        target = Path(f"runs/{name}.mcap")
+        target.parent.mkdir(parents=True, exist_ok=True)
+        target.write_bytes(Path("run.mcap").read_bytes())
+    Path("runs/bad.mcap").write_bytes(b"no log")
+    found = []
+    for jobs in ("1", "2", "7"):
+        run = fretc("audit", "runs", "--jobs", jobs)
+        assert run.status == 2
+        found.append((run.out, Path("build/evidence.json").read_bytes()))
+    assert found[0] == found[1] == found[2]
+    assert [result["run"] for result in evidence()["results"]] == [
+        "runs/a.mcap",
+        "runs/b.mcap",
+        "runs/bad.mcap",
+        "runs/deep/c.mcap",
+    ]
+
+
+def test_stepping_shows_the_same_as_columns(fretc: Fretc) -> None:
+    fretc("audit", "run.mcap")
+    before = Path("build/evidence.json").read_bytes()
+    fretc("audit", "run.mcap", "--engine", "online")
+    assert Path("build/evidence.json").read_bytes() == before
