@@ -105,8 +105,10 @@ def _fields_only(definition: str) -> str:
         bare = " ".join(line.split("#")[0].split())
         if _SEPARATOR.fullmatch(bare):
             lines.append("=" * 80)
-        elif _FIELD.fullmatch(bare) or _NEXT_TYPE.fullmatch(bare):
+        elif _FIELD.fullmatch(bare):
             lines.append(bare)
+        elif _NEXT_TYPE.fullmatch(bare):
+            lines += [bare, ""]  # without a line after it, the name of an empty type is cut off
         elif bare and not _CONSTANT.match(bare):
             raise ValueError(f"`{bare}` is no field")
     return "\n".join(lines)
