@@ -118,9 +118,11 @@ def stamp(message: object | None) -> int | None:
     """`header.stamp` in nanoseconds; None for a message without one."""
     time = getattr(getattr(message, "header", None), "stamp", None)
     names = fields(time)
-    for seconds, nanoseconds in (("sec", "nanosec"), ("secs", "nsecs")):
-        if seconds in names and nanoseconds in names:
-            return int(getattr(time, seconds)) * 10**9 + int(getattr(time, nanoseconds))
+    for parts in (("sec", "nanosec"), ("secs", "nsecs")):
+        if all(part in names for part in parts):
+            seconds, nanoseconds = (getattr(time, part) for part in parts)
+            if isinstance(seconds, int) and isinstance(nanoseconds, int):
+                return seconds * 10**9 + nanoseconds
     return None
 
 

@@ -170,11 +170,14 @@ def test_a_stamp_is_read_as_either_ros_writes_it() -> None:
     assert stamp(header_of(sec=3, nanosec=5)) == 3 * S + 5
     assert stamp(header_of(secs=3, nsecs=5)) == 3 * S + 5
     assert stamp(header_of(secs=3)) is None
+    assert stamp(header_of(sec=3.0, nanosec=5)) is None
+    assert stamp(header_of(sec=[3], nanosec=5)) is None
+    assert stamp(header_of(sec=float("nan"), nanosec=5, secs=3, nsecs=5)) == 3 * S + 5
     assert stamp(SimpleNamespace(data=1.0)) is None
     assert stamp(None) is None
 
 
-def header_of(**time: int) -> SimpleNamespace:
+def header_of(**time: Any) -> SimpleNamespace:
     return SimpleNamespace(header=SimpleNamespace(stamp=SimpleNamespace(**time)))
 
 
