@@ -28,6 +28,9 @@ from monitors.signals import nearest as nearest_of_one
 
 _CHECKED = 8
 """Layouts of a stream of which the official decoder reads three messages too."""
+_FEW = 512
+"""Bytes; fewer are decoded sooner than taken from their places. Two channels of one topic may send
+by turns, and then each message comes alone."""
 _SECONDS = ("int32", "uint32")
 """What a stamp may be made of: no sum of seconds and nanoseconds is too large."""
 _STAMPS = (("sec", "nanosec"), ("secs", "nsecs"))
@@ -86,7 +89,11 @@ class Extraction:
         extract = Extract.empty(len(payloads), self.signals)
         if self._decode is None:
             return extract
-        placed = self._shape is not None and self._placed(self._shape)
+        placed = (
+            self._shape is not None
+            and sum(map(len, payloads)) >= _FEW
+            and self._placed(self._shape)
+        )
         slow = self._at_once(payloads, extract) if placed else range(len(payloads))
         for row in slow:
             self._one_by_one(row, payloads[row], extract)

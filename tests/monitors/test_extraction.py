@@ -43,6 +43,7 @@ class Ways:
         self.decoded = 0
         """Messages in the fast way; those made up are not counted."""
         self._counting = False
+        monkeypatch.setattr(monitors.extraction, "_FEW", 0)
         monkeypatch.setattr(monitors.extraction, "decoder", self._decoder)
         monkeypatch.setattr(monitors.extraction, "trusted", self._trusted)
 
@@ -104,9 +105,10 @@ def custom(data: bytes, time: int = S, encoding: str = "cdr") -> Sent:
 
 @pytest.fixture
 def log(tmp_path: Path) -> Callable[..., Path]:
-    def log(sent: list[Sent], definition: str = "") -> Path:
+    def log(sent: list[Sent], definition: str = "", per_chunk: int | None = None) -> Path:
         known = {CUSTOM: definition.encode(), "one/T": definition.encode()}
-        return write(tmp_path / "log.mcap", sent, definitions=known if definition else None)
+        path = tmp_path / "log.mcap"
+        return write(path, sent, definitions=known if definition else None, per_chunk=per_chunk)
 
     return log
 
@@ -130,6 +132,17 @@ def test_many_messages_of_one_layout_are_read_without_being_decoded(ways: Ways, 
     assert ways.decoded <= 24
 
 
+def test_a_few_bytes_are_left_to_the_decoder(ways: Ways, log: Log) -> None:
+    sent = [number(float(i), i * S) for i in range(70)]
+    ways.same(log(sent[:30]), X)
+    assert ways.decoded == 3
+    monitors.extraction._FEW = 512  # put back with the patches
+    ways.same(log(sent[:30]), X)
+    assert ways.decoded == 30
+    ways.same(log(sent), X)
+    assert ways.decoded == 3
+
+
 def test_a_batch_ends_wherever_it_may(
     ways: Ways, log: Log, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -139,7 +152,7 @@ def test_a_batch_ends_wherever_it_may(
     whole = ways.same(log(sent), declare(text))
     for most in (1, 2, 7, 9, 10):
         monkeypatch.setattr(monitors.columns, "_MOST", most)
-        part = ways.same(log(sent), declare(text))
+        part = ways.same(log(sent, per_chunk=most), declare(text))
         assert times(part, "nearest") == times(whole, "nearest")
         np.testing.assert_equal(values(part, "nearest"), values(whole, "nearest"))
         assert part.findings == whole.findings
@@ -212,7 +225,7 @@ def test_a_signal_with_a_missing_field_leaves_the_others_as_they_are(
     monkeypatch.setattr(monitors.columns, "_MOST", 50)
     sent = [scan([1.0, float(i)], i * S) for i in range(200)]
     paths = {"bad": "/scan.rangs[:]", "low": "/scan.ranges[:]", "name": "/scan.header.frame_id"}
-    recording = ways.same(log(sent), signals(paths))
+    recording = ways.same(log(sent, per_chunk=50), signals(paths))
     assert values(recording, "low") == [min(1.0, float(i)) for i in range(200)]
     assert values(recording, "bad") == values(recording, "name") == []
     assert sorted(finding.message for finding in recording.findings) == [
