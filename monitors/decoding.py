@@ -105,8 +105,10 @@ def _fields_only(definition: str) -> str:
         bare = " ".join(line.split("#")[0].split())
         if _SEPARATOR.fullmatch(bare):
             lines.append("=" * 80)
-        elif _FIELD.fullmatch(bare) or _NEXT_TYPE.fullmatch(bare):
+        elif _FIELD.fullmatch(bare):
             lines.append(bare)
+        elif _NEXT_TYPE.fullmatch(bare):
+            lines += [bare, ""]  # without a line after it, the name of an empty type is cut off
         elif bare and not _CONSTANT.match(bare):
             raise ValueError(f"`{bare}` is no field")
     return "\n".join(lines)
@@ -116,9 +118,11 @@ def stamp(message: object | None) -> int | None:
     """`header.stamp` in nanoseconds; None for a message without one."""
     time = getattr(getattr(message, "header", None), "stamp", None)
     names = fields(time)
-    for seconds, nanoseconds in (("sec", "nanosec"), ("secs", "nsecs")):
-        if seconds in names and nanoseconds in names:
-            return int(getattr(time, seconds)) * 10**9 + int(getattr(time, nanoseconds))
+    for parts in (("sec", "nanosec"), ("secs", "nsecs")):
+        if all(part in names for part in parts):
+            seconds, nanoseconds = (getattr(time, part) for part in parts)
+            if isinstance(seconds, int) and isinstance(nanoseconds, int):
+                return seconds * 10**9 + nanoseconds
     return None
 
 

@@ -33,11 +33,20 @@ _TIMES = {
     "time": (("secs", "uint32"), ("nsecs", "uint32")),
     "duration": (("secs", "int32"), ("nsecs", "int32")),
 }
+CARRIED = frozenset(_TIMES)
+"""Types whose nanoseconds the decoder of ROS 1 may carry over into seconds."""
 _ROS2_TIMES = {
-    "builtin_interfaces/Time": (("sec", "int32"), ("nanosec", "uint32")),
-    "builtin_interfaces/Duration": (("sec", "int32"), ("nanosec", "uint32")),
+    "builtin_interfaces/Time": (("sec", "uint32"), ("nanosec", "uint32")),
+    "builtin_interfaces/Duration": (("sec", "uint32"), ("nanosec", "uint32")),
 }
+"""What the decoder of ROS 2 takes them for where the definition leaves them out."""
 
+_DEEPEST = 50
+"""Levels of messages within messages; what is deeper may hold itself, and never ends."""
+_MOST_FIELDS = 10_000
+"""Of a message, with those of the messages in it."""
+
+_NAME = re.compile(r"\w+/(?:msg/)?\w+")
 _SEPARATOR = re.compile(r"={3,}\s*")
 _NEXT = re.compile(r"MSG:\s*(\S+)\s*")
 _FIELD = re.compile(
@@ -75,18 +84,36 @@ def types(name: str, definition: str, *, ros1: bool) -> Types:
         ros1: whether it is of ROS 1.
 
     Raises:
-        DefinitionError: a line, or a type, is not known.
+        DefinitionError: a line, or a type, is not known; a type is defined twice; or types are
+            within each other without end.
     """
-    found: dict[str, tuple[Field, ...]] = dict(_builtin(ros1=ros1))
+    found: dict[str, tuple[Field, ...]] = {}
     for full, lines in _sections(_short(name), definition):
         package = full.partition("/")[0]
         read = (_field(line, package, ros1=ros1) for line in lines)
-        found.setdefault(full, tuple(field for field in read if field is not None))
+        fields = tuple(field for field in read if field is not None)
+        if found.setdefault(full, fields) != fields:
+            raise DefinitionError(f"the type `{full}` is defined twice")
+    found = _builtin(ros1=ros1) | found
     for fields in found.values():
         for field in fields:
             if field.type not in NUMBERS and field.type not in TEXTS and field.type not in found:
                 raise DefinitionError(f"the type `{field.type}` is not defined")
+    _measure(found)
     return found
+
+
+def _measure(found: Types) -> None:
+    """Refuse types that hold themselves, or more than anyone would define."""
+    sizes: dict[str, int] = {}
+    for _ in range(_DEEPEST):
+        sizes |= {
+            name: sum(1 + sizes.get(field.type, 0) for field in fields)
+            for name, fields in found.items()
+            if all(field.type in sizes or field.type not in found for field in fields)
+        }
+    if len(sizes) < len(found) or max(sizes.values()) > _MOST_FIELDS:
+        raise DefinitionError("the types are too deep")
 
 
 def _builtin(*, ros1: bool) -> dict[str, tuple[Field, ...]]:
@@ -98,19 +125,31 @@ def _builtin(*, ros1: bool) -> dict[str, tuple[Field, ...]]:
 
 
 def _short(name: str) -> str:
+    if not _NAME.fullmatch(name):
+        raise DefinitionError(f"`{name}` is no type")
     return name.replace("/msg/", "/")
 
 
 def _sections(name: str, definition: str) -> list[tuple[str, list[str]]]:
     """Each type with its lines; those without anything in them are left out."""
     sections: list[tuple[str, list[str]]] = [(name, [])]
+    named = True
     for line in definition.splitlines():
         bare = line.strip()
+        if not bare or bare.startswith("#"):
+            continue
         following = _NEXT.fullmatch(bare)
-        if following:
+        if not named and following:
             sections.append((_short(following[1]), []))
-        elif bare and not bare.startswith("#") and not _SEPARATOR.fullmatch(bare):
+            named = True
+        elif named and _SEPARATOR.fullmatch(bare):
+            named = False
+        elif named:
             sections[-1][1].append(bare)
+        else:
+            break
+    if not named:
+        raise DefinitionError("a type has no name")
     return sections
 
 
@@ -124,19 +163,19 @@ def _field(line: str, package: str, *, ros1: bool) -> Field | None:
         return None
     if ros1 and rest and not rest.startswith("#"):
         raise DefinitionError(f"`{line}` is no field")
-    type_ = _resolved(_short(match["type"]), package, ros1=ros1)
     many = match["array"] is not None
+    type_ = _resolved(match["type"], package, many=many, ros1=ros1)
     bounded = many and "<=" in match["array"]
     count = int(match["count"]) if many and match["count"] and not bounded else None
     return Field(match["name"], type_, many, count)
 
 
-def _resolved(name: str, package: str, *, ros1: bool) -> str:
+def _resolved(name: str, package: str, *, many: bool, ros1: bool) -> str:
     name = _ALIASES[ros1].get(name, name)
     if name in NUMBERS or name in TEXTS or "/" in name:
         return name
     if ros1 and name in _TIMES:
         return name
-    if ros1 and name == "Header":
+    if ros1 and name == "Header" and not many:  # an array is of the package's own
         return "std_msgs/Header"
     return f"{package}/{name}"

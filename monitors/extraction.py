@@ -1,8 +1,8 @@
 """Payloads of one stream → the numbers that its signals ask for, many messages at once.
 
-Fields are taken from their places in the payloads. The first messages are decoded by the official
-decoder too, and where that says anything else, it reads the whole stream: it is slower, and the
-reference.
+Fields are taken from their places in the payloads. Made-up messages and the first real ones are
+decoded by the official decoder too, and where that says anything else, it reads the whole stream:
+it is slower, and the reference.
 """
 
 from __future__ import annotations
@@ -17,8 +17,10 @@ from fretish.declarations import Reduce, Signal
 from fretish.diagnostic import Diagnostic
 from monitors import findings
 from monitors.container import Stream
+from monitors.damage import LATEST
 from monitors.decoding import Decode, decoder, shape, stamp
 from monitors.layouts import Batch, Group, Shape, Where, groups
+from monitors.probes import trusted
 from monitors.readings import nearest, samples, siblings
 from monitors.samples import Numbers, Times
 from monitors.signals import RANGE_MIN, FieldError, sample
@@ -26,6 +28,11 @@ from monitors.signals import nearest as nearest_of_one
 
 _CHECKED = 8
 """Layouts of a stream of which the official decoder reads three messages too."""
+_FEW = 512
+"""Bytes; fewer are decoded sooner than taken from their places. Two channels of one topic may send
+by turns, and then each message comes alone."""
+_SECONDS = ("int32", "uint32")
+"""What a stamp may be made of: no sum of seconds and nanoseconds is too large."""
 _STAMPS = (("sec", "nanosec"), ("secs", "nsecs"))
 """Names of the fields of a stamp, in ROS 2 and in ROS 1."""
 
@@ -67,7 +74,7 @@ class Extraction:
         self._checks = _CHECKED
         found = decoder(stream)
         self._decode: Decode | None = None if isinstance(found, str) else found
-        self._shape = shape(stream) if self._decode is not None else None
+        self._shape = _shape(stream, self._decode)
         if isinstance(found, str):
             for signal in signals:
                 self._refuse(signal, findings.unknown_encoding(signal, found))
@@ -82,7 +89,12 @@ class Extraction:
         extract = Extract.empty(len(payloads), self.signals)
         if self._decode is None:
             return extract
-        slow = range(len(payloads)) if self._shape is None else self._at_once(payloads, extract)
+        placed = (
+            self._shape is not None
+            and sum(map(len, payloads)) >= _FEW
+            and self._placed(self._shape)
+        )
+        slow = self._at_once(payloads, extract) if placed else range(len(payloads))
         for row in slow:
             self._one_by_one(row, payloads[row], extract)
         return extract
@@ -100,7 +112,8 @@ class Extraction:
         extract.decoded[row] = True
         time = stamp(message)
         if time is not None:
-            extract.stamps[row], extract.stamped[row] = time, True
+            extract.stamps[row] = max(-LATEST, min(time, LATEST))
+            extract.stamped[row] = True
         for signal in tuple(self.signals):
             try:
                 extract.values[signal.name][row] = sample(signal, message)
@@ -117,6 +130,13 @@ class Extraction:
             return None
 
     # By places
+
+    def _placed(self, shape: Shape) -> bool:
+        """Whether all that is asked for has a place; where not, each message has to be seen."""
+        return all(_reads(shape, signal) for signal in self.signals) and all(
+            field is not None and field.type in _SECONDS
+            for field in map(shape.number, _stamp_places(shape))
+        )
 
     def _at_once(self, payloads: Sequence[bytes], extract: Extract) -> Sequence[int]:
         """Read all messages that fit a layout; gives the rows that are left."""
@@ -201,9 +221,26 @@ class Extraction:
             extract.stamped[rows] = True
 
 
+def _shape(stream: Stream, decode: Decode | None) -> Shape | None:
+    """How the messages are laid out; None where that is not certain."""
+    found = shape(stream) if decode is not None else None
+    return found if decode and found and trusted(found, decode) else None
+
+
+def _reads(shape: Shape, signal: Signal) -> bool:
+    """Whether the signal's fields are numbers, or arrays where it takes them for arrays."""
+    field, path = shape.number(signal.path.fields), signal.path
+    return (
+        field is not None
+        and field.many == (path.each or path.index is not None)
+        and all(shape.has((name,)) for name in siblings(signal))
+    )
+
+
 def _matrix(numbers: NDArray[np.generic]) -> Numbers:
     """One row for each message."""
-    return numbers.astype(np.float64).reshape(len(numbers), -1)
+    with np.errstate(invalid="ignore"):  # signalling NaN
+        return numbers.astype(np.float64).reshape(len(numbers), numbers[:1].size)
 
 
 def _stamp_places(shape: Shape) -> tuple[Where, ...]:

@@ -18,7 +18,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from monitors.definitions import NUMBERS, TEXTS, Field, Types
+from monitors.definitions import CARRIED, NUMBERS, TEXTS, Field, Types
 
 Bytes = NDArray[np.uint8]
 Places = NDArray[np.int64]
@@ -56,25 +56,53 @@ class Layout:
     marks: tuple[tuple[int, str, int], ...]
     """Places, types and values of the lengths on the way, and of what marks plain CDR."""
     found: Mapping[Where, Found]
+    texts: tuple[tuple[int, int], ...] = ()
+    """Places and lengths of what the decoder reads as UTF-8, and refuses where it is not."""
 
 
 class Shape:
     """The type of a topic's messages."""
 
     def __init__(self, name: str, types: Types, *, cdr: bool) -> None:
-        self._name, self._types, self._cdr = name, types, cdr
+        self.name, self.types, self.cdr = name, types, cdr
+
+    def number(self, where: Where) -> Field | None:
+        """The number, or the array of numbers, at that place of each message.
+
+        None also for a time of ROS 1 that stands in the message itself: its decoder carries
+        nanoseconds over into seconds.
+        """
+        name = self.name
+        for depth, part in enumerate(where, 1):
+            fields = self.types.get(name, ())
+            field = next((field for field in fields if field.name == part), None)
+            if field is None:
+                return None
+            if depth == len(where):
+                carried = depth == 2 and name in CARRIED
+                return field if field.type in NUMBERS and not carried else None
+            if field.many:
+                return None
+            name = field.type
+        return None
 
     def has(self, where: Where) -> bool:
         """Whether there is a number at that place of each message."""
-        fields = self._types[self._name]
-        for depth, name in enumerate(where, 1):
-            field = next((field for field in fields if field.name == name), None)
-            if field is None or field.many:
-                return False
-            if depth == len(where):
-                return field.type in NUMBERS
-            fields = self._types.get(field.type, ())
-        return False
+        field = self.number(where)
+        return field is not None and not field.many
+
+    def numbers(self) -> tuple[Where, ...]:
+        """All places of which `number` knows."""
+        places: list[Where] = []
+        below: list[tuple[Where, str]] = [((), self.name)]
+        for where, name in below:
+            for field in self.types[name]:
+                at = (*where, field.name)
+                if self.number(at) is not None:
+                    places.append(at)
+                elif field.type in self.types and not field.many:
+                    below.append((at, field.type))
+        return tuple(places)
 
     def layout(self, payload: memoryview, wanted: Sequence[Where]) -> Layout:
         """Where the wanted fields of one payload are.
@@ -87,17 +115,17 @@ class Shape:
             LayoutError: the payload has another length than its fields, or is not plain
                 little-endian CDR; or a wanted field is not there, or holds no numbers.
         """
-        walk = _Walk(payload, self._types, frozenset(wanted), cdr=self._cdr)
+        walk = _Walk(payload, self.types, frozenset(wanted), cdr=self.cdr)
         try:
-            walk.message(self._name, ())
+            walk.message(self.name, ())
         except struct.error:
             raise LayoutError("the payload is cut off") from None
-        if not 0 <= len(payload) - walk.at <= (_PADDING if self._cdr else 0):
+        if not 0 <= len(payload) - walk.at <= (_PADDING if self.cdr else 0):
             raise LayoutError("the payload has another length than its fields")
         missing = [where for where in wanted if where not in walk.found]
         if missing:
             raise LayoutError(f"there are no numbers in `{'.'.join(missing[0])}`")
-        return Layout(len(payload), tuple(walk.marks), walk.found)
+        return Layout(len(payload), tuple(walk.marks), walk.found, tuple(walk.texts))
 
 
 class _Walk:
@@ -109,6 +137,7 @@ class _Walk:
         self.at = 0
         self.marks: list[tuple[int, str, int]] = []
         self.found: dict[Where, Found] = {}
+        self.texts: list[tuple[int, int]] = []
         self._payload, self._types, self._wanted, self._cdr = payload, types, wanted, cdr
         if cdr:
             if bytes(payload[:2]) != b"\0\1":
@@ -122,6 +151,8 @@ class _Walk:
             self.at += 1
         for field in self._types[name]:
             self._field(field, (*where, field.name))
+        if self.at > len(self._payload):  # said here, lest an array of them goes on
+            raise LayoutError("the payload is cut off")
 
     def _field(self, field: Field, where: Where) -> None:
         count = (self._length() if field.count is None else field.count) if field.many else None
@@ -129,8 +160,7 @@ class _Walk:
             self._numbers(NUMBERS[field.type], count, where)
         elif field.type in TEXTS:
             for _ in range(1 if count is None else self._bounded(count)):
-                length = self._length()
-                self.at += length
+                self._text(self._length())
         elif count is None:
             self.message(field.type, where)
         else:
@@ -144,6 +174,11 @@ class _Walk:
         if where in self._wanted:
             self.found[where] = Found(self.at, dtype, count)
         self.at += size if count is None else size * count
+
+    def _text(self, length: int) -> None:
+        if self._cdr and length > 1:  # the last byte ends it
+            self.texts.append((self.at, length - 1))
+        self.at += length
 
     def _length(self) -> int:
         if self._cdr:
@@ -215,8 +250,12 @@ def groups(shape: Shape, batch: Batch, wanted: Sequence[Where]) -> Iterator[Grou
             left = left[1:]
             continue
         same = _same(batch, left, layout)
-        yield Group(left[same], layout)
-        left = left[~same]
+        rows, left = left[same], left[~same]
+        plain = _plain(batch, rows, layout)
+        if plain.any():
+            yield Group(rows[plain], layout)
+        if not plain.all():
+            yield Group(rows[~plain], None)
 
 
 def _same(batch: Batch, rows: Places, layout: Layout) -> NDArray[np.bool_]:
@@ -228,3 +267,11 @@ def _same(batch: Batch, rows: Places, layout: Layout) -> NDArray[np.bool_]:
     for at, dtype, value in layout.marks:
         same[same] = batch.gathered(rows[same], Found(at, dtype, None)) == value
     return same
+
+
+def _plain(batch: Batch, rows: Places, layout: Layout) -> NDArray[np.bool_]:
+    """In which of the rows all texts are ASCII; only the decoder knows whether others are texts."""
+    plain = np.ones(len(rows), bool)
+    for at, length in layout.texts:
+        plain &= (batch.gathered(rows, Found(at, "u1", length)).view(np.int8) >= 0).all(axis=1)
+    return plain

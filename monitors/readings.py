@@ -44,10 +44,11 @@ def samples(signal: Signal, values: Numbers, beside: Mapping[str, Numbers]) -> N
         values = values[:, index : index + 1]
     if not values.shape[1]:
         return np.full(len(values), np.nan)
-    readings, unknown = _readings(signal, values, _valid(signal, values, beside))
-    found = _reduced(signal, readings, beside) * (
-        1.0 if signal.reduce is Reduce.OUTLINE else factor
-    )
+    with np.errstate(all="ignore"):  # what is too large is infinite, and a NaN may signal
+        readings, unknown = _readings(signal, values, _valid(signal, values, beside))
+        found = _reduced(signal, readings, beside) * (
+            1.0 if signal.reduce is Reduce.OUTLINE else factor
+        )
     return np.where(unknown | np.isnan(readings).all(axis=1), np.nan, found)
 
 
@@ -62,8 +63,7 @@ def _valid(signal: Signal, values: Numbers, beside: Mapping[str, Numbers]) -> Tr
     finite = np.isfinite(values)
     if signal.valid is None:
         return finite
-    with np.errstate(over="ignore"):
-        single = ((values.astype(np.float32) == values) | ~finite).all(axis=1)
+    single = ((values.astype(np.float32) == values) | ~finite).all(axis=1)
     accepted = np.zeros(values.shape, bool)
     for rounded in (True, False):
         rows = single == rounded
@@ -109,9 +109,9 @@ def _reduced(signal: Signal, readings: Numbers, beside: Mapping[str, Numbers]) -
         case None:
             return readings[:, 0]
         case Reduce.MIN:
-            return np.asarray(np.fmin.reduce(readings, axis=1), np.float64)
+            return np.asarray(np.fmin.reduce(readings, axis=1) + 0.0, np.float64)
         case Reduce.MAX:
-            return np.asarray(np.fmax.reduce(readings, axis=1), np.float64)
+            return np.asarray(np.fmax.reduce(readings, axis=1) + 0.0, np.float64)
         case Reduce.MEAN:
             return np.array([_mean(row) for row in readings])
         case Reduce.OUTLINE:
@@ -122,8 +122,7 @@ def _reduced(signal: Signal, readings: Numbers, beside: Mapping[str, Numbers]) -
 
 def _mean(readings: Numbers) -> float:
     measured = readings[~np.isnan(readings)]
-    with np.errstate(invalid="ignore"):
-        return float(measured.mean()) if len(measured) else float("nan")
+    return float(measured.mean()) if len(measured) else float("nan")
 
 
 def _outline(signal: Signal, readings: Numbers, start: float, increment: float) -> float:

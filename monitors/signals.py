@@ -66,6 +66,11 @@ def sample(signal: Signal, message: object) -> float:
     if isinstance(value, float) and signal.valid is None and isfinite(value):
         return value * factor  # most signals are so, and most of the time is spent on them
     values = np.array([value]) if isinstance(value, float) else value
+    with np.errstate(all="ignore"):  # what is too large is infinite, and a NaN may signal
+        return _sample(signal, message, values, factor)
+
+
+def _sample(signal: Signal, message: object, values: Numbers, factor: float) -> float:
     readings = _readings(signal, values, _valid(signal, message, values))
     if readings is None or np.isnan(readings).all():
         return float("nan")
@@ -164,8 +169,7 @@ def _valid(signal: Signal, message: object, values: Numbers) -> NDArray[np.bool_
         return finite
     names = {name.id for name in e.names(signal.valid)} - {"x"}
     siblings = {name: np.array([_sibling(message, name)]) for name in names}
-    with np.errstate(over="ignore"):
-        single = bool(np.all(values.astype(np.float32) == values, where=finite))
+    single = bool(np.all(values.astype(np.float32) == values, where=finite))
     scope = Scope(len(values), {"x": values, **siblings}, signal.unit, single)
     try:
         accepted: NDArray[np.bool_] = truth(signal.valid, scope) == TRUE
@@ -212,12 +216,11 @@ def _reduced(reduce: Reduce | None, readings: Numbers) -> float:
         case None:
             return float(readings[0])
         case Reduce.MIN:
-            return float(readings.min())
+            return float(readings.min()) + 0.0  # never -0.0: which zero is first depends on NumPy
         case Reduce.MAX:
-            return float(readings.max())
+            return float(readings.max()) + 0.0
         case Reduce.MEAN:
-            with np.errstate(invalid="ignore"):
-                return float(readings.mean())
+            return float(readings.mean())
         case _:
             raise AssertionError(f"{reduce} takes more than the numbers")
 

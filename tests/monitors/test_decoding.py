@@ -150,6 +150,16 @@ def test_a_stream_without_definition_has_no_decoder() -> None:
     assert decoder(stream("cdr", None)) == "its messages have no definition"
 
 
+@pytest.mark.parametrize("end", ["", "\n", "\n\n"])
+def test_an_empty_type_of_ros_1_may_stand_anywhere(end: str) -> None:
+    line = "\n" + "=" * 80 + "\n"
+    text = f"A a\nB b\nfloat64 x{line}MSG: one/A{line}MSG: one/B{end}"
+    decode = decoder(stream("ros1", Schema(1, text.encode(), "ros1msg", "one/T")))
+    assert callable(decode)
+    message: Any = decode(b"\0\0\0\0\0\0\xf8\x3f")
+    assert message.x == 1.5
+
+
 @pytest.mark.parametrize("name", ["A", "a/b/C", "a/B\nimport os"])
 def test_a_ros_1_type_of_another_form_is_refused(name: str) -> None:
     schema = Schema(1, b"float64 data", "ros1msg", name)
@@ -160,11 +170,14 @@ def test_a_stamp_is_read_as_either_ros_writes_it() -> None:
     assert stamp(header_of(sec=3, nanosec=5)) == 3 * S + 5
     assert stamp(header_of(secs=3, nsecs=5)) == 3 * S + 5
     assert stamp(header_of(secs=3)) is None
+    assert stamp(header_of(sec=3.0, nanosec=5)) is None
+    assert stamp(header_of(sec=[3], nanosec=5)) is None
+    assert stamp(header_of(sec=float("nan"), nanosec=5, secs=3, nsecs=5)) == 3 * S + 5
     assert stamp(SimpleNamespace(data=1.0)) is None
     assert stamp(None) is None
 
 
-def header_of(**time: int) -> SimpleNamespace:
+def header_of(**time: Any) -> SimpleNamespace:
     return SimpleNamespace(header=SimpleNamespace(stamp=SimpleNamespace(**time)))
 
 
