@@ -9,6 +9,7 @@ from collections.abc import Mapping, Sequence
 from itertools import product
 
 from compiler import formula as f
+from compiler.columns import evaluate
 from compiler.counters import Letter
 from compiler.demand import Uninterpreted, boolean
 from fretish import expressions as e
@@ -41,13 +42,12 @@ def meanings(sentence: s.Sentence, atoms: Sequence[str]) -> Mapping[Valuation, L
     Each expression is read once, as a column of bits: bit k is its value in the k-th valuation.
     """
     valuations = tuple(product((False, True), repeat=len(atoms)))
-    every = (1 << len(valuations)) - 1
     columns = {
         name: sum(valuation[i] << k for k, valuation in enumerate(valuations))
         for i, name in enumerate(atoms)
     }
     m, p, q, stop = [
-        0 if expression is None else _column(_formula(expression), columns, every)
+        0 if expression is None else evaluate(_formula(expression), columns, len(valuations))
         for expression in _parts(sentence)
     ]
     return {
@@ -75,36 +75,3 @@ def _parts(sentence: s.Sentence) -> tuple[e.Expression | None, ...]:
 
 def _formula(expression: e.Expression) -> f.Formula:
     return boolean(expression, Uninterpreted().alone())
-
-
-def _column(formula: f.Formula, columns: Mapping[str, int], every: int) -> int:
-    """The values of a formula without temporal operators, in all valuations at once."""
-
-    def read(part: f.Formula) -> int:
-        return _column(part, columns, every)
-
-    match formula:
-        case f.Const(value):
-            return every if value else 0
-        case f.Atom(name):
-            return columns[name]
-        case f.Not(arg):
-            return every ^ read(arg)
-        case f.And(args):
-            column = every
-            for arg in args:
-                column &= read(arg)
-            return column
-        case f.Or(args):
-            column = 0
-            for arg in args:
-                column |= read(arg)
-            return column
-        case f.Xor(left, right):
-            return read(left) ^ read(right)
-        case f.Implies(left, right):
-            return every ^ read(left) | read(right)
-        case f.Iff(left, right):
-            return every ^ read(left) ^ read(right)
-        case _:
-            raise AssertionError(f"not a truth value of one tick: {formula}")
