@@ -16,11 +16,11 @@ _WIDTH = 160
 def render(diagnostic: Diagnostic) -> str:
     """Several lines: code and message, place, the line with a caret, and the mend."""
     kind = "" if diagnostic.severity is Severity.ERROR else f" {diagnostic.severity.value}:"
-    lines = [f"{diagnostic.code.number}{kind} {_visible(diagnostic.message)}"]
+    lines = [f"{diagnostic.code.number}{kind} {visible(diagnostic.message)}"]
     if diagnostic.span is not None:
         lines.extend(_place(diagnostic.span))
     if diagnostic.help:
-        lines.append(f"help: {_visible(diagnostic.help)}")
+        lines.append(f"help: {visible(diagnostic.help)}")
     return "\n".join(lines)
 
 
@@ -50,9 +50,9 @@ def _place(span: Span) -> list[str]:
     width = max(1, min(span.end, span.start + len(line) - column + 1) - span.start)
     start = 0 if column <= _WIDTH - 40 else column - 60
     shown = line[start : start + _WIDTH]
-    before = _visible(shown[: column - 1 - start])
-    under = _visible(shown[column - 1 - start : column - 1 - start + width])
-    after = _visible(shown[column - 1 - start + width :])
+    before = visible(shown[: column - 1 - start])
+    under = visible(shown[column - 1 - start : column - 1 - start + width])
+    after = visible(shown[column - 1 - start + width :])
     return [
         f"  --> {span.source.name}:{span.line}:{column}",
         f"   | {before}{under}{after}".rstrip(),
@@ -60,7 +60,7 @@ def _place(span: Span) -> list[str]:
     ]
 
 
-def _visible(text: str) -> str:
+def visible(text: str) -> str:
     """Control characters would move the caret or the user's terminal: show them as escapes."""
     return "".join(
         _TAB if character == "\t" else character if character.isprintable() else _escape(character)

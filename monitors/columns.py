@@ -101,12 +101,14 @@ class Columns:
     def __init__(self, declarations: Declarations, wanted: Sequence[Signal]) -> None:
         self.topics: dict[str, Column] = {}
         """Every topic of the log."""
+        self.streams: dict[str, Stream] = {}
+        """The first stream of each topic."""
         self.nearest: dict[str, float] = {}
-        self._clock = declarations.clock
+        self.clock = declarations.clock
         self._source = declarations.source
         self._wanted = wanted
         self._bound = {signal.path.topic for signal in declarations.signals.values()}
-        self._bound |= {self._clock.topic} if self._clock.topic else set()
+        self._bound |= {self.clock.topic} if self.clock.topic else set()
         self._extractions: dict[int, Extraction] = {}
 
     # Messages
@@ -114,6 +116,7 @@ class Columns:
     def declare(self, stream: Stream) -> None:
         """A topic of the log, with or without messages."""
         topic, type_ = stream.channel.topic, stream.schema.name if stream.schema else ""
+        self.streams.setdefault(topic, stream)
         if topic not in self.topics:
             self.topics[topic] = Column(
                 topic,
@@ -138,7 +141,7 @@ class Columns:
         if pending is None or pending.stream != stream:
             self._settle(column)
             pending = column.pending = Pending(stream)
-        read = bool(column.signals) or self._clock.time is TimeSource.HEADER_STAMP
+        read = bool(column.signals) or self.clock.time is TimeSource.HEADER_STAMP
         pending.add(log_time, publish_time, bytes(payload) if read else b"")
         if pending.full:
             self._settle(column)
@@ -154,7 +157,7 @@ class Columns:
         if pending is None or pending.stream != stream:
             self._settle(column)
             pending = column.pending = Pending(stream)
-        read = bool(column.signals) or self._clock.time is TimeSource.HEADER_STAMP
+        read = bool(column.signals) or self.clock.time is TimeSource.HEADER_STAMP
         payloads = messages.payloads if read else [b""] * len(logs)
         pending.add_all(logs.tolist(), messages.publishes.tolist(), payloads)
         if pending.full:
@@ -183,7 +186,7 @@ class Columns:
     def _extract(self, column: Column, pending: Pending) -> Extract:
         """What the signals ask for; one with something wrong gets no samples."""
         count = len(pending.logs)
-        if not column.signals and self._clock.time is not TimeSource.HEADER_STAMP:
+        if not column.signals and self.clock.time is not TimeSource.HEADER_STAMP:
             return Extract.empty(count, ())
         id = pending.stream.channel.id
         if id not in self._extractions:
@@ -201,7 +204,7 @@ class Columns:
 
     def _times(self, column: Column, pending: Pending, extract: Extract, logs: Times) -> Times:
         """When the messages were, on the declared clock."""
-        match self._clock.time:
+        match self.clock.time:
             case TimeSource.LOG_TIME:
                 return logs
             case TimeSource.PUBLISH_TIME:
@@ -228,7 +231,7 @@ class Columns:
 
     def ticks(self) -> Times:
         """Times of the clock's topic, where the clock ticks by message."""
-        column = self.topics.get(self._clock.topic or "")
+        column = self.topics.get(self.clock.topic or "")
         return np.sort(np.array(column.times if column else [], np.int64))
 
     def span(self) -> Gap:
@@ -240,7 +243,7 @@ class Columns:
     def on_clock(self, gap: Gap) -> Gap:
         """A span of log times, on the declared clock: between the messages around it."""
         columns = [column for column in self.topics.values() if column.times]
-        if self._clock.time is TimeSource.LOG_TIME or not columns:
+        if self.clock.time is TimeSource.LOG_TIME or not columns:
             return gap
         logs = np.concatenate([np.array(column.logs, np.int64) for column in columns])
         times = np.concatenate([np.array(column.times, np.int64) for column in columns])
@@ -254,8 +257,8 @@ class Columns:
     def findings(self) -> list[Diagnostic]:
         """About single topics: what is missing first, then what is odd."""
         found = [wrong for signal in self._wanted if (wrong := self._wrong(signal)) is not None]
-        if self._clock.topic and not self.ticks().size:
-            found.append(self._absent(self._clock.topic, self._clock_place(self._clock.topic)))
+        if self.clock.topic and not self.ticks().size:
+            found.append(self._absent(self.clock.topic, self._clock_place(self.clock.topic)))
         for topic, signal in {signal.path.topic: signal for signal in self._wanted}.items():
             if topic in self.topics:
                 found += self._oddities(self.topics[topic], signal)
@@ -289,7 +292,7 @@ class Columns:
     def _shift(self) -> int:
         """By how many nanoseconds header stamps are away from log times, in the middle."""
         stamped = [c for c in self.topics.values() if c.times and not c.unstamped]
-        if self._clock.time is not TimeSource.HEADER_STAMP or not stamped:
+        if self.clock.time is not TimeSource.HEADER_STAMP or not stamped:
             return 0
         shifts = [np.array(c.logs, np.int64) - np.array(c.times, np.int64) for c in stamped]
         return int(np.median(np.abs(np.concatenate(shifts))))

@@ -10,7 +10,8 @@ from __future__ import annotations
 import hashlib
 import os
 import stat
-from collections.abc import Collection, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
+from dataclasses import dataclass
 from io import BufferedReader
 from pathlib import Path
 
@@ -22,11 +23,22 @@ from fretish.diagnostic import Diagnostic
 from fretish.source import Source, Span
 from monitors import findings
 from monitors.columns import Column, Columns
-from monitors.container import MAGIC
+from monitors.container import MAGIC, Stream
+from monitors.decoding import decoder, shape
 from monitors.samples import Recording, Samples, Topic
 from monitors.walk import Walk
 
 _MOST_TICKS = 20_000_000
+
+
+@dataclass(frozen=True, slots=True)
+class Overview:
+    """A log as it is, whatever is bound."""
+
+    recording: Recording
+    """By log times, without samples."""
+    numbers: Mapping[str, tuple[str, ...] | None]
+    """Of each topic the fields that a signal can read; None where its messages cannot be read."""
 
 
 def read(path: str, declarations: Declarations, wanted: Collection[str]) -> Recording | Diagnostic:
@@ -47,8 +59,46 @@ def read(path: str, declarations: Declarations, wanted: Collection[str]) -> Reco
     Raises:
         KeyError: a wanted signal is not declared.
     """
-    place = Source(path, "").span()
     signals = [declarations.signals[name] for name in dict.fromkeys(wanted)]
+    columns = Columns(declarations, signals)
+    return _opened(path, lambda stream, place: _read(stream, place, columns, signals))
+
+
+def look(path: str) -> Overview | Diagnostic:
+    """Read a log without any bindings: what is in it, and how healthy it is.
+
+    Args:
+        path: the file, as the user names it.
+
+    Returns:
+        The overview, by log times; or what keeps the whole file from being read.
+    """
+    nothing = Declarations(Source("", ""), Clock(None, None), {}, {})
+    columns = Columns(nothing, ())
+    found = _opened(path, lambda stream, place: _read(stream, place, columns, ()))
+    if isinstance(found, Diagnostic):
+        return found
+    return Overview(found, {topic: _numbers(stream) for topic, stream in columns.streams.items()})
+
+
+def _numbers(stream: Stream) -> tuple[str, ...] | None:
+    """The paths of all numbers in its messages; None where its messages cannot be read."""
+    if isinstance(decoder(stream), str):
+        return None
+    known = shape(stream)
+    if known is None:
+        return ()
+    fields = ((where, known.number(where)) for where in known.numbers())
+    return tuple(
+        f"{'.'.join(where)}{'[:]' if field is not None and field.many else ''}"
+        for where, field in fields
+    )
+
+
+def _opened(
+    path: str, use: Callable[[BufferedReader, Span], Recording | Diagnostic]
+) -> Recording | Diagnostic:
+    place = Source(path, "").span()
     try:
         mode = os.stat(path).st_mode
         if stat.S_ISDIR(mode):
@@ -56,7 +106,7 @@ def read(path: str, declarations: Declarations, wanted: Collection[str]) -> Reco
         if not stat.S_ISREG(mode):
             return findings.not_a_file(place)
         with Path(path).open("rb") as stream:
-            return _read(stream, place, declarations, signals)
+            return use(stream, place)
     except FileNotFoundError:
         return findings.no_such_file(place)
     except OSError as error:
@@ -64,7 +114,7 @@ def read(path: str, declarations: Declarations, wanted: Collection[str]) -> Reco
 
 
 def _read(
-    stream: BufferedReader, place: Span, declarations: Declarations, wanted: Sequence[Signal]
+    stream: BufferedReader, place: Span, columns: Columns, wanted: Sequence[Signal]
 ) -> Recording | Diagnostic:
     digest = hashlib.file_digest(stream, "sha256").hexdigest()
     size = stream.tell()
@@ -74,7 +124,6 @@ def _read(
         return findings.empty(place)
     if not start.startswith(MAGIC):
         return findings.not_a_log(start, place)
-    columns = Columns(declarations, wanted)
     walk = Walk(stream, size, columns)
     walk.run()
     columns.settle()
@@ -82,7 +131,7 @@ def _read(
     if unusable is not None:
         return unusable
     recording = _recording(place, digest, size, columns, walk, wanted)
-    return _too_long(recording, declarations.clock, place) or recording
+    return _too_long(recording, columns.clock, place) or recording
 
 
 def _unusable(walk: Walk, place: Span) -> Diagnostic | None:

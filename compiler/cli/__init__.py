@@ -18,7 +18,7 @@ from compiler import __version__
 from compiler.cli.group import DEFAULT, Commands
 from compiler.cli.output import BAD, INTERRUPTED, SHOWN, not_written, say, say_line
 from compiler.cli.requirements import compile_, fmt, import_
-from compiler.cli.runs import audit, report, simulate
+from compiler.cli.runs import audit, info, report, simulate
 from compiler.cli.verify import verify
 from fretish.diagnostic import Code, Diagnostic
 
@@ -33,7 +33,7 @@ def cli() -> None:
     """
 
 
-for _command in (compile_, fmt, import_, audit, report, verify, simulate):
+for _command in (compile_, fmt, import_, info, audit, report, verify, simulate):
     cli.add_command(_command)
 
 
