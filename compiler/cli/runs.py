@@ -7,7 +7,7 @@ import os
 import sys
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -24,6 +24,10 @@ from compiler.cli.output import (
 )
 from fretish.diagnostic import Code, Diagnostic, has_errors
 
+if TYPE_CHECKING:
+    from compiler.auditing import Audit
+    from compiler.project import Project
+
 
 @click.command(short_help="Audit recorded runs against all requirements.")
 @click.argument("paths", nargs=-1, required=True, metavar="LOG...")
@@ -35,7 +39,12 @@ from fretish.diagnostic import Code, Diagnostic, has_errors
     "--evidence", default="build/evidence.json", show_default=True, help="Where evidence goes."
 )
 @click.option(
-    "--format", "form", type=click.Choice(("text", "json")), default="text", show_default=True
+    "--format",
+    "form",
+    type=click.Choice(("text", "json", "junit", "github")),
+    default="text",
+    show_default=True,
+    help="What is printed: for a person, as JSON, as JUnit XML, as annotations of GitHub Actions.",
 )
 @click.option(
     "--engine",
@@ -86,10 +95,24 @@ def audit(
         raise SystemExit(BAD)
     if result.read:  # a mistyped name must not cost the evidence of the last audit
         deliver({Path(evidence): result.evidence}, (*logs, *files))
-    click.echo(result.as_json if form == "json" else _coloured(result.text), nl=False)
+    click.echo(_printed(result, project, form), nl=False)
     if has_errors(result.diagnostics):
         raise SystemExit(BAD)
     raise SystemExit(VIOLATION if result.violated else SHOWN if result.shown else NOT_SHOWN)
+
+
+def _printed(result: Audit, project: Project, form: str) -> str:
+    from compiler.outputs import github, junit
+
+    match form:
+        case "json":
+            return result.as_json
+        case "junit":
+            return junit(result.results)
+        case "github":
+            return github(result.results, project.rules)
+        case _:
+            return _coloured(result.text)
 
 
 def _counted(count: int) -> Any:

@@ -214,3 +214,11 @@ def test_stepping_shows_the_same_as_columns(fretc: Fretc) -> None:
     before = Path("build/evidence.json").read_bytes()
     fretc("audit", "run.mcap", "--engine", "online")
     assert Path("build/evidence.json").read_bytes() == before
+
+
+def test_results_can_be_read_by_other_tools(fretc: Fretc) -> None:
+    junit = fretc("audit", "run.mcap", "--format", "junit")
+    assert (junit.status, junit.out.startswith('<?xml version="1.0"')) == (0, True)
+    assert '<testcase name="R1" classname="run.mcap"' in junit.out
+    github = fretc("audit", "run.mcap", "--format", "github")
+    assert github.out.startswith("::notice file=requirements/r1.fret,line=")

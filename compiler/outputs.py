@@ -1,0 +1,96 @@
+"""Results of an audit in the forms of other tools: JUnit XML, and annotations of GitHub Actions.
+
+Sources: the JUnit schema of the Jenkins xUnit plugin, https://github.com/jenkinsci/xunit-plugin;
+GitHub, Workflow commands for GitHub Actions.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from itertools import groupby
+from typing import Any
+from xml.etree import ElementTree
+
+from compiler.rule import Rule
+from monitors import kernel
+
+_NOT_XML = re.compile("[^\t\n\r\u0020-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
+_KINDS: Mapping[str, str] = {
+    kernel.VIOLATED: "failure",
+    kernel.NO_DATA: "error",
+    kernel.INCONCLUSIVE: "skipped",
+    kernel.VACUOUS: "skipped",
+}
+"""What JUnit has for a verdict; nothing for one that is satisfied."""
+_LEVELS: Mapping[str, str] = {kernel.VIOLATED: "error", kernel.SATISFIED: "notice"}
+"""What GitHub has for it; a warning for what is not shown."""
+
+
+def junit(results: Sequence[Mapping[str, Any]]) -> str:
+    """One test suite for each run, one test case for each requirement."""
+    root = ElementTree.Element("testsuites", name="fretc audit")
+    for run, found in groupby(results, key=lambda result: str(result["run"])):
+        cases = list(found)
+        counts = _counts([_KINDS.get(case["verdict"]) for case in cases])
+        suite = ElementTree.SubElement(root, "testsuite", {"name": _xml(run), **counts})
+        for case in cases:
+            _case(suite, run, case)
+    ElementTree.indent(root)
+    text = ElementTree.tostring(root, encoding="unicode")
+    return f'<?xml version="1.0" encoding="UTF-8"?>\n{text}\n'
+
+
+def _counts(kinds: Sequence[str | None]) -> dict[str, str]:
+    counted = {"failures": "failure", "errors": "error", "skipped": "skipped"}
+    return {"tests": str(len(kinds))} | {n: str(kinds.count(k)) for n, k in counted.items()}
+
+
+def _case(suite: ElementTree.Element, run: str, case: Mapping[str, Any]) -> None:
+    length = (case["end_ns"] or 0) - (case["start_ns"] or 0)
+    node = ElementTree.SubElement(
+        suite,
+        "testcase",
+        name=_xml(case["requirement"]),
+        classname=_xml(run),
+        time=f"{length / 1e9:.3f}",
+    )
+    kind = _KINDS.get(case["verdict"])
+    if kind is not None:
+        message = _xml(f"{case['verdict']}: {case['reason']}")
+        told = ElementTree.SubElement(node, kind, message=message)
+        told.text = _xml("\n".join(_lines(case)))
+
+
+def _lines(case: Mapping[str, Any]) -> Iterator[str]:
+    """Each stretch at which the requirement was violated, with what the signals said."""
+    for broken in case["violations"]:
+        values = ", ".join(f"{name} = {value}" for name, value in broken["values"].items())
+        stretch = f"{broken['start_s']:.3f} s to {broken['end_s']:.3f} s"
+        yield f"{stretch}: {values}" if values else stretch
+
+
+def _xml(text: str) -> str:
+    """The text without what XML cannot hold."""
+    return _NOT_XML.sub("\ufffd", text)
+
+
+def github(results: Sequence[Mapping[str, Any]], rules: Sequence[Rule]) -> str:
+    """A line for each result, shown at the sentence of its requirement."""
+    places = {rule.id: rule.requirement.wording for rule in rules}
+    lines = []
+    for result in results:
+        place = places[result["requirement"]]
+        level = _LEVELS.get(result["verdict"], "warning")
+        file, title = _property(place.source.name), _property(f"{result['requirement']}")
+        where = f"file={file},line={place.line},title={title} {_property(result['verdict'])}"
+        lines.append(f"::{level} {where}::{_data(result['run'])}: {_data(result['reason'])}\n")
+    return "".join(lines)
+
+
+def _data(text: str) -> str:
+    return text.replace("%", "%25").replace("\r", "%0D").replace("\n", "%0A")
+
+
+def _property(text: str) -> str:
+    return _data(text).replace(":", "%3A").replace(",", "%2C")

@@ -1,0 +1,81 @@
+"""Results as JUnit XML and as annotations of GitHub Actions."""
+
+from typing import Any
+from xml.etree import ElementTree
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from compiler.outputs import github, junit
+from tests.monitoring import rule
+
+
+def result(verdict: str, run: str = "a.mcap", id: str = "R1", **more: Any) -> dict[str, Any]:
+    return {
+        "run": run,
+        "requirement": id,
+        "verdict": verdict,
+        "reason": "why",
+        "start_ns": 10**9,
+        "end_ns": 3 * 10**9,
+        "violations": [],
+        **more,
+    }
+
+
+ALL = [
+    result("satisfied"),
+    result("violated", id="R2"),
+    result("inconclusive", id="R3"),
+    result("vacuous", id="R4"),
+    result("no data", id="R5", start_ns=None, end_ns=None),
+    result("satisfied", run="b.mcap"),
+]
+
+
+def test_each_run_is_a_suite_and_each_requirement_a_case() -> None:
+    root = ElementTree.fromstring(junit(ALL))
+    first, second = root
+    assert (first.get("name"), second.get("name")) == ("a.mcap", "b.mcap")
+    counts = [first.get(name) for name in ("tests", "failures", "errors", "skipped")]
+    assert counts == ["5", "1", "1", "2"]
+    kinds = [[child.tag for child in case] for case in first]
+    assert kinds == [[], ["failure"], ["skipped"], ["skipped"], ["error"]]
+    assert [case.get("time") for case in first] == ["2.000"] * 4 + ["0.000"]
+    assert first[1][0].get("message") == "violated: why"
+
+
+def test_a_violation_is_told_with_its_time_and_its_values() -> None:
+    broken = {"start_s": 1.5, "end_s": 2.0, "values": {"x": 0.25, "y": None}}
+    root = ElementTree.fromstring(junit([result("violated", violations=[broken])]))
+    assert root[0][0][0].text == "1.500 s to 2.000 s: x = 0.25, y = None"
+
+
+@given(st.text())
+def test_any_text_gives_xml_that_can_be_read(text: str) -> None:
+    root = ElementTree.fromstring(junit([result("violated", run=text, reason=text, id=text)]))
+    assert len(root[0]) == 1
+
+
+@pytest.mark.parametrize(
+    ("verdict", "level"),
+    [
+        ("satisfied", "notice"),
+        ("violated", "error"),
+        ("inconclusive", "warning"),
+        ("vacuous", "warning"),
+        ("no data", "warning"),
+    ],
+)
+def test_an_annotation_stands_at_the_sentence(verdict: str, level: str) -> None:
+    found = github([result(verdict)], [rule("the sw shall always satisfy q")])
+    assert found == f"::{level} file=r.fret,line=1,title=R1 {verdict}::a.mcap: why\n"
+
+
+def test_nothing_in_a_result_makes_another_annotation() -> None:
+    evil = result("violated", run="a\n::error::b", reason="100%\r\n::warning::x")
+    found = github([evil], [rule("the sw shall always satisfy q")])
+    assert found.count("\n") == 1
+    assert "%0A::error::b" in found
+    assert "100%25%0D%0A" in found
