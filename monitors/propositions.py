@@ -194,9 +194,12 @@ def _call(name: str, args: Sequence[Numbers]) -> Numbers:
 
 
 def _compared(op: str, left: Numbers, right: Numbers, scope: Scope) -> States:
+    states = _COMPARE[op](left, right).astype(np.int8)
+    states *= TRUE  # and what is not true is FALSE, which is 0
     unknown = np.isnan(left) | np.isnan(right)
-    states = np.where(unknown, UNKNOWN, np.where(_COMPARE[op](left, right), TRUE, FALSE))
-    return np.broadcast_to(states, scope.length).astype(np.int8)
+    if unknown.any():
+        states[unknown] = UNKNOWN
+    return states if len(states) == scope.length else np.repeat(states, scope.length)
 
 
 def _not(states: States) -> States:

@@ -78,10 +78,16 @@ def _accepted(
     assert signal.valid is not None
     count, width = values.shape
     names = {name.id for name in e.names(signal.valid)} - {"x"}
-    numbers = {name: np.repeat(beside[name][rows], width) for name in names}
+    numbers = {name: _spread(beside[name][rows], width) for name in names}
     scope = Scope(count * width, {"x": values.reshape(-1), **numbers}, signal.unit, single)
     accepted: Truths = (truth(signal.valid, scope) == TRUE).reshape(count, width)
     return accepted
+
+
+def _spread(numbers: Numbers, width: int) -> Numbers:
+    """One number for each element; one alone where all messages state the same."""
+    same = len(numbers) > 0 and bool((numbers == numbers[0]).all())
+    return numbers[:1] if same else np.repeat(numbers, width)
 
 
 def _readings(signal: Signal, values: Numbers, valid: Truths) -> tuple[Numbers, Truths]:

@@ -262,9 +262,9 @@ class Walk:
         """The messages of a chunk; its definitions are noted."""
         starts: list[int] = []
         ends: list[int] = []
-        strange = False
+        strange, message = False, Opcode.MESSAGE.value
         for opcode, start, end in frames(data):
-            if opcode == Opcode.MESSAGE:
+            if opcode == message:
                 starts.append(start)
                 ends.append(end)
             elif opcode == Opcode.SCHEMA:
