@@ -37,6 +37,7 @@ from compiler.formula import (
     weak_previous,
 )
 from fretish.syntax import ConditionKind, ScopeKind
+from monitors.kernel.verdicts import Signals
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,6 +66,19 @@ class Watch:
     """Ticks from a trigger to its deadline; None: there is no deadline."""
     renewed: bool
     """A trigger replaces the demand of the trigger before it: only the latest one is open."""
+
+    @property
+    def signals(self) -> Signals[Formula]:
+        """What a monitor tells at each tick."""
+        return Signals(
+            self.trigger,
+            self.breach,
+            self.doom,
+            self.owed,
+            self.fails,
+            self.settled,
+            self.answer if self.answer is not None else FALSE,
+        )
 
 
 @dataclass(frozen=True, slots=True)

@@ -15,13 +15,14 @@ from compiler import formula as f
 from compiler import printing
 from compiler.past import Watch
 from fretish.depth import deep
+from monitors.kernel.stepping import Marks
+from monitors.kernel.verdicts import Signals
 
 _OR, _AND, _ATOMIC = range(3)
 """How tight Python's operators bind; a column's do in the same order."""
 
-SIGNALS = ("trigger", "breach", "doom", "owed", "fails", "settled", "answer")
-MARKS = ("broken", "doomed", "last", "open")
-"""Ticks that a rail remembers of each requirement."""
+SIGNALS, MARKS = Signals._fields, Marks._fields
+"""What a rail tells, and the ticks that it remembers, of each requirement."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,7 +54,6 @@ class Told:
     """As `step`, in parentheses where an operator before it would ask for them."""
     columns: Mapping[str, str]
     renewed: bool
-    horizon: int | None
 
     @property
     def marks(self) -> tuple[str, ...]:
@@ -105,16 +105,7 @@ def program(
 
 
 def _told(writer: _Writer, id: str, prefix: str, watch: Watch) -> Told:
-    signals = {
-        "trigger": watch.trigger,
-        "breach": watch.breach,
-        "doom": watch.doom,
-        "owed": watch.owed,
-        "fails": watch.fails,
-        "settled": watch.settled,
-        "answer": watch.answer if watch.answer is not None else f.FALSE,
-    }
-    texts = {name: writer.text(signal) for name, signal in signals.items()}
+    texts = {name: writer.text(signal) for name, signal in watch.signals._asdict().items()}
     return Told(
         id,
         prefix,
@@ -122,7 +113,6 @@ def _told(writer: _Writer, id: str, prefix: str, watch: Watch) -> Told:
         {name: text.grouped(_ATOMIC).step for name, text in texts.items()},
         {name: text.column for name, text in texts.items()},
         watch.renewed,
-        watch.horizon,
     )
 
 

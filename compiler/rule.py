@@ -6,7 +6,7 @@ import hashlib
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from compiler.formula import FALSE, Formula, atoms
+from compiler.formula import Formula, atoms
 from compiler.past import Watch
 from fretish.checking import conditions
 from fretish.clock import Clock
@@ -50,28 +50,14 @@ class Rule:
 
         A formula may lack some: `finally` says nothing of an infinite run.
         """
-        formulas = (self.ft_infinite, self.ft_finite, self.pt, *self._signals)
+        formulas = (self.ft_infinite, self.ft_finite, self.pt, *self.watch.signals)
         return tuple(dict.fromkeys(name for formula in formulas for name in atoms(formula)))
 
     @property
     def watched(self) -> tuple[str, ...]:
         """The propositions that a monitor needs: predicates that look back are none of them."""
-        needed = {name for signal in self._signals for name in atoms(signal)}
+        needed = {name for signal in self.watch.signals for name in atoms(signal)}
         return tuple(name for name in self.propositions if name in needed)
-
-    @property
-    def _signals(self) -> tuple[Formula, ...]:
-        watch = self.watch
-        answer = watch.answer if watch.answer is not None else FALSE
-        return (
-            watch.trigger,
-            watch.breach,
-            watch.doom,
-            watch.owed,
-            watch.fails,
-            watch.settled,
-            answer,
-        )
 
     @property
     def variables(self) -> tuple[str, ...]:
