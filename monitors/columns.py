@@ -37,16 +37,7 @@ class Pending:
     payloads: list[bytes] = field(default_factory=list)
     size: int = 0
 
-    def add(self, log_time: int, publish_time: int, payload: bytes) -> None:
-        """One more."""
-        self.logs.append(log_time)
-        self.publishes.append(publish_time)
-        self.payloads.append(payload)
-        self.size += len(payload)
-
-    def add_all(
-        self, logs: Sequence[int], publishes: Sequence[int], payloads: Sequence[bytes]
-    ) -> None:
+    def add(self, logs: Sequence[int], publishes: Sequence[int], payloads: Sequence[bytes]) -> None:
         """Some more."""
         self.logs.extend(logs)
         self.publishes.extend(publishes)
@@ -137,14 +128,8 @@ class Columns:
         if not column.bound:
             column.logs.append(log_time)
             return
-        pending = column.pending
-        if pending is None or pending.stream != stream:
-            self._settle(column)
-            pending = column.pending = Pending(stream)
-        read = bool(column.signals) or self.clock.time is TimeSource.HEADER_STAMP
-        pending.add(log_time, publish_time, bytes(payload) if read else b"")
-        if pending.full:
-            self._settle(column)
+        payloads = [bytes(payload) if self._decodes(column) else b""]
+        self._wait(column, stream, [log_time], [publish_time], payloads)
 
     def add_all(self, stream: Stream, messages: Messages) -> None:
         """Messages of one topic, in their order."""
@@ -153,13 +138,27 @@ class Columns:
         if not column.bound:
             column.logs.frombytes(logs.tobytes())
             return
+        payloads = messages.payloads if self._decodes(column) else [b""] * len(logs)
+        self._wait(column, stream, logs.tolist(), messages.publishes.tolist(), payloads)
+
+    def _decodes(self, column: Column) -> bool:
+        """Whether anything within its messages is asked for."""
+        return bool(column.signals) or self.clock.time is TimeSource.HEADER_STAMP
+
+    def _wait(
+        self,
+        column: Column,
+        stream: Stream,
+        logs: Sequence[int],
+        publishes: Sequence[int],
+        payloads: Sequence[bytes],
+    ) -> None:
+        """Keep messages until there are many of their stream, or another stream follows."""
         pending = column.pending
         if pending is None or pending.stream != stream:
             self._settle(column)
             pending = column.pending = Pending(stream)
-        read = bool(column.signals) or self.clock.time is TimeSource.HEADER_STAMP
-        payloads = messages.payloads if read else [b""] * len(logs)
-        pending.add_all(logs.tolist(), messages.publishes.tolist(), payloads)
+        pending.add(logs, publishes, payloads)
         if pending.full:
             self._settle(column)
 
@@ -186,7 +185,7 @@ class Columns:
     def _extract(self, column: Column, pending: Pending) -> Extract:
         """What the signals ask for; one with something wrong gets no samples."""
         count = len(pending.logs)
-        if not column.signals and self.clock.time is not TimeSource.HEADER_STAMP:
+        if not self._decodes(column):
             return Extract.empty(count, ())
         id = pending.stream.channel.id
         if id not in self._extractions:
