@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from bisect import bisect_right
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -11,13 +11,12 @@ from monitors.kernel.columns import (
     LARGE,
     Column,
     column,
-    columns_of,
     reuse_memory,
     runs_of,
     ticks_of,
     truths,
 )
-from monitors.kernel.stepping import Monitor, Row, finite_verdict, literals_of
+from monitors.kernel.stepping import Monitor, finite_verdict, literals_of
 from monitors.kernel.verdicts import (
     INCONCLUSIVE,
     NO_DATA,
@@ -120,18 +119,6 @@ def _gathered(steps: Sequence[tuple[Signals[bool], ...]], place: int) -> Signals
         return Signals(*(0 for _ in Signals._fields))
     values = zip(*(step[place] for step in steps), strict=True)
     return Signals(*(column(bytes(value)).true for value in values))
-
-
-def outcomes(monitor: Monitor, rows: Iterable[Row], end: str = INCONCLUSIVE) -> tuple[Outcome, ...]:
-    """`evaluate` over rows of truth values in the order of `PROPOSITIONS`.
-
-    Raises:
-        TypeError: a value is not True, False or None.
-        ValueError: a row has more or fewer values.
-    """
-    names = tuple(monitor.PROPOSITIONS)
-    ticks, columns = columns_of(rows, len(names))
-    return evaluate(monitor, dict(zip(names, columns, strict=True)), ticks, end)
 
 
 def _outcome(

@@ -700,18 +700,6 @@ def _gathered(steps: Sequence[tuple[Signals[bool], ...]], place: int) -> Signals
     return Signals(*(column(bytes(value)).true for value in values))
 
 
-def outcomes(monitor: Monitor, rows: Iterable[Row], end: str = INCONCLUSIVE) -> tuple[Outcome, ...]:
-    """`evaluate` over rows of truth values in the order of `PROPOSITIONS`.
-
-    Raises:
-        TypeError: a value is not True, False or None.
-        ValueError: a row has more or fewer values.
-    """
-    names = tuple(monitor.PROPOSITIONS)
-    ticks, columns = columns_of(rows, len(names))
-    return evaluate(monitor, dict(zip(names, columns, strict=True)), ticks, end)
-
-
 def _outcome(
     requirement: Requirement, ticks: int, must: Signals[int], may: Signals[int], end: str
 ) -> Outcome:
@@ -1128,7 +1116,7 @@ class R1Rail:
 class R1Monitor(Monitor):
     """Step it with the propositions of each tick; a verdict comes back."""
 
-    PROGRAM = "8d7c7589b5438a5ad2b6a36b213180485c57f7bc07930b0a0b7845f74678f334"
+    PROGRAM = "4d9c64e0d403efc386db5cd5e3c09c0b87312a0daebf412ab33cf836fa08a104"
     REQUIREMENTS = (
         Requirement(
             "R1",
