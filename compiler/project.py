@@ -101,16 +101,17 @@ def requirement_files(folder: str) -> list[str] | Diagnostic:
     """The `.fret` files of a folder, sorted; or the one file, where it is a file."""
     try:
         if not _is_folder(folder):
-            return [folder] if Path(folder).is_file() else _no_requirements(folder, "no folder")
+            return [folder] if Path(folder).is_file() else _absent(folder, "there is no folder")
         names = sorted(name for name in os.listdir(folder) if name.endswith(".fret"))
     except OSError as error:
         return unreadable(folder, error)
     found = [str(Path(folder) / name) for name in names]
-    return [path for path in found if not _is_folder(path)] or _no_requirements(folder, "")
+    return [path for path in found if not _is_folder(path)] or _absent(
+        folder, "no requirement (`*.fret`) is in"
+    )
 
 
-def _no_requirements(folder: str, missing: str) -> Diagnostic:
-    what = "there is no folder" if missing else "no requirement (`*.fret`) is in"
+def _absent(folder: str, what: str) -> Diagnostic:
     return Diagnostic(
         Code.NO_SUCH_FILE,
         f"{what} `{folder}`",
