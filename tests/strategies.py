@@ -184,7 +184,7 @@ leaves: st.SearchStrategy[f.Formula] = st.one_of(
 )
 
 
-def _logic(inner: st.SearchStrategy[f.Formula]) -> list[st.SearchStrategy[f.Formula]]:
+def logic(inner: st.SearchStrategy[f.Formula]) -> list[st.SearchStrategy[f.Formula]]:
     several = st.lists(inner, min_size=2, max_size=3).map(tuple)
     return [
         st.builds(f.Not, inner),
@@ -196,33 +196,39 @@ def _logic(inner: st.SearchStrategy[f.Formula]) -> list[st.SearchStrategy[f.Form
     ]
 
 
-def _past(inner: st.SearchStrategy[f.Formula]) -> st.SearchStrategy[f.Formula]:
+Inner = st.SearchStrategy[f.Formula]
+Intervals = st.SearchStrategy[f.Interval]
+
+
+def past(inner: Inner, ago: Intervals = intervals) -> Inner:
+    """One operator of the past, or of logic."""
     return st.one_of(
-        *_logic(inner),
+        *logic(inner),
         st.builds(f.Previous, inner),
         st.builds(f.WeakPrevious, inner),
-        st.builds(f.Once, inner, intervals),
-        st.builds(f.Historically, inner, intervals),
-        st.builds(f.Since, inner, inner, intervals),
+        st.builds(f.Once, inner, ago),
+        st.builds(f.Historically, inner, ago),
+        st.builds(f.Since, inner, inner, ago),
     )
 
 
-def _future(inner: st.SearchStrategy[f.Formula]) -> st.SearchStrategy[f.Formula]:
+def future(inner: Inner, ahead: Intervals = intervals) -> Inner:
+    """One operator of the future, or of logic."""
     return st.one_of(
-        *_logic(inner),
+        *logic(inner),
         st.builds(f.Next, inner),
-        st.builds(f.Eventually, inner, intervals),
-        st.builds(f.Globally, inner, intervals),
+        st.builds(f.Eventually, inner, ahead),
+        st.builds(f.Globally, inner, ahead),
         st.builds(f.Until, inner, inner),
         st.builds(f.Release, inner, inner),
     )
 
 
-past_formulas: st.SearchStrategy[f.Formula] = st.recursive(leaves, _past, max_leaves=6)
+past_formulas: st.SearchStrategy[f.Formula] = st.recursive(leaves, past, max_leaves=6)
 """Nodes as they are: no constructor has folded anything."""
-future_formulas: st.SearchStrategy[f.Formula] = st.recursive(leaves, _future, max_leaves=6)
+future_formulas: st.SearchStrategy[f.Formula] = st.recursive(leaves, future, max_leaves=6)
 logic_formulas: st.SearchStrategy[f.Formula] = st.recursive(
-    leaves, lambda inner: st.one_of(*_logic(inner)), max_leaves=6
+    leaves, lambda inner: st.one_of(*logic(inner)), max_leaves=6
 )
 
 # Traces --------------------------------------------------------------------------------------

@@ -16,7 +16,15 @@ from monitors.kernel import Monitor
 from monitors.kernel.verdicts import Truth, truth
 from tests.meaning import SCOPES
 from tests.monitoring import monitor, of_formula, over, packed, rule, steps
-from tests.strategies import future_formulas, leaves, past_formulas, templates, traces
+from tests.strategies import (
+    future,
+    future_formulas,
+    leaves,
+    past,
+    past_formulas,
+    templates,
+    traces,
+)
 
 Bits = list[bool]
 Columns = Mapping[str, Sequence[bool]]
@@ -189,35 +197,12 @@ intervals = st.one_of(
 )
 
 
-def _logic(inner: st.SearchStrategy[f.Formula]) -> list[st.SearchStrategy[f.Formula]]:
-    return [
-        st.builds(f.Not, inner),
-        st.builds(lambda a, b: f.And((a, b)), inner, inner),
-        st.builds(lambda a, b: f.Or((a, b)), inner, inner),
-        st.builds(f.Xor, inner, inner),
-    ]
-
-
 def _past(inner: st.SearchStrategy[f.Formula]) -> st.SearchStrategy[f.Formula]:
-    return st.one_of(
-        *_logic(inner),
-        st.builds(f.Previous, inner),
-        st.builds(f.WeakPrevious, inner),
-        st.builds(f.Once, inner, intervals),
-        st.builds(f.Historically, inner, intervals),
-        st.builds(f.Since, inner, inner, intervals),
-    )
+    return past(inner, intervals)
 
 
 def _both_ways(inner: st.SearchStrategy[f.Formula]) -> st.SearchStrategy[f.Formula]:
-    return st.one_of(
-        _past(inner),
-        st.builds(f.Next, inner),
-        st.builds(f.Eventually, inner, intervals),
-        st.builds(f.Globally, inner, intervals),
-        st.builds(f.Until, inner, inner),
-        st.builds(f.Release, inner, inner),
-    )
+    return st.one_of(past(inner, intervals), future(inner, intervals))
 
 
 long_past = st.recursive(leaves, _past, max_leaves=4)
