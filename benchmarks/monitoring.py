@@ -8,7 +8,6 @@ Prints tables of CPU time; no test asserts them. Peers are an extra: pip install
 from __future__ import annotations
 
 import argparse
-import statistics
 import time
 import tracemalloc
 from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -18,6 +17,7 @@ from typing import Any
 import numpy as np
 
 from benchmarks.peers import PEERS, WORKLOADS, Columns, Evaluation, Peer, rate, speed
+from benchmarks.timing import seconds
 from compiler import formula as f
 from compiler.past import Watch
 from compiler.pipeline import formalize
@@ -88,17 +88,6 @@ def monitor(*rules: Rule) -> Monitor:
 
 
 # Measuring ------------------------------------------------------------------------------------
-
-
-def seconds(run: Callable[[], object], runs: int = 5) -> float:
-    """Median CPU time, after one run to warm up."""
-    run()
-    times = []
-    for _ in range(runs):
-        start = time.process_time()
-        run()
-        times.append(time.process_time() - start)
-    return statistics.median(times)
 
 
 def repeated(run: Callable[[], object], least: float = 0.02) -> float:

@@ -9,29 +9,17 @@ from __future__ import annotations
 
 import argparse
 import hashlib
-import statistics
-import time
-from collections.abc import Callable
 from pathlib import Path
 
 from mcap.reader import make_reader
 from mcap_ros1.decoder import DecoderFactory as Ros1
 from mcap_ros2.decoder import DecoderFactory as Ros2
 
+from benchmarks.timing import seconds
 from compiler.project import beside, load, requirement_files
 from fretish.declarations import Declarations
 from fretish.diagnostic import Diagnostic
 from monitors.recordings import read
-
-
-def seconds(run: Callable[[], object], runs: int = 5) -> float:
-    run()
-    times = []
-    for _ in range(runs):
-        start = time.process_time()
-        run()
-        times.append(time.process_time() - start)
-    return statistics.median(times)
 
 
 def ours(path: str, declarations: Declarations) -> object:
