@@ -20,11 +20,14 @@ from monitors.container import Stream
 from monitors.damage import LATEST
 from monitors.decoding import short_type
 from monitors.extraction import Extract, Extraction
-from monitors.messages import Messages
+from monitors.messages import Messages, Stamps
+from monitors.payloads import Payloads
 from monitors.samples import Gap, Numbers, Times
 
 _MOST, _MOST_BYTES = 4096, 2**22
 """Messages, and bytes of them, that are read at once."""
+_ENOUGH = 1024
+"""Messages that are read where they stand; fewer wait for others of their kind."""
 
 
 @dataclass(slots=True)
@@ -138,7 +141,11 @@ class Columns:
         if not column.bound:
             column.logs.frombytes(logs.tobytes())
             return
-        payloads = messages.payloads if self._decodes(column) else [b""] * len(logs)
+        if len(messages) >= _ENOUGH or len(messages.data) >= _MOST_BYTES:
+            self._settle(column)
+            self._read(column, stream, logs, messages.publishes, messages.payloads)
+            return
+        payloads = messages.payloads.copies() if self._decodes(column) else [b""] * len(logs)
         self._wait(column, stream, logs.tolist(), messages.publishes.tolist(), payloads)
 
     def _decodes(self, column: Column) -> bool:
@@ -169,11 +176,17 @@ class Columns:
 
     def _settle(self, column: Column) -> None:
         pending, column.pending = column.pending, None
-        if pending is None:
-            return
-        extract = self._extract(column, pending)
-        logs = np.array(pending.logs, np.int64)
-        times = self._times(column, pending, extract, logs)
+        if pending is not None:
+            logs, publishes = np.array(pending.logs, np.int64), np.array(pending.publishes, "u8")
+            payloads = Payloads.of(pending.payloads)
+            self._read(column, pending.stream, logs, publishes, payloads)
+
+    def _read(
+        self, column: Column, stream: Stream, logs: Times, publishes: Stamps, payloads: Payloads
+    ) -> None:
+        """Keep what messages of one stream say."""
+        extract = self._extract(column, stream, payloads)
+        times = self._times(column, extract, logs, publishes)
         kept = times < LATEST
         column.undecoded += int((~kept).sum())
         column.logs.frombytes(logs[kept].tobytes())
@@ -182,16 +195,15 @@ class Columns:
             values = column.values.setdefault(signal.name, array("d"))
             values.frombytes(extract.values[signal.name][kept].tobytes())
 
-    def _extract(self, column: Column, pending: Pending) -> Extract:
+    def _extract(self, column: Column, stream: Stream, payloads: Payloads) -> Extract:
         """What the signals ask for; one with something wrong gets no samples."""
-        count = len(pending.logs)
         if not self._decodes(column):
-            return Extract.empty(count, ())
-        id = pending.stream.channel.id
+            return Extract.empty(len(payloads), ())
+        id = stream.channel.id
         if id not in self._extractions:
-            self._extractions[id] = Extraction(pending.stream, column.signals)
+            self._extractions[id] = Extraction(stream, column.signals)
         extraction = self._extractions[id]
-        extract = extraction.extract(pending.payloads)
+        extract = extraction.extract(payloads)
         for signal in tuple(column.signals):
             if signal.name in extraction.wrong:
                 column.refuse(signal, extraction.wrong[signal.name])
@@ -201,13 +213,13 @@ class Columns:
             self.nearest[name] = min(least, self.nearest.get(name, least))
         return extract
 
-    def _times(self, column: Column, pending: Pending, extract: Extract, logs: Times) -> Times:
+    def _times(self, column: Column, extract: Extract, logs: Times, publishes: Stamps) -> Times:
         """When the messages were, on the declared clock."""
         match self.clock.time:
             case TimeSource.LOG_TIME:
                 return logs
             case TimeSource.PUBLISH_TIME:
-                return np.array(pending.publishes, np.uint64).clip(max=LATEST).astype(np.int64)
+                return publishes.clip(max=LATEST).astype(np.int64)
             case TimeSource.HEADER_STAMP:
                 column.unstamped += int((extract.decoded & ~extract.stamped).sum())
                 times = np.where(extract.stamped, extract.stamps, logs)

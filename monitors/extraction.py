@@ -19,7 +19,8 @@ from monitors import findings
 from monitors.container import Stream
 from monitors.damage import LATEST
 from monitors.decoding import Decode, decoder, shape, stamp
-from monitors.layouts import Batch, Group, Shape, Where, groups
+from monitors.layouts import Found, Group, Layout, Layouts, Shape, Where
+from monitors.payloads import Payloads, Places
 from monitors.probes import trusted
 from monitors.readings import nearest, samples, siblings
 from monitors.samples import Numbers, Times
@@ -28,6 +29,8 @@ from monitors.signals import nearest as nearest_of_one
 
 _CHECKED = 8
 """Layouts of a stream of which the official decoder reads three messages too."""
+_BLOCK = 2**15
+"""Numbers of an array field that are taken at once: the passes over them stay within the cache."""
 _FEW = 512
 """Bytes; fewer are decoded sooner than taken from their places. Two channels of one topic may send
 by turns, and then each message comes alone."""
@@ -75,6 +78,8 @@ class Extraction:
         found = decoder(stream)
         self._decode: Decode | None = None if isinstance(found, str) else found
         self._shape = _shape(stream, self._decode)
+        self._sought: tuple[Where, ...] | None = None
+        """What the layouts were made for: less, once a signal was refused."""
         if isinstance(found, str):
             for signal in signals:
                 self._refuse(signal, findings.unknown_encoding(signal, found))
@@ -84,19 +89,17 @@ class Extraction:
         """Whether anything can be decoded."""
         return self._decode is not None
 
-    def extract(self, payloads: Sequence[bytes]) -> Extract:
+    def extract(self, payloads: Payloads) -> Extract:
         """What the messages hold."""
         extract = Extract.empty(len(payloads), self.signals)
         if self._decode is None:
             return extract
         placed = (
-            self._shape is not None
-            and sum(map(len, payloads)) >= _FEW
-            and self._placed(self._shape)
+            self._shape is not None and len(payloads.data) >= _FEW and self._placed(self._shape)
         )
         slow = self._at_once(payloads, extract) if placed else range(len(payloads))
         for row in slow:
-            self._one_by_one(row, payloads[row], extract)
+            self._one_by_one(row, bytes(payloads.payload(row)), extract)
         return extract
 
     def _refuse(self, signal: Signal, diagnostic: Diagnostic) -> None:
@@ -138,13 +141,15 @@ class Extraction:
             for field in map(shape.number, _stamp_places(shape))
         )
 
-    def _at_once(self, payloads: Sequence[bytes], extract: Extract) -> Sequence[int]:
+    def _at_once(self, payloads: Payloads, extract: Extract) -> Sequence[int]:
         """Read all messages that fit a layout; gives the rows that are left."""
         assert self._shape is not None
-        batch = Batch.of(payloads)
+        wanted = self._wanted(self._shape)
+        if wanted != self._sought:
+            self._sought, self._layouts = wanted, Layouts(self._shape, wanted)
         left: list[int] = []
-        for group in groups(self._shape, batch, self._wanted(self._shape)):
-            if self._shape is None or not self._taken(batch, group, payloads, extract):
+        for group in self._layouts.groups(payloads):
+            if not self._taken(payloads, group, extract):
                 left.extend(group.rows.tolist())
         return sorted(left)
 
@@ -158,38 +163,28 @@ class Extraction:
         wanted.update(dict.fromkeys(_stamp_places(shape)))
         return tuple(wanted)
 
-    def _taken(
-        self, batch: Batch, group: Group, payloads: Sequence[bytes], extract: Extract
-    ) -> bool:
+    def _taken(self, payloads: Payloads, group: Group, extract: Extract) -> bool:
         """Read the messages of one layout, unless the official decoder reads them otherwise."""
         if group.layout is None or self._shape is None:
             return False
-        numbers = {w: batch.gathered(group.rows, f) for w, f in group.layout.found.items()}
-        if self._checks:
+        if group.new and self._checks:
             self._checks -= 1
             last = len(group.rows) - 1
             rows = {0, last // 2, last}
-            if not all(self._agrees(place, group, payloads, numbers) for place in rows):
+            if not all(self._agrees(int(group.rows[i]), payloads, group.layout) for i in rows):
                 self._shape = None
                 return False
-        self._fill(group.rows, numbers, extract)
+        self._fill(payloads, group.rows, group.layout, group.rows, extract)
         return True
 
-    def _agrees(
-        self,
-        place: int,
-        group: Group,
-        payloads: Sequence[bytes],
-        numbers: Mapping[Where, NDArray[np.generic]],
-    ) -> bool:
-        """Whether both ways read the same of one message of the group."""
+    def _agrees(self, row: int, payloads: Payloads, layout: Layout) -> bool:
+        """Whether both ways read the same of one message."""
         slow, fast = (Extract.empty(1, self.signals) for _ in range(2))
         before = len(self.wrong)
-        self._one_by_one(0, payloads[int(group.rows[place])], slow)
+        self._one_by_one(0, bytes(payloads.payload(row)), slow)
         if len(self.wrong) != before or not slow.decoded[0]:
             return False
-        one = {where: found[place : place + 1] for where, found in numbers.items()}
-        self._fill(np.zeros(1, np.int64), one, fast)
+        self._fill(payloads, np.array([row]), layout, np.zeros(1, np.int64), fast)
         return (
             all(
                 np.array_equal(slow.values[s.name], fast.values[s.name], equal_nan=True)
@@ -201,24 +196,50 @@ class Extraction:
         )
 
     def _fill(
-        self,
-        rows: NDArray[np.int64],
-        numbers: Mapping[Where, NDArray[np.generic]],
-        extract: Extract,
+        self, payloads: Payloads, rows: Places, layout: Layout, to: Places, extract: Extract
     ) -> None:
-        extract.decoded[rows] = True
-        columns = {where: _matrix(found) for where, found in numbers.items()}
+        """Put what the messages `rows` hold at the places `to` of the extract."""
+        extract.decoded[to] = True
+        found = layout.found
+        single = {
+            where: payloads.gathered(rows, field.at, field.dtype, None)
+            for where, field in found.items()
+            if field.count is None
+        }
         for signal in self.signals:
-            beside = {name: columns[name,][:, 0] for name in siblings(signal)}
-            values = samples(signal, columns[signal.path.fields], beside)
-            extract.values[signal.name][rows] = values
-            if (RANGE_MIN,) in columns and signal.reduce in (Reduce.MIN, Reduce.OUTLINE):
-                extract.near(signal, nearest(signal, columns[RANGE_MIN,][:, 0]))
+            beside = {name: _numbers(single[name,]) for name in siblings(signal)}
+            field = found[signal.path.fields]
+            if field.count is None:
+                values = _matrix(single[signal.path.fields])
+                extract.values[signal.name][to] = samples(signal, values, beside)
+            else:
+                values = self._reduced(signal, payloads, rows, field, beside)
+                extract.values[signal.name][to] = values
+            if (RANGE_MIN,) in single and signal.reduce in (Reduce.MIN, Reduce.OUTLINE):
+                extract.near(signal, nearest(signal, _numbers(single[RANGE_MIN,])))
         places = _stamp_places(self._shape) if self._shape is not None else ()
         if places:
-            seconds, nanoseconds = (numbers[place].astype(np.int64) for place in places)
-            extract.stamps[rows] = seconds * 10**9 + nanoseconds
-            extract.stamped[rows] = True
+            seconds, nanoseconds = (single[place].astype(np.int64) for place in places)
+            extract.stamps[to] = seconds * 10**9 + nanoseconds
+            extract.stamped[to] = True
+
+    def _reduced(
+        self,
+        signal: Signal,
+        payloads: Payloads,
+        rows: Places,
+        field: Found,
+        beside: Mapping[str, Numbers],
+    ) -> Numbers:
+        """A signal of an array, block by block; shape (rows,)."""
+        values = np.empty(len(rows))
+        step = max(1, _BLOCK // max(1, field.count or 0))
+        for first in range(0, len(rows), step):
+            block = slice(first, first + step)
+            taken = payloads.gathered(rows[block], field.at, field.dtype, field.count)
+            some = {name: numbers[block] for name, numbers in beside.items()}
+            values[block] = samples(signal, _matrix(taken), some)
+        return values
 
 
 def _shape(stream: Stream, decode: Decode | None) -> Shape | None:
@@ -237,10 +258,18 @@ def _reads(shape: Shape, signal: Signal) -> bool:
     )
 
 
-def _matrix(numbers: NDArray[np.generic]) -> Numbers:
-    """One row for each message."""
+def _matrix(numbers: NDArray[np.generic]) -> NDArray[np.floating]:
+    """One row for each message; 32-bit floats stay what they are."""
+    rows = numbers.reshape(len(numbers), numbers[:1].size)
+    if rows.dtype == np.float32:
+        return rows.astype(np.float32, copy=False)
     with np.errstate(invalid="ignore"):  # signalling NaN
-        return numbers.astype(np.float64).reshape(len(numbers), numbers[:1].size)
+        return rows.astype(np.float64)
+
+
+def _numbers(numbers: NDArray[np.generic]) -> Numbers:
+    with np.errstate(invalid="ignore"):
+        return numbers.astype(np.float64)
 
 
 def _stamp_places(shape: Shape) -> tuple[Where, ...]:

@@ -19,9 +19,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from monitors.definitions import CARRIED, NUMBERS, TEXTS, Field, Types
+from monitors.payloads import Payloads, Places
 
-Bytes = NDArray[np.uint8]
-Places = NDArray[np.int64]
 Where = tuple[str, ...]
 """The names of fields from the message down."""
 
@@ -30,6 +29,8 @@ _PADDING = 7
 """Bytes that may follow the last field of CDR."""
 _MOST_CHECKS = 64
 """A message with more lengths than so is of no layout that others share."""
+_MOST_KNOWN = 64
+"""Layouts of a stream that are kept: messages that all differ are held against each of them."""
 
 
 class LayoutError(ValueError):
@@ -199,79 +200,74 @@ class _Walk:
 
 
 @dataclass(frozen=True, slots=True)
-class Batch:
-    """Payloads in one piece of memory: `data[starts[i] : starts[i] + sizes[i]]`."""
-
-    data: Bytes
-    starts: Places
-    sizes: Places
-
-    @classmethod
-    def of(cls, payloads: Sequence[bytes | memoryview]) -> Batch:
-        """The payloads, one behind the other."""
-        sizes = np.fromiter(map(len, payloads), np.int64, len(payloads))
-        starts = np.cumsum(sizes) - sizes
-        # Some bytes more, so that a gather at any start stays within the data.
-        return cls(np.frombuffer(b"".join([*payloads, b"\0" * 8]), np.uint8), starts, sizes)
-
-    def payload(self, i: int) -> memoryview:
-        """One of them."""
-        start = int(self.starts[i])
-        return self.data[start : start + int(self.sizes[i])].data
-
-    def gathered(self, rows: Places, found: Found) -> NDArray[np.generic]:
-        """The field in each of the rows, shape (rows,), or (rows, count) for an array."""
-        dtype = np.dtype(found.dtype)
-        width = dtype.itemsize * (1 if found.count is None else found.count)
-        window = np.lib.stride_tricks.as_strided(
-            self.data, (len(self.data) - max(width, 1) + 1, width), (1, 1), writeable=False
-        )
-        taken = np.ascontiguousarray(window[self.starts[rows] + found.at])
-        numbers = taken != 0 if dtype == np.bool_ else taken.view(dtype)
-        return numbers[:, 0] if found.count is None else numbers
-
-
-@dataclass(frozen=True, slots=True)
 class Group:
     """Messages of one layout; None where they fit no layout."""
 
     rows: Places
     layout: Layout | None
+    new: bool = False
+    """Whether no message before them had this layout."""
 
 
-def groups(shape: Shape, batch: Batch, wanted: Sequence[Where]) -> Iterator[Group]:
-    """All messages of the batch, those of one layout together."""
-    left = np.arange(len(batch.starts))
-    while len(left):
-        try:
-            layout = shape.layout(batch.payload(int(left[0])), wanted)
-        except LayoutError:
-            yield Group(left[:1], None)
-            left = left[1:]
-            continue
-        same = _same(batch, left, layout)
-        rows, left = left[same], left[~same]
-        plain = _plain(batch, rows, layout)
-        if plain.any():
-            yield Group(rows[plain], layout)
-        if not plain.all():
-            yield Group(rows[~plain], None)
+class Layouts:
+    """The layouts of the messages of one stream, as they are met."""
+
+    def __init__(self, shape: Shape, wanted: Sequence[Where]) -> None:
+        self._shape, self._wanted = shape, wanted
+        self._known: dict[int, list[Layout]] = {}
+        """By size; not more than `_MOST_KNOWN` of all sizes."""
+        self._count = 0
+
+    def groups(self, payloads: Payloads) -> Iterator[Group]:
+        """All messages, those of one layout together."""
+        left = np.arange(len(payloads))
+        if self._count:
+            for size in np.unique(payloads.sizes).tolist():
+                for layout in self._known.get(size, ()):
+                    same = _same(payloads, left, layout)
+                    yield from _split(payloads, left[same], layout, new=False)
+                    left = left[~same]
+        while len(left):
+            try:
+                layout = self._shape.layout(payloads.payload(int(left[0])), self._wanted)
+            except LayoutError:
+                yield Group(left[:1], None)
+                left = left[1:]
+                continue
+            self._keep(layout)
+            same = _same(payloads, left, layout)
+            same[0] = True
+            rows, left = left[same], left[~same]
+            yield from _split(payloads, rows, layout, new=True)
+
+    def _keep(self, layout: Layout) -> None:
+        if self._count < _MOST_KNOWN and len(layout.marks) <= _MOST_CHECKS:
+            self._count += 1
+            self._known.setdefault(layout.size, []).append(layout)
 
 
-def _same(batch: Batch, rows: Places, layout: Layout) -> NDArray[np.bool_]:
-    """Which of the rows have the layout; the first one has."""
-    same: NDArray[np.bool_] = batch.sizes[rows] == layout.size
+def _split(payloads: Payloads, rows: Places, layout: Layout, *, new: bool) -> Iterator[Group]:
+    """Those whose texts only the decoder can judge go to it."""
+    plain = _plain(payloads, rows, layout)
+    if plain.any():
+        yield Group(rows[plain], layout, new)
+    if not plain.all():
+        yield Group(rows[~plain], None)
+
+
+def _same(payloads: Payloads, rows: Places, layout: Layout) -> NDArray[np.bool_]:
+    """Which of the rows have the layout, as far as its marks can tell."""
+    same: NDArray[np.bool_] = payloads.sizes[rows] == layout.size
     if len(layout.marks) > _MOST_CHECKS:
-        same[1:] = False
-        return same
+        return np.zeros(len(rows), bool)
     for at, dtype, value in layout.marks:
-        same[same] = batch.gathered(rows[same], Found(at, dtype, None)) == value
+        same[same] = payloads.gathered(rows[same], at, dtype, None) == value
     return same
 
 
-def _plain(batch: Batch, rows: Places, layout: Layout) -> NDArray[np.bool_]:
+def _plain(payloads: Payloads, rows: Places, layout: Layout) -> NDArray[np.bool_]:
     """In which of the rows all texts are ASCII; only the decoder knows whether others are texts."""
     plain = np.ones(len(rows), bool)
     for at, length in layout.texts:
-        plain &= (batch.gathered(rows, Found(at, "u1", length)).view(np.int8) >= 0).all(axis=1)
+        plain &= (payloads.gathered(rows, at, "u1", length).view(np.int8) >= 0).all(axis=1)
     return plain

@@ -8,6 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from monitors.payloads import Bytes, Payloads, Places
+
 _HEAD = np.dtype([("channel", "<u2"), ("sequence", "<u4"), ("log", "<u8"), ("publish", "<u8")])
 """What each message begins with."""
 
@@ -19,9 +21,10 @@ Stamps = NDArray[np.uint64]
 class Messages:
     """Message i is `data[starts[i] : ends[i]]`, in the order of the file; all of shape (n,)."""
 
-    data: bytes
-    starts: NDArray[np.int64]
-    ends: NDArray[np.int64]
+    data: Bytes
+    """With `SPARE` bytes, or more, behind the last message."""
+    starts: Places
+    ends: Places
     channels: NDArray[np.uint16]
     logs: Stamps
     publishes: Stamps
@@ -35,13 +38,17 @@ class Messages:
         """With the heads of the messages; what is too short for one reads as zeros."""
         first = np.array(starts, np.int64)
         padded = np.frombuffer(data + b"\0" * _HEAD.itemsize, np.uint8)
-        shape = (len(padded) - _HEAD.itemsize + 1, _HEAD.itemsize)
-        window = np.lib.stride_tricks.as_strided(padded, shape, (1, 1), writeable=False)
-        heads = np.ascontiguousarray(window[first]).view(_HEAD).reshape(-1)
+        return cls.at(padded, first, np.array(ends, np.int64), strange=strange)
+
+    @classmethod
+    def at(cls, data: Bytes, starts: Places, ends: Places, *, strange: bool) -> Messages:
+        """With the heads of the messages, which lie within the data."""
+        places = len(data) - _HEAD.itemsize + 1
+        heads = np.ndarray((places,), _HEAD, data.data, 0, (1,))[starts]
         return cls(
             data,
-            first,
-            np.array(ends, np.int64),
+            starts,
+            ends,
             heads["channel"],
             heads["log"],
             heads["publish"],
@@ -61,9 +68,11 @@ class Messages:
             self.strange,
         )
 
+    def __len__(self) -> int:
+        return len(self.starts)
+
     @property
-    def payloads(self) -> list[bytes]:
+    def payloads(self) -> Payloads:
         """What follows the head of each message."""
-        size, data = _HEAD.itemsize, self.data
-        places = zip(self.starts.tolist(), self.ends.tolist(), strict=True)
-        return [data[start + size : end] for start, end in places]
+        size = _HEAD.itemsize
+        return Payloads(self.data, self.starts + size, self.ends - self.starts - size)

@@ -26,7 +26,7 @@ _VALUES: tuple[bool | None, ...] = (False, None, True)
 _FOREVER = 2**62
 """Later than any time of a log, and far enough from the end of int64 to add a duration."""
 
-_COMPARE: dict[str, Callable[[Numbers, Numbers], NDArray[np.bool_]]] = {
+COMPARE: dict[str, Callable[..., NDArray[np.bool_]]] = {
     "<": np.less,
     "<=": np.less_equal,
     ">": np.greater,
@@ -34,6 +34,7 @@ _COMPARE: dict[str, Callable[[Numbers, Numbers], NDArray[np.bool_]]] = {
     "=": np.equal,
     "!=": np.not_equal,
 }
+"""The operators of comparisons; NaN is equal to nothing."""
 
 
 class ExpressionError(ValueError):
@@ -194,7 +195,7 @@ def _call(name: str, args: Sequence[Numbers]) -> Numbers:
 
 
 def _compared(op: str, left: Numbers, right: Numbers, scope: Scope) -> States:
-    states = _COMPARE[op](left, right).astype(np.int8)
+    states = COMPARE[op](left, right).astype(np.int8)
     states *= TRUE  # and what is not true is FALSE, which is 0
     unknown = np.isnan(left) | np.isnan(right)
     if unknown.any():

@@ -5,18 +5,20 @@ Numbers are in the base unit of the signal's dimension; NaN is unknown.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Iterator, Mapping
 
 import numpy as np
 from numpy.typing import NDArray
 
 from fretish import expressions as e
-from fretish.declarations import Reading, Reduce, Signal
-from monitors.propositions import TRUE, Scope, truth
+from fretish.declarations import Invalid, Reading, Reduce, Signal
+from monitors.propositions import COMPARE, TRUE, Scope, number, truth
 from monitors.samples import Numbers
 from monitors.signals import clearance
 
 Truths = NDArray[np.bool_]
+Fields = NDArray[np.floating]
+"""What stands in messages: 32-bit floats, or 64-bit floats that hold any other number."""
 
 
 def siblings(signal: Signal) -> tuple[str, ...]:
@@ -27,7 +29,7 @@ def siblings(signal: Signal) -> tuple[str, ...]:
     return tuple(sorted(names))
 
 
-def samples(signal: Signal, values: Numbers, beside: Mapping[str, Numbers]) -> Numbers:
+def samples(signal: Signal, values: Fields, beside: Mapping[str, Numbers]) -> Numbers:
     """The signal's value in each message.
 
     Args:
@@ -38,17 +40,115 @@ def samples(signal: Signal, values: Numbers, beside: Mapping[str, Numbers]) -> N
     Returns:
         Shape (messages,).
     """
-    factor = float(signal.unit.factor)
     index = signal.path.index
     if index is not None:
         values = values[:, index : index + 1]
     if not values.shape[1]:
         return np.full(len(values), np.nan)
+    found = np.empty(len(values))
     with np.errstate(all="ignore"):  # what is too large is infinite, and a NaN may signal
-        readings, unknown = _readings(signal, values, _valid(signal, values, beside))
-        found = _reduced(signal, readings, beside) * (
-            1.0 if signal.reduce is Reduce.OUTLINE else factor
-        )
+        plain = _plain(signal, values, beside, found)
+        if not plain.all():
+            rows = ~plain
+            some = {name: numbers[rows] for name, numbers in beside.items()}
+            found[rows] = _samples(signal, values[rows].astype(np.float64), some)
+    return found
+
+
+def _plain(signal: Signal, values: Fields, beside: Mapping[str, Numbers], found: Numbers) -> Truths:
+    """Fill in the messages of which the least or the greatest measurement is soon seen.
+
+    These are most: one of their elements makes them unknown, or they hold a measurement and
+    nothing that takes precedence over it. Elements that are dropped never do, nor does what is far
+    over the least, or near over the greatest.
+    """
+    accepted = _between(signal, values, beside)
+    if accepted is None or signal.reduce not in (Reduce.MIN, Reduce.MAX):
+        return np.zeros(len(values), bool)
+    unknown, stronger = np.zeros(len(values), bool), np.zeros(len(values), bool)
+    for reading, chosen in _classes(signal.invalid, values, accepted):
+        if reading is Reading.UNKNOWN:
+            unknown |= chosen().any(axis=1)
+        elif reading not in (Reading.DROP, _WEAKER[signal.reduce]):
+            stronger |= chosen().any(axis=1)
+    plain: Truths = unknown | (accepted.any(axis=1) & ~stronger)
+    least = signal.reduce is Reduce.MIN
+    others = np.where(accepted, values, values.dtype.type(np.inf if least else -np.inf))
+    ends = others.min(axis=1) if least else others.max(axis=1)
+    numbers = (ends.astype(np.float64) + 0.0) * float(signal.unit.factor)
+    found[plain] = np.where(unknown, np.nan, numbers)[plain]
+    return plain
+
+
+_WEAKER = {Reduce.MIN: Reading.FAR, Reduce.MAX: Reading.NEAR}
+"""What counts only where nothing was measured."""
+
+
+def _classes(
+    invalid: Invalid, values: Fields, accepted: Truths
+) -> Iterator[tuple[Reading, Callable[[], Truths]]]:
+    """What each kind of element that is no measurement means, and which elements are of it."""
+    yield invalid.nan, lambda: np.isnan(values)
+    yield invalid.positive_infinity, lambda: np.isposinf(values)
+    yield invalid.negative_infinity, lambda: np.isneginf(values)
+    yield invalid.other, lambda: np.isfinite(values) & ~accepted
+
+
+def _between(signal: Signal, values: Fields, beside: Mapping[str, Numbers]) -> Truths | None:
+    """Which elements are measurements, where that is plain; None where it takes more.
+
+    It is plain for 32-bit floats that are compared with 32-bit floats.
+    """
+    if signal.valid is None:
+        return np.isfinite(values)
+    bounds = _bounds(signal.valid)
+    if values.dtype != np.float32 or bounds is None:
+        return None
+    scope = Scope(len(values), beside, signal.unit, single=True)
+    accepted: Truths = np.isfinite(values)
+    for op, side in bounds:
+        numbers = number(side, scope)
+        bound = numbers.astype(np.float32)
+        if not np.array_equal(bound, numbers, equal_nan=True):
+            return None
+        same = bool((bound == bound[:1]).all())
+        accepted &= COMPARE[op](values, bound[0] if same else bound[:, None])
+    return accepted
+
+
+def _bounds(valid: e.Expression) -> list[tuple[str, e.Expression]] | None:
+    """`x >= range_min and x <= range_max`: the operators and what `x` is compared with.
+
+    None where it is no such conjunction.
+    """
+    match valid:
+        case e.And(args):
+            parts = [_bounds(arg) for arg in args]
+            return None if None in parts else [bound for part in parts if part for bound in part]
+        case e.Comparison(op, left, right) if op in _MIRRORED:
+            if _is_x(left) and _without_x(right):
+                return [(op, right)]
+            if _is_x(right) and _without_x(left):
+                return [(_MIRRORED[op], left)]
+    return None
+
+
+_MIRRORED = {"<": ">", "<=": ">=", ">": "<", ">=": "<="}
+
+
+def _is_x(part: e.Expression) -> bool:
+    return isinstance(part, e.Name) and part.id == "x"
+
+
+def _without_x(part: e.Expression) -> bool:
+    return all(name.id != "x" for name in e.names(part))
+
+
+def _samples(signal: Signal, values: Numbers, beside: Mapping[str, Numbers]) -> Numbers:
+    """`samples`, whatever the elements are."""
+    readings, unknown = _readings(signal, values, _valid(signal, values, beside))
+    factor = 1.0 if signal.reduce is Reduce.OUTLINE else float(signal.unit.factor)
+    found = _reduced(signal, readings, beside) * factor
     return np.where(unknown | np.isnan(readings).all(axis=1), np.nan, found)
 
 
@@ -94,16 +194,11 @@ def _readings(signal: Signal, values: Numbers, valid: Truths) -> tuple[Numbers, 
     """The elements with what is far or near put in; and which messages are unknown."""
     invalid = signal.invalid
     readings, unknown = values.copy(), np.zeros(len(values), bool)
-    for chosen, reading in (
-        (np.isnan(values), invalid.nan),
-        (np.isposinf(values), invalid.positive_infinity),
-        (np.isneginf(values), invalid.negative_infinity),
-        (np.isfinite(values) & ~valid, invalid.other),
-    ):
+    for reading, chosen in _classes(invalid, values, valid):
         if reading is Reading.UNKNOWN:
-            unknown |= chosen.any(axis=1)
+            unknown |= chosen().any(axis=1)
         else:
-            readings[chosen] = _PUT[reading]
+            readings[chosen()] = _PUT[reading]
     return readings, unknown
 
 

@@ -9,7 +9,8 @@ from mcap.records import Channel, Schema
 
 from monitors.container import Stream
 from monitors.decoding import decoder, shape
-from monitors.layouts import Batch, LayoutError, Shape, groups
+from monitors.layouts import LayoutError, Layouts, Shape
+from monitors.payloads import Payloads
 from tests.monitors.kinds import Encoder, Kind, Part, kinds, message, official
 
 BOTH = pytest.mark.parametrize("ros1", [False, True])
@@ -20,15 +21,16 @@ def read(encoder: Encoder, payloads: list[bytes]) -> int:
     decode, known = decoder(encoder.stream), shape(encoder.stream)
     assert callable(decode)
     assert known is not None
-    batch, wanted, seen, rows = Batch.of(payloads), known.numbers(), [], 0
-    for group in groups(known, batch, wanted):
+    batch, wanted, seen, rows = Payloads.of(payloads), known.numbers(), [], 0
+    for group in Layouts(known, wanted).groups(batch):
         seen += group.rows.tolist()
         if group.layout is None:
             continue
         rows += len(group.rows)
         messages = [decode(payloads[row]) for row in group.rows]  # never one that is refused
         for where in wanted:
-            found = batch.gathered(group.rows, group.layout.found[where])
+            field = group.layout.found[where]
+            found = batch.gathered(group.rows, field.at, field.dtype, field.count)
             assert len(found) == len(messages)
             with np.errstate(invalid="ignore"):  # of a NaN that signals
                 numbers = found.astype(float)
@@ -160,7 +162,7 @@ def test_a_text_that_is_no_utf_8_is_left_to_the_decoder() -> None:
     odd = whole.replace(b"abc", b"a\xffc")
     found = known(kind.lines())
     split = [(g.rows.tolist(), g.layout is None) for g in
-             groups(found, Batch.of([odd, whole, odd]), found.numbers())]  # fmt: skip
+             Layouts(found, found.numbers()).groups(Payloads.of([odd, whole, odd]))]  # fmt: skip
     assert split == [([1], False), ([0, 2], True)]
     assert read(encoder, [odd.replace(b"\xff", b"c"), whole]) == 2
 
@@ -173,7 +175,7 @@ def test_messages_of_several_lengths_are_grouped_by_their_layout() -> None:
     sent = [encoder({"s": s, "a": [1, 2], "x": float(i)}) for i, s in enumerate(texts)]
     assert len({len(payload) for payload in (sent[0], sent[1])}) == 1
     found = known(kind.lines())
-    rows = [g.rows.tolist() for g in groups(found, Batch.of(sent), found.numbers())]
+    rows = [g.rows.tolist() for g in Layouts(found, found.numbers()).groups(Payloads.of(sent))]
     assert rows == [[0, 2, 5], [1, 4], [3]]
     assert read(encoder, sent) == 6
 
@@ -183,17 +185,20 @@ def test_a_message_with_very_many_lengths_shares_its_layout_with_none() -> None:
     encoder = Encoder(kind, ros1=False)
     sent = [encoder({"s": ["abc"] * 100, "x": float(i)}) for i in range(4)]
     found = known(kind.lines())
-    assert [len(g.rows) for g in groups(found, Batch.of(sent), found.numbers())] == [1] * 4
+    assert [len(g.rows) for g in Layouts(found, found.numbers()).groups(Payloads.of(sent))] == [
+        1
+    ] * 4
     assert read(encoder, sent) == 4
 
 
 def test_a_truth_value_of_any_byte_is_one() -> None:
     found = known("bool a\nbool[2] b")
-    batch = Batch.of([PLAIN + b"\2\0\xff"])
-    (group,) = groups(found, batch, [("a",), ("b",)])
+    batch = Payloads.of([PLAIN + b"\2\0\xff"])
+    (group,) = Layouts(found, [("a",), ("b",)]).groups(batch)
     assert group.layout is not None
+    fields = [group.layout.found[where,] for where in "ab"]
     numbers: list[Any] = [
-        batch.gathered(group.rows, group.layout.found[where,]).tolist() for where in "ab"
+        batch.gathered(group.rows, f.at, f.dtype, f.count).tolist() for f in fields
     ]
     assert numbers == [[True], [[False, True]]]
 
