@@ -66,7 +66,8 @@ def _topics(overview: Overview, *, whole: bool) -> Iterator[str]:
 
 def _count(topic: Topic) -> str:
     rate = _rate(topic)
-    every = f", {rate:.4g} Hz, longest gap {topic.longest_gap_ns / 1e9:.3f} s" if rate else ""
+    longest = (topic.longest_gap_ns or 0) / 1e9
+    every = f", {rate:.4g} Hz, longest gap {longest:.3f} s" if rate else ""
     return f"{topic.count} message{'' if topic.count == 1 else 's'}{every}"
 
 

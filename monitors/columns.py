@@ -72,6 +72,13 @@ class Column:
     pending: Pending | None = None
     undecoded: int = 0
     unstamped: int = 0
+    stated: int | None = None
+    """How many messages the log says it holds of it, where they were not read."""
+
+    @property
+    def count(self) -> int:
+        """How many messages there are."""
+        return len(self.logs) if self.stated is None else self.stated
 
     def refuse(self, signal: Signal, diagnostic: Diagnostic) -> None:
         """No samples of this signal."""
@@ -147,6 +154,16 @@ class Columns:
             return
         payloads = messages.payloads.copies() if self._decodes(column) else [b""] * len(logs)
         self._wait(column, stream, logs.tolist(), messages.publishes.tolist(), payloads)
+
+    def binds(self, topic: str) -> bool:
+        """Whether its messages are read; of another topic they are only counted."""
+        return topic in self._bound
+
+    def count(self, topic: str, count: int) -> None:
+        """So many messages of a topic are in the log; they are not read if it is not bound."""
+        column = self.topics[topic]
+        if not column.bound:
+            column.stated = (column.stated or 0) + count
 
     def _decodes(self, column: Column) -> bool:
         """Whether anything within its messages is asked for."""

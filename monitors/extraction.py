@@ -29,7 +29,7 @@ from monitors.signals import nearest as nearest_of_one
 
 _CHECKED = 8
 """Layouts of a stream of which the official decoder reads three messages too."""
-_BLOCK = 2**15
+_BLOCK = 2**17
 """Numbers of an array field that are taken at once: the passes over them stay within the cache."""
 _FEW = 512
 """Bytes; fewer are decoded sooner than taken from their places. Two channels of one topic may send

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import ClassVar, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
+from monitors.container import Stream
 from monitors.payloads import Bytes, Payloads, Places
 
 _HEAD = np.dtype([("channel", "<u2"), ("sequence", "<u4"), ("log", "<u8"), ("publish", "<u8")])
@@ -30,6 +32,9 @@ class Messages:
     publishes: Stamps
     strange: bool
     """Whether records of other kinds stand among them."""
+
+    HEAD: ClassVar[int] = _HEAD.itemsize
+    """Bytes that each message begins with, before its payload."""
 
     @classmethod
     def of(
@@ -57,7 +62,10 @@ class Messages:
 
     def of_channel(self, id: int) -> Messages:
         """Those of one channel."""
-        chosen = self.channels == id
+        return self.chosen(np.flatnonzero(self.channels == id))
+
+    def chosen(self, chosen: NDArray[np.intp]) -> Messages:
+        """Some of them."""
         return Messages(
             self.data,
             self.starts[chosen],
@@ -76,3 +84,19 @@ class Messages:
         """What follows the head of each message."""
         size = _HEAD.itemsize
         return Payloads(self.data, self.starts + size, self.ends - self.starts - size)
+
+
+class Sink(Protocol):
+    """Takes the messages in the order of the file."""
+
+    def declare(self, stream: Stream) -> None:
+        """A stream of the file, before its messages; it may come more than once."""
+        ...
+
+    def add(self, stream: Stream, log_time: int, publish_time: int, payload: memoryview) -> None:
+        """One whole message."""
+        ...
+
+    def add_all(self, stream: Stream, messages: Messages) -> None:
+        """Whole messages of one stream, and none of another stream of its topic between them."""
+        ...

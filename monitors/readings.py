@@ -17,6 +17,8 @@ from monitors.samples import Numbers
 from monitors.signals import clearance
 
 Truths = NDArray[np.bool_]
+Between = Callable[["Fields", slice | NDArray[np.intp]], Truths]
+"""Which elements are measurements; told with the values are the messages that they are of."""
 Fields = NDArray[np.floating]
 """What stands in messages: 32-bit floats, or 64-bit floats that hold any other number."""
 
@@ -62,22 +64,38 @@ def _plain(signal: Signal, values: Fields, beside: Mapping[str, Numbers], found:
     nothing that takes precedence over it. Elements that are dropped never do, nor does what is far
     over the least, or near over the greatest.
     """
-    accepted = _between(signal, values, beside)
-    if accepted is None or signal.reduce not in (Reduce.MIN, Reduce.MAX):
+    if signal.reduce not in (Reduce.MIN, Reduce.MAX):
         return np.zeros(len(values), bool)
-    unknown, stronger = np.zeros(len(values), bool), np.zeros(len(values), bool)
-    for reading, chosen in _classes(signal.invalid, values, accepted):
+    between = _between(signal, beside, len(values))
+    if between is None or (signal.valid is not None and values.dtype != np.float32):
+        return np.zeros(len(values), bool)
+    unknown, stronger = (np.zeros(len(values), bool) for _ in range(2))
+    for reading, chosen in _classes(signal.invalid, values, between):
         if reading is Reading.UNKNOWN:
             unknown |= chosen().any(axis=1)
         elif reading not in (Reading.DROP, _WEAKER[signal.reduce]):
             stronger |= chosen().any(axis=1)
-    plain: Truths = unknown | (accepted.any(axis=1) & ~stronger)
-    least = signal.reduce is Reduce.MIN
-    others = np.where(accepted, values, values.dtype.type(np.inf if least else -np.inf))
-    ends = others.min(axis=1) if least else others.max(axis=1)
+    ends, measured = _ends(signal.reduce, values, between)
+    plain: Truths = unknown | (measured & ~stronger)
     numbers = (ends.astype(np.float64) + 0.0) * float(signal.unit.factor)
     found[plain] = np.where(unknown, np.nan, numbers)[plain]
     return plain
+
+
+def _ends(reduce: Reduce, values: Fields, between: Between) -> tuple[Fields, Truths]:
+    """The least or the greatest measurement of each message, and whether there is one."""
+    least = reduce is Reduce.MIN
+    # Where the least of all numbers is a measurement, no other element has to be looked at.
+    ends = (np.fmin if least else np.fmax).reduce(values, axis=1)
+    measured = between(ends[:, None], slice(None))[:, 0]
+    rows = np.flatnonzero(~measured)
+    if len(rows):
+        some = values[rows]
+        accepted = between(some, rows)
+        np.copyto(some, np.inf if least else -np.inf, where=~accepted)
+        ends[rows] = some.min(axis=1) if least else some.max(axis=1)
+        measured[rows] = accepted.any(axis=1)
+    return ends, measured
 
 
 _WEAKER = {Reduce.MIN: Reading.FAR, Reduce.MAX: Reading.NEAR}
@@ -85,35 +103,40 @@ _WEAKER = {Reduce.MIN: Reading.FAR, Reduce.MAX: Reading.NEAR}
 
 
 def _classes(
-    invalid: Invalid, values: Fields, accepted: Truths
+    invalid: Invalid, values: Fields, between: Between
 ) -> Iterator[tuple[Reading, Callable[[], Truths]]]:
     """What each kind of element that is no measurement means, and which elements are of it."""
     yield invalid.nan, lambda: np.isnan(values)
     yield invalid.positive_infinity, lambda: np.isposinf(values)
     yield invalid.negative_infinity, lambda: np.isneginf(values)
-    yield invalid.other, lambda: np.isfinite(values) & ~accepted
+    yield invalid.other, lambda: np.isfinite(values) & ~between(values, slice(None))
 
 
-def _between(signal: Signal, values: Fields, beside: Mapping[str, Numbers]) -> Truths | None:
-    """Which elements are measurements, where that is plain; None where it takes more.
+def _between(signal: Signal, beside: Mapping[str, Numbers], count: int) -> Between | None:
+    """Tells which elements are measurements, of 32-bit floats that are compared with such.
 
-    It is plain for 32-bit floats that are compared with 32-bit floats.
+    None where it takes more to say.
     """
-    if signal.valid is None:
-        return np.isfinite(values)
-    bounds = _bounds(signal.valid)
-    if values.dtype != np.float32 or bounds is None:
+    bounds = [] if signal.valid is None else _bounds(signal.valid)
+    if bounds is None:
         return None
-    scope = Scope(len(values), beside, signal.unit, single=True)
-    accepted: Truths = np.isfinite(values)
+    scope = Scope(count, beside, signal.unit, single=True)
+    compared: list[tuple[str, NDArray[np.float32]]] = []
     for op, side in bounds:
         numbers = number(side, scope)
-        bound = numbers.astype(np.float32)
-        if not np.array_equal(bound, numbers, equal_nan=True):
+        narrow = numbers.astype(np.float32)
+        if not np.array_equal(narrow, numbers, equal_nan=True):
             return None
-        same = bool((bound == bound[:1]).all())
-        accepted &= COMPARE[op](values, bound[0] if same else bound[:, None])
-    return accepted
+        same = bool((narrow == narrow[:1]).all())
+        compared.append((op, narrow[:1, None] if same else narrow[:, None]))
+
+    def between(values: Fields, rows: slice | NDArray[np.intp]) -> Truths:
+        accepted: Truths = np.isfinite(values)
+        for op, bound in compared:
+            accepted &= COMPARE[op](values, bound if len(bound) == 1 else bound[rows])
+        return accepted
+
+    return between
 
 
 def _bounds(valid: e.Expression) -> list[tuple[str, e.Expression]] | None:
@@ -194,7 +217,7 @@ def _readings(signal: Signal, values: Numbers, valid: Truths) -> tuple[Numbers, 
     """The elements with what is far or near put in; and which messages are unknown."""
     invalid = signal.invalid
     readings, unknown = values.copy(), np.zeros(len(values), bool)
-    for reading, chosen in _classes(invalid, values, valid):
+    for reading, chosen in _classes(invalid, values, lambda _, __: valid):
         if reading is Reading.UNKNOWN:
             unknown |= chosen().any(axis=1)
         else:

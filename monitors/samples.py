@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fretish.diagnostic import Diagnostic
+from monitors.integrity import Checked
 
 Times = NDArray[np.int64]
 """Nanoseconds."""
@@ -36,7 +37,8 @@ class Samples:
 class Topic:
     """How one topic of a log is, by the declared time (`log_time` where no signal reads it).
 
-    `first_ns` and `last_ns` are None for a topic without messages. `out_of_order` counts the
+    `first_ns` and `last_ns` are None for a topic without messages; these and the rest are None
+    where its messages were only counted. `out_of_order` counts the
     messages that are earlier than one before them, `equal_stamps` those with the time of another.
     """
 
@@ -46,9 +48,9 @@ class Topic:
     count: int
     first_ns: int | None
     last_ns: int | None
-    longest_gap_ns: int
-    out_of_order: int
-    equal_stamps: int
+    longest_gap_ns: int | None
+    out_of_order: int | None
+    equal_stamps: int | None
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,3 +77,4 @@ class Recording:
     nearest: Mapping[str, float]
     findings: tuple[Diagnostic, ...]
     intact: bool
+    checked: Checked = Checked(by_index=False)

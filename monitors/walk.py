@@ -13,7 +13,6 @@ from collections import Counter
 from collections.abc import Callable
 from dataclasses import dataclass
 from io import BufferedReader
-from typing import Protocol
 
 import numpy as np
 from mcap.data_stream import ReadDataStream
@@ -24,7 +23,9 @@ from numpy.typing import NDArray
 from fretish.diagnostic import Code
 from monitors.container import (
     BLOCK,
+    ENTRY,
     HEAD,
+    INDEX,
     LARGEST,
     MAGIC,
     PADDING,
@@ -37,13 +38,12 @@ from monitors.container import (
     unpacked,
 )
 from monitors.damage import LATEST, Damage, Damages
-from monitors.messages import Messages
+from monitors.integrity import Checked
+from monitors.messages import Messages, Sink
 from monitors.samples import Gap
 
 _MESSAGE = struct.Struct("<HIQQ")
 """What each message begins with: channel, sequence, log time, publish time."""
-_INDEX, _ENTRY = struct.Struct("<HI"), np.dtype([("time", "<u8"), ("place", "<u8")])
-"""What the index of a chunk begins with (channel, length), and its entries."""
 _KNOWN = frozenset(Opcode)
 _PASSED_BY: dict[int, Callable[[ReadDataStream], object]] = {
     Opcode.HEADER: Header.read,
@@ -51,22 +51,6 @@ _PASSED_BY: dict[int, Callable[[ReadDataStream], object]] = {
     Opcode.METADATA: Metadata.read,
 }
 """What may stand among the data and says nothing about messages."""
-
-
-class Sink(Protocol):
-    """Takes the messages in the order of the file."""
-
-    def declare(self, stream: Stream) -> None:
-        """A stream of the file, before its messages; it may come more than once."""
-        ...
-
-    def add(self, stream: Stream, log_time: int, publish_time: int, payload: memoryview) -> None:
-        """One whole message."""
-        ...
-
-    def add_all(self, stream: Stream, messages: Messages) -> None:
-        """Whole messages of one stream, and none of another stream of its topic between them."""
-        ...
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,7 +64,7 @@ class _Unchecked:
     def entries(self, channel: int) -> NDArray[np.void]:
         """Time and place of each message of a channel."""
         some = self.messages.of_channel(channel)
-        entries = np.empty(len(some.starts), _ENTRY)
+        entries = np.empty(len(some.starts), ENTRY)
         entries["time"], entries["place"] = some.logs, some.starts - HEAD.size
         return entries
 
@@ -98,6 +82,7 @@ class Walk:
         self._streams: dict[int, Stream] = {}
         self._counts: Counter[int] = Counter()
         self._whole: set[int] = set()
+        self._with_crc = 0
         self._unchecked: _Unchecked | None = None
         self._unprotected = False
         """Whether messages were read that no CRC covers but that of the whole data section."""
@@ -125,6 +110,12 @@ class Walk:
     def settled(self) -> list[tuple[Damage, Gap | None]]:
         """All damages, with the time that each has cost; None where it cost nothing."""
         return self.damages.settled(self._summary, self._whole, self._counts, self._size)
+
+    @property
+    def checked(self) -> Checked:
+        """What was looked at: everything, and these chunks are whole."""
+        chunks = len(self._whole)
+        return Checked(False, chunks, self._with_crc, chunks - self._with_crc)
 
     # Records
 
@@ -251,6 +242,7 @@ class Walk:
             self.damages.add(at, str(error), span)
             return
         self._whole.add(at)
+        self._with_crc += bool(chunk.uncompressed_crc)
         if not self._at_once(messages):
             for start, end in zip(messages.starts.tolist(), messages.ends.tolist(), strict=True):
                 self._message(at, data, start, end)
@@ -307,15 +299,15 @@ class Walk:
 
     def _index(self, content: bytes) -> None:
         """Hold the index of a chunk without CRC against the messages in it."""
-        if len(content) < _INDEX.size:
+        if len(content) < INDEX.size:
             raise BrokenError("a record cannot be read")
-        channel, length = _INDEX.unpack_from(content)
-        padding = len(content) - _INDEX.size - length
-        if length % _ENTRY.itemsize or not 0 <= padding < PADDING:
+        channel, length = INDEX.unpack_from(content)
+        padding = len(content) - INDEX.size - length
+        if length % ENTRY.itemsize or not 0 <= padding < PADDING:
             raise BrokenError("a record cannot be read")
         if self._unchecked is None or not length:
             return
-        listed = np.frombuffer(content, _ENTRY, length // _ENTRY.itemsize, _INDEX.size)
+        listed = np.frombuffer(content, ENTRY, length // ENTRY.itemsize, INDEX.size)
         if not np.array_equal(np.sort(listed), np.sort(self._unchecked.entries(channel))):
             what = "the index of a chunk names other messages than are in it"
             self.damages.add(self._unchecked.at, what, self._unchecked.span)

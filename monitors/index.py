@@ -1,0 +1,127 @@
+"""Where the messages of a log are, by its own index, where that explains every byte of the file.
+
+What the index says is taken for true only if the file leaves no doubt: one part behind the other,
+each of a kind that is known, and as many chunks and messages as are stated. In any other log each
+record has to be looked at (`monitors.walk`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from io import BufferedReader
+
+from mcap.opcode import Opcode
+from mcap.records import Channel, ChunkIndex, DataEnd, Schema, Statistics
+
+from monitors.container import HEAD, LARGEST, MAGIC, BrokenError, Stream, Summary, parse
+
+_PASSED_BY = frozenset({Opcode.HEADER, Opcode.ATTACHMENT, Opcode.METADATA})
+
+
+@dataclass(frozen=True, slots=True)
+class Index:
+    """A log whose summary tells where everything is."""
+
+    chunks: tuple[ChunkIndex, ...]
+    """In the order of the file."""
+    streams: dict[int, Stream]
+    """By the number of the channel."""
+    statistics: Statistics
+    data_end: int
+    """The byte up to which the CRC of the data goes."""
+    data_crc: int
+    """0: none is stated."""
+
+
+def indexed(stream: BufferedReader, size: int, found: Summary | None) -> Index | None:
+    """The index of a file of `size` bytes; None where anything about it is unusual.
+
+    Args:
+        stream: the file.
+        size: its bytes.
+        found: what its end states.
+    """
+    if found is None or not found.sound or found.after != size or found.statistics is None:
+        return None
+    statistics, chunks = found.statistics, tuple(found.chunks[at] for at in sorted(found.chunks))
+    streams = {
+        id: Stream(channel, found.schemas.get(channel.schema_id))
+        for id, channel in found.channels.items()
+    }
+    counts = statistics.channel_message_counts
+    if (
+        statistics.chunk_count != len(chunks)
+        or not 0 < statistics.message_count == sum(counts.values())
+        or not streams.keys() >= {id for id, count in counts.items() if count}
+        or not all(map(_is_usual, chunks))
+    ):
+        return None
+    try:
+        end = _between(stream, found, chunks)
+    except BrokenError:
+        return None
+    return Index(chunks, streams, statistics, *end) if end is not None else None
+
+
+def _is_usual(chunk: ChunkIndex) -> bool:
+    """Whether it can be read by its index: it tells where its messages are."""
+    first, last = chunk.chunk_start_offset, chunk.chunk_start_offset + chunk.chunk_length
+    return (
+        bool(chunk.message_index_offsets)
+        and chunk.uncompressed_size <= LARGEST
+        and chunk.compression in ("", "lz4", "zstd")
+        and first + chunk.compressed_size < last
+        and all(
+            last <= at < last + chunk.message_index_length
+            for at in chunk.message_index_offsets.values()
+        )
+    )
+
+
+def _between(
+    stream: BufferedReader, found: Summary, chunks: tuple[ChunkIndex, ...]
+) -> tuple[int, int] | None:
+    """Where the data ends, and its CRC; None where something unusual is between the chunks."""
+    at, end = len(MAGIC), None
+    for chunk in (*chunks, None):
+        wall = found.end if chunk is None else chunk.chunk_start_offset
+        if at > wall or end is not None:
+            return None
+        for place, opcode, content in _records(stream, at, wall):
+            if end is not None:
+                return None
+            if opcode == Opcode.DATA_END:
+                end = place, parse(DataEnd.read, content).data_section_crc
+            elif not _is_known(found, opcode, content):
+                return None
+        if chunk is not None:
+            at = wall + chunk.chunk_length + chunk.message_index_length
+    return end
+
+
+def _records(stream: BufferedReader, at: int, wall: int) -> Iterator[tuple[int, int, bytes]]:
+    """Place, kind and content of what stands there; of large records no content.
+
+    Raises:
+        BrokenError: the last one goes on beyond the wall.
+    """
+    while at < wall:
+        stream.seek(at)
+        head = stream.read(HEAD.size)
+        opcode, length = HEAD.unpack(head) if len(head) == HEAD.size else (0, wall)
+        if at + HEAD.size + length > wall:
+            raise BrokenError("a record is cut off")
+        yield at, opcode, b"" if opcode in _PASSED_BY else stream.read(length)
+        at += HEAD.size + length
+
+
+def _is_known(found: Summary, opcode: int, content: bytes) -> bool:
+    """Whether it holds no message, and declares nothing that the summary does not."""
+    if opcode == Opcode.SCHEMA:
+        schema = parse(Schema.read, content)
+        return bool(found.schemas.get(schema.id) == schema)
+    if opcode == Opcode.CHANNEL:
+        channel = parse(Channel.read, content)
+        return bool(found.channels.get(channel.id) == channel)
+    return opcode in _PASSED_BY

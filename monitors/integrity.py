@@ -1,0 +1,37 @@
+"""How much of a log is looked at, and what was looked at in the end."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import StrEnum
+
+
+class Integrity(StrEnum):
+    """What is done beyond reading the messages that the bindings name."""
+
+    INDEX = "index"
+    """Nothing: the log is known by the SHA-256 of its summary."""
+    HASH = "hash"
+    """All bytes are hashed."""
+    FULL = "full"
+    """All bytes are hashed, and every record, CRC and count is checked."""
+
+
+@dataclass(frozen=True, slots=True)
+class Checked:
+    """What was looked at of a log."""
+
+    by_index: bool
+    """Whether only the messages in question were read; else every record was."""
+    chunks: int = 0
+    crc_checked: int = 0
+    """Chunks that have the CRC that they state."""
+    without_crc: int = 0
+    """Of the chunks that were unpacked, those that state no CRC."""
+    skipped: int = 0
+    """Chunks without a message in question: they were not unpacked."""
+
+    @property
+    def crc_unchecked(self) -> int:
+        """Chunks with a CRC of which only the beginning was unpacked."""
+        return self.chunks - self.crc_checked - self.without_crc - self.skipped

@@ -1,0 +1,271 @@
+"""The messages of some topics of a log, by its index: nothing else is unpacked.
+
+A chunk is unpacked up to the last message that is wanted, where that saves much; otherwise it is
+unpacked whole, and its CRC is checked. What the index says of a message is held against the
+message itself. Whatever does not fit is a `BrokenError`: then each record has to be looked at.
+
+Source: MCAP specification, Message Index (op=0x07), Chunk Index (op=0x08).
+"""
+
+from __future__ import annotations
+
+import zlib
+from collections import Counter, defaultdict
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from io import BufferedReader
+
+import numpy as np
+from mcap.opcode import Opcode
+from mcap.records import ChunkIndex
+from numpy.typing import NDArray
+
+from monitors.arena import SIZE, Arena
+from monitors.container import CHUNK, ENTRY, HEAD, INDEX, BrokenError, Stream, is_absurd
+from monitors.damage import LATEST
+from monitors.index import Index
+from monitors.integrity import Checked
+from monitors.messages import Messages, Sink
+from monitors.payloads import Places
+
+_SLACK = 4096
+"""Bytes that the last message of a chunk is taken to have until a longer one was seen."""
+_BLOCK = 2**17
+"""Bytes that a codec unpacks at once."""
+
+
+@dataclass(slots=True)
+class _Found:
+    """Messages of one channel in the arena."""
+
+    times: list[NDArray[np.uint64]] = field(default_factory=list)
+    places: list[Places] = field(default_factory=list)
+    limits: list[tuple[int, int, int, int]] = field(default_factory=list)
+    """Of each chunk: how many messages, where it ends, and between which times they are."""
+
+
+class Projection:
+    """One way through a log; the messages of the wanted topics go to the sink."""
+
+    def __init__(
+        self, stream: BufferedReader, index: Index, sink: Sink, wants: Callable[[str], bool]
+    ) -> None:
+        self._stream, self._index, self._sink = stream, index, sink
+        streams = index.streams
+        self._wanted = {id for id, stream in streams.items() if wants(stream.channel.topic)}
+        self._arena = Arena()
+        self._packed = bytearray(2**20)
+        self._longest: Counter[int] = Counter(dict.fromkeys(self._wanted, _SLACK))
+        self._found: defaultdict[int, _Found] = defaultdict(_Found)
+        self._counts: Counter[int] = Counter()
+        self._unpacked = self._crc_checked = self._without_crc = 0
+
+    @property
+    def checked(self) -> Checked:
+        """What was looked at, so far."""
+        chunks = len(self._index.chunks)
+        skipped = chunks - self._unpacked
+        return Checked(True, chunks, self._crc_checked, self._without_crc, skipped)
+
+    def run(self) -> None:
+        """Read all messages.
+
+        Raises:
+            BrokenError: something in the file is not as its index says.
+        """
+        for stream in self._index.streams.values():
+            self._sink.declare(stream)
+        for chunk in self._index.chunks:
+            if not self._wanted.isdisjoint(chunk.message_index_offsets):
+                self._chunk(chunk)
+                if self._arena.used >= SIZE:
+                    self._hand_on()
+        self._hand_on()
+        stated = self._index.statistics.channel_message_counts
+        if any(self._counts[id] != stated.get(id, 0) for id in self._wanted):
+            raise BrokenError("a topic holds another number of messages than is stated")
+
+    # One chunk
+
+    def _chunk(self, chunk: ChunkIndex) -> None:
+        entries = self._entries(chunk)
+        if not entries:
+            return
+        crc = self._head(chunk)
+        size, base = chunk.uncompressed_size, self._arena.used
+        needed = max(last + HEAD.size + self._longest[id] for id, _, last in entries)
+        while True:
+            whole = needed > size // 2
+            needed = size if whole else needed
+            self._unpack(chunk, needed, whole=whole)
+            end = max(self._end(id, base, last, needed) for id, _, last in entries)
+            if end <= needed:
+                break
+            if end > size:
+                raise BrokenError("a message is cut off")
+            needed = end
+        if whole and crc:
+            if zlib.crc32(self._arena.target(needed)) != crc:
+                raise BrokenError("a chunk has another CRC than it states")
+            self._crc_checked += 1
+        self._without_crc += not crc
+        self._unpacked += 1
+        span = chunk.message_start_time, chunk.message_end_time
+        for id, some, _ in entries:
+            found = self._found[id]
+            found.times.append(some["time"])
+            found.places.append(some["place"].astype(np.int64) + base)
+            found.limits.append((len(some), base + needed, *span))
+        self._arena.used += needed
+
+    def _entries(self, chunk: ChunkIndex) -> list[tuple[int, NDArray[np.void], int]]:
+        """Of each wanted channel in the chunk: its number, its index, and its last place."""
+        begin = chunk.chunk_start_offset + chunk.chunk_length
+        self._stream.seek(begin)
+        data = self._stream.read(chunk.message_index_length)
+        entries = []
+        for id, place in chunk.message_index_offsets.items():
+            if id not in self._wanted:
+                continue
+            at = place - begin
+            if at + HEAD.size + INDEX.size > len(data):
+                raise BrokenError("a record is cut off")
+            opcode, length = HEAD.unpack_from(data, at)
+            channel, size = INDEX.unpack_from(data, at + HEAD.size)
+            start = at + HEAD.size + INDEX.size
+            if (opcode, channel, size % ENTRY.itemsize) != (Opcode.MESSAGE_INDEX, id, 0):
+                raise BrokenError("the index of a chunk is not there")
+            if INDEX.size + size > length or start + size > len(data):
+                raise BrokenError("a record is cut off")
+            if size:
+                some = np.frombuffer(data, ENTRY, size // ENTRY.itemsize, start)
+                last = int(some["place"].max())
+                if last >= chunk.uncompressed_size:
+                    raise BrokenError("the index of a chunk names a place outside of it")
+                entries.append((id, some, last))
+        return entries
+
+    def _head(self, chunk: ChunkIndex) -> int:
+        """The CRC that a chunk states; all else that it states is in its index too."""
+        self._stream.seek(chunk.chunk_start_offset)
+        compression = chunk.compression.encode()
+        size = HEAD.size + CHUNK.size + len(compression) + 8
+        head = self._stream.read(size)
+        if len(head) < size:
+            raise BrokenError("a record is cut off")
+        start, end, unpacked, crc, length = CHUNK.unpack_from(head, HEAD.size)
+        stated = (*HEAD.unpack_from(head), start, end, unpacked, length)
+        if stated != (
+            Opcode.CHUNK,
+            chunk.chunk_length - HEAD.size,
+            chunk.message_start_time,
+            chunk.message_end_time,
+            chunk.uncompressed_size,
+            len(compression),
+        ):
+            raise BrokenError("a chunk is not what its index says")
+        tail = compression + chunk.compressed_size.to_bytes(8, "little")
+        if head[-len(tail) :] != tail or chunk.chunk_length < size + chunk.compressed_size:
+            raise BrokenError("a chunk is not what its index says")
+        return int(crc)
+
+    def _unpack(self, chunk: ChunkIndex, size: int, *, whole: bool) -> None:
+        """Put the first `size` bytes of a chunk behind those in use."""
+        packed = chunk.compressed_size
+        at = chunk.chunk_start_offset + HEAD.size + CHUNK.size + len(chunk.compression) + 8
+        if not chunk.compression:
+            if packed != chunk.uncompressed_size:
+                raise BrokenError("a chunk has another size than it states")
+            self._fill(at, self._arena.target(size))
+            return
+        if is_absurd(chunk.uncompressed_size, packed):
+            raise BrokenError("a chunk states an absurd size")
+        for length in (packed,) if whole else (_share(chunk, size), packed):
+            if length > len(self._packed):
+                self._packed = bytearray(length)
+            some = memoryview(self._packed)[:length]
+            self._fill(at, some)
+            if self._arena.unpack(chunk.compression, some, size, whole=whole):
+                return
+        raise BrokenError("a chunk has another size than it states")
+
+    def _fill(self, at: int, target: memoryview) -> None:
+        self._stream.seek(at)
+        if self._stream.readinto(target) != len(target):
+            raise BrokenError("a chunk is cut off")
+
+    def _end(self, id: int, base: int, last: int, needed: int) -> int:
+        """Where in its chunk the last message of a channel ends, as far as can be seen."""
+        content = last + HEAD.size
+        if content > needed:
+            return content
+        _, length = HEAD.unpack_from(self._arena.data.data, base + last)
+        self._longest[id] = max(self._longest[id], min(length, SIZE))
+        return content + int(length)
+
+    # Many chunks
+
+    def _hand_on(self) -> None:
+        """Give the messages in the arena to the sink, topic by topic."""
+        topics: defaultdict[str, list[int]] = defaultdict(list)
+        for id in self._found:
+            topics[self._index.streams[id].channel.topic].append(id)
+        for ids in topics.values():
+            parts = [(self._index.streams[id], self._messages(id)) for id in ids]
+            for stream, messages in parts if len(parts) == 1 else _by_turns(parts):
+                self._sink.add_all(stream, messages)
+        self._found.clear()
+        self._arena.clear()
+
+    def _messages(self, id: int) -> Messages:
+        """Those of one channel, in the order of the file."""
+        found = self._found[id]
+        places, times = np.concatenate(found.places), np.concatenate(found.times)
+        counts, ends, earliest, latest = np.array(found.limits, np.uint64).T
+        limits, first, last = (
+            np.repeat(some, counts.astype(np.int64)) for some in (ends, earliest, latest)
+        )
+        if (places[1:] < places[:-1]).any():  # some writers sort the index by time
+            order = np.argsort(places)
+            places, times = places[order], times[order]
+            limits, first, last = limits[order], first[order], last[order]
+        data = self._arena.data
+        lengths = np.ndarray((len(data) - 8,), "<u8", data.data, 1, (1,))[places]
+        contents = places + HEAD.size
+        if (
+            (data[places] != Opcode.MESSAGE).any()
+            or (places[1:] == places[:-1]).any()
+            or (lengths > len(data)).any()
+            or (contents.astype(np.uint64) + lengths > limits).any()
+            or (lengths < Messages.HEAD).any()
+        ):
+            raise BrokenError("the index of a chunk names what is no message")
+        messages = Messages.at(data, contents, contents + lengths.astype(np.int64), strange=False)
+        if (
+            (messages.channels != id).any()
+            or (messages.logs != times).any()
+            or ((times < first) | (times > last) | (times >= LATEST)).any()
+        ):
+            raise BrokenError("the index of a chunk names other messages than are in it")
+        self._counts[id] += len(messages)
+        return messages
+
+
+def _share(chunk: ChunkIndex, size: int) -> int:
+    """How many bytes of a chunk's data its first `size` bytes need at most, most likely."""
+    blocks = -(-size // _BLOCK) * _BLOCK
+    likely = int(blocks * chunk.compressed_size / chunk.uncompressed_size * 1.3) + 2**14
+    return min(likely, chunk.compressed_size)
+
+
+def _by_turns(parts: list[tuple[Stream, Messages]]) -> list[tuple[Stream, Messages]]:
+    """Messages of several channels of one topic: those in a row together, in the file's order."""
+    owners = np.concatenate([np.full(len(some), i) for i, (_, some) in enumerate(parts)])
+    inner = np.concatenate([np.arange(len(some)) for _, some in parts])
+    order = np.argsort(np.concatenate([some.starts for _, some in parts]))
+    owners, inner = owners[order], inner[order]
+    cuts = np.flatnonzero(np.diff(owners)) + 1
+    return [
+        (parts[int(owner[0])][0], parts[int(owner[0])][1].chosen(rows))
+        for owner, rows in zip(np.split(owners, cuts), np.split(inner, cuts), strict=True)
+    ]
