@@ -10,6 +10,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
+from numpy.typing import NDArray
 
 from fretish.clock import TimeSource
 from fretish.declarations import Declarations, Signal
@@ -22,6 +23,7 @@ from monitors.decoding import short_type
 from monitors.extraction import Extract, Extraction
 from monitors.messages import Messages
 from monitors.samples import Gap, Numbers, Times
+from monitors.stamps import JUMP
 
 _MOST, _MOST_BYTES = 4096, 2**22
 """Messages, and bytes of them, that are read at once."""
@@ -69,6 +71,8 @@ class Column:
     pending: Pending | None = None
     undecoded: int = 0
     unstamped: int = 0
+    unset: int = 0
+    """Messages whose time was never set: it is zero, and their samples are unknown."""
 
     def refuse(self, signal: Signal, diagnostic: Diagnostic) -> None:
         """No samples of this signal."""
@@ -173,14 +177,15 @@ class Columns:
             return
         extract = self._extract(column, pending)
         logs = np.array(pending.logs, np.int64)
-        times = self._times(column, pending, extract, logs)
+        times, unset = self._times(column, pending, extract, logs)
         kept = times < LATEST
         column.undecoded += int((~kept).sum())
         column.logs.frombytes(logs[kept].tobytes())
         column.times.frombytes(times[kept].tobytes())
         for signal in column.signals:
             values = column.values.setdefault(signal.name, array("d"))
-            values.frombytes(extract.values[signal.name][kept].tobytes())
+            found = np.where(unset, np.nan, extract.values[signal.name])
+            values.frombytes(found[kept].tobytes())
 
     def _extract(self, column: Column, pending: Pending) -> Extract:
         """What the signals ask for; one with something wrong gets no samples."""
@@ -201,21 +206,28 @@ class Columns:
             self.nearest[name] = min(least, self.nearest.get(name, least))
         return extract
 
-    def _times(self, column: Column, pending: Pending, extract: Extract, logs: Times) -> Times:
-        """When the messages were, on the declared clock."""
+    def _times(
+        self, column: Column, pending: Pending, extract: Extract, logs: Times
+    ) -> tuple[Times, NDArray[np.bool_]]:
+        """When the messages were, on the declared clock; and which of them it does not place."""
+        known = np.ones(len(logs), bool)
         match self.clock.time:
             case TimeSource.LOG_TIME:
-                return logs
+                return logs, ~known
             case TimeSource.PUBLISH_TIME:
-                return np.array(pending.publishes, np.uint64).clip(max=LATEST).astype(np.int64)
+                times = np.array(pending.publishes, np.uint64).clip(max=LATEST).astype(np.int64)
             case TimeSource.HEADER_STAMP:
                 column.unstamped += int((extract.decoded & ~extract.stamped).sum())
-                times = np.where(extract.stamped, extract.stamps, logs)
-                last = column.times[-1] if column.times else None
-                for i in np.flatnonzero(~extract.decoded):  # as the message before it
-                    before = times[i - 1] if i else last
-                    times[i] = logs[i] if before is None else before
-                return times
+                times, known = np.where(extract.stamped, extract.stamps, logs), extract.decoded
+        unset = known & (times == 0) & (logs >= JUMP)  # a log may begin at zero itself
+        column.unset += int(unset.sum())
+        first = times[known & ~unset][:1]
+        before = column.times[-1] if column.times else int(first[0]) if len(first) else None
+        for i in np.flatnonzero(~known | unset):  # as the message before it
+            if i:
+                before = int(times[i - 1])
+            times[i] = logs[i] if before is None else before
+        return times, unset
 
     # The results
 

@@ -36,8 +36,11 @@ class Samples:
 class Topic:
     """How one topic of a log is, by the declared time (`log_time` where no signal reads it).
 
-    `first_ns` and `last_ns` are None for a topic without messages. `out_of_order` counts the
-    messages that are earlier than one before them, `equal_stamps` those with the time of another.
+    `first_ns` and `last_ns` are None for a topic without messages, `median_period_ns` for one
+    with less than two. `out_of_order` counts the messages that are earlier than one before them,
+    `equal_stamps` those with the time of another, `unstamped` those without a stamp where the
+    clock goes by stamps, `zero_stamps` those with a stamp that was never set, and `clock_jumps`
+    those before which the clock jumped against the log times.
     """
 
     name: str
@@ -49,6 +52,10 @@ class Topic:
     longest_gap_ns: int
     out_of_order: int
     equal_stamps: int
+    median_period_ns: int | None = None
+    unstamped: int = 0
+    zero_stamps: int = 0
+    clock_jumps: int = 0
 
 
 @dataclass(frozen=True, slots=True)
