@@ -71,14 +71,19 @@ class Column:
     pending: Pending | None = None
     undecoded: int = 0
     unstamped: int = 0
-    unset: int = 0
-    """Messages whose time was never set: it is zero, and their samples are unknown."""
+    unset: bytearray = field(default_factory=bytearray)
+    """For each message 1 where its time was never set: it is zero, and its samples are unknown."""
 
     def refuse(self, signal: Signal, diagnostic: Diagnostic) -> None:
         """No samples of this signal."""
         self.signals.remove(signal)
         self.wrong[signal.name] = diagnostic
         self.values.pop(signal.name, None)
+
+    @property
+    def placed(self) -> bool:
+        """Whether the declared clock tells the time of any of its messages."""
+        return 0 in self.unset
 
     def stamps(self) -> Times:
         """In the order of the file: by the declared clock, or log times where no signal reads."""
@@ -182,6 +187,7 @@ class Columns:
         column.undecoded += int((~kept).sum())
         column.logs.frombytes(logs[kept].tobytes())
         column.times.frombytes(times[kept].tobytes())
+        column.unset.extend(unset[kept].tobytes())
         for signal in column.signals:
             values = column.values.setdefault(signal.name, array("d"))
             found = np.where(unset, np.nan, extract.values[signal.name])
@@ -220,7 +226,6 @@ class Columns:
                 column.unstamped += int((extract.decoded & ~extract.stamped).sum())
                 times, known = np.where(extract.stamped, extract.stamps, logs), extract.decoded
         unset = known & (times == 0) & (logs >= JUMP)  # a log may begin at zero itself
-        column.unset += int(unset.sum())
         first = times[known & ~unset][:1]
         before = column.times[-1] if column.times else int(first[0]) if len(first) else None
         for i in np.flatnonzero(~known | unset):  # as the message before it
@@ -247,13 +252,13 @@ class Columns:
 
     def span(self) -> Gap:
         """First and last message of the bound topics; of all, where those have none."""
-        bound = [column.times for column in self.topics.values() if column.times]
+        bound = [column.times for column in self.topics.values() if column.placed]
         all_ = bound or [column.logs for column in self.topics.values() if column.logs]
         return min(map(min, all_)), max(map(max, all_))
 
     def on_clock(self, gap: Gap) -> Gap:
         """A span of log times, on the declared clock: between the messages around it."""
-        columns = [column for column in self.topics.values() if column.times]
+        columns = [column for column in self.topics.values() if column.placed]
         if self.clock.time is TimeSource.LOG_TIME or not columns:
             return gap
         logs = np.concatenate([np.array(column.logs, np.int64) for column in columns])
@@ -302,7 +307,7 @@ class Columns:
 
     def _shift(self) -> int:
         """By how many nanoseconds header stamps are away from log times, in the middle."""
-        stamped = [c for c in self.topics.values() if c.times and not c.unstamped]
+        stamped = [c for c in self.topics.values() if c.placed and not c.unstamped]
         if self.clock.time is not TimeSource.HEADER_STAMP or not stamped:
             return 0
         shifts = [np.array(c.logs, np.int64) - np.array(c.times, np.int64) for c in stamped]

@@ -14,6 +14,7 @@ from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass
 from io import BufferedReader
 from pathlib import Path
+from statistics import median
 
 import numpy as np
 
@@ -192,14 +193,15 @@ def _clocks(columns: Columns, wanted: Sequence[Signal]) -> list[Diagnostic]:
     }
     for topic, signal in signals.items():
         column = columns.topics[topic]
-        if column.unset:
-            found.append(findings.zero_stamps(signal, column.unset, len(column.logs)))
+        if zero := sum(column.unset):
+            found.append(findings.zero_stamps(signal, zero, len(column.logs)))
         clock = _stamps(column)
         if clock is not None and clock.jumps:
             found.append(findings.clock_jumps(signal, clock.jumps, clock.largest))
         if clock is not None and not column.unstamped:
             ahead[topic] = clock.ahead
-    true = min(ahead, key=lambda topic: abs(ahead[topic]), default="")
+    middle = median(ahead.values()) if ahead else 0
+    true = min(ahead, key=lambda topic: (abs(ahead[topic] - middle), abs(ahead[topic])), default="")
     for topic, shift in ahead.items():
         if abs(shift - ahead[true]) > JUMP:
             found.append(findings.mixed_clocks(signals[topic], true, shift - ahead[true]))
@@ -207,13 +209,16 @@ def _clocks(columns: Columns, wanted: Sequence[Signal]) -> list[Diagnostic]:
 
 
 def _stamps(column: Column) -> Stamps | None:
-    return stamps(np.array(column.logs, np.int64), np.array(column.times, np.int64))
+    """Of the messages that the declared clock has a time for."""
+    known = np.frombuffer(bytes(column.unset), np.uint8) == 0
+    logs, times = np.array(column.logs, np.int64), np.array(column.times, np.int64)
+    return stamps(logs[known], times[known])
 
 
 def _topic(column: Column) -> Topic:
     times = np.sort(column.stamps())
     steps = np.diff(times)
-    clock = _stamps(column) if column.bound else None
+    clock = _stamps(column) if column.bound else None  # of another there are only log times
     return Topic(
         name=column.name,
         type=column.type,
@@ -226,6 +231,6 @@ def _topic(column: Column) -> Topic:
         equal_stamps=int((steps == 0).sum()),
         median_period_ns=int(np.median(steps)) if len(steps) else None,
         unstamped=column.unstamped,
-        zero_stamps=column.unset,
+        zero_stamps=sum(column.unset),
         clock_jumps=clock.jumps if clock is not None else 0,
     )

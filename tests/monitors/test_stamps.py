@@ -26,6 +26,9 @@ from tests.monitors.logs import (
 )
 
 BY_STAMP = declare(SCAN.replace("log_time", "header.stamp"))
+TWO = SCAN.replace("log_time", "header.stamp") + (
+    '[signal.back]\npath = "/back.ranges[:]"\nreduce = "min"\n'
+)
 BY_PUBLISHER = declare(X_TEXT.replace("log_time", "publish_time"))
 
 
@@ -88,10 +91,28 @@ def test_zeros_before_the_first_stamp_do_not_make_the_log_half_a_century_long(
     assert [value != value for value in values(recording, "nearest")] == [True, True, False, False]
 
 
-def test_where_no_stamp_is_set_nothing_is_known(tmp_path: Path) -> None:
+def test_where_no_stamp_is_set_nothing_is_known_and_no_clock_is_judged(tmp_path: Path) -> None:
     recording = scans(tmp_path, [0, 0, 0])
     assert [value != value for value in values(recording, "nearest")] == [True] * 3
     assert recording.topics["/scan"].zero_stamps == 3
+    assert codes(recording) == ["F414"]
+
+
+def test_a_topic_without_a_stamp_does_not_lengthen_a_run_on_another_clock(tmp_path: Path) -> None:
+    """As in real logs: a battery that never sets its stamp, on a robot whose clock is behind."""
+    sent = []
+    for i in range(5):
+        at = 9000 * S + i * 100 * MS
+        other = scan([1.0], at, stamp=0)
+        sent += [scan([1.0], at, stamp=at - 8000 * S), Sent("/back", other.type, other.payload, at)]
+    recording = recorded(write(tmp_path / "log.mcap", sent), declare(TWO))
+    assert (recording.start_ns, recording.end_ns) == (1000 * S, 1000 * S + 400 * MS)
+    assert codes(recording) == ["F414"]
+
+
+def test_zeros_for_a_while_are_no_jump(tmp_path: Path) -> None:
+    recording = scans(tmp_path, [None, *[0] * 20, None])
+    assert (recording.topics["/scan"].clock_jumps, codes(recording)) == (0, ["F414"])
 
 
 def test_a_log_that_begins_at_zero_has_a_zero_stamp_that_counts(tmp_path: Path) -> None:
@@ -115,15 +136,25 @@ def test_a_publish_time_of_zero_is_none(tmp_path: Path) -> None:
     ("shift", "words"), [(5 * S, "5.000 s ahead of"), (-2 * S, "2.000 s behind"), (S // 2, "")]
 )
 def test_two_topics_on_two_clocks_are_told(tmp_path: Path, shift: int, words: str) -> None:
-    text = SCAN.replace("log_time", "header.stamp") + (
-        '[signal.back]\npath = "/back.ranges[:]"\nreduce = "min"\n'
-    )
     sent = []
     for i in range(4):
         at = 1000 * S + i * 100 * MS
         one, other = scan([1.0], at, stamp=at + 3), scan([1.0], at, stamp=at + shift)
         sent += [one, Sent("/back", other.type, other.payload, at)]
-    recording = recorded(write(tmp_path / "log.mcap", sent), declare(text))
+    recording = recorded(write(tmp_path / "log.mcap", sent), declare(TWO))
     assert codes(recording) == (["F416"] if words else [])
     for finding in recording.findings:
         assert finding.message.startswith(f"the stamps of `/back` are {words} those of `/scan`")
+
+
+def test_of_three_topics_the_one_that_differs_is_told(tmp_path: Path) -> None:
+    text = TWO + '[signal.front]\npath = "/front.ranges[:]"\nreduce = "min"\n'
+    sent = []
+    for i in range(4):
+        at = 1000 * S + i * 100 * MS
+        for topic, shift in (("/scan", 0), ("/back", 5 * S), ("/front", 5 * S + 7)):
+            one = scan([1.0], at, stamp=at + shift)
+            sent.append(Sent(topic, one.type, one.payload, at))
+    recording = recorded(write(tmp_path / "log.mcap", sent), declare(text))
+    (finding,) = recording.findings
+    assert finding.message.startswith("the stamps of `/scan` are 5.000 s behind those of `/back`")
