@@ -87,9 +87,9 @@ class Code(Enum):
     OUT_OF_ORDER = ("F411", "the messages of a topic are not in order of time")
     BAD_MESSAGE = ("F412", "a message cannot be decoded")
     SPLIT_LOG = ("F413", "a run in several files is not read as one")
-    ZERO_STAMP = ("F414", "messages of a topic have a zero for a time")
-    CLOCK_JUMP = ("F415", "the clock of a topic jumps")
-    MIXED_CLOCKS = ("F416", "the stamps of two topics are of different clocks")
+    ZERO_STAMP = ("F416", "messages of a topic have a zero for a time")
+    CLOCK_JUMP = ("F417", "the clock of a topic jumps")
+    MIXED_CLOCKS = ("F418", "the stamps of two topics are of different clocks")
 
     UNKNOWN_PARENT = ("F501", "a parent is not declared")
     BAD_HAZARDS = ("F502", "the hazards cannot be read")

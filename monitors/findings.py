@@ -1,4 +1,4 @@
-"""What there is to say about a log: one function for each message (F400 to F416).
+"""What there is to say about a log: one function for each message (F400 to F418).
 
 `place` is the log itself; what concerns one signal points at its line of the bindings. Times are
 nanoseconds.
@@ -229,7 +229,7 @@ def unstamped(signal: Signal, shift: int) -> Diagnostic:
 
 
 def zero_stamps(signal: Signal, zero: int, count: int) -> Diagnostic:
-    """F414: the publisher never set the time of some messages."""
+    """F416: the publisher never set the time of some messages."""
     return Diagnostic(
         Code.ZERO_STAMP,
         f"{zero} of {count} messages of `{signal.path.topic}` have a zero for a time: their "
@@ -241,7 +241,7 @@ def zero_stamps(signal: Signal, zero: int, count: int) -> Diagnostic:
 
 
 def clock_jumps(signal: Signal, jumps: int, largest: int) -> Diagnostic:
-    """F415: the declared time and the log time part by more than a second between two messages."""
+    """F417: the declared time and the log time part by more than a second between two messages."""
     times = "once" if jumps == 1 else f"{jumps} times, at most"
     return Diagnostic(
         Code.CLOCK_JUMP,
@@ -254,7 +254,7 @@ def clock_jumps(signal: Signal, jumps: int, largest: int) -> Diagnostic:
 
 
 def mixed_clocks(signal: Signal, other: str, apart: int) -> Diagnostic:
-    """F416: against log times, the stamps of two topics are more than a second apart."""
+    """F418: against log times, the stamps of two topics are more than a second apart."""
     return Diagnostic(
         Code.MIXED_CLOCKS,
         f"the stamps of `{signal.path.topic}` are {_seconds(abs(apart))} "

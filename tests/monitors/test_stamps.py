@@ -56,7 +56,7 @@ def test_a_clock_that_is_set_back_is_counted_and_told(tmp_path: Path) -> None:
     back = [1000 * S + i * 100 * MS - 7 * S for i in range(3, 6)]
     recording = scans(tmp_path, [None, None, None, *back])
     assert recording.topics["/scan"].clock_jumps == 1
-    assert codes(recording) == ["F411", "F415"]
+    assert codes(recording) == ["F411", "F417"]
     finding = recording.findings[1]
     assert finding.severity is Severity.WARNING
     assert finding.message == "the clock of `/scan` jumps against log_time once by 7.000 s"
@@ -77,7 +77,7 @@ def test_a_message_with_a_zero_stamp_is_unknown_from_the_one_before(tmp_path: Pa
     assert unknown == [False, True, False, True, True]
     assert recording.topics["/scan"].zero_stamps == 3
     (finding,) = recording.findings
-    assert (finding.code.number, finding.severity) == ("F414", Severity.WARNING)
+    assert (finding.code.number, finding.severity) == ("F416", Severity.WARNING)
     assert finding.message == (
         "3 of 5 messages of `/scan` have a zero for a time: their samples are unknown"
     )
@@ -95,7 +95,7 @@ def test_where_no_stamp_is_set_nothing_is_known_and_no_clock_is_judged(tmp_path:
     recording = scans(tmp_path, [0, 0, 0])
     assert [value != value for value in values(recording, "nearest")] == [True] * 3
     assert recording.topics["/scan"].zero_stamps == 3
-    assert codes(recording) == ["F414"]
+    assert codes(recording) == ["F416"]
 
 
 def test_a_topic_without_a_stamp_does_not_lengthen_a_run_on_another_clock(tmp_path: Path) -> None:
@@ -107,12 +107,12 @@ def test_a_topic_without_a_stamp_does_not_lengthen_a_run_on_another_clock(tmp_pa
         sent += [scan([1.0], at, stamp=at - 8000 * S), Sent("/back", other.type, other.payload, at)]
     recording = recorded(write(tmp_path / "log.mcap", sent), declare(TWO))
     assert (recording.start_ns, recording.end_ns) == (1000 * S, 1000 * S + 400 * MS)
-    assert codes(recording) == ["F414"]
+    assert codes(recording) == ["F416"]
 
 
 def test_zeros_for_a_while_are_no_jump(tmp_path: Path) -> None:
     recording = scans(tmp_path, [None, *[0] * 20, None])
-    assert (recording.topics["/scan"].clock_jumps, codes(recording)) == (0, ["F414"])
+    assert (recording.topics["/scan"].clock_jumps, codes(recording)) == (0, ["F416"])
 
 
 def test_a_log_that_begins_at_zero_has_a_zero_stamp_that_counts(tmp_path: Path) -> None:
@@ -129,7 +129,7 @@ def test_a_publish_time_of_zero_is_none(tmp_path: Path) -> None:
     ]
     recording = recorded(write(tmp_path / "log.mcap", sent), BY_PUBLISHER)
     assert [value != value for value in values(recording, "x")] == [False, True, False]
-    assert codes(recording) == ["F414"]
+    assert codes(recording) == ["F416"]
 
 
 @pytest.mark.parametrize(
@@ -142,7 +142,7 @@ def test_two_topics_on_two_clocks_are_told(tmp_path: Path, shift: int, words: st
         one, other = scan([1.0], at, stamp=at + 3), scan([1.0], at, stamp=at + shift)
         sent += [one, Sent("/back", other.type, other.payload, at)]
     recording = recorded(write(tmp_path / "log.mcap", sent), declare(TWO))
-    assert codes(recording) == (["F416"] if words else [])
+    assert codes(recording) == (["F418"] if words else [])
     for finding in recording.findings:
         assert finding.message.startswith(f"the stamps of `/back` are {words} those of `/scan`")
 
