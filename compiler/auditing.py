@@ -11,7 +11,9 @@ from pathlib import Path
 from typing import Any
 
 from compiler import __version__
+from compiler.constancy import never_changed, tallies_of
 from compiler.files import sha256
+from compiler.missing import demand
 from compiler.pipeline import unbound
 from compiler.project import Project, fingerprint
 from compiler.record import wording
@@ -115,6 +117,7 @@ def audit_logs(
         results.extend(found)
         said.extend(told)
         read += could_be_read
+    said.extend(never_changed(tallies_of(results), declarations))
     return Audit(
         tuple(results),
         _evidence(rules, declarations.source.name, bindings, results),
@@ -158,6 +161,7 @@ def _watched(rule: Rule, bindings: str) -> Watched:
             "bindings": bindings,
             "monitor": sha256(text),
         },
+        demand(rule),
     )
 
 

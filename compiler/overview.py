@@ -22,7 +22,6 @@ def as_record(overview: Overview) -> dict[str, Any]:
     for name, topic in told["topics"].items():
         numbers = overview.numbers.get(name)
         topic["rate_hz"] = _rate(recording.topics[name])
-        topic["equal_stamps"] = recording.topics[name].equal_stamps
         topic["signals"] = None if numbers is None else [f"{name}.{path}" for path in numbers]
     return {
         "run": recording.name,

@@ -11,6 +11,7 @@ from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
+import tomli_w
 from jinja2 import Environment, FileSystemLoader, StrictUndefined, select_autoescape
 
 
@@ -44,6 +45,8 @@ def _environment() -> Environment:
     environment.filters["python"] = python
     environment.filters["comment"] = comment
     environment.filters["json"] = to_json
+    environment.filters["toml"] = toml
+    environment.filters["key"] = key
     return environment
 
 
@@ -61,6 +64,20 @@ def comment(text: str, mark: str = "#") -> str:
         c if c.isascii() and c.isprintable() else c.encode("unicode_escape").decode() for c in flat
     )
     return f"{mark} {safe}"
+
+
+def toml(text: str) -> str:
+    """The text as a TOML string, on one line."""
+    return _written("x", text).partition(" = ")[2]
+
+
+def key(name: str) -> str:
+    """The name as a TOML key, in quotes where it needs them."""
+    return _written(name, True).rpartition(" = ")[0]
+
+
+def _written(name: str, value: object) -> str:
+    return tomli_w.dumps({name: value}).removesuffix("\n")
 
 
 def to_json(value: object) -> str:

@@ -71,6 +71,8 @@ class Code(Enum):
     BLIND_ZONE = ("F311", "the bound lies where the sensor cannot see")
     NO_CLOCK = ("F312", "the sentence names a unit of time, but no clock says what a tick is")
     MESSAGE_CLOCK = ("F313", "a clock that ticks by message cannot count seconds")
+    NEVER_CHANGED = ("F314", "a proposition never changed in the logs")
+    SLOW_TOPIC = ("F315", "a topic comes less often than the bindings need it")
 
     UNREADABLE_LOG = ("F401", "the log cannot be read")
     NOT_A_LOG = ("F402", "the file is not an MCAP log")
@@ -85,6 +87,9 @@ class Code(Enum):
     OUT_OF_ORDER = ("F411", "the messages of a topic are not in order of time")
     BAD_MESSAGE = ("F412", "a message cannot be decoded")
     SPLIT_LOG = ("F413", "a run in several files is not read as one")
+    ZERO_STAMP = ("F416", "messages of a topic have a zero for a time")
+    CLOCK_JUMP = ("F417", "the clock of a topic jumps")
+    MIXED_CLOCKS = ("F418", "the stamps of two topics are of different clocks")
 
     UNKNOWN_PARENT = ("F501", "a parent is not declared")
     BAD_HAZARDS = ("F502", "the hazards cannot be read")

@@ -3,20 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import partial
 from statistics import median
-
-import numpy as np
 
 from fretish.declarations import Declarations
 from fretish.units import base_name
 from monitors import kernel
-from monitors.evidence import Evidence, Moment, Violation, health
+from monitors.evidence import Evidence, health
 from monitors.kernel import Column, Monitor, Outcome
+from monitors.margins import Margin, margins, worst
+from monitors.rates import slow_topics
 from monitors.samples import Recording
 from monitors.signals import blind_zones
+from monitors.tallies import tally
 from monitors.traces import Timeline, Trace, trace
+from monitors.violations import Demand, Moment, violations
 
 Engine = Callable[[Monitor, Mapping[str, Column], int, str], tuple[Outcome, ...]]
 """Monitor, columns, ticks and the verdict on what is open at the end → what was shown."""
@@ -28,6 +30,7 @@ class Watched:
 
     monitor: Monitor
     hashes: Mapping[str, str]
+    demand: Demand = field(default_factory=Demand)
 
 
 def signals_of(declarations: Declarations, propositions: Sequence[str]) -> tuple[str, ...]:
@@ -44,13 +47,14 @@ def signals_of(declarations: Declarations, propositions: Sequence[str]) -> tuple
 def examined(
     recording: Recording, declarations: Declarations, propositions: Sequence[str]
 ) -> Recording:
-    """The recording, with a finding for each bound that the sensors of this log cannot see."""
+    """The recording, with what its sensors cannot see and which of its topics are too slow."""
+    slow = slow_topics(declarations, recording, signals_of(declarations, propositions))
     blind = (
         finding
         for name in propositions
         for finding in blind_zones(declarations.propositions[name], declarations, recording.nearest)
     )
-    return replace(recording, findings=(*recording.findings, *blind))
+    return replace(recording, findings=(*recording.findings, *blind, *slow))
 
 
 def audit(
@@ -69,13 +73,18 @@ def audit(
     """
     names = dict.fromkeys(name for w in watched for name in w.monitor.PROPOSITIONS)
     seen = trace(declarations, recording, tuple(names))
-    return tuple(_evidence(recording, declarations, seen, w, engine) for w in watched)
+    found = {
+        name: margins(declarations.propositions[name], declarations, recording, seen.timeline.times)
+        for name in names
+    }
+    return tuple(_evidence(recording, declarations, seen, found, w, engine) for w in watched)
 
 
 def _evidence(
     recording: Recording,
     declarations: Declarations,
     seen: Trace,
+    found: Mapping[str, tuple[Margin, ...]],
     watched: Watched,
     engine: Engine,
 ) -> Evidence:
@@ -96,13 +105,16 @@ def _evidence(
         outcome=outcome,
         start_ns=recording.start_ns,
         end_ns=recording.end_ns,
+        first_ns=int(seen.timeline.times[0]) if ticks else recording.start_ns,
         clock=f"{declarations.clock}, by {declarations.clock.time}",
         triggers=tuple(at(t) for t in outcome.triggers),
-        violations=tuple(
-            _violation(run, outcome, at, recording, signals) for run in outcome.violations
+        violations=violations(
+            outcome, watched.demand, monitor.REQUIREMENTS[0].horizon, at, recording, signals
         ),
         open=tuple(at(t) for t, _ in outcome.open),
         latencies=tuple(round(latency, 9) for latency in latencies),
+        propositions={name: tally(column, ticks) for name, column in columns.items()},
+        margins=tuple(margin for name in columns for margin in found[name]),
         units={name: base_name(declarations.signals[name].unit.dimension) for name in signals},
         hashes={"log": recording.sha256, **watched.hashes},
         health=health(recording),
@@ -148,36 +160,6 @@ def _moment(timeline: Timeline, tick: int) -> Moment:
     return Moment(tick, ns, round((ns - int(timeline.times[0])) / 1e9, 9))
 
 
-def _violation(
-    run: tuple[int, int],
-    outcome: Outcome,
-    at: Callable[[int], Moment],
-    recording: Recording,
-    signals: Sequence[str],
-) -> Violation:
-    first, last = run
-    before = [trigger for trigger in outcome.triggers if trigger <= first]
-    return Violation(
-        at(first),
-        at(last),
-        at(before[-1]) if before else None,
-        {name: value_at(recording, name, at(first).ns) for name in signals},
-    )
-
-
-def value_at(recording: Recording, signal: str, ns: int) -> float | None:
-    """The last sample of a signal at or before a time; None where there is none or it is unknown.
-
-    Infinite values (nothing in range) are None too: JSON has no word for them.
-    """
-    samples = recording.samples.get(signal)
-    if samples is None:
-        return None
-    i = int(np.searchsorted(samples.times, ns, "right")) - 1
-    value = float(samples.values[i]) if i >= 0 else float("nan")
-    return value if np.isfinite(value) else None
-
-
 def _reason(evidence: Evidence, recording: Recording) -> str:
     """Why the verdict is what it is, in one sentence."""
     outcome = evidence.outcome
@@ -195,7 +177,10 @@ def _reason(evidence: Evidence, recording: Recording) -> str:
         case kernel.VACUOUS:
             return f"never triggered in {outcome.ticks} ticks"
         case _:
-            return f"held, {_times(len(evidence.triggers), 'trigger')}{_latency(evidence)}"
+            return (
+                f"held, {_times(len(evidence.triggers), 'trigger')}{_latency(evidence)}"
+                f"{_margin(evidence)}"
+            )
 
 
 def _broken(evidence: Evidence) -> str:
@@ -231,6 +216,22 @@ def _latency(evidence: Evidence) -> str:
         f", answered after {median(evidence.latencies):.2f} s (median), "
         f"{max(evidence.latencies):.2f} s (longest)"
     )
+
+
+def _margin(evidence: Evidence) -> str:
+    """The threshold that was nearest, as a part of its bound; those that were crossed have none."""
+    least = worst(evidence.margins)
+    if least is None:
+        return ""
+    threshold = least.threshold
+    return (
+        f", least margin {_quantity(least.distance, threshold.unit)} "
+        f"({threshold.text} {threshold.operator} {_quantity(threshold.bound, threshold.unit)})"
+    )
+
+
+def _quantity(value: float | None, unit: str) -> str:
+    return f"{value:.3g} {unit}".rstrip()
 
 
 def _times(count: int, one: str, many: str = "") -> str:

@@ -10,6 +10,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
+from numpy.typing import NDArray
 
 from fretish.clock import TimeSource
 from fretish.declarations import Declarations, Signal
@@ -23,6 +24,7 @@ from monitors.extraction import Extract, Extraction
 from monitors.messages import Messages, Stamps
 from monitors.payloads import Payloads
 from monitors.samples import Gap, Numbers, Times
+from monitors.stamps import JUMP
 
 _MOST, _MOST_BYTES = 4096, 2**22
 """Messages, and bytes of them, that are read at once."""
@@ -72,6 +74,8 @@ class Column:
     pending: Pending | None = None
     undecoded: int = 0
     unstamped: int = 0
+    unset: bytearray = field(default_factory=bytearray)
+    """For each message 1 where its time was never set: it is zero, and its samples are unknown."""
     stated: int | None = None
     """How many messages the log says it holds of it, where they were not read."""
 
@@ -85,6 +89,11 @@ class Column:
         self.signals.remove(signal)
         self.wrong[signal.name] = diagnostic
         self.values.pop(signal.name, None)
+
+    @property
+    def placed(self) -> bool:
+        """Whether the declared clock tells the time of any of its messages."""
+        return 0 in self.unset
 
     def stamps(self) -> Times:
         """In the order of the file: by the declared clock, or log times where no signal reads."""
@@ -203,14 +212,16 @@ class Columns:
     ) -> None:
         """Keep what messages of one stream say."""
         extract = self._extract(column, stream, payloads)
-        times = self._times(column, extract, logs, publishes)
+        times, unset = self._times(column, extract, logs, publishes)
         kept = times < LATEST
         column.undecoded += int((~kept).sum())
         column.logs.frombytes(logs[kept].tobytes())
         column.times.frombytes(times[kept].tobytes())
+        column.unset.extend(unset[kept].tobytes())
         for signal in column.signals:
             values = column.values.setdefault(signal.name, array("d"))
-            values.frombytes(extract.values[signal.name][kept].tobytes())
+            found = np.where(unset, np.nan, extract.values[signal.name])
+            values.frombytes(found[kept].tobytes())
 
     def _extract(self, column: Column, stream: Stream, payloads: Payloads) -> Extract:
         """What the signals ask for; one with something wrong gets no samples."""
@@ -230,21 +241,27 @@ class Columns:
             self.nearest[name] = min(least, self.nearest.get(name, least))
         return extract
 
-    def _times(self, column: Column, extract: Extract, logs: Times, publishes: Stamps) -> Times:
-        """When the messages were, on the declared clock."""
+    def _times(
+        self, column: Column, extract: Extract, logs: Times, publishes: Stamps
+    ) -> tuple[Times, NDArray[np.bool_]]:
+        """When the messages were, on the declared clock; and which of them it does not place."""
+        known = np.ones(len(logs), bool)
         match self.clock.time:
             case TimeSource.LOG_TIME:
-                return logs
+                return logs, ~known
             case TimeSource.PUBLISH_TIME:
-                return publishes.clip(max=LATEST).astype(np.int64)
+                times = publishes.clip(max=LATEST).astype(np.int64)
             case TimeSource.HEADER_STAMP:
                 column.unstamped += int((extract.decoded & ~extract.stamped).sum())
-                times = np.where(extract.stamped, extract.stamps, logs)
-                last = column.times[-1] if column.times else None
-                for i in np.flatnonzero(~extract.decoded):  # as the message before it
-                    before = times[i - 1] if i else last
-                    times[i] = logs[i] if before is None else before
-                return times
+                times, known = np.where(extract.stamped, extract.stamps, logs), extract.decoded
+        unset = known & (times == 0) & (logs >= JUMP)  # a log may begin at zero itself
+        first = times[known & ~unset][:1]
+        before = column.times[-1] if column.times else int(first[0]) if len(first) else None
+        for i in np.flatnonzero(~known | unset):  # as the message before it
+            if i:
+                before = int(times[i - 1])
+            times[i] = logs[i] if before is None else before
+        return times, unset
 
     # The results
 
@@ -264,13 +281,13 @@ class Columns:
 
     def span(self) -> Gap:
         """First and last message of the bound topics; of all, where those have none."""
-        bound = [column.times for column in self.topics.values() if column.times]
+        bound = [column.times for column in self.topics.values() if column.placed]
         all_ = bound or [column.logs for column in self.topics.values() if column.logs]
         return min(map(min, all_)), max(map(max, all_))
 
     def on_clock(self, gap: Gap) -> Gap:
         """A span of log times, on the declared clock: between the messages around it."""
-        columns = [column for column in self.topics.values() if column.times]
+        columns = [column for column in self.topics.values() if column.placed]
         if self.clock.time is TimeSource.LOG_TIME or not columns:
             return gap
         logs = np.concatenate([np.array(column.logs, np.int64) for column in columns])
@@ -319,7 +336,7 @@ class Columns:
 
     def _shift(self) -> int:
         """By how many nanoseconds header stamps are away from log times, in the middle."""
-        stamped = [c for c in self.topics.values() if c.times and not c.unstamped]
+        stamped = [c for c in self.topics.values() if c.placed and not c.unstamped]
         if self.clock.time is not TimeSource.HEADER_STAMP or not stamped:
             return 0
         shifts = [np.array(c.logs, np.int64) - np.array(c.times, np.int64) for c in stamped]

@@ -12,13 +12,17 @@ import struct
 import zlib
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
+from functools import cache
 from io import BufferedReader, BytesIO
-from typing import TypeVar
+from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
 from mcap.data_stream import ReadDataStream
 from mcap.opcode import Opcode
 from mcap.records import Channel, Chunk, ChunkIndex, Schema, Statistics
+
+if TYPE_CHECKING:
+    from zstandard import ZstdDecompressor
 
 INDEX = struct.Struct("<HI")
 """What a message index begins with: channel, and the bytes of its entries."""
@@ -178,11 +182,17 @@ def unpack_into(compression: str, packed: memoryview, target: memoryview, *, who
     return len(data)
 
 
-def _zstd_into(packed: memoryview, target: memoryview, *, whole: bool) -> int:
+@cache
+def _decompressor() -> ZstdDecompressor:
+    """One for all chunks: it costs as much as a small chunk."""
     import zstandard
 
+    return zstandard.ZstdDecompressor()
+
+
+def _zstd_into(packed: memoryview, target: memoryview, *, whole: bool) -> int:
     got = 0
-    with zstandard.ZstdDecompressor().stream_reader(packed) as stream:
+    with _decompressor().stream_reader(packed) as stream:
         while got < len(target) and (more := stream.readinto(target[got:])):
             got += more
         return got + len(stream.read(1)) if whole else got

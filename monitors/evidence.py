@@ -6,36 +6,20 @@ The JSON form is versioned; its schema is `templates/json/evidence.schema.json`.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
+from math import isinf, isnan
+from statistics import median
 from typing import Any
 
 from fretish.diagnostic import Diagnostic
 from fretish.rendering import as_json
 from monitors.kernel import NO_DATA, Outcome
-from monitors.samples import Recording
+from monitors.margins import CROSSED, Margin
+from monitors.samples import Recording, Samples
+from monitors.tallies import Tally
+from monitors.violations import Moment, Violation, Window
 
 SCHEMA = "fretc-evidence-1"
-
-
-@dataclass(frozen=True, slots=True)
-class Moment:
-    """A tick with its time; `ns` is the log's clock, `seconds` counts from the first tick."""
-
-    tick: int
-    ns: int
-    seconds: float
-
-
-@dataclass(frozen=True, slots=True)
-class Violation:
-    """A stretch of ticks at which a demand was broken, with what the signals said."""
-
-    first: Moment
-    last: Moment
-    trigger: Moment | None
-    """The last trigger at or before it; None where it needs none."""
-    values: Mapping[str, float | None]
-    """Each signal of the sentence at the first tick, in base units; None: unknown."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,6 +33,8 @@ class Evidence:
     outcome: Outcome
     start_ns: int
     end_ns: int
+    first_ns: int
+    """When the first tick is; the start of the run, where there is none."""
     clock: str
     triggers: tuple[Moment, ...]
     violations: tuple[Violation, ...]
@@ -56,6 +42,10 @@ class Evidence:
     """Triggers whose demand is open at the end of the log."""
     latencies: tuple[float, ...]
     """Seconds from each trigger to its answer, in the order of the triggers."""
+    propositions: Mapping[str, Tally]
+    """Of each proposition of the sentence how often it was true, false and unknown."""
+    margins: tuple[Margin, ...]
+    """How near the signals came to the thresholds of the propositions."""
     units: Mapping[str, str]
     """The base unit of each signal."""
     hashes: Mapping[str, str]
@@ -78,7 +68,12 @@ def health(recording: Recording) -> dict[str, Any]:
                 "first_ns": topic.first_ns,
                 "last_ns": topic.last_ns,
                 "longest_gap_ns": topic.longest_gap_ns,
+                "median_period_ns": topic.median_period_ns,
                 "out_of_order": topic.out_of_order,
+                "equal_stamps": topic.equal_stamps,
+                "unstamped": topic.unstamped,
+                "zero_stamps": topic.zero_stamps,
+                "clock_jumps": topic.clock_jumps,
             }
             for name, topic in sorted(recording.topics.items())
         },
@@ -102,6 +97,9 @@ def as_record(evidence: Evidence) -> dict[str, Any]:
         "unknown": [list(run) for run in evidence.outcome.unknown],
         "open": [_moment(moment) for moment in evidence.open],
         "latencies_s": list(evidence.latencies),
+        **_exercise(evidence),
+        "propositions": {name: asdict(tally) for name, tally in evidence.propositions.items()},
+        "thresholds": [_threshold(margin, evidence) for margin in evidence.margins],
         "units": dict(evidence.units),
         "hashes": dict(evidence.hashes),
         "health": dict(evidence.health),
@@ -128,6 +126,11 @@ def unread(
         "unknown": [],
         "open": [],
         "latencies_s": [],
+        "exercised": 0,
+        "latency_median_s": None,
+        "latency_max_s": None,
+        "propositions": {},
+        "thresholds": [],
         "units": {},
         "hashes": dict(hashes),
         "health": {
@@ -145,6 +148,45 @@ def _moment(moment: Moment) -> dict[str, Any]:
     return {"tick": moment.tick, "ns": moment.ns, "seconds": moment.seconds}
 
 
+def _exercise(evidence: Evidence) -> dict[str, Any]:
+    latencies = evidence.latencies
+    return {
+        "exercised": len(evidence.triggers),
+        "latency_median_s": round(median(latencies), 9) if latencies else None,
+        "latency_max_s": max(latencies, default=None),
+    }
+
+
+def _threshold(margin: Margin, evidence: Evidence) -> dict[str, Any]:
+    threshold, kept = margin.threshold, margin.comparison
+    return {
+        "proposition": threshold.proposition,
+        "signal": threshold.text,
+        "operator": threshold.operator,
+        "bound": threshold.bound,
+        "unit": threshold.unit,
+        "least": _reading(margin.least),
+        "greatest": _reading(margin.greatest),
+        "comparison": kept if kept is None or kept == CROSSED else str(kept).lower(),
+        "margin": margin.distance,
+        "nearest": _instant(margin.nearest_ns, evidence),
+    }
+
+
+def _instant(ns: int | None, evidence: Evidence) -> dict[str, Any] | None:
+    """A time of the log that need not be one of a tick; before the first tick it is negative."""
+    if ns is None:
+        return None
+    return {"ns": ns, "seconds": round((ns - evidence.first_ns) / 1e9, 9)}
+
+
+def _reading(value: float | None) -> float | str | None:
+    """A number that may be unknown (null) or infinite, for which JSON has no number."""
+    if value is None or isnan(value):
+        return None
+    return ("+inf" if value > 0 else "-inf") if isinf(value) else value
+
+
 def _violation(violation: Violation) -> dict[str, Any]:
     return {
         "first_tick": violation.first.tick,
@@ -154,5 +196,21 @@ def _violation(violation: Violation) -> dict[str, Any]:
         "start_s": violation.first.seconds,
         "end_s": violation.last.seconds,
         "trigger": _moment(violation.trigger) if violation.trigger else None,
+        "deadline": _moment(violation.deadline) if violation.deadline else None,
+        "missing": violation.missing,
         "values": dict(violation.values),
+        "window": _window(violation.window) if violation.window else None,
     }
+
+
+def _window(window: Window) -> dict[str, Any]:
+    return {
+        "start_ns": window.start_ns,
+        "end_ns": window.end_ns,
+        "samples": {name: _samples(samples) for name, samples in window.samples.items()},
+    }
+
+
+def _samples(samples: Samples) -> dict[str, Any]:
+    values = [_reading(value) for value in samples.values.tolist()]
+    return {"times_ns": samples.times.tolist(), "values": values}

@@ -1,4 +1,4 @@
-"""What there is to say about a log: one function for each message (F400 to F412).
+"""What there is to say about a log: one function for each message (F400 to F418).
 
 `place` is the log itself; what concerns one signal points at its line of the bindings. Times are
 nanoseconds.
@@ -224,6 +224,44 @@ def unstamped(signal: Signal, shift: int) -> Diagnostic:
         f"{message}, and that is {_seconds(shift)} away from the stamps of the other topics",
         signal.span,
         'two clocks are mixed: use `time = "log_time"` under `[clock]`',
+        Severity.WARNING,
+    )
+
+
+def zero_stamps(signal: Signal, zero: int, count: int) -> Diagnostic:
+    """F416: the publisher never set the time of some messages."""
+    return Diagnostic(
+        Code.ZERO_STAMP,
+        f"{zero} of {count} messages of `{signal.path.topic}` have a zero for a time: their "
+        "samples are unknown",
+        signal.span,
+        'let the publisher set it, or use `time = "log_time"` under `[clock]`',
+        Severity.WARNING,
+    )
+
+
+def clock_jumps(signal: Signal, jumps: int, largest: int) -> Diagnostic:
+    """F417: the declared time and the log time part by more than a second between two messages."""
+    times = "once" if jumps == 1 else f"{jumps} times, at most"
+    return Diagnostic(
+        Code.CLOCK_JUMP,
+        f"the clock of `{signal.path.topic}` jumps against log_time {times} by {_seconds(largest)}",
+        signal.span,
+        "was a clock set, a simulation begun anew, or were messages held back? "
+        "durations around it are not what they seem",
+        Severity.WARNING,
+    )
+
+
+def mixed_clocks(signal: Signal, other: str, apart: int) -> Diagnostic:
+    """F418: against log times, the stamps of two topics are more than a second apart."""
+    return Diagnostic(
+        Code.MIXED_CLOCKS,
+        f"the stamps of `{signal.path.topic}` are {_seconds(abs(apart))} "
+        f"{'ahead of' if apart > 0 else 'behind'} those of `{other}`, by the times at which both "
+        "were recorded",
+        signal.span,
+        'two clocks are mixed: use `time = "log_time"` under `[clock]`, or set the clocks',
         Severity.WARNING,
     )
 

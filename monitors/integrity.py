@@ -35,3 +35,7 @@ class Checked:
     def crc_unchecked(self) -> int:
         """Chunks with a CRC of which only the beginning was unpacked."""
         return self.chunks - self.crc_checked - self.without_crc - self.skipped
+
+
+EVERYTHING = Checked(by_index=False)
+"""Every record was looked at; there was no chunk."""

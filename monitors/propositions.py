@@ -79,7 +79,7 @@ def evaluate(proposition: Proposition, declarations: Declarations, recording: Re
         Steps from `recording.start_ns` on; the later ones up to `recording.end_ns`.
     """
     signals = {name: declarations.signals[name] for name in proposition.signals}
-    history = _history(signals, recording)
+    history = history_of(signals, recording)
     steps = _steps(proposition.expression, history)
     kept = steps.times <= max(recording.end_ns, recording.start_ns)
     return Steps(steps.times[kept], steps.states[kept])
@@ -216,18 +216,19 @@ def _same(left: States, right: States) -> States:
 
 
 @dataclass(frozen=True, slots=True)
-class _History:
+class History:
     """The signals of a proposition at all its events; times have shape (n,)."""
 
     times: Times
     numbers: Mapping[str, Numbers]
 
-    def at(self, chosen: NDArray[np.intp], times: Times) -> _History:
+    def at(self, chosen: NDArray[np.intp], times: Times) -> History:
         """The same at other times, each with the event that is in force there."""
-        return _History(times, {name: values[chosen] for name, values in self.numbers.items()})
+        return History(times, {name: values[chosen] for name, values in self.numbers.items()})
 
 
-def _history(signals: Mapping[str, Signal], recording: Recording) -> _History:
+def history_of(signals: Mapping[str, Signal], recording: Recording) -> History:
+    """What the signals are at each time at which `evaluate` looks at them."""
     samples = {name: _samples(recording, name) for name in signals}
     gaps = _merged(recording.gaps)
     fixed = [recording.start_ns, *(edge for gap in gaps for edge in gap)]
@@ -240,7 +241,7 @@ def _history(signals: Mapping[str, Signal], recording: Recording) -> _History:
         for i, (name, signal) in enumerate(signals.items())
     }
     first = int(np.searchsorted(times, recording.start_ns))
-    return _History(times[first:], {name: values[first:] for name, values in numbers.items()})
+    return History(times[first:], {name: values[first:] for name, values in numbers.items()})
 
 
 def _samples(recording: Recording, name: str) -> tuple[Times, Numbers]:
@@ -318,7 +319,7 @@ def _held_values(
 # Durations
 
 
-def _steps(expression: e.Expression, history: _History) -> Steps:
+def _steps(expression: e.Expression, history: History) -> Steps:
     held = {
         part: _held(_steps(part.arg, history), part.duration) for part in _durations(expression)
     }

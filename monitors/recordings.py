@@ -14,6 +14,7 @@ from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass
 from io import BufferedReader
 from pathlib import Path
+from statistics import median
 
 import numpy as np
 
@@ -26,6 +27,7 @@ from monitors.columns import Column, Columns
 from monitors.container import MAGIC, Stream
 from monitors.decoding import decoder, shape
 from monitors.samples import Recording, Samples, Topic
+from monitors.stamps import JUMP, Stamps, stamps
 from monitors.walk import Walk
 
 _MOST_TICKS = 20_000_000
@@ -177,22 +179,58 @@ def _recording(
         gaps=gaps,
         topics={name: _topic(column) for name, column in sorted(columns.topics.items())},
         nearest=columns.nearest,
-        findings=(*columns.findings(), *findings.few(told, place)),
+        findings=(*columns.findings(), *_clocks(columns, wanted), *findings.few(told, place)),
         intact=not damages,
     )
 
 
+def _clocks(columns: Columns, wanted: Sequence[Signal]) -> list[Diagnostic]:
+    """What is odd about the clocks of the topics that the signals read."""
+    found: list[Diagnostic] = []
+    ahead: dict[str, int] = {}
+    signals = {
+        signal.path.topic: signal for signal in wanted if signal.path.topic in columns.topics
+    }
+    for topic, signal in signals.items():
+        column = columns.topics[topic]
+        if zero := sum(column.unset):
+            found.append(findings.zero_stamps(signal, zero, len(column.logs)))
+        clock = _stamps(column)
+        if clock is not None and clock.jumps:
+            found.append(findings.clock_jumps(signal, clock.jumps, clock.largest))
+        if clock is not None and not column.unstamped:
+            ahead[topic] = clock.ahead
+    middle = median(ahead.values()) if ahead else 0
+    true = min(ahead, key=lambda topic: (abs(ahead[topic] - middle), abs(ahead[topic])), default="")
+    for topic, shift in ahead.items():
+        if abs(shift - ahead[true]) > JUMP:
+            found.append(findings.mixed_clocks(signals[topic], true, shift - ahead[true]))
+    return found
+
+
+def _stamps(column: Column) -> Stamps | None:
+    """Of the messages that the declared clock has a time for."""
+    known = np.frombuffer(bytes(column.unset), np.uint8) == 0
+    logs, times = np.array(column.logs, np.int64), np.array(column.times, np.int64)
+    return stamps(logs[known], times[known])
+
+
 def _topic(column: Column) -> Topic:
-    stamps = np.sort(column.stamps())
-    steps = np.diff(stamps)
+    times = np.sort(column.stamps())
+    steps = np.diff(times)
+    clock = _stamps(column) if column.bound else None  # of another there are only log times
     return Topic(
         name=column.name,
         type=column.type,
         encoding=column.encoding,
         count=len(column.logs),
-        first_ns=int(stamps[0]) if len(stamps) else None,
-        last_ns=int(stamps[-1]) if len(stamps) else None,
+        first_ns=int(times[0]) if len(times) else None,
+        last_ns=int(times[-1]) if len(times) else None,
         longest_gap_ns=int(steps.max(initial=0)),
         out_of_order=column.late(),
         equal_stamps=int((steps == 0).sum()),
+        median_period_ns=int(np.median(steps)) if len(steps) else None,
+        unstamped=column.unstamped,
+        zero_stamps=sum(column.unset),
+        clock_jumps=clock.jumps if clock is not None else 0,
     )

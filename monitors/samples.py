@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fretish.diagnostic import Diagnostic
-from monitors.integrity import Checked
+from monitors.integrity import EVERYTHING, Checked
 
 Times = NDArray[np.int64]
 """Nanoseconds."""
@@ -37,9 +37,12 @@ class Samples:
 class Topic:
     """How one topic of a log is, by the declared time (`log_time` where no signal reads it).
 
-    `first_ns` and `last_ns` are None for a topic without messages; these and the rest are None
-    where its messages were only counted. `out_of_order` counts the
-    messages that are earlier than one before them, `equal_stamps` those with the time of another.
+    `first_ns` and `last_ns` are None for a topic without messages, `median_period_ns` for one
+    with less than two. `out_of_order` counts the messages that are earlier than one before them,
+    `equal_stamps` those with the time of another, `unstamped` those without a stamp where the
+    clock goes by stamps, `zero_stamps` those with a stamp that was never set, and `clock_jumps`
+    those before which the clock jumped against the log times. All but the count are None where
+    the messages were only counted.
     """
 
     name: str
@@ -51,6 +54,10 @@ class Topic:
     longest_gap_ns: int | None
     out_of_order: int | None
     equal_stamps: int | None
+    median_period_ns: int | None = None
+    unstamped: int | None = 0
+    zero_stamps: int | None = 0
+    clock_jumps: int | None = 0
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,4 +84,4 @@ class Recording:
     nearest: Mapping[str, float]
     findings: tuple[Diagnostic, ...]
     intact: bool
-    checked: Checked = Checked(by_index=False)
+    checked: Checked = EVERYTHING

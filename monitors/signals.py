@@ -7,7 +7,7 @@ means.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from math import isfinite
 from numbers import Real
 from typing import assert_never
@@ -19,8 +19,9 @@ from fretish import expressions as e
 from fretish.declarations import Declarations, Proposition, Reading, Reduce, Signal
 from fretish.diagnostic import Code, Diagnostic, Severity, suggestion
 from monitors.outline import blind_share, distances, places
-from monitors.propositions import TRUE, ExpressionError, Scope, number, truth
+from monitors.propositions import TRUE, ExpressionError, Scope, truth
 from monitors.samples import Numbers
+from monitors.thresholds import thresholds
 
 RANGE_MIN = "range_min"
 """The field of a range sensor's messages that says what is too near for it."""
@@ -264,36 +265,16 @@ def blind_zones(
             `Recording.nearest` has it.
     """
     found = []
-    for part in _comparisons(proposition.expression):
-        for name, bound, op in _bounds(part):
-            signal = declarations.signals.get(name.id)
-            limit = nearest.get(name.id)
-            if signal is None or limit is None or signal.invalid.other is Reading.NEAR:
-                continue
-            share = _blind(signal, bound, limit, op)
-            if share > 0:
-                found.append(_blind_zone(proposition, signal, bound, limit, share))
+    for threshold in thresholds(proposition, declarations.signals):
+        if not isinstance(threshold.term, e.Name):
+            continue
+        signal, limit = declarations.signals[threshold.term.id], nearest.get(threshold.term.id)
+        if limit is None or signal.invalid.other is Reading.NEAR:
+            continue
+        share = _blind(signal, threshold.bound, limit, threshold.operator)
+        if share > 0:
+            found.append(_blind_zone(proposition, signal, threshold.bound, limit, share))
     return tuple(found)
-
-
-def _comparisons(expression: e.Expression) -> Iterator[e.Comparison]:
-    if isinstance(expression, e.Comparison):
-        yield expression
-    for part in e.children(expression):
-        yield from _comparisons(part)
-
-
-def _bounds(comparison: e.Comparison) -> Iterator[tuple[e.Name, float, str]]:
-    """`(signal, bound in the base unit, operator as if the signal stood on the left)`."""
-    mirrored = {"<": ">", "<=": ">=", ">": "<", ">=": "<="}
-    if comparison.op not in mirrored:
-        return
-    for name, other, op in (
-        (comparison.left, comparison.right, comparison.op),
-        (comparison.right, comparison.left, mirrored[comparison.op]),
-    ):
-        if isinstance(name, e.Name) and not any(e.names(other)):
-            yield name, float(number(other, Scope(1, {}))[0]), op
 
 
 def _blind(signal: Signal, bound: float, limit: float, op: str) -> float:

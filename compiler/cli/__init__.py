@@ -15,6 +15,7 @@ from pathlib import Path
 import click
 
 from compiler import __version__
+from compiler.cli.bind import bind
 from compiler.cli.group import DEFAULT, Commands
 from compiler.cli.output import BAD, INTERRUPTED, SHOWN, not_written, say, say_line
 from compiler.cli.requirements import compile_, fmt, import_
@@ -33,7 +34,7 @@ def cli() -> None:
     """
 
 
-for _command in (compile_, fmt, import_, info, audit, report, verify, simulate):
+for _command in (compile_, fmt, import_, info, bind, audit, report, verify, simulate):
     cli.add_command(_command)
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import sys
 from collections.abc import Iterable, Mapping, Sequence
 from contextlib import suppress
 from pathlib import Path
@@ -60,6 +61,15 @@ def deliver(files: Mapping[Path, str], protected: Iterable[str] = ()) -> None:
         stop(wrong)
     for path in written:
         say_line(f"wrote {path}")
+
+
+def coloured(lines: Sequence[tuple[str, str | None]]) -> str:
+    """The lines, each in its colour where standard output is a terminal that wants colours."""
+    plain = not sys.stdout.isatty() or "NO_COLOR" in os.environ
+    return "".join(
+        f"{text if plain or colour is None else click.style(text, fg=colour)}\n"
+        for text, colour in lines
+    )
 
 
 def not_written(path: str, why: str) -> Diagnostic:

@@ -16,6 +16,7 @@ from compiler.cli.output import (
     NOT_SHOWN,
     SHOWN,
     VIOLATION,
+    coloured,
     deliver,
     not_written,
     say,
@@ -112,7 +113,7 @@ def _printed(result: Audit, project: Project, form: str) -> str:
         case "github":
             return github(result.results, project.rules)
         case _:
-            return _coloured(result.text)
+            return coloured(result.text)
 
 
 def _counted(count: int) -> Any:
@@ -128,15 +129,6 @@ def _counted(count: int) -> Any:
             yield lambda: bar.update(1)
 
     return shown()
-
-
-def _coloured(lines: Sequence[tuple[str, str | None]]) -> str:
-    """The lines, each in its colour where standard output is a terminal that wants colours."""
-    plain = not sys.stdout.isatty() or "NO_COLOR" in os.environ
-    return "".join(
-        f"{text if plain or colour is None else click.style(text, fg=colour)}\n"
-        for text, colour in lines
-    )
 
 
 @click.command(short_help="Say what is in recorded runs, and how healthy they are.")

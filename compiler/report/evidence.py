@@ -44,8 +44,29 @@ class Violation:
     first: Moment
     last: Moment
     trigger: Moment | None
+    deadline: Moment | None
+    missing: str
+    """The response that did not come."""
     values: Mapping[str, float | None]
     """Each signal at the first tick, in its base unit; None: unknown."""
+
+
+@dataclass(frozen=True, slots=True)
+class Threshold:
+    """How near a signal came to a bound; numbers in `unit`, as text where they are infinite."""
+
+    proposition: str
+    signal: str
+    operator: str
+    bound: float
+    unit: str
+    least: float | str | None
+    greatest: float | str | None
+    comparison: str | None
+    """The truth value that it kept, `crossed`, or None: it was never known."""
+    margin: float | None
+    nearest: float | None
+    """Seconds from the first tick."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -100,6 +121,7 @@ class Result:
     unknown: tuple[tuple[int, int], ...]
     open: tuple[Moment, ...]
     latencies: tuple[float, ...]
+    thresholds: tuple[Threshold, ...]
     units: Mapping[str, str]
     hashes: Mapping[str, str]
     """SHA-256 of `log` (absent where it could not be read), `sentence`, `bindings`, `monitor`."""
@@ -203,6 +225,7 @@ def _result(at: Shape) -> Result:
         unknown=tuple(map(_ticks, at.field("unknown").items())),
         open=tuple(map(_moment, at.field("open").items())),
         latencies=tuple(latency.seconds() for latency in at.field("latencies_s").items()),
+        thresholds=tuple(map(_threshold, at.field("thresholds").items())),
         units={name: unit.text() for name, unit in at.field("units").fields().items()},
         hashes=_hashes(at.field("hashes")),
         health=_health(at.field("health")),
@@ -226,8 +249,33 @@ def _violation(at: Shape) -> Violation:
         Moment(at.field("first_tick").count(), at.field("start_s").seconds()),
         Moment(at.field("last_tick").count(), at.field("end_s").seconds()),
         at.field("trigger").or_none(_moment),
+        at.field("deadline").or_none(_moment),
+        at.field("missing").text(),
         {name: value.or_none(Shape.number) for name, value in values.items()},
     )
+
+
+def _threshold(at: Shape) -> Threshold:
+    return Threshold(
+        proposition=at.field("proposition").text(),
+        signal=at.field("signal").text(),
+        operator=at.field("operator").one_of(("<", "<=", ">", ">=")),
+        bound=at.field("bound").number(),
+        unit=at.field("unit").text(),
+        least=at.field("least").or_none(_reading),
+        greatest=at.field("greatest").or_none(_reading),
+        comparison=at.field("comparison").or_none(_comparison),
+        margin=at.field("margin").or_none(Shape.number),
+        nearest=at.field("nearest").or_none(lambda nearest: nearest.field("seconds").number()),
+    )
+
+
+def _reading(at: Shape) -> float | str:
+    return at.one_of(("+inf", "-inf")) if isinstance(at.value, str) else at.number()
+
+
+def _comparison(at: Shape) -> str:
+    return at.one_of(("true", "false", "crossed"))
 
 
 def _ticks(at: Shape) -> tuple[int, int]:

@@ -43,8 +43,10 @@ def seconds(number: float) -> str:
     return f"{decimal(number)} s"
 
 
-def value(number: float | None, unit: str) -> str:
-    """A signal's value: `0.0318 m`, `unknown`."""
+def value(number: float | str | None, unit: str) -> str:
+    """A signal's value: `0.0318 m`, `unknown`; an infinite one as it is written, `+inf`."""
+    if isinstance(number, str):
+        return number
     return "unknown" if number is None else f"{number:.4g} {unit}".rstrip()
 
 

@@ -8,10 +8,10 @@ from statistics import median
 
 from compiler.report import phrases
 from compiler.report.claims import MARKS, Claim, Judged
-from compiler.report.evidence import Moment, Result, Violation
+from compiler.report.evidence import Moment, Result, Threshold, Violation
 from compiler.report.runs import Key, Run, key
 from compiler.report.timeline import answered, timelines
-from compiler.report.views import Latency, Listing, ResultView, ViolationView
+from compiler.report.views import Latency, Listing, ResultView, ThresholdView, ViolationView
 from compiler.rule import Rule
 from fretish import syntax
 from fretish.clock import Clock
@@ -50,6 +50,7 @@ def _view(judged: Judged, claim: Claim, number: int, run: Run, clock: Clock | No
         reason=result.reason,
         exercised=_exercised(result),
         latency=_latency(result, claim.rule),
+        thresholds=tuple(map(_threshold, result.thresholds)),
         violations=tuple(_violation(v, result) for v in result.violations[:LISTED]),
         violations_total=len(result.violations),
         open=_open(result),
@@ -153,11 +154,33 @@ def _violation(violation: Violation, result: Result) -> ViolationView:
         start=phrases.seconds(first.seconds),
         end=phrases.seconds(last.seconds),
         ticks=ticks,
-        trigger=f"{phrases.seconds(trigger.seconds)} (tick {trigger.tick})" if trigger else "none",
+        trigger=_at(trigger) if trigger else "none",
+        deadline=_at(violation.deadline) if violation.deadline else "none",
+        missing=violation.missing,
         values=tuple(
             (name, phrases.value(value, result.units.get(name, "")))
             for name, value in violation.values.items()
         ),
+    )
+
+
+def _at(moment: Moment) -> str:
+    return f"{phrases.seconds(moment.seconds)} (tick {moment.tick})"
+
+
+def _threshold(threshold: Threshold) -> ThresholdView:
+    kept, unit = threshold.comparison, threshold.unit
+    numbers = (threshold.bound, threshold.least, threshold.greatest)
+    bound, least, greatest = (phrases.value(each, unit) for each in numbers)
+    margin = {None: "never known", "crossed": "crossed"}.get(kept) or (
+        "always out of range" if threshold.margin is None else phrases.value(threshold.margin, unit)
+    )
+    return ThresholdView(
+        proposition=threshold.proposition,
+        comparison=f"{threshold.signal} {threshold.operator} {bound}",
+        values="unknown" if threshold.least is None else f"{least} to {greatest}",
+        margin=margin,
+        nearest="" if threshold.nearest is None else phrases.seconds(threshold.nearest),
     )
 
 

@@ -265,7 +265,20 @@ class ViolationView:
     end: str
     ticks: str
     trigger: str
+    deadline: str
+    missing: str
     values: tuple[tuple[str, str], ...]
+
+
+@dataclass(frozen=True, slots=True)
+class ThresholdView:
+    """A comparison with a constant, and how near the signal came to it."""
+
+    proposition: str
+    comparison: str
+    values: str
+    margin: str
+    nearest: str
 
 
 @dataclass(frozen=True, slots=True)
@@ -290,6 +303,7 @@ class ResultView:
     reason: str
     exercised: str
     latency: Latency | None
+    thresholds: tuple[ThresholdView, ...]
     violations: tuple[ViolationView, ...]
     violations_total: int
     open: Listing

@@ -72,6 +72,7 @@ def test_every_topic_of_the_log_has_its_health(tmp_path: Path) -> None:
         longest_gap_ns=60 * MS,
         out_of_order=2,
         equal_stamps=1,
+        median_period_ns=10 * MS,
     )
     assert recording.topics["/other"].count == 1
     assert recording.topics["/other"].longest_gap_ns == 0

@@ -115,8 +115,44 @@ def violation(first: int, last: int, trigger: int | None = None) -> dict[str, An
         "start_s": first / 10,
         "end_s": last / 10,
         "trigger": None if trigger is None else moment(trigger),
+        "deadline": None if trigger is None else moment(first),
+        "missing": "stopped",
         "values": {"clearance": 0.0318, "vx": None},
+        "window": WINDOW,
     }
+
+
+WINDOW = {
+    "start_ns": 10**9,
+    "end_ns": 3 * 10**9,
+    "samples": {"clearance": {"times_ns": [10**9, 2 * 10**9], "values": [0.0318, "+inf"]}},
+}
+THRESHOLDS = [
+    {
+        "proposition": "near",
+        "signal": "clearance",
+        "operator": "<",
+        "bound": 0.05,
+        "unit": "m",
+        "least": 0.0318,
+        "greatest": "+inf",
+        "comparison": "crossed",
+        "margin": None,
+        "nearest": {"ns": 10**9, "seconds": 0.0},
+    },
+    {
+        "proposition": "stopped",
+        "signal": "abs(vx)",
+        "operator": "<",
+        "bound": 0.01,
+        "unit": "m/s",
+        "least": 0.0,
+        "greatest": 0.0075,
+        "comparison": "true",
+        "margin": 0.0025,
+        "nearest": {"ns": 9 * 10**8, "seconds": -0.1},
+    },
+]
 
 
 def result(
@@ -156,6 +192,11 @@ def result(
         "unknown": [],
         "open": [],
         "latencies_s": [2.5, 2.4, 0.0],
+        "exercised": 3,
+        "latency_median_s": 2.4,
+        "latency_max_s": 2.5,
+        "propositions": {"near": {"true": 3, "false": 97, "unknown": 0, "changes": 4}},
+        "thresholds": THRESHOLDS,
         "units": {"clearance": "m", "vx": "m/s"},
         "assumptions": [],
         **changes,
@@ -170,7 +211,12 @@ ODOM = {
     "first_ns": 10**9,
     "last_ns": 11 * 10**9,
     "longest_gap_ns": 40_000_000,
+    "median_period_ns": 20_000_000,
     "out_of_order": 3,
+    "equal_stamps": 0,
+    "unstamped": 0,
+    "zero_stamps": 0,
+    "clock_jumps": 0,
 }
 
 

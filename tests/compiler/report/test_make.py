@@ -397,6 +397,30 @@ def test_a_bound_is_told_beside_the_latency(tmp_path: Path) -> None:
     assert content["reservations"] == []
 
 
+def test_each_threshold_is_shown_with_its_values_and_its_margin(tmp_path: Path) -> None:
+    known = project(tmp_path)
+    report = made(known, tmp_path, result(known, "satisfied"))
+    (shown,) = said(report)["requirements"][0]["results"]
+    assert shown["thresholds"] == [
+        {
+            "proposition": "near",
+            "comparison": "clearance < 0.05 m",
+            "values": "0.0318 m to +inf",
+            "margin": "crossed",
+            "nearest": "0 s",
+        },
+        {
+            "proposition": "stopped",
+            "comparison": "abs(vx) < 0.01 m/s",
+            "values": "0 m/s to 0.0075 m/s",
+            "margin": "0.0025 m/s",
+            "nearest": "-0.1 s",
+        },
+    ]
+    assert report.html is not None
+    assert "abs(vx) &lt; 0.01 m/s" in report.html
+
+
 def test_violations_open_demands_and_unknown_ticks_are_listed(tmp_path: Path) -> None:
     known = project(tmp_path)
     bad = result(
@@ -412,6 +436,8 @@ def test_violations_open_demands_and_unknown_ticks_are_listed(tmp_path: Path) ->
         "end": "2 s",
         "ticks": "14 to 20",
         "trigger": "1.1 s (tick 11)",
+        "deadline": "1.4 s (tick 14)",
+        "missing": "stopped",
         "values": [["clearance", "0.0318 m"], ["vx", "unknown"]],
     }
     assert (shown["violations"][1]["ticks"], shown["violations"][1]["trigger"]) == ("60", "none")

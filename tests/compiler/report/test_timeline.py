@@ -20,6 +20,7 @@ EMPTY = Result(
     unknown=(),
     open=(),
     latencies=(),
+    thresholds=(),
     units={},
     hashes={},
     health=Health(True, 1, (), (), ()),
@@ -48,7 +49,7 @@ def test_a_run_without_violation_is_one_picture() -> None:
 
 
 def test_a_violation_is_shown_with_its_trigger_and_some_ticks_around() -> None:
-    broken = Violation(Moment(50, 5.0), Moment(59, 5.9), Moment(40, 4.0), {})
+    broken = Violation(Moment(50, 5.0), Moment(59, 5.9), Moment(40, 4.0), None, "stopped", {})
     result = replace(EMPTY, verdict="violated", triggers=at(5, 40), violations=(broken,))
     (picture,) = timelines(result, 0.1)
     assert (picture.title, picture.start, picture.end) == ("Violation 1", 3.0, 7.0)
@@ -90,7 +91,9 @@ def test_marks_that_stand_apart_stay_apart() -> None:
 
 
 def test_only_the_first_violations_get_a_picture() -> None:
-    broken = tuple(Violation(moment, moment, None, {}) for moment in at(*range(90)))
+    broken = tuple(
+        Violation(moment, moment, None, None, "stopped", {}) for moment in at(*range(90))
+    )
     pictures = timelines(replace(EMPTY, violations=broken), 0.1)
     assert [re.sub(r"\D", "", picture.title) for picture in pictures] == [
         str(number) for number in range(1, 13)

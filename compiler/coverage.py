@@ -1,0 +1,168 @@
+"""What the bound propositions were in recorded runs: true, false or unknown."""
+
+from __future__ import annotations
+
+import json
+import tomllib
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import asdict, dataclass
+from functools import partial
+from typing import Any
+
+from compiler.constancy import never_changed
+from compiler.workers import each
+from fretish.declarations import Declarations, Signal
+from fretish.diagnostic import Code, Diagnostic
+from fretish.rendering import as_json, visible
+from monitors.audit import examined, signals_of
+from monitors.recordings import read
+from monitors.tallies import NOTHING, Tally, tally
+from monitors.traces import trace
+
+
+@dataclass(frozen=True, slots=True)
+class Seen:
+    """One log: its ticks, and the tally of each proposition (None: it could not be read)."""
+
+    run: str
+    ticks: int
+    tallies: Mapping[str, Tally] | None
+    findings: tuple[Diagnostic, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Coverage:
+    """What each proposition was in each log."""
+
+    declarations: Declarations
+    logs: tuple[Seen, ...]
+
+    @property
+    def diagnostics(self) -> tuple[Diagnostic, ...]:
+        """What there is to say: of each log, and then of all of them."""
+        constant = never_changed(self._tallies, self.declarations)
+        return (*(finding for log in self.logs for finding in log.findings), *constant)
+
+    @property
+    def shown(self) -> bool:
+        """Whether every proposition took both values in some log."""
+        return all(map(self._took_both, self.declarations.propositions))
+
+    @property
+    def as_json(self) -> str:
+        """One JSON object: of each proposition what it was bound to, and what it was."""
+        return f"{json.dumps(self._record(), indent=2, allow_nan=False)}\n"
+
+    @property
+    def text(self) -> tuple[tuple[str, str | None], ...]:
+        """Lines for a person, each with its colour."""
+        names = self.declarations.propositions
+        return tuple(
+            (visible(line), colour) for name in names for line, colour in self._lines(name)
+        )
+
+    @property
+    def _tallies(self) -> dict[str, list[Tally]]:
+        read = [log.tallies for log in self.logs if log.tallies is not None]
+        return {name: [log[name] for log in read] for name in self.declarations.propositions}
+
+    def _took_both(self, name: str) -> bool:
+        return any(counted.true and counted.false for counted in self._tallies[name])
+
+    def _lines(self, name: str) -> Iterator[tuple[str, str | None]]:
+        took_both = self._took_both(name)
+        glyph, colour = ("✔", "green") if took_both else ("?", "magenta")
+        yield f"{glyph} {name}: {_expression(self.declarations, name)}", colour
+        for signal in self.declarations.propositions[name].signals:
+            yield f"    {_bound(self.declarations.signals[signal])}", None
+        width = max((len(log.run) for log in self.logs), default=0)
+        for log in self.logs:
+            counted = "cannot be read" if log.tallies is None else _counted(log.tallies[name])
+            yield f"  {log.run:<{width}}  {counted}", None
+        if len(self.logs) > 1:
+            yield f"  {'all logs':<{width}}  {_counted(sum(self._tallies[name], NOTHING))}", None
+
+    def _record(self) -> dict[str, Any]:
+        return {
+            "bindings": self.declarations.source.name,
+            "logs": [
+                {
+                    "run": log.run,
+                    "read": log.tallies is not None,
+                    "ticks": log.ticks,
+                    "findings": [as_json(finding) for finding in log.findings],
+                }
+                for log in self.logs
+            ],
+            "propositions": [self._proposition(name) for name in self.declarations.propositions],
+            "findings": [
+                as_json(finding) for finding in never_changed(self._tallies, self.declarations)
+            ],
+        }
+
+    def _proposition(self, name: str) -> dict[str, Any]:
+        signals = self.declarations.signals
+        return {
+            "name": name,
+            "expression": _expression(self.declarations, name),
+            "signals": {
+                signal: str(signals[signal].path)
+                for signal in self.declarations.propositions[name].signals
+            },
+            "took_both_values": self._took_both(name),
+            "all": asdict(sum(self._tallies[name], NOTHING)),
+            "logs": {log.run: asdict(log.tallies[name]) for log in self.logs if log.tallies},
+        }
+
+
+def _expression(declarations: Declarations, name: str) -> str:
+    """As it is written."""
+    data: Mapping[str, Any] = tomllib.loads(declarations.source.text)
+    return str(data["proposition"][name]["expr"])
+
+
+def _bound(signal: Signal) -> str:
+    reduced = f"{signal.reduce} of " if signal.reduce else ""
+    return f"{signal.name} = {reduced}{signal.path} {signal.unit_name}".rstrip()
+
+
+def _counted(counted: Tally) -> str:
+    ticks = counted.true + counted.false + counted.unknown
+    times = f"{counted.changes} time{'' if counted.changes == 1 else 's'}"
+    return (
+        f"true {counted.true}, false {counted.false}, unknown {counted.unknown} "
+        f"of {ticks} ticks; changed {times}"
+    )
+
+
+def coverage(declarations: Declarations, logs: Sequence[str], jobs: int) -> Coverage | Diagnostic:
+    """Look at every proposition in every log.
+
+    Args:
+        declarations: clock, signals and propositions.
+        logs: paths.
+        jobs: how many processes share the logs.
+    """
+    if not declarations.clock.declared or not declarations.propositions:
+        what = "clock" if not declarations.clock.declared else "proposition"
+        mend = "[clock]" if what == "clock" else "[proposition.NAME]"
+        return Diagnostic(
+            Code.NOTHING_TO_DO,
+            f"`{declarations.source.name}` declares no {what}",
+            declarations.source.span(0, 0),
+            help=f"add `{mend}`; `fretc bind --from LOG` drafts it",
+        )
+    look = partial(_seen, declarations=declarations)
+    return Coverage(declarations, tuple(each(look, tuple(dict.fromkeys(logs)), jobs)))
+
+
+def _seen(log: str, declarations: Declarations) -> Seen:
+    names = tuple(declarations.propositions)
+    recording = read(log, declarations, signals_of(declarations, names))
+    if isinstance(recording, Diagnostic):
+        return Seen(log, 0, None, (recording,))
+    recording = examined(recording, declarations, names)
+    seen = trace(declarations, recording, names)
+    ticks = len(seen.timeline.times)
+    tallies = {name: tally(column, ticks) for name, column in seen.columns.items()}
+    return Seen(log, ticks, tallies, recording.findings)

@@ -1,0 +1,132 @@
+"""Which fields of well-known ROS messages are worth a signal, and in which unit they are.
+
+Sources: the comments in the definitions of common_interfaces (sensor_msgs, geometry_msgs,
+nav_msgs, std_msgs) and ackermann_msgs; REP 103 (metres, radians, seconds where a definition says
+nothing else); REP 117 (readings out of range).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+_REP_117 = '{ nan = "drop", "+inf" = "far", "-inf" = "near", other = "drop", empty = "unknown" }'
+
+
+@dataclass(frozen=True, slots=True)
+class Quantity:
+    """A field of a message: what a signal of it is called, and how it is read."""
+
+    field: str
+    name: str
+    """The end of the signal's name."""
+    unit: str = ""
+    """Empty: a plain number, or one whose unit the definition leaves open."""
+    reduce: str = ""
+    valid: str = ""
+    invalid: str = ""
+    """As a table of TOML."""
+    note: str = ""
+
+
+def _planar(prefix: str) -> tuple[Quantity, ...]:
+    """A geometry_msgs/Twist: m/s and rad/s, x forward and z up (REP 103)."""
+    return (
+        Quantity(f"{prefix}linear.x", "vx", "m/s"),
+        Quantity(f"{prefix}linear.y", "vy", "m/s"),
+        Quantity(f"{prefix}angular.z", "wz", "rad/s"),
+    )
+
+
+def _place(prefix: str) -> tuple[Quantity, ...]:
+    """A geometry_msgs/Pose."""
+    return tuple(Quantity(f"{prefix}position.{axis}", axis, "m") for axis in "xyz")
+
+
+def _force(prefix: str) -> tuple[Quantity, ...]:
+    """A geometry_msgs/Wrench."""
+    return (
+        *(Quantity(f"{prefix}force.{axis}", f"f{axis}", "N") for axis in "xyz"),
+        *(Quantity(f"{prefix}torque.{axis}", f"t{axis}", "Nm") for axis in "xyz"),
+    )
+
+
+def _accelerations(prefix: str) -> tuple[Quantity, ...]:
+    return tuple(Quantity(f"{prefix}linear.{axis}", f"a{axis}", "m/s^2") for axis in "xyz")
+
+
+def _steered(prefix: str) -> tuple[Quantity, ...]:
+    return (
+        Quantity(f"{prefix}speed", "speed", "m/s"),
+        Quantity(f"{prefix}steering_angle", "steering", "rad"),
+    )
+
+
+_PLAIN = (Quantity("data", "", note="a plain number: the type says no unit"),)
+_FLAG = (Quantity("data", "", note="true is 1, false is 0: compare with 0.5"),)
+
+QUANTITIES: Mapping[str, tuple[Quantity, ...]] = {
+    "sensor_msgs/LaserScan": (
+        Quantity(
+            "ranges[:]",
+            "min",
+            "m",
+            reduce="min",
+            valid="range_min <= x and x <= range_max",
+            invalid=_REP_117,
+            note="from the sensor to what is nearest; `outline` measures from the robot's outline",
+        ),
+    ),
+    "sensor_msgs/Range": (
+        Quantity("range", "", "m", valid="min_range <= x and x <= max_range", invalid=_REP_117),
+    ),
+    "sensor_msgs/BatteryState": (
+        Quantity("voltage", "voltage", "V"),
+        Quantity("current", "current", "A", note="negative while it discharges; NaN: not measured"),
+        Quantity("percentage", "percentage", note="from 0 to 1, or write 20 %; NaN: not measured"),
+    ),
+    "sensor_msgs/Imu": (
+        *(Quantity(f"angular_velocity.{axis}", f"w{axis}", "rad/s") for axis in "xyz"),
+        *(Quantity(f"linear_acceleration.{axis}", f"a{axis}", "m/s^2") for axis in "xyz"),
+    ),
+    "sensor_msgs/Temperature": (
+        Quantity("temperature", "", note="degrees Celsius, which are no unit: a plain number"),
+    ),
+    "sensor_msgs/FluidPressure": (Quantity("fluid_pressure", "", "Pa"),),
+    "sensor_msgs/RelativeHumidity": (Quantity("relative_humidity", "", note="from 0 to 1"),),
+    "sensor_msgs/NavSatFix": (
+        Quantity("latitude", "latitude", "deg"),
+        Quantity("longitude", "longitude", "deg"),
+        Quantity("altitude", "altitude", "m", note="above the WGS 84 ellipsoid"),
+        Quantity("status.status", "status", note="-1: no fix"),
+    ),
+    "nav_msgs/Odometry": (*_planar("twist.twist."), *_place("pose.pose.")),
+    "geometry_msgs/Twist": _planar(""),
+    "geometry_msgs/TwistStamped": _planar("twist."),
+    "geometry_msgs/TwistWithCovariance": _planar("twist."),
+    "geometry_msgs/TwistWithCovarianceStamped": _planar("twist.twist."),
+    "geometry_msgs/Pose": _place(""),
+    "geometry_msgs/PoseStamped": _place("pose."),
+    "geometry_msgs/PoseWithCovarianceStamped": _place("pose.pose."),
+    "geometry_msgs/PointStamped": tuple(Quantity(f"point.{a}", a, "m") for a in "xyz"),
+    "geometry_msgs/Pose2D": (
+        Quantity("x", "x", "m"),
+        Quantity("y", "y", "m"),
+        Quantity("theta", "yaw", "rad"),
+    ),
+    "geometry_msgs/Accel": _accelerations(""),
+    "geometry_msgs/AccelStamped": _accelerations("accel."),
+    "geometry_msgs/Wrench": _force(""),
+    "geometry_msgs/WrenchStamped": _force("wrench."),
+    "ackermann_msgs/AckermannDrive": _steered(""),
+    "ackermann_msgs/AckermannDriveStamped": _steered("drive."),
+    "std_msgs/Bool": _FLAG,
+    **{
+        f"std_msgs/{kind}": _PLAIN
+        for kind in (
+            "Float32", "Float64", "Int8", "Int16", "Int32", "Int64", "UInt8", "UInt16", "UInt32",
+            "UInt64",
+        )
+    },
+}  # fmt: skip
+"""By the short name of a type, as both ROS 1 and ROS 2 have it."""

@@ -1,0 +1,55 @@
+"""How often a proposition was true, false and unknown, and how often it changed."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import pairwise
+
+from monitors.kernel import Column
+
+
+@dataclass(frozen=True, slots=True)
+class Tally:
+    """The ticks of one proposition; what is unknown in between changes nothing."""
+
+    true: int
+    false: int
+    unknown: int
+    changes: int
+    """How often a known value followed another one."""
+
+    def __add__(self, other: Tally) -> Tally:
+        """Over two runs: from one to the next nothing changes."""
+        return Tally(
+            self.true + other.true,
+            self.false + other.false,
+            self.unknown + other.unknown,
+            self.changes + other.changes,
+        )
+
+
+NOTHING = Tally(0, 0, 0, 0)
+
+
+def tally(column: Column, ticks: int) -> Tally:
+    """Count the values of a column of so many ticks."""
+    true, unknown = column.true.bit_count(), column.unknown.bit_count()
+    return Tally(true, ticks - true - unknown, unknown, _changes(column, ticks))
+
+
+def _changes(column: Column, ticks: int) -> int:
+    if not column.unknown:
+        inner = (1 << max(0, ticks - 1)) - 1
+        return ((column.true ^ column.true >> 1) & inner).bit_count()
+    known = [
+        true
+        for true, unknown in zip(
+            _digits(column.true, ticks), _digits(column.unknown, ticks), strict=True
+        )
+        if unknown == "0"
+    ]
+    return sum(one != other for one, other in pairwise(known))
+
+
+def _digits(bits: int, ticks: int) -> str:
+    return f"{bits:0{ticks}b}" if ticks else ""

@@ -1,0 +1,34 @@
+from compiler.constancy import never_changed, tallies_of
+from monitors.tallies import Tally
+from tests.monitors.logs import X
+
+
+def told(*tallies: Tally) -> list[str]:
+    return [finding.message for finding in never_changed({"low": tallies}, X)]
+
+
+def test_what_changed_in_one_log_is_not_told() -> None:
+    assert told(Tally(5, 0, 0, 0), Tally(3, 2, 0, 1)) == []
+
+
+def test_what_changed_in_none_is_told_once_with_what_it_was() -> None:
+    assert told(Tally(0, 7, 0, 0)) == ["`low` never changed in the log: it was false at 7 ticks"]
+    assert told(Tally(5, 0, 1, 0), Tally(0, 1, 0, 0), Tally(0, 0, 0, 0)) == [
+        "`low` never changed in any of 3 logs: it was true at 5 ticks, false at 1 tick, "
+        "unknown at 1 tick"
+    ]
+
+
+def test_nothing_is_told_of_logs_without_a_tick() -> None:
+    assert told(Tally(0, 0, 0, 0)) == []
+    assert told() == []
+
+
+def test_a_proposition_of_two_requirements_counts_once_in_each_run() -> None:
+    low = {"low": {"true": 1, "false": 2, "unknown": 3, "changes": 0}}
+    results = [
+        {"run": "a", "requirement": "R1", "propositions": low},
+        {"run": "a", "requirement": "R2", "propositions": low},
+        {"run": "b", "requirement": "R1", "propositions": {}},
+    ]
+    assert tallies_of(results) == {"low": [Tally(1, 2, 3, 0)]}
