@@ -85,6 +85,8 @@ class Code(Enum):
     OUT_OF_ORDER = ("F411", "the messages of a topic are not in order of time")
     BAD_MESSAGE = ("F412", "a message cannot be decoded")
     SPLIT_LOG = ("F413", "a run in several files is not read as one")
+    LOST_PART = ("F414", "a file of a run in several files is lost")
+    BAG_FORMAT = ("F415", "the format of the log cannot show what MCAP shows")
 
     UNKNOWN_PARENT = ("F501", "a parent is not declared")
     BAD_HAZARDS = ("F502", "the hazards cannot be read")

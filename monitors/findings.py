@@ -6,14 +6,15 @@ nanoseconds.
 
 from __future__ import annotations
 
+import errno
 from collections.abc import Collection
 
 from fretish.clock import Clock
 from fretish.declarations import Signal
 from fretish.diagnostic import Code, Diagnostic, Severity, suggestion
-from fretish.source import Span
+from fretish.source import Source, Span
 from monitors.damage import Damage
-from monitors.decoding import short_type
+from monitors.decoding import MissingExtra, short_type
 from monitors.samples import Gap
 from monitors.signals import FieldError
 
@@ -30,19 +31,60 @@ def no_such_file(place: Span) -> Diagnostic:
 
 def is_a_directory(place: Span) -> Diagnostic:
     """The path names a directory."""
-    return Diagnostic(Code.IS_A_DIRECTORY, "it is a directory", place, "name the MCAP files in it")
+    return Diagnostic(Code.IS_A_DIRECTORY, "it is a directory", place, "name the logs in it")
 
 
 def not_a_file(place: Span) -> Diagnostic:
     """The path names a device, a pipe or the like."""
-    return Diagnostic(Code.UNREADABLE, "it is not a regular file", place, "name a file")
+    return Diagnostic(
+        Code.UNREADABLE, "it is not a regular file", place, "name a file; `-` is standard input"
+    )
 
 
 def unreadable(error: OSError, place: Span) -> Diagnostic:
-    """The system does not let it be read."""
+    """The system, or the server, does not let it be read."""
     reason = error.strerror or str(error)
+    mend = "check its permissions"
+    if "://" in place.source.name:
+        mend = "check the address, the network, and whether your credentials reach it"
+    elif error.errno == errno.ENOSPC:
+        mend = "make room in the folder for temporary files, or name another one in `TMPDIR`"
+    return Diagnostic(Code.UNREADABLE, f"it cannot be read: {reason}", place, mend)
+
+
+def no_stdin(why: str) -> Diagnostic:
+    """Nothing can be read from standard input."""
     return Diagnostic(
-        Code.UNREADABLE, f"it cannot be read: {reason}", place, "check its permissions"
+        Code.UNREADABLE,
+        f"standard input cannot be read: {why}",
+        Source("<stdin>", "").span(),
+        "send a log: `fretc audit - < run.mcap`",
+    )
+
+
+def no_fsspec(place: Span) -> Diagnostic:
+    """URLs need an extra."""
+    return Diagnostic(
+        Code.MISSING_EXTRA,
+        "a URL cannot be read: that needs `fsspec`",
+        place,
+        "install the extra: pip install 'fretc[remote]'",
+    )
+
+
+def no_protocol(protocol: str, why: str, place: Span) -> Diagnostic:
+    """The protocol of the URL is not known, or its package is missing."""
+    reason = why.strip().partition("\n")[0][:200]
+    packages = {"s3": "s3fs", "s3a": "s3fs", "gs": "gcsfs", "gcs": "gcsfs"}
+    packages |= {"az": "adlfs", "abfs": "adlfs", "http": "aiohttp", "https": "aiohttp"}
+    known = packages.get(protocol.lower())
+    return Diagnostic(
+        Code.MISSING_EXTRA if known else Code.UNREADABLE,
+        f"what is at `{protocol}://` cannot be read: {reason}",
+        place,
+        f"install its package: pip install {known}"
+        if known
+        else "check the spelling; what protocols need is in fsspec's documentation",
     )
 
 
@@ -56,18 +98,105 @@ def empty(place: Span) -> Diagnostic:
     )
 
 
+_PACKED = {
+    b"\x28\xb5\x2f\xfd": ("zstd", "zstd -d"),
+    b"\x04\x22\x4d\x18": ("lz4", "lz4 -d"),
+    b"\x1f\x8b": ("gzip", "gunzip"),
+    b"\xfd7zXZ\x00": ("xz", "unxz"),
+    b"BZh": ("bzip2", "bunzip2"),
+    b"PK\x03\x04": ("zip", "unzip"),
+}
+"""What compressed files begin with, and what unpacks them."""
+
+
 def not_a_log(start: bytes, place: Span) -> Diagnostic:
     """Another kind of file, told by its first bytes."""
-    for magic, what in ((b"#ROSBAG V", "a ROS 1 bag"), (b"SQLite format 3", "an SQLite database")):
+    for magic, (what, command) in _PACKED.items():
         if start.startswith(magic):
             return Diagnostic(
                 Code.NOT_A_LOG,
-                f"it is {what}, not an MCAP file",
+                f"it is a whole file compressed with {what}",
                 place,
-                "convert it: `mcap convert IN OUT.mcap`",
+                f"unpack it first: `{command} FILE`; MCAP compresses within the file",
             )
     return Diagnostic(
-        Code.NOT_A_LOG, "it is not an MCAP file", place, "name a recording in the MCAP format"
+        Code.NOT_A_LOG,
+        "it is not a log: neither MCAP, nor a ROS 1 bag, nor rosbag2's SQLite",
+        place,
+        "name a recording",
+    )
+
+
+# Bags and folders
+
+
+def no_rosbags(place: Span) -> Diagnostic:
+    """Bags need an extra."""
+    return Diagnostic(
+        Code.MISSING_EXTRA,
+        "a bag cannot be read: that needs `rosbags`",
+        place,
+        "install the extra: pip install 'fretc[bags]'; or convert it: `mcap convert IN OUT.mcap`",
+    )
+
+
+def bad_bag(why: str, place: Span, *, indexed: bool) -> Diagnostic:
+    """The reader of bags gives nothing of it."""
+    return Diagnostic(
+        Code.UNREADABLE_LOG,
+        f"the bag cannot be read: {why}",
+        place,
+        "mend it first: `rosbag reindex`; or copy it again from where it was recorded"
+        if indexed
+        else "copy it again from where it was recorded",
+    )
+
+
+def bag_of_no_file(place: Span) -> Diagnostic:
+    """A bag comes from standard input or a URL."""
+    return Diagnostic(
+        Code.NOT_A_LOG, "a bag can only be read from a file", place, "save it as a file first"
+    )
+
+
+def unchecked(place: Span, assumed: Collection[str]) -> Diagnostic:
+    """What a bag cannot show, and which definitions are not its own."""
+    message = (
+        "a bag has no check sums, and one time for each message: a changed byte within a message "
+        "cannot be seen, and publish_time is log_time"
+    )
+    if not assumed:
+        return Diagnostic(Code.BAG_FORMAT, message, place, severity=Severity.NOTE)
+    names = ", ".join(sorted({short_type(name) for name in assumed})[:8])
+    more = ", ..." if len(set(assumed)) > 8 else ""
+    return Diagnostic(
+        Code.BAG_FORMAT,
+        f"{message}; it defines no types: those of ROS 2 itself, the same in all releases, are "
+        f"taken for {names}{more}",
+        place,
+        "a package of your own under such a name would be misread: record MCAP instead",
+        Severity.WARNING,
+    )
+
+
+def bad_metadata(place: Span) -> Diagnostic:
+    """What describes a run in several files is not as rosbag2 writes it."""
+    return Diagnostic(
+        Code.SPLIT_LOG,
+        "it does not say which files the run has",
+        place,
+        "write it anew: `ros2 bag reindex FOLDER`",
+    )
+
+
+def compressed_folder(mode: str, place: Span) -> Diagnostic:
+    """rosbag2 has compressed whole files, or each message."""
+    return Diagnostic(
+        Code.NOT_A_LOG,
+        f"rosbag2 has compressed each {mode} of the run",
+        place,
+        "unpack it: `ros2 bag convert`, with `compression_mode: none`; MCAP compresses within the "
+        "file: `--storage-preset-profile zstd_fast`",
     )
 
 
@@ -120,9 +249,10 @@ def damaged(damage: Damage, gap: Gap | None, origin: int, place: Span) -> Diagno
     if gap is not None:
         start, end = (_seconds(time - origin) for time in gap)
         lost = f"what was recorded from {start} to {end} counts as unknown"
+    where = f"the log is damaged near byte {damage.at}: " if damage.at >= 0 else ""
     return Diagnostic(
         damage.code,
-        f"the log is damaged near byte {damage.at}: {damage.what}; {lost}",
+        f"{where}{damage.what}; {lost}",
         place,
         "copy the log again from where it was recorded; nothing counts as shown by a damaged log",
         Severity.WARNING,
@@ -170,6 +300,20 @@ def no_field(signal: Signal, error: FieldError) -> Diagnostic:
     return Diagnostic(Code.NO_FIELD, f"in `{signal.path.topic}` {error}", signal.span, error.mend)
 
 
+def never_stated(signal: Signal, held: Collection[str]) -> Diagnostic:
+    """The messages may leave out the field that the signal asks for, and all of them do."""
+    name = ".".join(signal.path.fields)
+    known = [path.removesuffix("[:]") for path in held]
+    near = suggestion(name, known)
+    listed = f"they state {', '.join(known[:8])}{', ...' if len(known) > 8 else ''}"
+    return Diagnostic(
+        Code.NO_FIELD,
+        f"no message of `{signal.path.topic}` states a number in `{name}`",
+        signal.span,
+        f"did you mean `{near}`?" if near else listed if known else "they state no number at all",
+    )
+
+
 def wrong_type(signal: Signal, found: str) -> Diagnostic:
     """The topic is of another type than the signal declares."""
     return Diagnostic(
@@ -182,12 +326,20 @@ def wrong_type(signal: Signal, found: str) -> Diagnostic:
 
 
 def unknown_encoding(signal: Signal, why: str) -> Diagnostic:
-    """No message of the topic can be decoded."""
+    """No message of the topic can be decoded; or only by a part of fretc that is not installed."""
+    if isinstance(why, MissingExtra):
+        return Diagnostic(
+            Code.MISSING_EXTRA,
+            f"`{signal.path.topic}` cannot be read: {why}",
+            signal.span,
+            f"install the extra: pip install 'fretc[{why.extra}]'",
+        )
     return Diagnostic(
         Code.UNKNOWN_ENCODING,
         f"`{signal.path.topic}` cannot be read: {why}",
         signal.span,
-        "fretc reads ROS 2 messages (cdr with ros2msg) and ROS 1 messages (ros1 with ros1msg)",
+        "fretc reads messages of ROS 2 (cdr with ros2msg or ros2idl), ROS 1 (ros1 with ros1msg), "
+        "JSON (with or without jsonschema) and Protobuf",
     )
 
 

@@ -25,8 +25,16 @@ DOORS = {
         for name in ("__init__", "group", "output", "requirements", "runs", "verify")
     },
     "mujoco": {"simulation/robot.py"},
-    "rosbags": {"simulation/recording.py"},
-    "mcap": {"monitors/container.py", "monitors/walk.py", "simulation/recording.py"},
+    "rosbags": {"simulation/recording.py", "monitors/idl.py", "monitors/bags.py"},
+    "mcap": {
+        "monitors/bags.py",
+        "monitors/container.py",
+        "monitors/walk.py",
+        "simulation/recording.py",
+    },
+    "fsspec": {"monitors/inputs.py"},
+    "yaml": {"monitors/folders.py"},
+    "mcap_protobuf": {"monitors/protobuf.py"},
     "mcap_ros1": {"monitors/decoding.py"},
     "mcap_ros2": {"monitors/decoding.py"},
     "zstandard": {"monitors/container.py"},

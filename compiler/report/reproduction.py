@@ -62,11 +62,16 @@ def _files(project: Project) -> list[Source]:
 
 
 def _check(runs: Sequence[Run]) -> Iterable[Command]:
-    known = [run.result for run in runs if "log" in run.result.hashes]
+    known = [run.result for run in runs if "log" in run.result.hashes and _is_file(run.result.run)]
     if known:
         lines = [f"{result.hashes['log']}  {phrases.place(result.run)}" for result in known]
         text = "\n".join(["sha256sum --check <<'END'", *lines, "END"])
         yield Command("Check that the runs are those that were audited", text)
+
+
+def _is_file(run: str) -> bool:
+    """Whether `sha256sum` reads the run: no folder, no URL, no standard input."""
+    return PurePath(run).suffix in (".mcap", ".bag", ".db3") and "://" not in run
 
 
 def _emissions(sections: Sequence[RequirementView]) -> Iterable[Command]:

@@ -43,12 +43,12 @@ def test_a_scan_of_either_ros_gives_its_least_valid_range_and_the_least_it_can_r
 
 
 def test_an_encoding_that_cannot_be_read_is_an_error(tmp_path: Path) -> None:
-    sent = [Sent("/x", "X", b'{"data": 1}', 5, encoding="json")]
+    sent = [Sent("/x", "X", b"\xa1", 5, encoding="cbor")]
     recording = recorded(write(tmp_path / "log.mcap", sent), X)
     (finding,) = recording.findings
     assert finding.code is Code.UNKNOWN_ENCODING
     assert finding.message == (
-        "`/x` cannot be read: its messages are encoded as `json`, defined in `jsonschema`"
+        "`/x` cannot be read: its messages are encoded as `cbor`, defined in `jsonschema`"
     )
 
 

@@ -110,7 +110,7 @@ def test_what_is_no_file_is_told_apart(tmp_path: Path) -> None:
     assert refused(tmp_path).code is Code.IS_A_DIRECTORY
     assert refused(Path("/dev/null")).code is Code.UNREADABLE
     assert refused(text).code is Code.NOT_A_LOG
-    assert refused(bag).message == "it is a ROS 1 bag, not an MCAP file"
+    assert refused(bag).code is Code.UNREADABLE_LOG
     assert refused(empty).code is Code.EMPTY_LOG
     assert refused(write(tmp_path / "log.mcap", [])).code is Code.EMPTY_LOG
 
