@@ -80,7 +80,7 @@ def folder(path: str) -> Folder | Diagnostic:
     try:
         with file.open("rb") as stream:
             text = stream.read(_LARGEST).decode()
-        content = yaml.safe_load(text)
+        content = yaml.load(text, Loader=getattr(yaml, "CSafeLoader", yaml.SafeLoader))
         about = content["rosbag2_bagfile_information"]
         files = tuple(_name(name) for name in about["relative_file_paths"])
     except (yaml.YAMLError, ValueError, TypeError, KeyError, RecursionError):
