@@ -84,7 +84,7 @@ class Code(Enum):
     COUNT_MISMATCH = ("F410", "the log holds another number of messages than it states")
     OUT_OF_ORDER = ("F411", "the messages of a topic are not in order of time")
     BAD_MESSAGE = ("F412", "a message cannot be decoded")
-    SPLIT_LOG = ("F413", "a run in several files is not read as one")
+    SPLIT_LOG = ("F413", "a run in several files cannot be read, or is not read, as one")
     LOST_PART = ("F414", "a file of a run in several files is lost")
     BAG_FORMAT = ("F415", "the format of the log cannot show what MCAP shows")
 

@@ -72,19 +72,19 @@ def no_fsspec(place: Span) -> Diagnostic:
     )
 
 
-def no_protocol(protocol: str, why: str, place: Span) -> Diagnostic:
-    """The protocol of the URL is not known, or its package is missing."""
+def no_protocol_package(protocol: str, why: str, place: Span) -> Diagnostic:
+    """The package for the protocol of the URL is not installed."""
     reason = why.strip().partition("\n")[0][:200]
     packages = {"s3": "s3fs", "s3a": "s3fs", "gs": "gcsfs", "gcs": "gcsfs"}
     packages |= {"az": "adlfs", "abfs": "adlfs", "http": "aiohttp", "https": "aiohttp"}
     known = packages.get(protocol.lower())
     return Diagnostic(
-        Code.MISSING_EXTRA if known else Code.UNREADABLE,
+        Code.MISSING_EXTRA,
         f"what is at `{protocol}://` cannot be read: {reason}",
         place,
         f"install its package: pip install {known}"
         if known
-        else "check the spelling; what protocols need is in fsspec's documentation",
+        else "what each protocol needs is in fsspec's documentation",
     )
 
 
@@ -186,6 +186,17 @@ def bad_metadata(place: Span) -> Diagnostic:
         "it does not say which files the run has",
         place,
         "write it anew: `ros2 bag reindex FOLDER`",
+    )
+
+
+def part_of_a_run(i: int, count: int, folder: str, place: Span) -> Diagnostic:
+    """One file of several is read as if it were a run of its own."""
+    return Diagnostic(
+        Code.SPLIT_LOG,
+        f"it is file {i + 1} of {count} of one run, and judged alone",
+        place,
+        f"name the folder `{folder or '.'}`: its files are one log",
+        Severity.NOTE,
     )
 
 

@@ -100,7 +100,7 @@ def folder(path: str) -> Folder | Diagnostic:
 def _name(listed: Any) -> str:
     """The name of a listed file; it is in the folder, whatever path is stated."""
     name = PurePosixPath(listed).name
-    if not name or name == "..":
+    if not name or name == ".." or b"\0" in os.fsencode(name):
         raise ValueError("a file has no name")
     return name
 

@@ -19,7 +19,15 @@ _SEPARATOR = re.compile(r"^={3,}[ \t]*\r?\n(?:IDL:[^\n]*\n)?", re.MULTILINE)
 _INCLUDE = re.compile(r"^[ \t]*#.*$", re.MULTILINE)
 """A line for a preprocessor; what it names is in the same text."""
 _NAME = re.compile(r"[A-Za-z]\w*(/[A-Za-z]\w*)*", re.ASCII)
-_TEXT_OR_COMMENT = re.compile(r'"(?:\\.|[^"\\])*"|/\*.*?\*/|//[^\n]*', re.DOTALL)
+_TEXT = r'"(?:\\.|[^"\\])*"'
+_UNUSED = re.compile(
+    rf"(?P<text>{_TEXT})|/\*.*?\*/|//[^\n]*|@\s*[\w:]+(?:\s*\((?:{_TEXT}|[^()\"])*\))?", re.DOTALL
+)
+"""Comments and annotations; texts are matched too, for what looks like one may stand in them."""
+_COMPUTED = re.compile(r"[(+*/%&|^~]|<<|-\s*-")
+"""What bounds that are computed have in them; no message of ROS has any."""
+_NESTED = re.compile(r"\bsequence\s*<(\s*sequence\b|[^;]*\[)")
+"""Arrays of arrays, of which the parser keeps one."""
 _LONGEST = 2**20
 """Characters; no definition is longer."""
 
@@ -73,13 +81,12 @@ def _parsed(definition: str) -> Mapping[str, Any]:
     """
     from rosbags.typesys import get_types_from_idl
 
-    if len(definition) > _LONGEST or "<<" in _TEXT_OR_COMMENT.sub("", definition):
-        raise DefinitionError("the definition is too long, or computes its bounds")
+    if len(definition) > _LONGEST:
+        raise DefinitionError("the definition is too long")
     found: dict[str, Any] = {}
     for section in _SEPARATOR.split(_INCLUDE.sub("", definition)):
-        if not section.strip():
-            continue
-        for name, (_, fields) in get_types_from_idl(section).items():
+        bare = _bare(section)
+        for name, (_, fields) in get_types_from_idl(bare).items() if bare else ():
             names = [name, *(field for field, _ in fields)]
             if not all(_NAME.fullmatch(one) for one in names):
                 raise DefinitionError(f"`{name}` is no type")
@@ -87,6 +94,21 @@ def _parsed(definition: str) -> Mapping[str, Any]:
             if found.setdefault(name, fields) != fields:
                 raise DefinitionError(f"the type `{name}` is defined twice")
     return found
+
+
+def _bare(section: str) -> str:
+    """A definition without comments and annotations.
+
+    Raises:
+        DefinitionError: the parser would take very long for it, or take it for something else.
+    """
+    bare = _UNUSED.sub(lambda match: match["text"] or " ", section).strip()
+    outside = re.sub(_TEXT, "", bare)
+    if _COMPUTED.search(outside):
+        raise DefinitionError("the definition computes its bounds")
+    if _NESTED.search(outside):
+        raise DefinitionError("the definition holds arrays of arrays")
+    return bare
 
 
 def _known(kind: Any) -> Any:

@@ -199,8 +199,8 @@ def _remote(url: str, stack: ExitStack) -> Input | Diagnostic:
             whole = stack.enter_context(system.open(path, "rb", block_size=0))
             return _local(_copied(_Raising(whole), stack), None)
         file = stack.enter_context(system.open(path, "rb", block_size=_BLOCK))
-    except (ImportError, ValueError) as error:  # no such protocol, or its package is missing
-        return findings.no_protocol(url.partition("://")[0], str(error), place)
+    except ImportError as error:
+        return findings.no_protocol_package(url.partition("://")[0], str(error), place)
     except Exception as error:  # each protocol has its own
         raise _as_os_error(error) from error
     hashed = _Hashed(file, about["size"])

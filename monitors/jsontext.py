@@ -23,6 +23,8 @@ _LARGEST = int(1.7976931348623157e308)
 _DEEPEST = 20
 _MOST = 2000
 """Fields of one topic that are listed."""
+_MOST_STEPS = 20_000
+"""Parts of a schema that are looked at: those that refer to each other have no end."""
 
 
 class Object(Sparse):
@@ -100,7 +102,7 @@ def stated(schema: bytes) -> tuple[str, ...]:
     found = json.loads(schema.decode() or "{}")
     if not isinstance(found, dict | bool):
         raise ValueError("a schema is an object")
-    return _some(_of_schema(found, found, "", ()))
+    return _some(_of_schema(found))
 
 
 def held(payloads: Iterable[bytes]) -> tuple[str, ...]:
@@ -124,13 +126,26 @@ def _some(paths: Iterator[str]) -> tuple[str, ...]:
     return tuple(kept)
 
 
-def _of_schema(
-    root: Any, schema: Any, path: str, within: tuple[int, ...]
-) -> Iterator[str]:  # a schema is whatever its writer made of it
-    schema = _resolved(root, schema)
-    if not isinstance(schema, dict) or id(schema) in within or len(within) > _DEEPEST:
-        return
-    within = (*within, id(schema))
+def _of_schema(root: Any) -> Iterator[str]:  # a schema is whatever its writer made of it
+    """The nearest ones first."""
+    left: list[tuple[Any, str, tuple[int, ...]]] = [(root, "", ())]
+    for schema, path, within in left:
+        schema = _resolved(root, schema)
+        if not isinstance(schema, dict) or id(schema) in within or len(left) > _MOST_STEPS:
+            continue
+        yield from _own(root, schema, path)
+        within = (*within, id(schema))
+        for several in ("allOf", "anyOf", "oneOf"):
+            parts = schema.get(several)
+            left += [(one, path, within) for one in (parts if isinstance(parts, list) else ())]
+        properties = schema.get("properties")
+        for name, one in properties.items() if isinstance(properties, dict) else ():
+            if _is_name(name):
+                left.append((one, f"{path}.{name}" if path else name, within))
+
+
+def _own(root: Any, schema: dict[Any, Any], path: str) -> Iterator[str]:
+    """The path, as far as it is itself one of numbers."""
     kinds = schema.get("type")
     kinds = kinds if isinstance(kinds, list) else [kinds]
     if path and any(kind in ("number", "integer", "boolean") for kind in kinds):
@@ -139,13 +154,6 @@ def _of_schema(
         element = _resolved(root, schema.get("items"))
         if isinstance(element, dict) and element.get("type") in ("number", "integer", "boolean"):
             yield f"{path}[:]"
-    for several in ("allOf", "anyOf", "oneOf"):
-        for one in schema[several] if isinstance(schema.get(several), list) else ():
-            yield from _of_schema(root, one, path, within)
-    properties = schema.get("properties")
-    for name, one in properties.items() if isinstance(properties, dict) else ():
-        if _is_name(name):
-            yield from _of_schema(root, one, f"{path}.{name}" if path else name, within)
 
 
 def _resolved(root: Any, schema: Any) -> Any:

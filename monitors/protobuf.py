@@ -15,9 +15,10 @@ from typing import Any
 from monitors.container import Stream
 from monitors.signals import Sparse, UnstatedError
 
-_DEEPEST = 20
 _MOST = 2000
 """Fields of one topic that are listed."""
+_MOST_STEPS = 20_000
+"""Messages within messages that are looked at."""
 
 
 class Message(Sparse):
@@ -39,7 +40,7 @@ class Message(Sparse):
         if descriptor.has_presence and not self._message.HasField(name):
             raise UnstatedError
         value = getattr(self._message, name)
-        if descriptor.is_repeated:
+        if _is_repeated(descriptor):
             return dict(value) if _is_map(descriptor) else list(value)
         return Message(value) if descriptor.message_type is not None else value
 
@@ -59,7 +60,7 @@ def numbers(stream: Stream) -> tuple[str, ...]:
     """The paths of all numbers in its messages: `a.b`, and `a.c[:]` for a repeated one."""
     descriptor = _official(stream)(b"").DESCRIPTOR
     paths: list[str] = []
-    for path in _numbers(descriptor, "", ()):
+    for path in _numbers(descriptor):
         if len(paths) == _MOST:
             break
         paths.append(path)
@@ -74,18 +75,28 @@ def _official(stream: Stream) -> Callable[[bytes], Any]:
     return decode
 
 
-def _numbers(descriptor: Any, path: str, within: tuple[str, ...]) -> Iterator[str]:
-    if descriptor.full_name in within or len(within) > _DEEPEST:
-        return
-    for field in descriptor.fields:
-        where = f"{path}.{field.name}" if path else field.name
-        if field.message_type is not None:
-            if not field.is_repeated:
-                yield from _numbers(field.message_type, where, (*within, descriptor.full_name))
-        elif field.cpp_type != field.CPPTYPE_STRING:
-            yield f"{where}[:]" if field.is_repeated else where
-        elif field.type == field.TYPE_BYTES and not field.is_repeated:
-            yield f"{where}[:]"
+def _numbers(descriptor: Any) -> Iterator[str]:
+    """The nearest ones first."""
+    left: list[tuple[Any, str, tuple[str, ...]]] = [(descriptor, "", ())]
+    for message, path, within in left:
+        if message.full_name in within or len(left) > _MOST_STEPS:
+            continue
+        for field in message.fields:
+            where = f"{path}.{field.name}" if path else field.name
+            many = _is_repeated(field)
+            if field.message_type is not None:
+                if not many:
+                    left.append((field.message_type, where, (*within, message.full_name)))
+            elif field.cpp_type != field.CPPTYPE_STRING:
+                yield f"{where}[:]" if many else where
+            elif field.type == field.TYPE_BYTES and not many:
+                yield f"{where}[:]"
+
+
+def _is_repeated(field: Any) -> bool:
+    """Older releases of the library know only the label."""
+    many = getattr(field, "is_repeated", None)
+    return bool(field.label == field.LABEL_REPEATED if many is None else many)
 
 
 def _is_map(descriptor: Any) -> bool:

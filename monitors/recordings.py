@@ -138,7 +138,16 @@ def _file(path: str, sink: Sink, place: Span) -> _Run | Diagnostic:
     if part.span is None:
         return findings.empty(place)
     damages = [(place, *damage) for damage in part.damages]
-    return _Run(part.sha256, part.size, (part.span,), damages, part.notes)
+    notes = (*part.notes, *_alone(path, place))
+    return _Run(part.sha256, part.size, (part.span,), damages, notes)
+
+
+def _alone(path: str, place: Span) -> Iterator[Diagnostic]:
+    """Whether the file is only a part of a run."""
+    parent, name = os.path.split(path)
+    about = folder(parent or ".") if is_folder(parent or ".") else None
+    if isinstance(about, Folder) and len(about.files) > 1 and name in about.files:
+        yield findings.part_of_a_run(about.files.index(name), len(about.files), parent, place)
 
 
 def _part(log: Input, sink: Sink, place: Span) -> Part | Diagnostic:
@@ -196,8 +205,9 @@ def _folder(path: str, sink: Numbered, place: Span) -> _Run | Diagnostic:
         for name, part in zip(about.files, found, strict=True)
         if isinstance(part, Part)
     }
-    notes = dict.fromkeys(note for part in parts for note in part.notes)
-    return _Run(of_all(hashes), sum(part.size for part in parts), spans, damages, tuple(notes))
+    notes = {note.message: note for part in parts for note in part.notes}
+    size = sum(part.size for part in parts)
+    return _Run(of_all(hashes), size, spans, damages, tuple(notes.values()))
 
 
 def _losses(

@@ -20,7 +20,7 @@ def commands(
 ) -> tuple[Command, ...]:
     """The commands, in the order in which they are to be run."""
     from_here = _options(project)
-    logs = " ".join(_quoted(run.result.run) for run in runs) or "LOG..."
+    logs = " ".join(_log(run.result.run) for run in runs) or "LOG..."
     to = _quoted(evidence)
     return (
         Command("Check the version of the tool", f"fretc --version   # fretc {__version__}"),
@@ -29,6 +29,10 @@ def commands(
         *_emissions(sections),
         Command("Write this report", f"fretc report {from_here} --evidence {to}"),
     )
+
+
+def _log(run: str) -> str:
+    return "-" if run == "<stdin>" else _quoted(run)
 
 
 def _quoted(path: str) -> str:

@@ -299,6 +299,21 @@ def test_a_real_ros_2_log_converted_by_rosbags_gives_the_same_columns(tmp_path: 
     same(recorded(tmp_path / "log/log.db3", declarations), recorded(source, declarations))
 
 
+def test_a_run_of_several_databases_is_one_log(tmp_path: Path) -> None:
+    path = tmp_path / "run"
+    path.mkdir()
+    for i, sent in enumerate((ros2()[:6], ros2()[6:])):
+        db3(tmp_path / str(i), sent).rename(path / f"run_{i}.db3")
+    (path / "metadata.yaml").write_text(
+        "rosbag2_bagfile_information: {relative_file_paths: [run_0.db3, run_1.db3], "
+        "message_count: 12}"
+    )
+    recording = recorded(path, X)
+    assert values(recording, "x") == [i / 100 for i in range(12)]
+    assert [finding.code for finding in recording.findings] == [Code.BAG_FORMAT]
+    assert recording.intact
+
+
 def test_a_definition_may_be_in_idl(tmp_path: Path) -> None:
     text = "module std_msgs { module msg { struct Float64 { double data; }; }; };"
     path = tmp_path / "log"

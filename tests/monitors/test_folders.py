@@ -217,9 +217,10 @@ def test_a_run_that_rosbag2_compressed_is_refused_with_the_mend(tmp_path: Path, 
         "rosbag2_bagfile_information: {relative_file_paths: [1]}",
         "rosbag2_bagfile_information: {relative_file_paths: [a.mcap, b/a.mcap]}",
         "rosbag2_bagfile_information: {relative_file_paths: ['..']}",
+        'rosbag2_bagfile_information: {relative_file_paths: ["a\\0b"]}',
         "[" * 5000, "!!python/object/apply:os.system [exit]",
     ],
-    ids=range(11),
+    ids=range(12),
 )  # fmt: skip
 def test_a_description_that_is_none_is_an_error(tmp_path: Path, text: str) -> None:
     (tmp_path / "metadata.yaml").write_text(text)
@@ -227,6 +228,16 @@ def test_a_description_that_is_none_is_an_error(tmp_path: Path, text: str) -> No
     assert isinstance(found, Diagnostic)
     assert found.code is Code.SPLIT_LOG
     assert isinstance(read(str(tmp_path), X, ["x"]), Diagnostic)
+
+
+def test_a_file_of_a_run_that_is_named_alone_is_told(tmp_path: Path) -> None:
+    path = run(tmp_path)
+    recording = recorded(path / "run_1.mcap", X)
+    assert values(recording, "x") == [0.04, 0.05, 0.06, 0.07]
+    (finding,) = recording.findings
+    assert finding.message == "it is file 2 of 3 of one run, and judged alone"
+    assert finding.help == f"name the folder `{path}`: its files are one log"
+    assert recording.intact
 
 
 def test_no_file_outside_of_the_folder_is_read(tmp_path: Path) -> None:

@@ -162,10 +162,15 @@ def test_info_lists_the_numbers() -> None:
         "module sensor_msgs { module msg { struct LaserScan { LaserScan x; }; }; };",
         "module sensor_msgs { module msg { struct LaserScan { wstring x; no::Such y; }; }; };",
         "module sensor_msgs { module msg { struct LaserScan { string x[999999999]; }; }; };",
+        "module sensor_msgs { module msg { struct LaserScan { float x[((((((((3))))))))]; }; }; };",
+        "module sensor_msgs { module msg { struct LaserScan { sequence<float> ranges[3]; }; }; };",
+        "module sensor_msgs { module msg { struct LaserScan { sequence<sequence<long>> r; }; }; };",
+        f"module sensor_msgs {{ struct LaserScan {{ {'sequence<' * 40} float {'>' * 40} r; }}; }};",
+        "module sensor_msgs { module msg { struct LaserScan { wstring x; float range_min; }; }; };",
         "module sensor_msgs { module msg { struct __import__ { long x; }; }; };",
         "module sensor_msgs { module msg { union LaserScan switch(long) { case 1: long x; }; }; };",
     ],
-    ids=range(12),
+    ids=range(17),
 )  # fmt: skip
 def test_a_definition_that_is_none_is_an_error_and_never_a_fault(
     tmp_path: Path, definition: str

@@ -155,7 +155,7 @@ def test_the_numbers_of_a_schema_are_listed_through_its_references() -> None:
             "not a name": {"type": "number"},
         },
     }
-    assert stated(json.dumps(schema).encode()) == ("pose.x", "n", "r[:]", "one.x")
+    assert stated(json.dumps(schema).encode()) == ("n", "r[:]", "pose.x", "one.x")
 
 
 def test_a_schema_that_holds_itself_ends() -> None:
@@ -163,6 +163,15 @@ def test_a_schema_that_holds_itself_ends() -> None:
     assert stated(schema) == ("x",)
     assert stated(b'{"$ref": "#"}') == ()
     assert stated(b'{"properties": {"a": {"$ref": "#/no/where"}}, "type": 3}') == ()
+
+
+def test_a_schema_whose_parts_multiply_ends() -> None:
+    parts = {f"p{i}": {"$ref": "#/$defs/d{}"} for i in range(8)}
+    levels = {
+        f"d{n}": {"properties": {k: {"$ref": v["$ref"].format(n + 1)} for k, v in parts.items()}}
+        for n in range(19)
+    }
+    assert stated(json.dumps({"$defs": levels, "$ref": "#/$defs/d0"}).encode()) == ()
 
 
 def test_the_numbers_that_messages_hold_are_listed() -> None:

@@ -204,10 +204,21 @@ def test_info_lists_every_number_and_a_type_within_itself_ends(tmp_path: Path) -
     overview = look(str(log(tmp_path, [STATE().SerializeToString()])))
     assert isinstance(overview, Overview)
     assert overview.numbers["/p"] == (
-        "plain", "maybe", "velocity.x", "ranges[:]", "mode", "left", "right",
-        "header.stamp.seconds", "header.stamp.nanos", "raw[:]",
-        "timestamp.seconds", "timestamp.nanos",
+        "plain", "maybe", "ranges[:]", "mode", "left", "right", "raw[:]", "velocity.x",
+        "timestamp.seconds", "timestamp.nanos", "header.stamp.seconds", "header.stamp.nanos",
     )  # fmt: skip
+
+
+def test_a_definition_whose_types_multiply_ends(tmp_path: Path) -> None:
+    file = FileDescriptorProto(name="wide.proto", package="robot", syntax="proto3")
+    for n in range(16):
+        message = file.message_type.add(name=f"State{n}" if n else "State")
+        for i in range(8 if n < 15 else 0):
+            _field(message, i + 1, f"f{i}", F.TYPE_MESSAGE, f".robot.State{n + 1}")
+    definition = FileDescriptorSet(file=[file]).SerializeToString()
+    overview = look(str(log(tmp_path, [b""], definition)))
+    assert isinstance(overview, Overview)
+    assert overview.numbers == {"/p": ()}
 
 
 def test_without_its_package_the_extra_is_named(
