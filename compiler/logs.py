@@ -36,7 +36,10 @@ def logs(paths: Sequence[str]) -> list[str] | Diagnostic:
             if isinstance(file, Diagnostic):
                 return file
             found.setdefault(file if _elsewhere(file) else os.path.realpath(file), file)
-    return _whole(found)
+    try:
+        return _whole(found)
+    except OSError as error:
+        return unreadable(error.filename or METADATA, error)
 
 
 def files_of(logs: Iterable[str]) -> list[str]:

@@ -18,7 +18,7 @@ from mcap.records import Channel, Schema
 
 from fretish.diagnostic import Code, Diagnostic
 from fretish.source import Span
-from monitors import findings
+from monitors import refusals
 from monitors.container import Stream
 from monitors.damage import LATEST, Damage
 from monitors.samples import Gap
@@ -55,7 +55,7 @@ def read(file: str, start: bytes, sink: Sink, place: Span) -> Found | Diagnostic
     try:
         import rosbags  # noqa: F401
     except ModuleNotFoundError:
-        return findings.no_rosbags(place)
+        return refusals.no_rosbags(place)
     bag = start.startswith(BAG)
     reader = _bag(file) if bag else _db3(file)
     try:
@@ -63,7 +63,7 @@ def read(file: str, start: bytes, sink: Sink, place: Span) -> Found | Diagnostic
     except OSError:
         raise
     except Exception as error:  # the reader trusts each byte, and each may be wrong
-        return findings.bad_bag(_reason(error), place, indexed=bag)
+        return refusals.bad_bag(_reason(error), place, indexed=bag)
     try:
         way = _Way(reader, sink, bag=bag)
         way.run()
@@ -74,11 +74,11 @@ def read(file: str, start: bytes, sink: Sink, place: Span) -> Found | Diagnostic
     damages = tuple(way.settled())
     if way.span is None:
         return (
-            findings.bad_bag(damages[0][0].what, place, indexed=bag)
+            refusals.bad_bag(damages[0][0].what, place, indexed=bag)
             if damages
             else Found(None, (), ())
         )
-    return Found(way.span, damages, (findings.unchecked(place, way.assumed),))
+    return Found(way.span, damages, (refusals.unchecked(place, way.assumed),))
 
 
 def _bag(file: str) -> Any:
@@ -116,6 +116,8 @@ class _Way:
         """The first and the last message, as the bag states it."""
         source = self._reader if self._bag else self._reader.metadata
         start, end = source.start_time, source.end_time - 1
+        if not isinstance(start, int) or not isinstance(end, int):
+            return None
         return (start, end) if 0 <= start <= end < LATEST else None
 
     def run(self) -> None:
@@ -153,7 +155,7 @@ class _Way:
 
     def _message(self, id: int, time: int, payload: bytes) -> None:
         self._counts[id] = self._counts.get(id, 0) + 1
-        if not isinstance(payload, bytes) or not 0 <= time < LATEST:
+        if not (isinstance(payload, bytes) and isinstance(time, int) and 0 <= time < LATEST):
             self._damage("a message is of an absurd time, or has no contents")
             return
         first, _ = self.span or (time, time)
@@ -194,6 +196,8 @@ class _Way:
     # Streams
 
     def _stream(self, connection: Any) -> Stream:
+        if not isinstance(connection.topic, str) or not isinstance(connection.msgtype, str):
+            raise ValueError("a topic has no name, or no type")
         schema = self._schema(connection)
         encoding = "ros1" if self._bag else str(connection.ext.serialization_format)
         channel = Channel(

@@ -16,7 +16,7 @@ from typing import Any
 
 from fretish.diagnostic import Diagnostic
 from fretish.source import Source
-from monitors import findings
+from monitors import refusals
 from monitors.samples import Gap
 
 METADATA = "metadata.yaml"
@@ -84,9 +84,9 @@ def folder(path: str) -> Folder | Diagnostic:
         about = content["rosbag2_bagfile_information"]
         files = tuple(_name(name) for name in about["relative_file_paths"])
     except (yaml.YAMLError, ValueError, TypeError, KeyError, RecursionError):
-        return findings.bad_metadata(place)
+        return refusals.bad_metadata(place)
     if len(set(files)) < len(files):
-        return findings.bad_metadata(place)
+        return refusals.bad_metadata(place)
     return Folder(
         path,
         files,

@@ -24,7 +24,7 @@ from urllib.parse import parse_qsl, urlencode, urlsplit, urlunsplit
 
 from fretish.diagnostic import Diagnostic
 from fretish.source import Source
-from monitors import findings
+from monitors import findings, refusals
 
 STDIN = "-"
 _BLOCK = 2**22
@@ -109,9 +109,9 @@ def _local(stream: io.BufferedReader, file: str | None) -> Input:
 
 def _stdin(stack: ExitStack) -> Input | Diagnostic:
     if sys.stdin is None or sys.stdin.closed:
-        return findings.no_stdin("it is closed")
+        return refusals.no_stdin("it is closed")
     if sys.stdin.isatty():
-        return findings.no_stdin("it is a terminal")
+        return refusals.no_stdin("it is a terminal")
     stdin = stack.enter_context(_reader(0))
     if stat.S_ISREG(os.fstat(0).st_mode) and stdin.tell() == 0:
         return _local(stdin, None)
@@ -189,7 +189,7 @@ def _remote(url: str, stack: ExitStack) -> Input | Diagnostic:
     try:
         import fsspec
     except ModuleNotFoundError:
-        return findings.no_fsspec(place)
+        return refusals.no_fsspec(place)
     try:
         system, path = fsspec.core.url_to_fs(url)
         about = system.info(path)
@@ -200,7 +200,7 @@ def _remote(url: str, stack: ExitStack) -> Input | Diagnostic:
             return _local(_copied(_Raising(whole), stack), None)
         file = stack.enter_context(system.open(path, "rb", block_size=_BLOCK))
     except ImportError as error:
-        return findings.no_protocol_package(url.partition("://")[0], str(error), place)
+        return refusals.no_protocol_package(url.partition("://")[0], str(error), place)
     except Exception as error:  # each protocol has its own
         raise _as_os_error(error) from error
     hashed = _Hashed(file, about["size"])

@@ -17,7 +17,7 @@ from fretish.clock import Clock
 from fretish.declarations import Declarations, Signal
 from fretish.diagnostic import Code, Diagnostic
 from fretish.source import Source, Span
-from monitors import bags, findings
+from monitors import bags, findings, refusals
 from monitors.bags import NOWHERE
 from monitors.columns import Column, Columns
 from monitors.container import MAGIC
@@ -145,9 +145,12 @@ def _file(path: str, sink: Sink, place: Span) -> _Run | Diagnostic:
 def _alone(path: str, place: Span) -> Iterator[Diagnostic]:
     """Whether the file is only a part of a run."""
     parent, name = os.path.split(path)
-    about = folder(parent or ".") if is_folder(parent or ".") else None
+    try:
+        about = folder(parent or ".") if is_folder(parent or ".") else None
+    except OSError:
+        return
     if isinstance(about, Folder) and len(about.files) > 1 and name in about.files:
-        yield findings.part_of_a_run(about.files.index(name), len(about.files), parent, place)
+        yield refusals.part_of_a_run(about.files.index(name), len(about.files), parent, place)
 
 
 def _part(log: Input, sink: Sink, place: Span) -> Part | Diagnostic:
@@ -157,7 +160,7 @@ def _part(log: Input, sink: Sink, place: Span) -> Part | Diagnostic:
         return findings.empty(place)
     if start.startswith((bags.BAG, bags.DB3)):
         if log.file is None:
-            return findings.bag_of_no_file(place)
+            return refusals.bag_of_no_file(place)
         found = bags.read(log.file, start, sink, place)
         if isinstance(found, Diagnostic):
             return found
@@ -182,7 +185,7 @@ def _folder(path: str, sink: Numbered, place: Span) -> _Run | Diagnostic:
     if isinstance(about, Diagnostic):
         return about
     if about.compressed:
-        return findings.compressed_folder(about.compressed, place)
+        return refusals.compressed_folder(about.compressed, place)
     places = [Source(os.path.join(path, name), "").span() for name in about.files]
     found: list[Part | Diagnostic] = []
     for file in places:

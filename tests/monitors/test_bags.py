@@ -15,7 +15,7 @@ from rosbags.rosbag2 import StoragePlugin
 from rosbags.rosbag2 import Writer as Writer2
 
 from fretish.diagnostic import Code
-from monitors.recordings import Overview, look
+from monitors.recordings import Overview, look, read
 from monitors.samples import Recording
 from tests.monitors.logs import (
     MS,
@@ -193,6 +193,30 @@ def test_messages_that_the_index_of_a_database_hides_are_a_loss(tmp_path: Path) 
     database.commit()
     database.close()
     assert refused(file).code is Code.UNREADABLE_LOG
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        "UPDATE messages SET timestamp = 'then'", "UPDATE messages SET timestamp = 1.5",
+        "UPDATE messages SET timestamp = -5", "UPDATE messages SET timestamp = 9223372036854775807",
+        "UPDATE messages SET data = 'text' WHERE id = 3", "UPDATE messages SET topic_id = 9",
+        "UPDATE topics SET name = x'00ff'", "UPDATE topics SET type = 7",
+        "UPDATE topics SET serialization_format = x'00'",
+        "UPDATE message_definitions SET encoding = 1", "DELETE FROM messages",
+        "UPDATE message_definitions SET encoded_message_definition = x'ff'", "DROP TABLE topics",
+    ],
+    ids=range(13),
+)  # fmt: skip
+def test_a_database_of_other_contents_never_passes_for_a_bag(tmp_path: Path, change: str) -> None:
+    file = db3(tmp_path / "log", ros2())
+    database = sqlite3.connect(file)
+    database.execute(change)
+    database.commit()
+    database.close()
+    found = read(str(file), X, ["x"])
+    if isinstance(found, Recording):
+        assert not found.intact or any(finding.is_error for finding in found.findings)
 
 
 def test_messages_that_are_still_beside_a_database_are_a_loss(tmp_path: Path) -> None:

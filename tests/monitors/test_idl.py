@@ -14,6 +14,7 @@ from monitors.decoding import decoder, numbers, shape
 from monitors.definitions import DefinitionError
 from monitors.idl import types
 from monitors.probes import trusted
+from monitors.refusals import install
 from monitors.samples import Recording
 from tests.monitors.logs import (
     MS,
@@ -210,7 +211,7 @@ def test_without_rosbags_the_extra_is_named(
     monkeypatch.setitem(sys.modules, "rosbags", None)
     (finding,) = recorded(path, X).findings
     assert finding.code is Code.MISSING_EXTRA
-    assert finding.help == "install the extra: pip install 'fretc[bags]'"
+    assert finding.help == install("bags")
 
 
 def test_mixed_messages_are_decoded_field_by_field() -> None:

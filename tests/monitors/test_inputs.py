@@ -20,6 +20,7 @@ import pytest
 from fretish.diagnostic import Code, Diagnostic
 from monitors.inputs import is_url, opened, shown
 from monitors.recordings import read
+from monitors.refusals import install
 from monitors.samples import Recording
 from tests.monitors.logs import NONE, TWELVE, X, damaged, values, write
 
@@ -171,7 +172,7 @@ def test_without_the_package_of_a_protocol_it_is_named(monkeypatch: pytest.Monke
     monkeypatch.setitem(sys.modules, "fsspec", None)
     diagnostic = refused("s3://bucket/log.mcap")
     assert diagnostic.code is Code.MISSING_EXTRA
-    assert diagnostic.help == "install the extra: pip install 'fretc[remote]'"
+    assert diagnostic.help == install("remote")
 
 
 class Server(BaseHTTPRequestHandler):

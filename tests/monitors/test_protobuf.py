@@ -17,6 +17,7 @@ from google.protobuf.timestamp_pb2 import DESCRIPTOR as TIMESTAMP
 from fretish.diagnostic import Code
 from monitors import protobuf
 from monitors.recordings import Overview, look
+from monitors.refusals import install
 from monitors.samples import Recording
 from tests.monitors.logs import MS, S, Sent, declare, recorded, times, values, write
 
@@ -232,4 +233,4 @@ def test_without_its_package_the_extra_is_named(
     (finding,) = recorded(path, declare(TEXT.format(path="plain", more=""))).findings
     assert finding.code is Code.MISSING_EXTRA
     assert finding.message == "`/p` cannot be read: that needs `mcap-protobuf-support`"
-    assert finding.help == "install the extra: pip install 'fretc[protobuf]'"
+    assert finding.help == install("protobuf")
