@@ -26,6 +26,7 @@ from fretish.diagnostic import Code, Diagnostic
 from monitors import kernel
 from monitors.audit import Engine, Watched, audit, examined, signals_of
 from monitors.evidence import SCHEMA, as_record, unread
+from monitors.inputs import STDIN, shown
 from monitors.loading import load
 from monitors.recordings import read
 
@@ -96,7 +97,7 @@ def audit_logs(
 
     Args:
         project: read without errors.
-        logs: paths of MCAP files.
+        logs: files, folders of rosbag2, URLs, or `-` for standard input.
         engine: one of `ENGINES`; the results are the same.
         jobs: how many processes share the logs; the results are the same.
         tell: is called after each log.
@@ -112,6 +113,8 @@ def audit_logs(
     said: list[Diagnostic] = []
     read = 0
     work = partial(_audit_log, declarations=declarations, watched=watched, engine=ENGINES[engine])
+    if STDIN in logs:  # another process would not have it
+        jobs = 1
     for found, told, could_be_read in each(work, tuple(dict.fromkeys(logs)), jobs):
         tell()
         results.extend(found)
@@ -175,7 +178,7 @@ def _audit_log(
         hashes = _hash_of(log)
         return (
             [
-                unread(log, w.monitor.REQUIREMENTS[0].id, recording, {**hashes, **w.hashes})
+                unread(shown(log), w.monitor.REQUIREMENTS[0].id, recording, {**hashes, **w.hashes})
                 for w in watched
             ],
             [recording],

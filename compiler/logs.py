@@ -1,46 +1,92 @@
-"""Which logs are meant: files, and folders of them."""
+"""Which logs are meant: files, folders of them, patterns, standard input, URLs."""
 
 from __future__ import annotations
 
+import glob
 import os
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 
 from compiler.files import unreadable
 from fretish.diagnostic import Code, Diagnostic
 from fretish.source import Source
+from monitors.folders import METADATA, Folder, folder, is_folder
+from monitors.inputs import STDIN, is_url
 
-_BAG = "metadata.yaml"
-"""What a folder of rosbag2 holds beside its files."""
+_LOGS = (".mcap", ".bag", ".db3")
+"""How the names of logs end; below a folder, other files are passed by."""
 
 
 def logs(paths: Sequence[str]) -> list[str] | Diagnostic:
-    """The files, with those below a folder in its place; each once, folders in order of names.
+    """The logs, with those below a folder in its place; each once, folders in order of names.
+
+    A folder of rosbag2 with several files is one log, and so are these files when all of them are
+    named.
 
     Args:
-        paths: as the user names them; what is no folder is taken for a file.
+        paths: as the user names them; what is no folder and no pattern is taken for a file.
     """
     found: dict[str, str] = {}
     for path in paths:
         try:
-            files = list(_below(Path(path))) if path and os.path.isdir(path) else [path]
+            files = list(_named(path))
         except OSError as error:
             return unreadable(error.filename or path, error)
-        if not files:
-            return _empty(path)
         for file in files:
             if isinstance(file, Diagnostic):
                 return file
-            found.setdefault(os.path.realpath(file), file)
-    return list(found.values())
+            found.setdefault(file if _elsewhere(file) else os.path.realpath(file), file)
+    try:
+        return _whole(found)
+    except OSError as error:
+        return unreadable(error.filename or METADATA, error)
 
 
-def _below(folder: Path) -> Iterator[str | Diagnostic]:
-    entries = sorted(folder.iterdir())
-    files = [entry for entry in entries if entry.suffix == ".mcap" and entry.is_file()]
-    if len(files) > 1 and folder / _BAG in entries:
-        yield _split(folder, len(files))
+def files_of(logs: Iterable[str]) -> list[str]:
+    """All files that the logs are made of."""
+    files: list[str] = []
+    for log in logs:
+        if not _elsewhere(log) and os.path.isdir(log):
+            files += [entry.path for entry in os.scandir(log)]
+        else:
+            files.append(log)
+    return files
+
+
+def _elsewhere(path: str) -> bool:
+    """Whether it is no path of a file."""
+    return path == STDIN or is_url(path)
+
+
+def _named(path: str) -> Iterator[str | Diagnostic]:
+    """What one path stands for."""
+    if not path or _elsewhere(path) or not (glob.has_magic(path) or os.path.isdir(path)):
+        yield path
+    elif os.path.isdir(path):
+        yield from list(_below(Path(path))) or [_empty(path)]
+    elif os.path.lexists(path):
+        yield path
+    else:
+        matches = sorted(glob.glob(path, recursive=True))
+        if not matches:
+            yield _no_match(path)
+        for match in matches:
+            if os.path.isdir(match):
+                yield from _below(Path(match))
+            elif os.path.basename(match) != METADATA:
+                yield match
+
+
+def _below(path: Path) -> Iterator[str | Diagnostic]:
+    entries = sorted(path.iterdir())
+    files = [entry for entry in entries if entry.suffix in _LOGS and entry.is_file()]
+    run = folder(str(path)) if is_folder(str(path)) else None
+    if isinstance(run, Diagnostic) and len(files) > 1:
+        yield run
         return
+    if isinstance(run, Folder) and (len(run.files) > 1 or run.compressed):
+        yield str(path)
+        files = [file for file in files if file.name not in run.files]
     for entry in entries:
         if entry in files:
             yield str(entry)
@@ -48,19 +94,34 @@ def _below(folder: Path) -> Iterator[str | Diagnostic]:
             yield from _below(entry)
 
 
+def _whole(found: dict[str, str]) -> list[str]:
+    """The logs, with a folder of rosbag2 in place of its files where all of them are there."""
+    runs = {os.path.dirname(real): os.path.dirname(file) or "." for real, file in found.items()}
+    for real, path in runs.items():
+        about = folder(path) if is_folder(path) else None
+        if not isinstance(about, Folder) or len(about.files) < 2:
+            continue
+        parts = [os.path.realpath(os.path.join(real, name)) for name in about.files]
+        if all(part in found for part in parts):
+            found = {real if key == parts[0] else key: log for key, log in found.items()}
+            found[real] = path
+            found = {key: log for key, log in found.items() if key not in parts}
+    return list(found.values())
+
+
 def _empty(path: str) -> Diagnostic:
     return Diagnostic(
         Code.NO_SUCH_FILE,
-        f"no log (`*.mcap`) is in `{path}`",
+        f"no log (`*.mcap`, `*.bag`, `*.db3`) is in `{path}`",
         Source(path, "").span(),
         help="name the folder that your logs are in",
     )
 
 
-def _split(folder: Path, count: int) -> Diagnostic:
+def _no_match(path: str) -> Diagnostic:
     return Diagnostic(
-        Code.SPLIT_LOG,
-        f"`{folder}` is one run in {count} files",
-        Source(str(folder), "").span(),
-        help="merge them: `mcap merge *.mcap -o run.mcap`, and audit that",
+        Code.NO_SUCH_FILE,
+        f"no file matches `{path}`",
+        Source(path, "").span(),
+        help="`*` stands for any part of one name, `**` for folders below each other",
     )

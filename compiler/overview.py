@@ -88,8 +88,7 @@ def _fields(overview: Overview, name: str, *, whole: bool) -> Iterator[str]:
     """The fields that a signal can read."""
     numbers = overview.numbers.get(name)
     if numbers is None:
-        encoding = overview.recording.topics[name].encoding
-        yield f"cannot be read: its messages are encoded as `{encoding}`"
+        yield f"cannot be read: {overview.reasons[name]}"
         return
     shown = numbers if whole else numbers[:_MOST]
     if shown:

@@ -76,13 +76,13 @@ class Column:
     unstamped: int = 0
     unset: bytearray = field(default_factory=bytearray)
     """For each message 1 where its time was never set: it is zero, and its samples are unknown."""
-    stated: int | None = None
-    """How many messages the log says it holds of it, where they were not read."""
+    stated: int = 0
+    """How many messages the log says it holds of it that were not read."""
 
     @property
     def count(self) -> int:
         """How many messages there are."""
-        return len(self.logs) if self.stated is None else self.stated
+        return len(self.logs) + self.stated
 
     def refuse(self, signal: Signal, diagnostic: Diagnostic) -> None:
         """No samples of this signal."""
@@ -164,15 +164,13 @@ class Columns:
         payloads = messages.payloads.copies() if self._decodes(column) else [b""] * len(logs)
         self._wait(column, stream, logs.tolist(), messages.publishes.tolist(), payloads)
 
-    def binds(self, topic: str) -> bool:
-        """Whether its messages are read; of another topic they are only counted."""
+    def wants(self, topic: str) -> bool:
+        """Whether the bindings name it."""
         return topic in self._bound
 
-    def count(self, topic: str, count: int) -> None:
-        """So many messages of a topic are in the log; they are not read if it is not bound."""
-        column = self.topics[topic]
-        if not column.bound:
-            column.stated = (column.stated or 0) + count
+    def count(self, stream: Stream, count: int) -> None:
+        """So many messages of a topic that the bindings do not name."""
+        self.topics[stream.channel.topic].stated += count
 
     def _decodes(self, column: Column) -> bool:
         """Whether anything within its messages is asked for."""
@@ -279,11 +277,10 @@ class Columns:
         column = self.topics.get(self.clock.topic or "")
         return np.sort(np.array(column.times if column else [], np.int64))
 
-    def span(self) -> Gap:
-        """First and last message of the bound topics; of all, where those have none."""
+    def span(self, whole: Gap) -> Gap:
+        """First and last message of the bound topics; without any, those of the `whole` log."""
         bound = [column.times for column in self.topics.values() if column.placed]
-        all_ = bound or [column.logs for column in self.topics.values() if column.logs]
-        return min(map(min, all_)), max(map(max, all_))
+        return (min(map(min, bound)), max(map(max, bound))) if bound else whole
 
     def on_clock(self, gap: Gap) -> Gap:
         """A span of log times, on the declared clock: between the messages around it."""

@@ -1,33 +1,30 @@
-"""What a log holds of the topics in question: by its index, or record by record.
+"""The messages of one MCAP file: by its index, or record by record.
 
-By its index only what is wanted is read. A log whose index leaves any doubt, or says anything else
-than is found, is read again, record by record: that names what is damaged, and when.
+By its index only what is wanted is read, where the index explains the whole file. In any other file
+each record is looked at: that names what is damaged, and when.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
+import hashlib
+import zlib
+from dataclasses import dataclass, replace
 from io import BufferedReader
 
-from monitors.columns import Columns
-from monitors.container import BrokenError, summary
+from monitors.container import BLOCK, BrokenError, summary
 from monitors.damage import Damage
 from monitors.index import Index, indexed
 from monitors.integrity import Checked, Integrity
+from monitors.messages import Sink
 from monitors.projection import Projection
 from monitors.samples import Gap
 from monitors.walk import Walk
 
-Crc = Callable[[int], int]
-"""The CRC of the file up to that byte."""
-
 
 @dataclass(frozen=True, slots=True)
 class Contents:
-    """All that was read of one log."""
+    """What was found in one file, apart from its messages."""
 
-    columns: Columns
     damages: tuple[tuple[Damage, Gap | None], ...]
     """Damaged places, with the time that each has cost; None where it cost nothing."""
     span: Gap | None
@@ -35,54 +32,55 @@ class Contents:
     cut: int | None
     """Up to which byte there are whole records, in a file without an end."""
     checked: Checked
+    summary_sha256: str = ""
+    """Of all that follows the data; only where nothing else tells one log from another."""
 
 
-def contents(
-    stream: BufferedReader,
-    size: int,
-    integrity: Integrity,
-    new: Callable[[], Columns],
-    crc: Crc | None = None,
-) -> Contents:
-    """Read a log.
+def contents(stream: BufferedReader, size: int, sink: Sink, integrity: Integrity) -> Contents:
+    """Read a file.
 
     Args:
         stream: an MCAP file, which can be sought in.
         size: its bytes.
-        integrity: whether its index may be trusted.
-        new: makes what takes the messages.
-        crc: of the file; None where not all of it is read.
+        sink: takes the messages.
+        integrity: whether the index may be trusted.
+
+    Raises:
+        BrokenError: the file is not as its index says. The sink has got what it should not have:
+            read again, with another one and `Integrity.FULL`.
     """
-    index = None
     if integrity is not Integrity.FULL:
         index = indexed(stream, size, summary(stream, size))
-    if index is not None:
-        found = _by_index(stream, index, new(), crc)
-        if found is not None:
-            return found
-    columns = new()
-    walk = Walk(stream, size, columns)
+        if index is not None:
+            return _by_index(stream, index, sink, integrity)
+    walk = Walk(stream, size, sink)
     walk.run()
-    columns.settle()
-    kept = walk.damages.kept
-    damages = walk.settled() if walk.damages.span else [(damage, None) for damage in kept]
-    return Contents(columns, tuple(damages), walk.damages.span, walk.cut, walk.checked)
+    if walk.damages.span is None:
+        kept = tuple((damage, None) for damage in walk.damages.kept)
+        return Contents(kept, None, walk.cut, walk.checked)
+    return Contents(tuple(walk.settled()), walk.damages.span, walk.cut, walk.checked)
 
 
-def _by_index(
-    stream: BufferedReader, index: Index, columns: Columns, crc: Crc | None
-) -> Contents | None:
-    """What the index leads to; None where the file is not as it says."""
-    projection = Projection(stream, index, columns, columns.binds)
-    try:
-        projection.run()
-    except BrokenError:
-        return None
-    if crc is not None and index.data_crc and crc(index.data_end) != index.data_crc:
-        return None
-    columns.settle()
-    for id, count in index.statistics.channel_message_counts.items():
-        columns.count(index.streams[id].channel.topic, count)
+def _by_index(stream: BufferedReader, index: Index, sink: Sink, integrity: Integrity) -> Contents:
+    projection = Projection(stream, index, sink)
+    projection.run()
+    known = index.data_crc if integrity is Integrity.HASH else 0
+    if known and _crc32(stream, index.data_end) != known:
+        raise BrokenError("its data has another CRC than it states")
     statistics = index.statistics
     span = statistics.message_start_time, statistics.message_end_time
-    return Contents(columns, (), span, None, projection.checked)
+    if integrity is Integrity.HASH:
+        return Contents((), span, None, projection.checked)
+    stream.seek(index.summary)
+    digest = hashlib.file_digest(stream, "sha256").hexdigest()
+    return Contents((), span, None, replace(projection.checked, hashed=False), digest)
+
+
+def _crc32(stream: BufferedReader, size: int) -> int:
+    """The CRC of the first `size` bytes."""
+    stream.seek(0)
+    crc = 0
+    while size > 0 and (block := stream.read(min(size, BLOCK))):
+        crc = zlib.crc32(block, crc)
+        size -= len(block)
+    return crc

@@ -1,4 +1,4 @@
-"""Payloads decoded: ROS 2 messages (cdr with ros2msg) and ROS 1 messages (ros1 with ros1msg).
+"""Payloads decoded: messages of ROS 2 (cdr with ros2msg or ros2idl), of ROS 1, JSON and Protobuf.
 
 A message definition may be any text, and a payload any bytes.
 """
@@ -6,18 +6,27 @@ A message definition may be any text, and a payload any bytes.
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from contextlib import redirect_stderr, redirect_stdout
 from dataclasses import replace
 from io import StringIO
 
+from monitors import idl, jsontext, protobuf
 from monitors.container import Stream
 from monitors.definitions import types
 from monitors.layouts import Shape
-from monitors.signals import fields
+from monitors.signals import Sparse, fields, stated_field
 
 Decode = Callable[[bytes], object]
 """From a payload to an object with the message's fields; it raises whatever it likes."""
+
+_STAMPS = (("sec", "nanosec"), ("secs", "nsecs"))
+"""Names of the fields of a stamp, in ROS 2 and in ROS 1."""
+_SPARSE_STAMPS = (("seconds", "nanos"), ("sec", "nsec"))
+"""Those of google.protobuf.Timestamp, and of Foxglove's JSON and Gazebo's messages."""
+_LAID_OUT = ("ros1msg", "ros2msg", "ros2idl")
+_EXTRAS = {"protobuf": ("mcap-protobuf-support", "protobuf"), "cdr": ("rosbags", "bags")}
+"""What decodes an encoding, and the extra that installs it."""
 
 _NAME = r"[A-Za-z][A-Za-z0-9_]*"
 _ROS1_TYPE = re.compile(rf"{_NAME}/{_NAME}")
@@ -27,19 +36,45 @@ _NEXT_TYPE = re.compile(rf"MSG: {_NAME}/{_NAME}")
 _SEPARATOR = re.compile(r"={3,}")
 
 
+class MissingExtra(str):
+    """Why nothing decodes the messages of a stream: a part of fretc is not installed."""
+
+    __slots__ = ("extra",)
+
+    def __new__(cls, what: str, extra: str) -> MissingExtra:
+        """`what` is what is missing."""
+        text = super().__new__(cls, f"that needs `{what}`")
+        text.extra = extra
+        return text
+
+    extra: str
+    """By which name pip installs it."""
+
+
 def decoder(stream: Stream) -> Decode | str:
     """What decodes the messages of a stream, or why nothing does."""
     encoding, schema = stream.channel.message_encoding, stream.schema
-    if schema is None:
+    if schema is None and encoding != "json":
         return "its messages have no definition"
     try:
-        match encoding, schema.encoding:
+        match encoding, schema.encoding if schema is not None else "":
+            case "json", "jsonschema" | "":
+                jsontext.stated(schema.data if schema is not None else b"")
+                return jsontext.decode
+            case "protobuf", "protobuf":
+                return protobuf.decoder(stream)
+            case "cdr", "ros2idl":
+                decode = idl.decoder(stream)
+                return lambda payload: decode(_plain(payload))
             case "cdr", "ros2msg":
                 return _ros2(stream)
             case "ros1", "ros1msg":
                 return _ros1(stream)
-            case _:
-                return f"its messages are encoded as `{encoding}`, defined in `{schema.encoding}`"
+            case _, defined:
+                return f"its messages are encoded as `{encoding}`, defined in `{defined}`"
+    except ModuleNotFoundError:
+        what, extra = _EXTRAS[encoding]
+        return MissingExtra(what, extra)
     except Exception:  # the parsers trust the definition
         return "the definition of its messages cannot be read"
 
@@ -47,14 +82,46 @@ def decoder(stream: Stream) -> Decode | str:
 def shape(stream: Stream) -> Shape | None:
     """How the messages of a stream are laid out; None where only its decoder knows."""
     schema = stream.schema
-    if schema is None:
+    if schema is None or schema.encoding not in _LAID_OUT:
         return None
     ros1 = schema.encoding == "ros1msg"
     try:
-        known = types(schema.name, schema.data.decode(), ros1=ros1)
-    except ValueError:  # no UTF-8, or nothing that is laid out
+        definition = schema.data.decode()
+        if schema.encoding == "ros2idl":
+            known = idl.types(schema.name, definition)
+        else:
+            known = types(schema.name, definition, ros1=ros1)
+    except Exception:  # no UTF-8, nothing that is laid out, or a parser that trusts it
         return None
     return Shape(short_type(schema.name), known, cdr=not ros1)
+
+
+def numbers(stream: Stream, payloads: Sequence[bytes] = ()) -> tuple[str, ...] | None:
+    """The paths of all numbers in the messages of a stream: `a.b`, and `a.c[:]` for an array.
+
+    Args:
+        stream: of messages.
+        payloads: some of them; those of JSON tell what their schema leaves open.
+
+    Returns:
+        None where its messages cannot be read.
+    """
+    if isinstance(decoder(stream), str):
+        return None
+    match stream.channel.message_encoding:
+        case "json":
+            stated = jsontext.stated(stream.schema.data if stream.schema is not None else b"")
+            return tuple(dict.fromkeys((*stated, *jsontext.held(payloads))))
+        case "protobuf":
+            return protobuf.numbers(stream)
+    known = shape(stream)
+    if known is None:
+        return ()
+    fields = ((where, known.number(where)) for where in known.numbers())
+    return tuple(
+        f"{'.'.join(where)}{'[:]' if field is not None and field.many else ''}"
+        for where, field in fields
+    )
 
 
 def _ros2(stream: Stream) -> Decode:
@@ -115,12 +182,23 @@ def _fields_only(definition: str) -> str:
 
 
 def stamp(message: object | None) -> int | None:
-    """`header.stamp` in nanoseconds; None for a message without one."""
-    time = getattr(getattr(message, "header", None), "stamp", None)
+    """`header.stamp` in nanoseconds; None for a message without one.
+
+    Of JSON and Protobuf the field `timestamp` too, which Foxglove's messages have instead.
+    """
+    time = stated_field(stated_field(message, "header"), "stamp")
+    if not isinstance(message, Sparse):
+        return _nanoseconds(time, _STAMPS)
+    if time is None:
+        time = stated_field(message, "timestamp")
+    return _nanoseconds(time, (*_STAMPS, *_SPARSE_STAMPS))
+
+
+def _nanoseconds(time: object | None, kinds: Sequence[tuple[str, str]]) -> int | None:
     names = fields(time)
-    for parts in (("sec", "nanosec"), ("secs", "nsecs")):
+    for parts in kinds:
         if all(part in names for part in parts):
-            seconds, nanoseconds = (getattr(time, part) for part in parts)
+            seconds, nanoseconds = (stated_field(time, part) for part in parts)
             if isinstance(seconds, int) and isinstance(nanoseconds, int):
                 return seconds * 10**9 + nanoseconds
     return None

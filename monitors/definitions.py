@@ -88,23 +88,26 @@ def types(name: str, definition: str, *, ros1: bool) -> Types:
             within each other without end.
     """
     found: dict[str, tuple[Field, ...]] = {}
-    for full, lines in _sections(_short(name), definition):
+    for full, lines in _sections(short(name), definition):
         package = full.partition("/")[0]
         read = (_field(line, package, ros1=ros1) for line in lines)
         fields = tuple(field for field in read if field is not None)
         if found.setdefault(full, fields) != fields:
             raise DefinitionError(f"the type `{full}` is defined twice")
-    found = _builtin(ros1=ros1) | found
+    return measured(_builtin(ros1=ros1) | found)
+
+
+def measured(found: Types) -> Types:
+    """The types.
+
+    Raises:
+        DefinitionError: they are made of something that is not defined, hold themselves, or hold
+            more than anyone would define.
+    """
     for fields in found.values():
         for field in fields:
             if field.type not in NUMBERS and field.type not in TEXTS and field.type not in found:
                 raise DefinitionError(f"the type `{field.type}` is not defined")
-    _measure(found)
-    return found
-
-
-def _measure(found: Types) -> None:
-    """Refuse types that hold themselves, or more than anyone would define."""
     sizes: dict[str, int] = {}
     for _ in range(_DEEPEST):
         sizes |= {
@@ -114,6 +117,7 @@ def _measure(found: Types) -> None:
         }
     if len(sizes) < len(found) or max(sizes.values()) > _MOST_FIELDS:
         raise DefinitionError("the types are too deep")
+    return found
 
 
 def _builtin(*, ros1: bool) -> dict[str, tuple[Field, ...]]:
@@ -124,7 +128,12 @@ def _builtin(*, ros1: bool) -> dict[str, tuple[Field, ...]]:
     }
 
 
-def _short(name: str) -> str:
+def short(name: str) -> str:
+    """`sensor_msgs/LaserScan`, with or without `msg/` in it.
+
+    Raises:
+        DefinitionError: it is no name of a type.
+    """
     if not _NAME.fullmatch(name):
         raise DefinitionError(f"`{name}` is no type")
     return name.replace("/msg/", "/")
@@ -140,7 +149,7 @@ def _sections(name: str, definition: str) -> list[tuple[str, list[str]]]:
             continue
         following = _NEXT.fullmatch(bare)
         if not named and following:
-            sections.append((_short(following[1]), []))
+            sections.append((short(following[1]), []))
             named = True
         elif named and _SEPARATOR.fullmatch(bare):
             named = False

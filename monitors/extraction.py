@@ -94,10 +94,13 @@ class Extraction:
         extract = Extract.empty(len(payloads), self.signals)
         if self._decode is None:
             return extract
-        placed = (
-            self._shape is not None and len(payloads.data) >= _FEW and self._placed(self._shape)
-        )
-        slow = self._at_once(payloads, extract) if placed else range(len(payloads))
+        slow: Sequence[int] = range(len(payloads))
+        if self._shape is not None and payloads.sizes.sum() >= _FEW:
+            if not self._placed(self._shape):  # one message tells which signals have no place
+                self._one_by_one(0, bytes(payloads.payload(0)), extract)
+                slow = slow[1:]
+            if self._placed(self._shape):
+                slow = self._at_once(payloads, extract)
         for row in slow:
             self._one_by_one(row, bytes(payloads.payload(row)), extract)
         return extract

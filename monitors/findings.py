@@ -6,6 +6,7 @@ nanoseconds.
 
 from __future__ import annotations
 
+import errno
 from collections.abc import Collection
 
 from fretish.clock import Clock
@@ -13,7 +14,8 @@ from fretish.declarations import Signal
 from fretish.diagnostic import Code, Diagnostic, Severity, suggestion
 from fretish.source import Span
 from monitors.damage import Damage
-from monitors.decoding import short_type
+from monitors.decoding import MissingExtra, short_type
+from monitors.refusals import install
 from monitors.samples import Gap
 from monitors.signals import FieldError
 
@@ -30,20 +32,25 @@ def no_such_file(place: Span) -> Diagnostic:
 
 def is_a_directory(place: Span) -> Diagnostic:
     """The path names a directory."""
-    return Diagnostic(Code.IS_A_DIRECTORY, "it is a directory", place, "name the MCAP files in it")
+    return Diagnostic(Code.IS_A_DIRECTORY, "it is a directory", place, "name the logs in it")
 
 
 def not_a_file(place: Span) -> Diagnostic:
     """The path names a device, a pipe or the like."""
-    return Diagnostic(Code.UNREADABLE, "it is not a regular file", place, "name a file")
+    return Diagnostic(
+        Code.UNREADABLE, "it is not a regular file", place, "name a file; `-` is standard input"
+    )
 
 
 def unreadable(error: OSError, place: Span) -> Diagnostic:
-    """The system does not let it be read."""
+    """The system, or the server, does not let it be read."""
     reason = error.strerror or str(error)
-    return Diagnostic(
-        Code.UNREADABLE, f"it cannot be read: {reason}", place, "check its permissions"
-    )
+    mend = "check its permissions"
+    if "://" in place.source.name:
+        mend = "check the address, the network, and whether your credentials reach it"
+    elif error.errno == errno.ENOSPC:
+        mend = "make room in the folder for temporary files, or name another one in `TMPDIR`"
+    return Diagnostic(Code.UNREADABLE, f"it cannot be read: {reason}", place, mend)
 
 
 def empty(place: Span) -> Diagnostic:
@@ -56,18 +63,32 @@ def empty(place: Span) -> Diagnostic:
     )
 
 
+_PACKED = {
+    b"\x28\xb5\x2f\xfd": ("zstd", "zstd -d"),
+    b"\x04\x22\x4d\x18": ("lz4", "lz4 -d"),
+    b"\x1f\x8b": ("gzip", "gunzip"),
+    b"\xfd7zXZ\x00": ("xz", "unxz"),
+    b"BZh": ("bzip2", "bunzip2"),
+    b"PK\x03\x04": ("zip", "unzip"),
+}
+"""What compressed files begin with, and what unpacks them."""
+
+
 def not_a_log(start: bytes, place: Span) -> Diagnostic:
     """Another kind of file, told by its first bytes."""
-    for magic, what in ((b"#ROSBAG V", "a ROS 1 bag"), (b"SQLite format 3", "an SQLite database")):
+    for magic, (what, command) in _PACKED.items():
         if start.startswith(magic):
             return Diagnostic(
                 Code.NOT_A_LOG,
-                f"it is {what}, not an MCAP file",
+                f"it is a whole file compressed with {what}",
                 place,
-                "convert it: `mcap convert IN OUT.mcap`",
+                f"unpack it first: `{command} FILE`; MCAP compresses within the file",
             )
     return Diagnostic(
-        Code.NOT_A_LOG, "it is not an MCAP file", place, "name a recording in the MCAP format"
+        Code.NOT_A_LOG,
+        "it is not a log: neither MCAP, nor a ROS 1 bag, nor rosbag2's SQLite",
+        place,
+        "name a recording",
     )
 
 
@@ -120,9 +141,10 @@ def damaged(damage: Damage, gap: Gap | None, origin: int, place: Span) -> Diagno
     if gap is not None:
         start, end = (_seconds(time - origin) for time in gap)
         lost = f"what was recorded from {start} to {end} counts as unknown"
+    where = f"the log is damaged near byte {damage.at}: " if damage.at >= 0 else ""
     return Diagnostic(
         damage.code,
-        f"the log is damaged near byte {damage.at}: {damage.what}; {lost}",
+        f"{where}{damage.what}; {lost}",
         place,
         "copy the log again from where it was recorded; nothing counts as shown by a damaged log",
         Severity.WARNING,
@@ -170,6 +192,20 @@ def no_field(signal: Signal, error: FieldError) -> Diagnostic:
     return Diagnostic(Code.NO_FIELD, f"in `{signal.path.topic}` {error}", signal.span, error.mend)
 
 
+def never_stated(signal: Signal, held: Collection[str]) -> Diagnostic:
+    """The messages may leave out the field that the signal asks for, and all of them do."""
+    name = ".".join(signal.path.fields)
+    known = [path.removesuffix("[:]") for path in held]
+    near = suggestion(name, known)
+    listed = f"they state {', '.join(known[:8])}{', ...' if len(known) > 8 else ''}"
+    return Diagnostic(
+        Code.NO_FIELD,
+        f"no message of `{signal.path.topic}` states a number in `{name}`",
+        signal.span,
+        f"did you mean `{near}`?" if near else listed if known else "they state no number at all",
+    )
+
+
 def wrong_type(signal: Signal, found: str) -> Diagnostic:
     """The topic is of another type than the signal declares."""
     return Diagnostic(
@@ -182,12 +218,20 @@ def wrong_type(signal: Signal, found: str) -> Diagnostic:
 
 
 def unknown_encoding(signal: Signal, why: str) -> Diagnostic:
-    """No message of the topic can be decoded."""
+    """No message of the topic can be decoded; or only by a part of fretc that is not installed."""
+    if isinstance(why, MissingExtra):
+        return Diagnostic(
+            Code.MISSING_EXTRA,
+            f"`{signal.path.topic}` cannot be read: {why}",
+            signal.span,
+            install(why.extra),
+        )
     return Diagnostic(
         Code.UNKNOWN_ENCODING,
         f"`{signal.path.topic}` cannot be read: {why}",
         signal.span,
-        "fretc reads ROS 2 messages (cdr with ros2msg) and ROS 1 messages (ros1 with ros1msg)",
+        "fretc reads messages of ROS 2 (cdr with ros2msg or ros2idl), ROS 1 (ros1 with ros1msg), "
+        "JSON (with or without jsonschema) and Protobuf",
     )
 
 

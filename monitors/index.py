@@ -32,6 +32,8 @@ class Index:
     """The byte up to which the CRC of the data goes."""
     data_crc: int
     """0: none is stated."""
+    summary: int
+    """The byte at which the summary begins."""
 
 
 def indexed(stream: BufferedReader, size: int, found: Summary | None) -> Index | None:
@@ -61,7 +63,7 @@ def indexed(stream: BufferedReader, size: int, found: Summary | None) -> Index |
         end = _between(stream, found, chunks)
     except BrokenError:
         return None
-    return Index(chunks, streams, statistics, *end) if end is not None else None
+    return Index(chunks, streams, statistics, *end, found.end) if end is not None else None
 
 
 def _is_usual(chunk: ChunkIndex) -> bool:

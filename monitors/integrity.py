@@ -23,6 +23,8 @@ class Checked:
 
     by_index: bool
     """Whether only the messages in question were read; else every record was."""
+    hashed: bool = True
+    """Whether the SHA-256 is that of the whole log, and not that of its summary."""
     chunks: int = 0
     crc_checked: int = 0
     """Chunks that have the CRC that they state."""
@@ -30,6 +32,17 @@ class Checked:
     """Of the chunks that were unpacked, those that state no CRC."""
     skipped: int = 0
     """Chunks without a message in question: they were not unpacked."""
+
+    def __add__(self, other: Checked) -> Checked:
+        """Of two files of one log."""
+        return Checked(
+            self.by_index or other.by_index,
+            self.hashed and other.hashed,
+            self.chunks + other.chunks,
+            self.crc_checked + other.crc_checked,
+            self.without_crc + other.without_crc,
+            self.skipped + other.skipped,
+        )
 
     @property
     def crc_unchecked(self) -> int:

@@ -164,7 +164,7 @@ class _Walk:
                 self._text(self._length())
         elif count is None:
             self.message(field.type, where)
-        else:
+        elif self._cdr or self._types[field.type]:  # ROS 1 writes nothing for an empty type
             for _ in range(self._bounded(count)):
                 self.message(field.type, ("[]",))  # no wanted field is below
 

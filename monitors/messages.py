@@ -100,3 +100,11 @@ class Sink(Protocol):
     def add_all(self, stream: Stream, messages: Messages) -> None:
         """Whole messages of one stream, and none of another stream of its topic between them."""
         ...
+
+    def wants(self, topic: str) -> bool:
+        """Whether more than the number of its messages is asked for."""
+        ...
+
+    def count(self, stream: Stream, count: int) -> None:
+        """So many messages of a stream that is not wanted."""
+        ...

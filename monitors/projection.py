@@ -11,7 +11,6 @@ from __future__ import annotations
 
 import zlib
 from collections import Counter, defaultdict
-from collections.abc import Callable
 from dataclasses import dataclass, field
 from io import BufferedReader
 
@@ -47,12 +46,10 @@ class _Found:
 class Projection:
     """One way through a log; the messages of the wanted topics go to the sink."""
 
-    def __init__(
-        self, stream: BufferedReader, index: Index, sink: Sink, wants: Callable[[str], bool]
-    ) -> None:
+    def __init__(self, stream: BufferedReader, index: Index, sink: Sink) -> None:
         self._stream, self._index, self._sink = stream, index, sink
         streams = index.streams
-        self._wanted = {id for id, stream in streams.items() if wants(stream.channel.topic)}
+        self._wanted = {id for id, one in streams.items() if sink.wants(one.channel.topic)}
         self._arena = Arena()
         self._packed = bytearray(2**20)
         self._longest: Counter[int] = Counter(dict.fromkeys(self._wanted, _SLACK))
@@ -64,8 +61,13 @@ class Projection:
     def checked(self) -> Checked:
         """What was looked at, so far."""
         chunks = len(self._index.chunks)
-        skipped = chunks - self._unpacked
-        return Checked(True, chunks, self._crc_checked, self._without_crc, skipped)
+        return Checked(
+            by_index=True,
+            chunks=chunks,
+            crc_checked=self._crc_checked,
+            without_crc=self._without_crc,
+            skipped=chunks - self._unpacked,
+        )
 
     def run(self) -> None:
         """Read all messages.
@@ -82,8 +84,11 @@ class Projection:
                     self._hand_on()
         self._hand_on()
         stated = self._index.statistics.channel_message_counts
-        if any(self._counts[id] != stated.get(id, 0) for id in self._wanted):
-            raise BrokenError("a topic holds another number of messages than is stated")
+        for id, stream in self._index.streams.items():
+            if id not in self._wanted:
+                self._sink.count(stream, stated.get(id, 0))
+            elif self._counts[id] != stated.get(id, 0):
+                raise BrokenError("a topic holds another number of messages than is stated")
 
     # One chunk
 

@@ -1,34 +1,42 @@
-"""Recorded logs: an MCAP file → samples of signals, and how healthy the file is.
+"""Recorded logs: files → samples of signals, and how healthy the files are.
 
-A log is read from its first record to its last. What its summary states (where the chunks are,
+Where the index of a log explains every byte of it, only the messages in question are read. Any
+other log is read from its first record to its last; what its summary states (where the chunks are,
 how many messages there are) is held against what was found, so that a damaged place is a named
-gap and never a silent loss. Times are nanoseconds.
+gap and never a silent loss. The files of a rosbag2 folder are one log. Times are nanoseconds.
 """
 
 from __future__ import annotations
 
-import hashlib
 import os
-import stat
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from io import BufferedReader
-from pathlib import Path
+from functools import partial, reduce
+from operator import add
 from statistics import median
 
 import numpy as np
 
 from fretish.clock import Clock
 from fretish.declarations import Declarations, Signal
-from fretish.diagnostic import Diagnostic
+from fretish.diagnostic import Code, Diagnostic
 from fretish.source import Source, Span
-from monitors import findings
+from monitors import bags, findings, refusals
+from monitors.bags import NOWHERE
 from monitors.columns import Column, Columns
-from monitors.container import MAGIC, Stream
-from monitors.decoding import decoder, shape
-from monitors.samples import Recording, Samples, Topic
+from monitors.container import MAGIC, BrokenError
+from monitors.contents import contents
+from monitors.damage import Damage
+from monitors.decoding import decoder, numbers
+from monitors.examples import Examples
+from monitors.folders import METADATA, Folder, folder, is_folder, of_all
+from monitors.inputs import Input, opened, shown
+from monitors.integrity import Checked, Integrity
+from monitors.jsontext import held as stated_fields
+from monitors.messages import Sink
+from monitors.parts import Numbered, Part, around, widened
+from monitors.samples import Gap, Recording, Samples, Topic
 from monitors.stamps import JUMP, Stamps, stamps
-from monitors.walk import Walk
 
 _MOST_TICKS = 20_000_000
 
@@ -41,17 +49,24 @@ class Overview:
     """By log times, without samples."""
     numbers: Mapping[str, tuple[str, ...] | None]
     """Of each topic the fields that a signal can read; None where its messages cannot be read."""
+    reasons: Mapping[str, str]
+    """Why not."""
 
 
-def read(path: str, declarations: Declarations, wanted: Collection[str]) -> Recording | Diagnostic:
+def read(
+    path: str,
+    declarations: Declarations,
+    wanted: Collection[str],
+    integrity: Integrity = Integrity.HASH,
+) -> Recording | Diagnostic:
     """Read a log.
-
-    All bytes are hashed and all records walked; only the messages in question are decoded.
 
     Args:
         path: the file, as the user names it.
         declarations: clock and signals.
         wanted: names of declared signals.
+        integrity: what is looked at beyond the messages of the topics that the bindings name. A
+            log that is not as its index says is looked at in full.
 
     Returns:
         The recording, with findings about single topics and damaged places; or what keeps the
@@ -62,8 +77,12 @@ def read(path: str, declarations: Declarations, wanted: Collection[str]) -> Reco
         KeyError: a wanted signal is not declared.
     """
     signals = [declarations.signals[name] for name in dict.fromkeys(wanted)]
-    columns = Columns(declarations, signals)
-    return _opened(path, lambda stream, place: _read(stream, place, columns, signals))
+    found = _opened(path, lambda: Columns(declarations, signals), integrity)
+    if isinstance(found, Diagnostic):
+        return found
+    place, run, columns, examples = found
+    recording = _recording(place, run, columns, examples, signals)
+    return _too_long(recording, columns.clock, place) or recording
 
 
 def look(path: str) -> Overview | Diagnostic:
@@ -76,74 +95,177 @@ def look(path: str) -> Overview | Diagnostic:
         The overview, by log times; or what keeps the whole file from being read.
     """
     nothing = Declarations(Source("", ""), Clock(None, None), {}, {})
-    columns = Columns(nothing, ())
-    found = _opened(path, lambda stream, place: _read(stream, place, columns, ()))
+    found = _opened(path, lambda: Columns(nothing, ()), Integrity.FULL)
     if isinstance(found, Diagnostic):
         return found
-    return Overview(found, {topic: _numbers(stream) for topic, stream in columns.streams.items()})
-
-
-def _numbers(stream: Stream) -> tuple[str, ...] | None:
-    """The paths of all numbers in its messages; None where its messages cannot be read."""
-    if isinstance(decoder(stream), str):
-        return None
-    known = shape(stream)
-    if known is None:
-        return ()
-    fields = ((where, known.number(where)) for where in known.numbers())
-    return tuple(
-        f"{'.'.join(where)}{'[:]' if field is not None and field.many else ''}"
-        for where, field in fields
+    place, run, columns, examples = found
+    streams = columns.streams.items()
+    decoders = {topic: decoder(stream) for topic, stream in streams}
+    return Overview(
+        _recording(place, run, columns, examples, ()),
+        {topic: numbers(stream, examples.of(topic)) for topic, stream in streams},
+        {topic: why for topic, why in decoders.items() if isinstance(why, str)},
     )
 
 
-def _opened(
-    path: str, use: Callable[[BufferedReader, Span], Recording | Diagnostic]
-) -> Recording | Diagnostic:
-    place = Source(path, "").span()
+# One file, or several
+
+
+@dataclass(frozen=True, slots=True)
+class _Run:
+    """What the files of one log have given."""
+
+    sha256: str
+    size: int
+    spans: Sequence[Gap]
+    """The first and the last whole message of each file."""
+    damages: Sequence[tuple[Span, Damage, Gap | None]]
+    """Each with its file, and the time that it has cost."""
+    notes: Sequence[Diagnostic]
+    checked: Checked
+
+
+_Read = tuple[Span, _Run, Columns, Examples]
+"""A log, and what has taken its messages."""
+
+
+def _opened(path: str, new: Callable[[], Columns], integrity: Integrity) -> _Read | Diagnostic:
+    """The log at a path: a file, standard input, what is at a URL, or a folder of rosbag2."""
+    place = Source(shown(path), "").span()
     try:
-        mode = os.stat(path).st_mode
-        if stat.S_ISDIR(mode):
-            return findings.is_a_directory(place)
-        if not stat.S_ISREG(mode):
-            return findings.not_a_file(place)
-        with Path(path).open("rb") as stream:
-            return use(stream, place)
-    except FileNotFoundError:
-        return findings.no_such_file(place)
+        if is_folder(path):
+            return _tried(partial(_folder, path), place, new, integrity)
+        with opened(path) as log:
+            if isinstance(log, Diagnostic):
+                return log
+            return _tried(partial(_file, path, log), place, new, integrity)
     except OSError as error:
         return findings.unreadable(error, place)
 
 
-def _read(
-    stream: BufferedReader, place: Span, columns: Columns, wanted: Sequence[Signal]
-) -> Recording | Diagnostic:
-    digest = hashlib.file_digest(stream, "sha256").hexdigest()
-    size = stream.tell()
-    stream.seek(0)
-    start = stream.read(16)
+def _tried(
+    use: Callable[[Sink, Integrity, Span], _Run | Diagnostic],
+    place: Span,
+    new: Callable[[], Columns],
+    integrity: Integrity,
+) -> _Read | Diagnostic:
+    """Read a log; once more, in full, where it is not as its index says."""
+    columns = new()
+    examples = Examples(columns)
+    try:
+        run = use(examples, integrity, place)
+    except BrokenError:
+        assert integrity is not Integrity.FULL
+        return _tried(use, place, new, Integrity.FULL)
+    columns.settle()
+    return run if isinstance(run, Diagnostic) else (place, run, columns, examples)
+
+
+def _file(
+    path: str, log: Input, sink: Sink, integrity: Integrity, place: Span
+) -> _Run | Diagnostic:
+    part = _part(log, sink, integrity, place)
+    if isinstance(part, Diagnostic):
+        return part
+    if part.span is None:
+        return findings.empty(place)
+    damages = [(place, *damage) for damage in part.damages]
+    notes = (*part.notes, *_alone(path, place))
+    return _Run(part.sha256, part.size, (part.span,), damages, notes, part.checked)
+
+
+def _alone(path: str, place: Span) -> Iterator[Diagnostic]:
+    """Whether the file is only a part of a run."""
+    parent, name = os.path.split(path)
+    try:
+        about = folder(parent or ".") if is_folder(parent or ".") else None
+    except OSError:
+        return
+    if isinstance(about, Folder) and len(about.files) > 1 and name in about.files:
+        yield refusals.part_of_a_run(about.files.index(name), len(about.files), parent, place)
+
+
+def _part(log: Input, sink: Sink, integrity: Integrity, place: Span) -> Part | Diagnostic:
+    """The messages of one file; or what keeps the whole file from being read.
+
+    Raises:
+        BrokenError: the file is not as its index says.
+    """
+    log.stream.seek(0)
+    start = log.stream.read(16)
     if not start:
         return findings.empty(place)
+    if integrity is not Integrity.INDEX:
+        log.begin()
+    if start.startswith((bags.BAG, bags.DB3)):
+        if log.file is None:
+            return refusals.bag_of_no_file(place)
+        found = bags.read(log.file, start, sink, place)
+        if isinstance(found, Diagnostic):
+            return found
+        return Part(log.sha256(), log.size, found.span, found.damages, found.notes)
     if not start.startswith(MAGIC):
         return findings.not_a_log(start, place)
-    walk = Walk(stream, size, columns)
-    walk.run()
-    columns.settle()
-    unusable = _unusable(walk, place)
-    if unusable is not None:
-        return unusable
-    recording = _recording(place, digest, size, columns, walk, wanted)
-    return _too_long(recording, columns.clock, place) or recording
+    held = contents(log.stream, log.size, sink, integrity)
+    if held.span is not None:
+        digest = log.sha256() if held.checked.hashed else held.summary_sha256
+        return Part(digest, log.size, held.span, held.damages, (), held.checked)
+    if held.cut is not None:
+        return findings.truncated(held.cut, place)
+    if held.damages:
+        return findings.nothing_whole(held.damages[0][0], place)
+    return Part(log.sha256(), log.size, None, ())
 
 
-def _unusable(walk: Walk, place: Span) -> Diagnostic | None:
-    """What keeps the whole file from being read."""
-    damages = walk.damages
-    if damages.span is not None:
-        return None
-    if walk.cut is not None:
-        return findings.truncated(walk.cut, place)
-    return findings.nothing_whole(damages.kept[0], place) if damages.kept else findings.empty(place)
+def _folder(path: str, one: Sink, integrity: Integrity, place: Span) -> _Run | Diagnostic:
+    """The files of one run, in the order that its description gives."""
+    sink = Numbered(one)
+    about = folder(path)
+    if isinstance(about, Diagnostic):
+        return about
+    if about.compressed:
+        return refusals.compressed_folder(about.compressed, place)
+    places = [Source(os.path.join(path, name), "").span() for name in about.files]
+    found: list[Part | Diagnostic] = []
+    for file in places:
+        sink.next_file()
+        with opened(file.source.name) as log:
+            found.append(log if isinstance(log, Diagnostic) else _part(log, sink, integrity, file))
+    parts = [part for part in found if isinstance(part, Part)]
+    spans = [part.span for part in parts if part.span is not None]
+    if not spans:
+        wrong = [part for part in found if isinstance(part, Diagnostic)]
+        return wrong[0] if wrong else findings.empty(place)
+    damages = list(_losses(about, places, found))
+    if about.messages not in (None, sink.counted) and not damages:
+        lost = (min(a for a, _ in spans), max(b for _, b in spans))
+        what = f"its {METADATA} states {about.messages} messages, and its files hold {sink.counted}"
+        damage = Damage(NOWHERE, what, code=Code.COUNT_MISMATCH)
+        damages.append((place, damage, lost if sink.counted < (about.messages or 0) else None))
+    hashes = {
+        name: part.sha256
+        for name, part in zip(about.files, found, strict=True)
+        if isinstance(part, Part)
+    }
+    notes = {note.message: note for part in parts for note in part.notes}
+    size = sum(part.size for part in parts)
+    checked = reduce(add, (part.checked for part in parts))
+    return _Run(of_all(hashes), size, spans, damages, tuple(notes.values()), checked)
+
+
+def _losses(
+    about: Folder, places: Sequence[Span], found: Sequence[Part | Diagnostic]
+) -> Iterator[tuple[Span, Damage, Gap | None]]:
+    """The damages of all files, in their order; a file that gave nothing is one."""
+    parts = [part if isinstance(part, Part) else None for part in found]
+    for i, (place, part) in enumerate(zip(places, found, strict=True)):
+        before, after = around(parts, i)
+        if isinstance(part, Part):
+            for damage, gap in widened(part, before, after):
+                yield place, damage, gap
+        else:
+            what = f"a file of the run is lost: {part.message}"
+            yield place, Damage(NOWHERE, what, code=Code.LOST_PART), about.lost(i, before, after)
 
 
 def _too_long(recording: Recording, clock: Clock, place: Span) -> Diagnostic | None:
@@ -154,34 +276,51 @@ def _too_long(recording: Recording, clock: Clock, place: Span) -> Diagnostic | N
 
 
 def _recording(
-    place: Span,
-    digest: str,
-    size: int,
-    columns: Columns,
-    walk: Walk,
-    wanted: Sequence[Signal],
+    place: Span, run: _Run, columns: Columns, examples: Examples, wanted: Sequence[Signal]
 ) -> Recording:
-    damages = walk.settled()
-    lost = [gap for _, gap in damages if gap is not None]
+    lost = [gap for _, _, gap in run.damages if gap is not None]
     gaps = tuple(sorted({columns.on_clock(gap) for gap in lost}))
-    assert walk.damages.span is not None
-    origin = min(start for start, _ in [walk.damages.span, *lost])
-    told = [findings.damaged(damage, gap, origin, place) for damage, gap in damages]
-    start, end = columns.span()
+    origin = min(start for start, _ in [*run.spans, *lost])
+    told = [findings.damaged(damage, gap, origin, file) for file, damage, gap in run.damages]
+    samples = {signal.name: Samples(*columns.samples(signal)) for signal in wanted}
+    start, end = columns.span((min(a for a, _ in run.spans), max(b for _, b in run.spans)))
     return Recording(
         name=place.source.name,
-        sha256=digest,
-        size=size,
+        sha256=run.sha256,
+        size=run.size,
         start_ns=min([start, *(gap[0] for gap in gaps)]),
         end_ns=max([end, *(gap[1] for gap in gaps)]),
-        samples={signal.name: Samples(*columns.samples(signal)) for signal in wanted},
+        samples=samples,
         ticks=columns.ticks(),
         gaps=gaps,
         topics={name: _topic(column) for name, column in sorted(columns.topics.items())},
         nearest=columns.nearest,
-        findings=(*columns.findings(), *_clocks(columns, wanted), *findings.few(told, place)),
-        intact=not damages,
+        findings=(
+            *columns.findings(),
+            *_clocks(columns, wanted),
+            *_never_stated(samples, examples, wanted),
+            *findings.few(told, place),
+            *run.notes,
+        ),
+        intact=not run.damages,
+        checked=run.checked,
     )
+
+
+def _never_stated(
+    samples: Mapping[str, Samples], examples: Examples, wanted: Sequence[Signal]
+) -> list[Diagnostic]:
+    """About signals that are unknown in all messages, in JSON that has no such field."""
+    found = []
+    for signal in wanted:
+        values = samples[signal.name].values
+        payloads = examples.of(signal.path.topic)
+        if not payloads or not len(values) or not np.isnan(values).all():
+            continue
+        known = stated_fields(payloads)
+        if ".".join(signal.path.fields) not in {path.removesuffix("[:]") for path in known}:
+            found.append(findings.never_stated(signal, known))
+    return found
 
 
 def _clocks(columns: Columns, wanted: Sequence[Signal]) -> list[Diagnostic]:
@@ -216,6 +355,8 @@ def _stamps(column: Column) -> Stamps | None:
 
 
 def _topic(column: Column) -> Topic:
+    if column.stated:
+        return _counted(column)
     times = np.sort(column.stamps())
     steps = np.diff(times)
     clock = _stamps(column) if column.bound else None  # of another there are only log times
@@ -223,7 +364,7 @@ def _topic(column: Column) -> Topic:
         name=column.name,
         type=column.type,
         encoding=column.encoding,
-        count=len(column.logs),
+        count=column.count,
         first_ns=int(times[0]) if len(times) else None,
         last_ns=int(times[-1]) if len(times) else None,
         longest_gap_ns=int(steps.max(initial=0)),
@@ -233,4 +374,22 @@ def _topic(column: Column) -> Topic:
         unstamped=column.unstamped,
         zero_stamps=sum(column.unset),
         clock_jumps=clock.jumps if clock is not None else 0,
+    )
+
+
+def _counted(column: Column) -> Topic:
+    """A topic whose messages were only counted."""
+    return Topic(
+        name=column.name,
+        type=column.type,
+        encoding=column.encoding,
+        count=column.count,
+        first_ns=None,
+        last_ns=None,
+        longest_gap_ns=None,
+        out_of_order=None,
+        equal_stamps=None,
+        unstamped=None,
+        zero_stamps=None,
+        clock_jumps=None,
     )

@@ -8,6 +8,7 @@ means.
 from __future__ import annotations
 
 from collections.abc import Mapping
+from contextlib import suppress
 from math import isfinite
 from numbers import Real
 from typing import assert_never
@@ -38,6 +39,28 @@ class FieldError(ValueError):
         self.mend = mend
 
 
+class UnstatedError(Exception):
+    """The message could hold the number that the signal asks for, and leaves it out."""
+
+
+class Sparse:
+    """A decoded message that may leave out its fields: of JSON, or of Protobuf."""
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Of the fields that it has, or may have."""
+        raise NotImplementedError
+
+    def field(self, name: str) -> object:
+        """The value of a field.
+
+        Raises:
+            UnstatedError: it is left out, or stated to be nothing.
+            KeyError: there is no such field.
+        """
+        raise NotImplementedError
+
+
 def sample(signal: Signal, message: object) -> float:
     """The signal's value in one message.
 
@@ -57,18 +80,22 @@ def sample(signal: Signal, message: object) -> float:
 
     Returns:
         In the base unit of `signal.unit`. NaN, unknown, where nothing was measured: an index past
-        the end, an empty array, an element that is unknown, nothing left after the drops.
+        the end, an empty array, an element that is unknown, nothing left after the drops, a field
+        that a `Sparse` message leaves out.
 
     Raises:
         FieldError: the message has no such field, or something else than numbers is in it.
     """
     factor = float(signal.unit.factor)
-    value = _field(signal, message)
-    if isinstance(value, float) and signal.valid is None and isfinite(value):
-        return value * factor  # most signals are so, and most of the time is spent on them
-    values = np.array([value]) if isinstance(value, float) else value
-    with np.errstate(all="ignore"):  # what is too large is infinite, and a NaN may signal
-        return _sample(signal, message, values, factor)
+    try:
+        value = _field(signal, message)
+        if isinstance(value, float) and signal.valid is None and isfinite(value):
+            return value * factor  # most signals are so, and most of the time is spent on them
+        values = np.array([value]) if isinstance(value, float) else value
+        with np.errstate(all="ignore"):  # what is too large is infinite, and a NaN may signal
+            return _sample(signal, message, values, factor)
+    except UnstatedError:
+        return float("nan")
 
 
 def _sample(signal: Signal, message: object, values: Numbers, factor: float) -> float:
@@ -91,7 +118,7 @@ def nearest(signal: Signal, message: object) -> float | None:
     """
     if signal.reduce not in (Reduce.MIN, Reduce.OUTLINE):
         return None
-    stated = getattr(message, RANGE_MIN, None)
+    stated = stated_field(message, RANGE_MIN)
     if not isinstance(stated, Real) or not np.isfinite(float(stated)):
         return None
     return float(stated) * float(signal.unit.factor)
@@ -109,6 +136,9 @@ def _field(signal: Signal, message: object) -> float | Numbers:
     name = ".".join(path.fields)
     if not path.each and path.index is None:
         return _number(value, name)
+    if path.index is not None and isinstance(value, list):
+        value = value[path.index : path.index + 1]  # whatever else is in it
+        return _array(value, name)
     values = _array(value, name)
     if path.index is None:
         return values
@@ -116,6 +146,9 @@ def _field(signal: Signal, message: object) -> float | Numbers:
 
 
 def _attribute(value: object, name: str, parent: str) -> object:
+    if isinstance(value, Sparse):
+        with suppress(KeyError):
+            return value.field(name)
     known = fields(value)
     if name in known:
         return getattr(value, name)
@@ -129,10 +162,22 @@ def _attribute(value: object, name: str, parent: str) -> object:
 
 def fields(message: object) -> tuple[str, ...]:
     """The names of a decoded message's fields, in their order; none where it is no message."""
+    if isinstance(message, Sparse):
+        return message.names
     slots = getattr(type(message), "__slots__", None)
     if slots:
         return tuple(slots)
     return tuple(getattr(message, "__dict__", ()))
+
+
+def stated_field(message: object, name: str) -> object | None:
+    """A field of a decoded message; None where it has none of that name, or leaves it out."""
+    if not isinstance(message, Sparse):
+        return getattr(message, name, None)
+    try:
+        return message.field(name)
+    except (KeyError, UnstatedError):
+        return None
 
 
 def _number(value: object, name: str) -> float:
@@ -154,10 +199,21 @@ def _array(value: object, name: str) -> Numbers:
     if isinstance(value, str) or not isinstance(value, list | tuple | np.ndarray):
         raise FieldError(f"`{name}` is no array", "leave out the index")
     try:
-        values = np.asarray(value, np.float64)
+        values = np.asarray(value)
     except (TypeError, ValueError):
         raise FieldError(f"`{name}` is no array of numbers") from None
-    return values.reshape(-1)
+    if values.ndim == 1 and values.dtype.kind in "biuf":
+        return values.astype(np.float64)
+    return np.array([_element(one, name) for one in value])
+
+
+def _element(value: object, name: str) -> float:
+    """One of an array whose elements are not all numbers of one kind."""
+    if value is None:
+        raise UnstatedError
+    if not isinstance(value, Real | np.bool_):
+        raise FieldError(f"`{name}` is no array of numbers")
+    return float(value)
 
 
 # What the elements mean

@@ -115,7 +115,12 @@ class Walk:
     def checked(self) -> Checked:
         """What was looked at: everything, and these chunks are whole."""
         chunks = len(self._whole)
-        return Checked(False, chunks, self._with_crc, chunks - self._with_crc)
+        return Checked(
+            by_index=False,
+            chunks=chunks,
+            crc_checked=self._with_crc,
+            without_crc=chunks - self._with_crc,
+        )
 
     # Records
 

@@ -71,11 +71,13 @@ def audit(
 ) -> None:
     """Audit recorded runs against all requirements.
 
-    LOG is an MCAP file, or a folder: all MCAP files below it. Each run and requirement gets a
-    verdict: satisfied, violated, inconclusive, vacuous or no data; the evidence goes to a JSON
-    file.
+    LOG is an MCAP file, a bag (.bag, .db3), a folder: all logs below it, a quoted pattern
+    ('runs/**/*.mcap'), a URL, or - for standard input. A folder of rosbag2 with several files is
+    one log. Each run and requirement gets a verdict: satisfied, violated, inconclusive, vacuous or
+    no data; the evidence goes to a JSON file.
     """
     from compiler.auditing import audit_logs
+    from compiler.logs import files_of
     from compiler.logs import logs as logs_of
     from compiler.project import beside, load, requirement_files
 
@@ -95,7 +97,7 @@ def audit(
     if not result.results:
         raise SystemExit(BAD)
     if result.read:  # a mistyped name must not cost the evidence of the last audit
-        deliver({Path(evidence): result.evidence}, (*logs, *files))
+        deliver({Path(evidence): result.evidence}, (*files_of(logs), *files))
     click.echo(_printed(result, project, form), nl=False)
     if has_errors(result.diagnostics):
         raise SystemExit(BAD)
@@ -140,9 +142,10 @@ def _counted(count: int) -> Any:
 def info(paths: tuple[str, ...], whole: bool, form: str) -> None:
     """Say what is in recorded runs, and how healthy they are.
 
-    LOG is an MCAP file, or a folder: all MCAP files below it. Of each topic its type, count, rate
-    and longest gap, and the fields that a signal of `bindings.toml` can read. Exit status: 0 read,
-    3 something is damaged, 2 a log cannot be read.
+    LOG is an MCAP file, a bag (.bag, .db3), a folder: all logs below it, a quoted pattern
+    ('runs/**/*.mcap'), a URL, or - for standard input. Of each topic its type, count, rate and
+    longest gap, and the fields that a signal of `bindings.toml` can read. Exit status: 0 read, 3
+    something is damaged, 2 a log cannot be read.
     """
     from compiler.logs import logs as logs_of
     from compiler.overview import as_record, text

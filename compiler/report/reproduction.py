@@ -20,7 +20,7 @@ def commands(
 ) -> tuple[Command, ...]:
     """The commands, in the order in which they are to be run."""
     from_here = _options(project)
-    logs = " ".join(_quoted(run.result.run) for run in runs) or "LOG..."
+    logs = " ".join(_log(run.result.run) for run in runs) or "LOG..."
     to = _quoted(evidence)
     return (
         Command("Check the version of the tool", f"fretc --version   # fretc {__version__}"),
@@ -29,6 +29,10 @@ def commands(
         *_emissions(sections),
         Command("Write this report", f"fretc report {from_here} --evidence {to}"),
     )
+
+
+def _log(run: str) -> str:
+    return "-" if run == "<stdin>" else _quoted(run)
 
 
 def _quoted(path: str) -> str:
@@ -62,11 +66,16 @@ def _files(project: Project) -> list[Source]:
 
 
 def _check(runs: Sequence[Run]) -> Iterable[Command]:
-    known = [run.result for run in runs if "log" in run.result.hashes]
+    known = [run.result for run in runs if "log" in run.result.hashes and _is_file(run.result.run)]
     if known:
         lines = [f"{result.hashes['log']}  {phrases.place(result.run)}" for result in known]
         text = "\n".join(["sha256sum --check <<'END'", *lines, "END"])
         yield Command("Check that the runs are those that were audited", text)
+
+
+def _is_file(run: str) -> bool:
+    """Whether `sha256sum` reads the run: no folder, no URL, no standard input."""
+    return PurePath(run).suffix in (".mcap", ".bag", ".db3") and "://" not in run
 
 
 def _emissions(sections: Sequence[RequirementView]) -> Iterable[Command]:

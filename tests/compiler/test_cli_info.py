@@ -11,7 +11,7 @@ from tests.monitors.logs import MS, TWELVE, S, Sent, number, scan, write
 SENT = [
     *TWELVE,
     scan([1.0, 2.0], 1000 * S + 50 * MS),
-    Sent("/raw", "Raw", b"{}", 1000 * S + 60 * MS, encoding="json"),
+    Sent("/raw", "Raw", b"{}", 1000 * S + 60 * MS, encoding="cbor"),
 ]
 
 
@@ -30,7 +30,9 @@ def test_a_person_sees_each_topic_with_what_a_signal_can_read(fretc: Fretc) -> N
     assert "  /x     std_msgs/msg/Float64, 12 messages, 10 Hz, longest gap 0.100 s" in lines
     assert after["/x"] == ".data"
     assert ".range_max, .ranges[:], and " in after["/scan"]
-    assert after["/raw"] == "cannot be read: its messages are encoded as `json`"
+    assert after["/raw"] == (
+        "cannot be read: its messages are encoded as `cbor`, defined in `jsonschema`"
+    )
     assert ".intensities[:]" in fretc("info", "log.mcap", "--all").out
 
 

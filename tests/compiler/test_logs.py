@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from compiler.logs import logs
+from compiler.logs import files_of, logs
 from compiler.workers import each
 from fretish.diagnostic import Diagnostic
 from tests.command import write
@@ -50,6 +50,71 @@ def test_a_bag_of_one_file_is_a_log_and_one_of_several_is_refused() -> None:
 def test_a_folder_without_logs_is_told() -> None:
     made("empty/notes.txt")
     assert code("empty") == "F901"
+
+
+def described(path: str, *names: str, mode: str = "") -> None:
+    listed = "".join(f"  - {name}\n" for name in names)
+    text = f"rosbag2_bagfile_information:\n  compression_mode: '{mode}'\n"
+    write(f"{path}/metadata.yaml", f"{text}  relative_file_paths:\n{listed}")
+    for name in names:
+        write(f"{path}/{name}", "")
+
+
+def test_a_run_in_several_files_is_one_log_and_what_it_does_not_list_another() -> None:
+    described("all/run", "x_0.mcap", "x_1.mcap")
+    made("all/run/x_2.mcap", "all/a.bag", "all/z.db3")
+    assert logs(["all"]) == ["all/a.bag", "all/run", "all/run/x_2.mcap", "all/z.db3"]
+    Path("all/run/x_1.mcap").unlink()
+    assert logs(["all/run"]) == ["all/run", "all/run/x_2.mcap"]
+
+
+def test_the_files_of_a_run_are_one_log_when_all_are_named() -> None:
+    described("run", "x_0.mcap", "x_1.mcap")
+    made("a.mcap", "b.mcap")
+    assert logs(["a.mcap", "run/x_1.mcap", "b.mcap", "run/x_0.mcap"]) == [
+        "a.mcap",
+        "b.mcap",
+        "run",
+    ]
+    assert logs(["run/x_1.mcap"]) == ["run/x_1.mcap"]
+    assert logs(["run/*.mcap", "run"]) == ["run"]
+
+
+def test_a_run_that_is_compressed_is_named_so_that_it_can_be_refused() -> None:
+    described("run", "x_0.mcap.zstd", mode="FILE")
+    assert logs(["run"]) == ["run"]
+
+
+def test_a_pattern_stands_for_what_it_matches() -> None:
+    made("runs/b.mcap", "runs/a/2.mcap", "runs/a/deep/1.mcap", "runs/a/n.txt")
+    assert logs(["runs/**/*.mcap"]) == ["runs/a/2.mcap", "runs/a/deep/1.mcap", "runs/b.mcap"]
+    assert logs(["runs/*"]) == ["runs/a/2.mcap", "runs/a/deep/1.mcap", "runs/b.mcap"]
+    assert logs(["runs/?.mcap"]) == ["runs/b.mcap"]
+
+
+def test_a_pattern_that_matches_nothing_is_told() -> None:
+    assert code("runs/**/*.mcap") == "F901"
+
+
+def test_a_name_that_looks_like_a_pattern_is_a_name() -> None:
+    made("run[1].mcap")
+    assert logs(["run[1].mcap"]) == ["run[1].mcap"]
+
+
+def test_standard_input_and_urls_are_taken_as_they_are() -> None:
+    named = ["-", "s3://bucket/run?.mcap", "https://host/a.mcap?x=*"]
+    assert logs([*named, "-"]) == named
+
+
+def test_all_files_of_a_run_are_protected() -> None:
+    described("run", "x_0.mcap", "x_1.mcap")
+    assert sorted(files_of(["run", "-", "a.mcap"])) == [
+        "-",
+        "a.mcap",
+        "run/metadata.yaml",
+        "run/x_0.mcap",
+        "run/x_1.mcap",
+    ]
 
 
 def test_links_that_lead_in_circles_are_not_followed() -> None:

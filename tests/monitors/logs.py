@@ -37,6 +37,11 @@ class Sent:
     encoding: str = "cdr"
 
 
+SCHEMALESS = ("",)
+"""Types that are none: their messages have no definition."""
+ENCODINGS = {"protobuf": "protobuf", "idl": "ros2idl"}
+
+
 @cache
 def store(encoding: str) -> Any:
     return get_typestore(Stores.ROS2_JAZZY if encoding == "cdr" else Stores.ROS1_NOETIC)
@@ -104,8 +109,12 @@ def channel(writer: Any, message: Sent, definitions: dict[str, bytes]) -> int:
     encoding = {"cdr": "ros2msg", "ros1": "ros1msg"}.get(message.encoding, "jsonschema")
     if known is None:
         known = definition(message.type, message.encoding) if encoding != "jsonschema" else b"{}"
+    if message.type in SCHEMALESS:
+        return int(writer.register_channel(message.topic, message.encoding, 0))
+    encoding = ENCODINGS.get(message.encoding, encoding)
     schema = writer.register_schema(message.type, encoding, known)
-    return int(writer.register_channel(message.topic, message.encoding, schema))
+    encoded = "cdr" if message.encoding == "idl" else message.encoding
+    return int(writer.register_channel(message.topic, encoded, schema))
 
 
 def number(value: float, time: int, topic: str = "/x", encoding: str = "cdr") -> Sent:

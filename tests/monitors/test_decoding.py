@@ -9,9 +9,10 @@ from mcap.records import Channel, Schema
 from mcap_ros1.decoder import DecoderFactory as Ros1Decoders
 from mcap_ros2.decoder import DecoderFactory as Ros2Decoders
 
-from fretish.diagnostic import Code
+from fretish.diagnostic import Code, Diagnostic
 from monitors.container import Stream
 from monitors.decoding import decoder, short_type, stamp
+from monitors.recordings import look
 from tests.monitors.logs import (
     SCAN,
     S,
@@ -43,12 +44,12 @@ def test_a_scan_of_either_ros_gives_its_least_valid_range_and_the_least_it_can_r
 
 
 def test_an_encoding_that_cannot_be_read_is_an_error(tmp_path: Path) -> None:
-    sent = [Sent("/x", "X", b'{"data": 1}', 5, encoding="json")]
+    sent = [Sent("/x", "X", b"\xa1", 5, encoding="cbor")]
     recording = recorded(write(tmp_path / "log.mcap", sent), X)
     (finding,) = recording.findings
     assert finding.code is Code.UNKNOWN_ENCODING
     assert finding.message == (
-        "`/x` cannot be read: its messages are encoded as `json`, defined in `jsonschema`"
+        "`/x` cannot be read: its messages are encoded as `cbor`, defined in `jsonschema`"
     )
 
 
@@ -102,7 +103,9 @@ def test_a_real_turtlebot_log_agrees_with_the_official_decoder() -> None:
     assert values(recording, "w") == [m.twist.angular.z for _, m in official]
     assert times(recording, "v") == [time for time, _ in official]
     assert recording.intact
-    gap = recording.topics["/local_plan"].longest_gap_ns
+    overview = look(str(path))
+    assert not isinstance(overview, Diagnostic)
+    gap = overview.recording.topics["/local_plan"].longest_gap_ns
     assert gap is not None
     assert gap // 10**8 == 55
 

@@ -110,6 +110,6 @@ def test_a_log_cut_before_its_first_whole_message_says_so() -> None:
 
 
 def test_another_kind_of_recording_is_named() -> None:
-    found = findings.not_a_log(b"SQLite format 3\0", PLACE)
-    assert found.message == "it is an SQLite database, not an MCAP file"
-    assert found.help == "convert it: `mcap convert IN OUT.mcap`"
+    found = findings.not_a_log(b"\x28\xb5\x2f\xfd\0", PLACE)
+    assert found.message == "it is a whole file compressed with zstd"
+    assert found.help == "unpack it first: `zstd -d FILE`; MCAP compresses within the file"

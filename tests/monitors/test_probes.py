@@ -39,6 +39,7 @@ def stream(text: str, *, ros1: bool) -> Stream:
 @BOTH
 @given(text=TEXTS)
 @example(text="float64 x\nA a\n" + "=" * 80 + "\nMSG: one/A")
+@example(text="A[2] a\n" + "=" * 80 + "\nMSG: one/A")
 @example(
     text="Header[] h\nint8 x\n===\nMSG: one/Header\nint8 a\n===\nMSG: std_msgs/Header\nint16 b"
 )

@@ -4,7 +4,8 @@ from typing import Any
 
 import pytest
 
-from fretish.diagnostic import Code
+from fretish.diagnostic import Code, Diagnostic
+from monitors.integrity import Integrity
 from monitors.recordings import read
 from monitors.samples import Recording, Topic
 from tests.monitors.logs import (
@@ -75,7 +76,11 @@ def test_every_topic_of_the_log_has_its_health(tmp_path: Path) -> None:
         median_period_ns=10 * MS,
     )
     assert recording.topics["/other"].count == 1
-    assert recording.topics["/other"].longest_gap_ns == 0
+    assert recording.topics["/other"].longest_gap_ns is None  # it was not read
+    whole = read(str(tmp_path / "log.mcap"), X, ["x"], Integrity.FULL)
+    assert not isinstance(whole, Diagnostic)
+    assert whole.topics["/x"] == recording.topics["/x"]
+    assert whole.topics["/other"].longest_gap_ns == 0
 
 
 def test_the_time_of_the_run_does_not_depend_on_what_is_asked_for(tmp_path: Path) -> None:
@@ -111,7 +116,7 @@ def test_what_is_no_file_is_told_apart(tmp_path: Path) -> None:
     assert refused(tmp_path).code is Code.IS_A_DIRECTORY
     assert refused(Path("/dev/null")).code is Code.UNREADABLE
     assert refused(text).code is Code.NOT_A_LOG
-    assert refused(bag).message == "it is a ROS 1 bag, not an MCAP file"
+    assert refused(bag).code is Code.UNREADABLE_LOG
     assert refused(empty).code is Code.EMPTY_LOG
     assert refused(write(tmp_path / "log.mcap", [])).code is Code.EMPTY_LOG
 

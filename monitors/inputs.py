@@ -1,0 +1,271 @@
+"""Where the bytes of a log come from: a file, standard input, or a URL.
+
+Standard input is copied to a temporary file without a name, which is gone with the process,
+however that ends. What is at a URL is read where it is, in blocks; of a server that only sends
+whole files a copy is made in the same way.
+"""
+
+from __future__ import annotations
+
+import errno
+import hashlib
+import io
+import os
+import re
+import stat
+import sys
+import tempfile
+import threading
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack, contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, BinaryIO, cast
+from urllib.parse import parse_qsl, urlencode, urlsplit, urlunsplit
+
+from fretish.diagnostic import Diagnostic
+from fretish.source import Source
+from monitors import findings, refusals
+
+STDIN = "-"
+_BLOCK = 2**22
+"""Bytes that are asked of a server at once."""
+_URL = re.compile(r"[A-Za-z][A-Za-z0-9+.:-]*://.*", re.DOTALL)
+_SECRET = re.compile(r"sig|token|key|cred|secret|passw|auth", re.IGNORECASE)
+
+
+@dataclass(frozen=True, slots=True)
+class Input:
+    """A log that can be read."""
+
+    stream: io.BufferedReader
+    size: int
+    sha256: Callable[[], str]
+    """Of all its bytes; asked for when they have been read."""
+    begin: Callable[[], None]
+    """Hash them at the same time as they are read, where that can be."""
+    file: str | None
+    """Its path, where it has one of its own."""
+
+
+def is_url(path: str) -> bool:
+    """Whether the path is a URL: it names a protocol."""
+    return _URL.fullmatch(path) is not None
+
+
+def shown(path: str) -> str:
+    """How a log is called: nothing that is secret in a URL is ever printed or kept."""
+    if path == STDIN:
+        return "<stdin>"
+    if not is_url(path):
+        return path
+    try:
+        parts = urlsplit(path)
+        pairs = parse_qsl(parts.query, keep_blank_values=True)
+    except ValueError:
+        return path.partition("://")[0] + "://?"
+    query = parts.query
+    if any(_SECRET.search(name) for name, _ in pairs):
+        hidden = [(name, "..." if _SECRET.search(name) else value) for name, value in pairs]
+        query = urlencode(hidden, safe="./")
+    return urlunsplit((parts.scheme, parts.netloc.rpartition("@")[2], parts.path, query, ""))
+
+
+@contextmanager
+def opened(path: str) -> Iterator[Input | Diagnostic]:
+    """The log at a path, for as long as it is needed; or why there is none.
+
+    Reading from it can raise OSError.
+    """
+    with ExitStack() as stack:
+        try:
+            found = _opened(path, stack)
+        except FileNotFoundError:
+            found = findings.no_such_file(Source(shown(path), "").span())
+        except OSError as error:
+            found = findings.unreadable(error, Source(shown(path), "").span())
+        yield found
+
+
+def _opened(path: str, stack: ExitStack) -> Input | Diagnostic:
+    if path == STDIN:
+        return _stdin(stack)
+    if is_url(path):
+        return _remote(path, stack)
+    mode = os.stat(path).st_mode
+    if stat.S_ISDIR(mode):
+        return findings.is_a_directory(Source(path, "").span())
+    if not stat.S_ISREG(mode):
+        return findings.not_a_file(Source(path, "").span())
+    digest = _Digest(path)
+    stream = stack.enter_context(Path(path).open("rb"))  # noqa: SIM115
+    return Input(stream, os.fstat(stream.fileno()).st_size, digest.result, digest.begin, path)
+
+
+class _Digest:
+    """The SHA-256 of a file, which a second thread takes: hashing leaves the interpreter free."""
+
+    def __init__(self, path: str) -> None:
+        self._path = path
+        self._thread: threading.Thread | None = None
+        self._found: str | OSError = ""
+
+    def begin(self) -> None:
+        if self._thread is None:
+            self._thread = threading.Thread(target=self._run, daemon=True)
+            self._thread.start()
+
+    def result(self) -> str:
+        self.begin()
+        assert self._thread is not None
+        self._thread.join()
+        if isinstance(self._found, OSError):
+            raise self._found
+        return self._found
+
+    def _run(self) -> None:
+        try:
+            with Path(self._path).open("rb") as stream:
+                self._found = hashlib.file_digest(stream, "sha256").hexdigest()
+        except OSError as error:
+            self._found = error
+
+
+def _copy(stream: io.BufferedReader) -> Input:
+    """A file that has no path."""
+    digest = hashlib.file_digest(stream, "sha256").hexdigest()
+    size = stream.tell()
+    stream.seek(0)
+    return Input(stream, size, lambda: digest, lambda: None, None)
+
+
+# Standard input
+
+
+def _stdin(stack: ExitStack) -> Input | Diagnostic:
+    if sys.stdin is None or sys.stdin.closed:
+        return refusals.no_stdin("it is closed")
+    if sys.stdin.isatty():
+        return refusals.no_stdin("it is a terminal")
+    stdin = stack.enter_context(_reader(0))
+    if stat.S_ISREG(os.fstat(0).st_mode) and stdin.tell() == 0:
+        return _copy(stdin)
+    return _copy(_copied(stdin, stack))
+
+
+def _copied(source: BinaryIO, stack: ExitStack) -> io.BufferedReader:
+    """All that follows, in a file without a name."""
+    copy = stack.enter_context(tempfile.TemporaryFile())  # noqa: SIM115
+    while block := source.read(_BLOCK):
+        copy.write(block)
+    copy.flush()
+    copy.seek(0)
+    return stack.enter_context(_reader(copy.fileno()))
+
+
+def _reader(descriptor: int) -> io.BufferedReader:
+    return cast("io.BufferedReader", io.BufferedReader(io.FileIO(descriptor, closefd=False)))
+
+
+# URLs
+
+
+class _Hashed(io.RawIOBase):
+    """A file at a URL. What is read in order is hashed on the way, so that it comes once."""
+
+    def __init__(self, file: Any, size: int) -> None:
+        self._file, self._size = file, size
+        self._at = self._hashed = 0
+        self._digest = hashlib.sha256()
+
+    def readable(self) -> bool:
+        return True
+
+    def seekable(self) -> bool:
+        return True
+
+    def tell(self) -> int:
+        return self._at
+
+    def seek(self, offset: int, whence: int = os.SEEK_SET) -> int:
+        start = {os.SEEK_SET: 0, os.SEEK_CUR: self._at, os.SEEK_END: self._size}[whence]
+        self._at = max(0, start + offset)
+        return self._at
+
+    def readinto(self, buffer: Any) -> int:
+        data = self._read(len(buffer))
+        buffer[: len(data)] = data
+        return len(data)
+
+    def _read(self, length: int) -> bytes:
+        length = max(0, min(length, self._size - self._at))
+        try:
+            self._file.seek(self._at)
+            data = bytes(self._file.read(length))
+        except Exception as error:  # each protocol has its own
+            raise _as_os_error(error) from error
+        if length and not data:
+            raise OSError(None, f"nothing came from byte {self._at} on")
+        if self._at <= self._hashed < self._at + len(data):
+            self._digest.update(data[self._hashed - self._at :])
+            self._hashed = self._at + len(data)
+        self._at += len(data)
+        return data
+
+    def sha256(self) -> str:
+        self._at = self._hashed
+        while self._hashed < self._size:
+            self._read(_BLOCK)
+        return self._digest.hexdigest()
+
+
+def _remote(url: str, stack: ExitStack) -> Input | Diagnostic:
+    place = Source(shown(url), "").span()
+    try:
+        import fsspec
+    except ModuleNotFoundError:
+        return refusals.no_fsspec(place)
+    try:
+        system, path = fsspec.core.url_to_fs(url)
+        about = system.info(path)
+        if about.get("type") == "directory":
+            return findings.is_a_directory(place)
+        if about.get("size") is None or about.get("partial") is False:
+            whole = stack.enter_context(system.open(path, "rb", block_size=0))
+            return _copy(_copied(_Raising(whole), stack))
+        file = stack.enter_context(system.open(path, "rb", block_size=_BLOCK))
+    except ImportError as error:
+        return refusals.no_protocol_package(url.partition("://")[0], str(error), place)
+    except Exception as error:  # each protocol has its own
+        raise _as_os_error(error) from error
+    hashed = _Hashed(file, about["size"])
+    stream = stack.enter_context(io.BufferedReader(hashed, _BLOCK))
+    return Input(
+        cast("io.BufferedReader", stream), about["size"], hashed.sha256, lambda: None, None
+    )
+
+
+class _Raising(io.BytesIO):
+    """A stream whose errors are those of the operating system."""
+
+    def __init__(self, file: Any) -> None:
+        super().__init__()
+        self._file = file
+
+    def read(self, length: int | None = -1) -> bytes:
+        try:
+            return bytes(self._file.read(length))
+        except Exception as error:  # each protocol has its own
+            raise _as_os_error(error) from error
+
+
+def _as_os_error(error: Exception) -> OSError:
+    if isinstance(error, FileNotFoundError) and isinstance(error.__cause__, Exception):
+        error = error.__cause__  # whatever is wrong, it says that there is no file
+    if isinstance(error, FileNotFoundError | PermissionError):
+        return error
+    status = getattr(error, "status", None)
+    if status == 404:
+        return FileNotFoundError(errno.ENOENT, "not found")
+    text = str(error).strip().partition("\n")[0] or type(error).__name__
+    return OSError(None, f"the server says {status}" if status else text[:200])

@@ -1,0 +1,139 @@
+"""What there is to say of bags, folders, URLs and standard input: one function for each message."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+
+from fretish.diagnostic import Code, Diagnostic, Severity
+from fretish.source import Source, Span
+from monitors.decoding import short_type
+
+
+def install(extra: str) -> str:
+    """How to get an optional part of fretc."""
+    return (
+        f"install the extra: pip install 'fretc[{extra}]' (in a checkout: pip install '.[{extra}]')"
+    )
+
+
+# Standard input and URLs
+
+
+def no_stdin(why: str) -> Diagnostic:
+    """Nothing can be read from standard input."""
+    return Diagnostic(
+        Code.UNREADABLE,
+        f"standard input cannot be read: {why}",
+        Source("<stdin>", "").span(),
+        "send a log: `fretc audit - < run.mcap`",
+    )
+
+
+def no_fsspec(place: Span) -> Diagnostic:
+    """URLs need an extra."""
+    return Diagnostic(
+        Code.MISSING_EXTRA,
+        "a URL cannot be read: that needs `fsspec`",
+        place,
+        install("remote"),
+    )
+
+
+def no_protocol_package(protocol: str, why: str, place: Span) -> Diagnostic:
+    """The package for the protocol of the URL is not installed."""
+    reason = why.strip().partition("\n")[0][:200]
+    packages = {"s3": "s3fs", "s3a": "s3fs", "gs": "gcsfs", "gcs": "gcsfs"}
+    packages |= {"az": "adlfs", "abfs": "adlfs", "http": "aiohttp", "https": "aiohttp"}
+    known = packages.get(protocol.lower())
+    return Diagnostic(
+        Code.MISSING_EXTRA,
+        f"what is at `{protocol}://` cannot be read: {reason}",
+        place,
+        f"install its package: pip install {known}"
+        if known
+        else "what each protocol needs is in fsspec's documentation",
+    )
+
+
+# Bags and folders
+
+
+def no_rosbags(place: Span) -> Diagnostic:
+    """Bags need an extra."""
+    return Diagnostic(
+        Code.MISSING_EXTRA,
+        "a bag cannot be read: that needs `rosbags`",
+        place,
+        install("bags"),
+    )
+
+
+def bad_bag(why: str, place: Span, *, indexed: bool) -> Diagnostic:
+    """The reader of bags gives nothing of it."""
+    return Diagnostic(
+        Code.UNREADABLE_LOG,
+        f"the bag cannot be read: {why}",
+        place,
+        "mend it first: `rosbag reindex`; or copy it again from where it was recorded"
+        if indexed
+        else "copy it again from where it was recorded",
+    )
+
+
+def bag_of_no_file(place: Span) -> Diagnostic:
+    """A bag comes from standard input or a URL."""
+    return Diagnostic(
+        Code.NOT_A_LOG, "a bag can only be read from a file", place, "save it as a file first"
+    )
+
+
+def unchecked(place: Span, assumed: Collection[str]) -> Diagnostic:
+    """What a bag cannot show, and which definitions are not its own."""
+    message = (
+        "a bag has no check sums, and one time for each message: a changed byte within a message "
+        "cannot be seen, and publish_time is log_time"
+    )
+    if not assumed:
+        return Diagnostic(Code.BAG_FORMAT, message, place, severity=Severity.NOTE)
+    names = ", ".join(sorted({short_type(name) for name in assumed})[:8])
+    more = ", ..." if len(set(assumed)) > 8 else ""
+    return Diagnostic(
+        Code.BAG_FORMAT,
+        f"{message}; it defines no types: those of ROS 2 itself, the same in all releases, are "
+        f"taken for {names}{more}",
+        place,
+        "a package of your own under such a name would be misread: record MCAP instead",
+        Severity.WARNING,
+    )
+
+
+def bad_metadata(place: Span) -> Diagnostic:
+    """What describes a run in several files is not as rosbag2 writes it."""
+    return Diagnostic(
+        Code.SPLIT_LOG,
+        "it does not say which files the run has",
+        place,
+        "write it anew: `ros2 bag reindex FOLDER`",
+    )
+
+
+def part_of_a_run(i: int, count: int, folder: str, place: Span) -> Diagnostic:
+    """One file of several is read as if it were a run of its own."""
+    return Diagnostic(
+        Code.SPLIT_LOG,
+        f"it is file {i + 1} of {count} of one run, and judged alone",
+        place,
+        f"name the folder `{folder or '.'}`: its files are one log",
+        Severity.NOTE,
+    )
+
+
+def compressed_folder(mode: str, place: Span) -> Diagnostic:
+    """rosbag2 has compressed whole files, or each message."""
+    return Diagnostic(
+        Code.NOT_A_LOG,
+        f"rosbag2 has compressed each {mode} of the run",
+        place,
+        "unpack it: `ros2 bag convert`, with `compression_mode: none`; MCAP compresses within the "
+        "file: `--storage-preset-profile zstd_fast`",
+    )
