@@ -41,10 +41,11 @@ if TYPE_CHECKING:
 @click.option(
     "--format",
     "form",
-    type=click.Choice(("text", "json", "junit", "github")),
+    type=click.Choice(("text", "json", "junit", "github", "sarif")),
     default="text",
     show_default=True,
-    help="What is printed: for a person, as JSON, as JUnit XML, as annotations of GitHub Actions.",
+    help="What is printed: for a person, as JSON, as JUnit XML, as annotations of GitHub Actions, "
+    "as SARIF.",
 )
 @click.option(
     "--engine",
@@ -103,6 +104,7 @@ def audit(
 
 def _printed(result: Audit, project: Project, form: str) -> str:
     from compiler.outputs import github, junit
+    from compiler.sarif import sarif
 
     match form:
         case "json":
@@ -111,6 +113,8 @@ def _printed(result: Audit, project: Project, form: str) -> str:
             return junit(result.results)
         case "github":
             return github(result.results, project.rules)
+        case "sarif":
+            return sarif(result.results, project.rules, result.diagnostics)
         case _:
             return _coloured(result.text)
 
