@@ -10,6 +10,8 @@ from compiler.files import unreadable
 from fretish.diagnostic import Code, Diagnostic
 from fretish.source import Source
 
+ANNOTATIONS = ".fretc.mcap"
+"""How the names of annotations end: below a folder of logs, they are no logs."""
 _BAG = "metadata.yaml"
 """What a folder of rosbag2 holds beside its files."""
 
@@ -37,7 +39,8 @@ def logs(paths: Sequence[str]) -> list[str] | Diagnostic:
 
 def _below(folder: Path) -> Iterator[str | Diagnostic]:
     entries = sorted(folder.iterdir())
-    files = [entry for entry in entries if entry.suffix == ".mcap" and entry.is_file()]
+    logs = [entry for entry in entries if not entry.name.endswith(ANNOTATIONS)]
+    files = [entry for entry in logs if entry.suffix == ".mcap" and entry.is_file()]
     if len(files) > 1 and folder / _BAG in entries:
         yield _split(folder, len(files))
         return

@@ -28,6 +28,8 @@ _SCHEMA = (
 )
 _ROOT = "%SRCROOT%"
 """What relative paths start from, as GitHub calls it: the folder in which fretc ran."""
+_RESERVED = "%/:?#[]@!$&'()*+,;="
+"""What has a meaning in an address, and what is quoted in it already."""
 _SHOWN = {"kind": "pass", "level": "none"}
 _LEVELS: Mapping[str, Mapping[str, str]] = {
     kernel.SATISFIED: _SHOWN,
@@ -166,6 +168,8 @@ def _region(span: Span) -> dict[str, int]:
 
 def _place(path: str) -> dict[str, Any]:
     """A relative address below the folder in which fretc runs, an absolute one elsewhere."""
+    if "://" in path:
+        return {"uri": quote(path, safe=_RESERVED)}
     inside = os.path.relpath(path)
     if inside == os.pardir or inside.startswith(os.pardir + os.sep):
         return {"uri": Path(os.path.abspath(path)).as_uri()}

@@ -16,6 +16,7 @@ from monitors.evidence import Evidence, Moment, Violation, health
 from monitors.kernel import Column, Monitor, Outcome
 from monitors.samples import Recording
 from monitors.signals import blind_zones
+from monitors.states import states
 from monitors.traces import Timeline, Trace, trace
 
 Engine = Callable[[Monitor, Mapping[str, Column], int, str], tuple[Outcome, ...]]
@@ -97,6 +98,8 @@ def _evidence(
         start_ns=recording.start_ns,
         end_ns=recording.end_ns,
         clock=f"{declarations.clock}, by {declarations.clock.time}",
+        answers=tuple((at(t), at(k)) for t, k in outcome.answers),
+        states=tuple((at(tick), state) for tick, state in states(outcome)),
         triggers=tuple(at(t) for t in outcome.triggers),
         violations=tuple(
             _violation(run, outcome, at, recording, signals) for run in outcome.violations

@@ -50,6 +50,10 @@ class Evidence:
     start_ns: int
     end_ns: int
     clock: str
+    answers: tuple[tuple[Moment, Moment], ...]
+    """Trigger and answer, where a demand waits for one and it came."""
+    states: tuple[tuple[Moment, str], ...]
+    """When the state changed, and to what (`monitors.states`)."""
     triggers: tuple[Moment, ...]
     violations: tuple[Violation, ...]
     open: tuple[Moment, ...]
@@ -97,6 +101,8 @@ def as_record(evidence: Evidence) -> dict[str, Any]:
         "ticks": evidence.outcome.ticks,
         "start_ns": evidence.start_ns,
         "end_ns": evidence.end_ns,
+        "states": [{**_moment(moment), "state": state} for moment, state in evidence.states],
+        "answers": [{**_moment(k), "trigger": t.tick} for t, k in evidence.answers],
         "triggers": [_moment(moment) for moment in evidence.triggers],
         "violations": [_violation(violation) for violation in evidence.violations],
         "unknown": [list(run) for run in evidence.outcome.unknown],
@@ -123,6 +129,8 @@ def unread(
         "ticks": 0,
         "start_ns": None,
         "end_ns": None,
+        "states": [],
+        "answers": [],
         "triggers": [],
         "violations": [],
         "unknown": [],

@@ -26,7 +26,12 @@ DOORS = {
     },
     "mujoco": {"simulation/robot.py"},
     "rosbags": {"simulation/recording.py"},
-    "mcap": {"monitors/container.py", "monitors/walk.py", "simulation/recording.py"},
+    "mcap": {
+        "monitors/container.py",
+        "monitors/walk.py",
+        "simulation/recording.py",
+        "compiler/annotations.py",
+    },
     "mcap_ros1": {"monitors/decoding.py"},
     "mcap_ros2": {"monitors/decoding.py"},
     "zstandard": {"monitors/container.py"},

@@ -38,6 +38,10 @@ if TYPE_CHECKING:
 @click.option(
     "--evidence", default="build/evidence.json", show_default=True, help="Where evidence goes."
 )
+@click.option("--annotate", is_flag=True, help="Also write a log beside each one, for Foxglove.")
+@click.option(
+    "--annotations", metavar="FOLDER", help="Where these go: build/annotations, if not given."
+)
 @click.option(
     "--format",
     "form",
@@ -65,6 +69,8 @@ def audit(
     requirements: str,
     bindings: str | None,
     evidence: str,
+    annotate: bool,
+    annotations: str | None,
     form: str,
     engine: str,
     jobs: int,
@@ -95,11 +101,18 @@ def audit(
     if not result.results:
         raise SystemExit(BAD)
     if result.read:  # a mistyped name must not cost the evidence of the last audit
-        deliver({Path(evidence): result.evidence}, (*logs, *files))
+        marked = _marked(result, project, annotations) if annotate or annotations else {}
+        deliver({Path(evidence): result.evidence, **marked}, (*logs, *files))
     click.echo(_printed(result, project, form), nl=False)
     if has_errors(result.diagnostics):
         raise SystemExit(BAD)
     raise SystemExit(VIOLATION if result.violated else SHOWN if result.shown else NOT_SHOWN)
+
+
+def _marked(result: Audit, project: Project, folder: str | None) -> dict[Path, bytes]:
+    from compiler.annotations import sidecars
+
+    return sidecars(result.results, project.rules, Path(folder or "build/annotations"))
 
 
 def _printed(result: Audit, project: Project, form: str) -> str:

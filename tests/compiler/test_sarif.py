@@ -201,6 +201,11 @@ def test_a_path_elsewhere_is_absolute(tmp_path: Path, monkeypatch: pytest.Monkey
     )
 
 
+def test_an_address_on_the_web_stays_as_it_is() -> None:
+    (one,) = read([result("violated", run="https://a.b/c%20d.mcap?x=1&y=z e")])["results"]
+    assert one["analysisTarget"] == {"uri": "https://a.b/c%20d.mcap?x=1&y=z%20e", "index": 0}
+
+
 def test_the_command_prints_it(fretc: Fretc) -> None:
     shutil.copytree(ROOT / "requirements", "requirements")
     shutil.copy(ROOT / "traces/mission-seed15.mcap", "run.mcap")
