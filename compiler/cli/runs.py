@@ -102,6 +102,8 @@ def audit(
         raise SystemExit(BAD)
     if result.read:  # a mistyped name must not cost the evidence of the last audit
         marked = _marked(result, project, annotations) if annotate or annotations else {}
+        if os.path.realpath(evidence) in map(os.path.realpath, marked):
+            stop(not_written(evidence, "two outputs would go there"))
         deliver({Path(evidence): result.evidence, **marked}, (*logs, *files))
     click.echo(_printed(result, project, form), nl=False)
     if has_errors(result.diagnostics):

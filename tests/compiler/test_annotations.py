@@ -207,6 +207,13 @@ def test_nothing_is_written_where_something_cannot_be(fretc: Fretc) -> None:
     assert Path("file").read_text() == "not a folder"
 
 
+def test_evidence_is_not_lost_to_an_annotation(fretc: Fretc) -> None:
+    run = fretc("audit", "run.mcap", "--annotations", "x", "--evidence", "x/run.fretc.mcap")
+    assert run.status == 2
+    assert "two outputs would go there" in run.err
+    assert not Path("x").exists()
+
+
 def test_a_log_is_never_replaced(fretc: Fretc) -> None:
     shutil.copy("run.mcap", "run.fretc.mcap")
     before = Path("run.fretc.mcap").read_bytes()
