@@ -67,7 +67,7 @@ def _nearest(path: str) -> str:
     return f"did you mean `{folder / near}`?" if near else "check the name and the folder"
 
 
-def write(files: Mapping[Path, str]) -> Diagnostic | None:
+def write(files: Mapping[Path, str | bytes]) -> Diagnostic | None:
     """Write all of them: each under a temporary name first, then renamed.
 
     Nothing half-written stays behind: when one cannot be written, none is put in place. A link is
@@ -76,7 +76,7 @@ def write(files: Mapping[Path, str]) -> Diagnostic | None:
     waiting: list[tuple[Path, Path]] = []
     path = Path()
     try:
-        for path, text in files.items():
+        for path, content in files.items():
             real = Path(os.path.realpath(path))
             real.parent.mkdir(parents=True, exist_ok=True)
             if real.exists() and not real.is_file():
@@ -85,7 +85,7 @@ def write(files: Mapping[Path, str]) -> Diagnostic | None:
             # Known before it is made: an interruption at any moment finds it here.
             temporary = real.parent / f".{real.name[:100]}.{secrets.token_hex(4)}.tmp"
             waiting.append((temporary, real))
-            _fill(temporary, text, like=real)
+            _fill(temporary, content, like=real)
         for temporary, path in waiting:
             temporary.replace(path)
     except OSError as error:
@@ -100,12 +100,12 @@ def write(files: Mapping[Path, str]) -> Diagnostic | None:
     return None
 
 
-def _fill(temporary: Path, text: str, *, like: Path) -> None:
+def _fill(temporary: Path, content: str | bytes, *, like: Path) -> None:
     """Write a new file, with the permissions of the one that it will replace, if there is one."""
-    with temporary.open("x", encoding="utf-8", newline="\n") as file:
+    with temporary.open("xb") as file:
         if like.exists():
             temporary.chmod(stat.S_IMODE(like.stat().st_mode))
-        file.write(text)
+        file.write(content.encode() if isinstance(content, str) else content)
 
 
 def sha256(text: str) -> str:

@@ -15,6 +15,8 @@ from monitors.inputs import STDIN, is_url
 
 _LOGS = (".mcap", ".bag", ".db3")
 """How the names of logs end; below a folder, other files are passed by."""
+ANNOTATIONS = ".fretc.mcap"
+"""How the names of annotations end: below a folder of logs, they are no logs."""
 
 
 def logs(paths: Sequence[str]) -> list[str] | Diagnostic:
@@ -79,7 +81,8 @@ def _named(path: str) -> Iterator[str | Diagnostic]:
 
 def _below(path: Path) -> Iterator[str | Diagnostic]:
     entries = sorted(path.iterdir())
-    files = [entry for entry in entries if entry.suffix in _LOGS and entry.is_file()]
+    logs = [entry for entry in entries if not entry.name.endswith(ANNOTATIONS)]
+    files = [entry for entry in logs if entry.suffix in _LOGS and entry.is_file()]
     run = folder(str(path)) if is_folder(str(path)) else None
     if isinstance(run, Diagnostic) and len(files) > 1:
         yield run

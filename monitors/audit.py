@@ -16,6 +16,7 @@ from monitors.margins import Margin, margins, worst
 from monitors.rates import slow_topics
 from monitors.samples import Recording
 from monitors.signals import blind_zones
+from monitors.states import states
 from monitors.tallies import tally
 from monitors.traces import Timeline, Trace, trace
 from monitors.violations import Demand, Moment, violations
@@ -107,6 +108,8 @@ def _evidence(
         end_ns=recording.end_ns,
         first_ns=int(seen.timeline.times[0]) if ticks else recording.start_ns,
         clock=f"{declarations.clock}, by {declarations.clock.time}",
+        answers=tuple((at(t), at(k)) for t, k in outcome.answers),
+        states=tuple((at(tick), state) for tick, state in states(outcome)),
         triggers=tuple(at(t) for t in outcome.triggers),
         violations=violations(
             outcome, watched.demand, monitor.REQUIREMENTS[0].horizon, at, recording, signals

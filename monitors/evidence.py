@@ -36,6 +36,10 @@ class Evidence:
     first_ns: int
     """When the first tick is; the start of the run, where there is none."""
     clock: str
+    answers: tuple[tuple[Moment, Moment], ...]
+    """Trigger and answer, where a demand waits for one and it came."""
+    states: tuple[tuple[Moment, str], ...]
+    """When the state changed, and to what (`monitors.states`)."""
     triggers: tuple[Moment, ...]
     violations: tuple[Violation, ...]
     open: tuple[Moment, ...]
@@ -92,6 +96,8 @@ def as_record(evidence: Evidence) -> dict[str, Any]:
         "ticks": evidence.outcome.ticks,
         "start_ns": evidence.start_ns,
         "end_ns": evidence.end_ns,
+        "states": [{**_moment(moment), "state": state} for moment, state in evidence.states],
+        "answers": [{**_moment(k), "trigger": t.tick} for t, k in evidence.answers],
         "triggers": [_moment(moment) for moment in evidence.triggers],
         "violations": [_violation(violation) for violation in evidence.violations],
         "unknown": [list(run) for run in evidence.outcome.unknown],
@@ -121,6 +127,8 @@ def unread(
         "ticks": 0,
         "start_ns": None,
         "end_ns": None,
+        "states": [],
+        "answers": [],
         "triggers": [],
         "violations": [],
         "unknown": [],

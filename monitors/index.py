@@ -56,6 +56,7 @@ def indexed(stream: BufferedReader, size: int, found: Summary | None) -> Index |
         statistics.chunk_count != len(chunks)
         or not 0 < statistics.message_count == sum(counts.values())
         or not streams.keys() >= {id for id, count in counts.items() if count}
+        or any(one.schema is None and one.channel.schema_id for one in streams.values())
         or not all(map(_is_usual, chunks))
     ):
         return None

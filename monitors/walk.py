@@ -127,7 +127,7 @@ class Walk:
     def _data(self, truncated: bool) -> int:
         """Walk through the data section; where it ended."""
         at, end = len(MAGIC), self._summary.end
-        walls = sorted({end, *(chunk for chunk in self._summary.chunks if chunk < end)})
+        walls = self._walls()
         self._stream.seek(0)
         self._take(at)
         while at < end:
@@ -154,6 +154,22 @@ class Walk:
             what = "the end of its data is damaged"
             self.damages.add(at, what, lossless=not self._unprotected)
         return at
+
+    def _walls(self) -> list[int]:
+        """Where a record must end: where the index says that a chunk begins, and at the end.
+
+        An index that leads into a chunk that is where another one says is not believed.
+        """
+        walls, reach = [], 0
+        for at in sorted(at for at in self._summary.chunks if at < self._summary.end):
+            if at >= reach:
+                walls.append(at)
+            length = self._summary.chunks[at].chunk_length
+            self._stream.seek(at)
+            head = self._stream.read(HEAD.size)
+            if head == HEAD.pack(Opcode.CHUNK, max(0, length - HEAD.size)):
+                reach = max(reach, at + length)
+        return [*walls, self._summary.end]
 
     def _take(self, length: int) -> bytes:
         data = self._stream.read(length)
@@ -268,6 +284,8 @@ class Walk:
                 self._define(parse(Schema.read, data[start:end]), at)
             elif opcode == Opcode.CHANNEL:
                 self._declare(parse(Channel.read, data[start:end]), at)
+            elif opcode == 0:
+                raise BrokenError("a record has no kind")
             else:
                 strange = True
         messages = Messages.of(data, starts, ends, strange=strange)

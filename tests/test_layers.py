@@ -27,6 +27,7 @@ DOORS = {
     "mujoco": {"simulation/robot.py"},
     "rosbags": {"simulation/recording.py", "monitors/idl.py", "monitors/bags.py"},
     "mcap": {
+        "compiler/annotations.py",
         "monitors/bags.py",
         "monitors/container.py",
         "monitors/index.py",

@@ -39,13 +39,18 @@ if TYPE_CHECKING:
 @click.option(
     "--evidence", default="build/evidence.json", show_default=True, help="Where evidence goes."
 )
+@click.option("--annotate", is_flag=True, help="Also write a log beside each one, for Foxglove.")
+@click.option(
+    "--annotations", metavar="FOLDER", help="Where these go: build/annotations, if not given."
+)
 @click.option(
     "--format",
     "form",
-    type=click.Choice(("text", "json", "junit", "github")),
+    type=click.Choice(("text", "json", "junit", "github", "sarif")),
     default="text",
     show_default=True,
-    help="What is printed: for a person, as JSON, as JUnit XML, as annotations of GitHub Actions.",
+    help="What is printed: for a person, as JSON, as JUnit XML, as annotations of GitHub Actions, "
+    "as SARIF.",
 )
 @click.option(
     "--engine",
@@ -65,6 +70,8 @@ def audit(
     requirements: str,
     bindings: str | None,
     evidence: str,
+    annotate: bool,
+    annotations: str | None,
     form: str,
     engine: str,
     jobs: int,
@@ -97,15 +104,25 @@ def audit(
     if not result.results:
         raise SystemExit(BAD)
     if result.read:  # a mistyped name must not cost the evidence of the last audit
-        deliver({Path(evidence): result.evidence}, (*files_of(logs), *files))
+        marked = _marked(result, project, annotations) if annotate or annotations else {}
+        if os.path.realpath(evidence) in map(os.path.realpath, marked):
+            stop(not_written(evidence, "two outputs would go there"))
+        deliver({Path(evidence): result.evidence, **marked}, (*files_of(logs), *files))
     click.echo(_printed(result, project, form), nl=False)
     if has_errors(result.diagnostics):
         raise SystemExit(BAD)
     raise SystemExit(VIOLATION if result.violated else SHOWN if result.shown else NOT_SHOWN)
 
 
+def _marked(result: Audit, project: Project, folder: str | None) -> dict[Path, bytes]:
+    from compiler.annotations import sidecars
+
+    return sidecars(result.results, project.rules, Path(folder or "build/annotations"))
+
+
 def _printed(result: Audit, project: Project, form: str) -> str:
     from compiler.outputs import github, junit
+    from compiler.sarif import sarif
 
     match form:
         case "json":
@@ -114,6 +131,8 @@ def _printed(result: Audit, project: Project, form: str) -> str:
             return junit(result.results)
         case "github":
             return github(result.results, project.rules)
+        case "sarif":
+            return sarif(result.results, project.rules, result.diagnostics)
         case _:
             return coloured(result.text)
 

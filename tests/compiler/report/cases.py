@@ -187,6 +187,8 @@ def result(
         "ticks": 100,
         "start_ns": 10**9,
         "end_ns": 11 * 10**9,
+        "states": [],
+        "answers": [],
         "triggers": [moment(tick) for tick in (10, 11, 40)],
         "violations": [],
         "unknown": [],

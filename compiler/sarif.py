@@ -1,0 +1,176 @@
+"""Results of an audit as SARIF 2.1.0, which code scanning services and editors show.
+
+A requirement is a rule, and each run gives one result of it, at its sentence.
+
+Sources: OASIS, SARIF Version 2.1.0; GitHub, SARIF support for code scanning.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import os
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+from urllib.parse import quote
+
+from compiler import __version__
+from compiler.record import wording
+from compiler.rule import Rule
+from compiler.templating import to_json
+from fretish.diagnostic import Diagnostic
+from fretish.meaning import meaning
+from fretish.source import Span
+from monitors import kernel
+
+_SCHEMA = (
+    "https://docs.oasis-open.org/sarif/sarif/v2.1.0/errata01/os/schemas/sarif-schema-2.1.0.json"
+)
+_ROOT = "%SRCROOT%"
+"""What relative paths start from, as GitHub calls it: the folder in which fretc ran."""
+_RESERVED = "%/:?#[]@!$&'()*+,;="
+"""What has a meaning in an address, and what is quoted in it already."""
+_SHOWN = {"kind": "pass", "level": "none"}
+_LEVELS: Mapping[str, Mapping[str, str]] = {
+    kernel.SATISFIED: _SHOWN,
+    kernel.VIOLATED: {"kind": "fail", "level": "error"},
+}
+_NOT_SHOWN = {"kind": "fail", "level": "warning"}
+"""Not `open`, which has no level and which services do not show: it was to be shown, and is not."""
+
+
+def sarif(
+    results: Sequence[Mapping[str, Any]],
+    rules: Sequence[Rule],
+    diagnostics: Sequence[Diagnostic] = (),
+) -> str:
+    """One SARIF run; the same inputs give the same bytes.
+
+    Args:
+        results: each of a run and a requirement, as in the evidence.
+        rules: all requirements of the results; others are left out.
+        diagnostics: what there is to say of the logs.
+    """
+    meant = dict.fromkeys(result["requirement"] for result in results)
+    used = [rule for rule in rules if rule.id in meant]
+    files = _files(results, used)
+    content = {
+        "tool": {"driver": _driver(used, diagnostics)},
+        "invocations": [_invocation(diagnostics)],
+        "artifacts": list(files.values()),
+        "columnKind": "unicodeCodePoints",
+        "results": [_result(result, used, list(files)) for result in results],
+    }
+    return f"{to_json({'$schema': _SCHEMA, 'version': '2.1.0', 'runs': [content]})}\n"
+
+
+def _driver(rules: Sequence[Rule], diagnostics: Sequence[Diagnostic]) -> dict[str, Any]:
+    codes = {diagnostic.code.number: diagnostic.code for diagnostic in diagnostics}
+    return {
+        "name": "fretc",
+        "semanticVersion": __version__,
+        "rules": [_rule(rule) for rule in rules],
+        "notifications": [
+            {"id": number, "shortDescription": {"text": codes[number].summary}}
+            for number in sorted(codes)
+        ],
+    }
+
+
+def _rule(rule: Rule) -> dict[str, Any]:
+    requirement, sentence = rule.requirement, wording(rule.requirement)
+    words = meaning(rule.sentence, rule.ticks, rule.clock)
+    told = [words, requirement.text, requirement.rationale]
+    return {
+        "id": rule.id,
+        "shortDescription": {"text": requirement.title or sentence},
+        "fullDescription": {"text": sentence},
+        "help": {"text": "\n\n".join(text for text in told if text)},
+        "defaultConfiguration": {"level": "error"},
+        "properties": {"sha256": rule.fingerprint, "parents": list(requirement.parents)},
+    }
+
+
+def _files(
+    results: Sequence[Mapping[str, Any]], rules: Sequence[Rule]
+) -> dict[str, dict[str, Any]]:
+    """Each file by its name: the logs, and where the sentences are."""
+    files: dict[str, dict[str, Any]] = {}
+    for result in results:
+        artifact = files.setdefault(
+            result["run"], {"location": _place(result["run"]), "roles": ["analysisTarget"]}
+        )
+        size, sha256 = result["health"].get("size"), result["hashes"].get("log")
+        artifact |= {"length": size} if size is not None else {}
+        artifact |= {"hashes": {"sha-256": sha256}} if sha256 else {}
+    for rule in rules:
+        name = rule.requirement.wording.source.name
+        files.setdefault(name, {"location": _place(name), "sourceLanguage": "fretish"})
+    return files
+
+
+def _result(
+    result: Mapping[str, Any], rules: Sequence[Rule], files: Sequence[str]
+) -> dict[str, Any]:
+    (number,) = (i for i, rule in enumerate(rules) if rule.id == result["requirement"])
+    run, span = result["run"], rules[number].requirement.wording
+    where = _place(span.source.name) | {"index": files.index(span.source.name)}
+    same = hashlib.sha256(f"{result['requirement']}\n{run}".encode()).hexdigest()
+    return {
+        "ruleId": result["requirement"],
+        "ruleIndex": number,
+        **_LEVELS.get(result["verdict"], _NOT_SHOWN),
+        "message": {"text": f"{run}: {result['verdict']}: {result['reason']}"},
+        "analysisTarget": _place(run) | {"index": files.index(run)},
+        "locations": [{"physicalLocation": {"artifactLocation": where, "region": _region(span)}}],
+        # GitHub takes two results with the same first one for the same alert.
+        "partialFingerprints": {
+            "primaryLocationLineHash": f"{same[:16]}:1",
+            "requirementAndRun/v1": same,
+        },
+        "properties": {"verdict": result["verdict"], "sha256": dict(result["hashes"])},
+    }
+
+
+def _invocation(diagnostics: Sequence[Diagnostic]) -> dict[str, Any]:
+    return {
+        "executionSuccessful": not any(diagnostic.is_error for diagnostic in diagnostics),
+        "toolExecutionNotifications": [
+            {
+                "descriptor": {"id": diagnostic.code.number},
+                "level": diagnostic.severity.value,
+                "message": {"text": diagnostic.message},
+                **_locations(diagnostic.span),
+            }
+            for diagnostic in diagnostics
+        ],
+    }
+
+
+def _locations(span: Span | None) -> dict[str, Any]:
+    if span is None:
+        return {}
+    where: dict[str, Any] = {"artifactLocation": _place(span.source.name)}
+    if span.source.text:
+        where["region"] = _region(span)
+    return {"locations": [{"physicalLocation": where}]}
+
+
+def _region(span: Span) -> dict[str, int]:
+    end = span.source.span(span.end, span.end)
+    return {
+        "startLine": span.line,
+        "startColumn": span.column,
+        "endLine": end.line,
+        "endColumn": end.column,
+    }
+
+
+def _place(path: str) -> dict[str, Any]:
+    """A relative address below the folder in which fretc runs, an absolute one elsewhere."""
+    if "://" in path:
+        return {"uri": quote(path, safe=_RESERVED)}
+    inside = os.path.relpath(path)
+    if inside == os.pardir or inside.startswith(os.pardir + os.sep):
+        return {"uri": Path(os.path.abspath(path)).as_uri()}
+    return {"uri": quote(os.fsencode(inside)), "uriBaseId": _ROOT}
