@@ -6,7 +6,9 @@ import hashlib
 import os
 import secrets
 import stat
+import time
 from collections.abc import Mapping
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from fretish.diagnostic import Code, Diagnostic, suggestion
@@ -67,7 +69,7 @@ def _nearest(path: str) -> str:
     return f"did you mean `{folder / near}`?" if near else "check the name and the folder"
 
 
-def write(files: Mapping[Path, str]) -> Diagnostic | None:
+def write(files: Mapping[Path, str | bytes]) -> Diagnostic | None:
     """Write all of them: each under a temporary name first, then renamed.
 
     Nothing half-written stays behind: when one cannot be written, none is put in place. A link is
@@ -76,7 +78,7 @@ def write(files: Mapping[Path, str]) -> Diagnostic | None:
     waiting: list[tuple[Path, Path]] = []
     path = Path()
     try:
-        for path, text in files.items():
+        for path, content in files.items():
             real = Path(os.path.realpath(path))
             real.parent.mkdir(parents=True, exist_ok=True)
             if real.exists() and not real.is_file():
@@ -85,7 +87,7 @@ def write(files: Mapping[Path, str]) -> Diagnostic | None:
             # Known before it is made: an interruption at any moment finds it here.
             temporary = real.parent / f".{real.name[:100]}.{secrets.token_hex(4)}.tmp"
             waiting.append((temporary, real))
-            _fill(temporary, text, like=real)
+            _fill(temporary, content, like=real)
         for temporary, path in waiting:
             temporary.replace(path)
     except OSError as error:
@@ -100,14 +102,59 @@ def write(files: Mapping[Path, str]) -> Diagnostic | None:
     return None
 
 
-def _fill(temporary: Path, text: str, *, like: Path) -> None:
+def _fill(temporary: Path, content: str | bytes, *, like: Path) -> None:
     """Write a new file, with the permissions of the one that it will replace, if there is one."""
-    with temporary.open("x", encoding="utf-8", newline="\n") as file:
+    with temporary.open("xb") as file:
         if like.exists():
             temporary.chmod(stat.S_IMODE(like.stat().st_mode))
-        file.write(text)
+        file.write(content.encode() if isinstance(content, str) else content)
 
 
 def sha256(text: str) -> str:
     """Of the text in UTF-8, in hexadecimal."""
     return hashlib.sha256(text.encode()).hexdigest()
+
+
+def file_sha256(path: str) -> str | None:
+    """Of the bytes of a regular file, in hexadecimal; None where it is none or cannot be read."""
+    if not Path(path).is_file():
+        return None
+    try:
+        with Path(path).open("rb") as file:
+            return hashlib.file_digest(file, "sha256").hexdigest()
+    except OSError:
+        return None
+
+
+@dataclass(frozen=True, slots=True)
+class Stamp:
+    """What the file system tells of a regular file: while it is the same, so are the bytes.
+
+    `mtime_ns` can be set back by anybody, `ctime_ns` by the clock of the machine only.
+    """
+
+    size: int
+    mtime_ns: int
+    ctime_ns: int
+    inode: int
+    settled: bool = field(compare=False)
+    """False where the file had just been changed: if that happened again within the same tick of
+    its file system's clock, no stamp would show it."""
+
+
+def stamp(path: str) -> Stamp | None:
+    """The stamp of a file; None where there is none, or no regular one."""
+    try:
+        found = os.stat(path)
+    except OSError:
+        return None
+    if not stat.S_ISREG(found.st_mode):
+        return None
+    age = time.time_ns() - max(found.st_mtime_ns, found.st_ctime_ns)
+    return Stamp(
+        found.st_size, found.st_mtime_ns, found.st_ctime_ns, found.st_ino, settled=age > _COARSEST
+    )
+
+
+_COARSEST = 2 * 10**9
+"""Nanoseconds: the clock of FAT ticks every two seconds."""

@@ -85,6 +85,7 @@ class Code(Enum):
     OUT_OF_ORDER = ("F411", "the messages of a topic are not in order of time")
     BAD_MESSAGE = ("F412", "a message cannot be decoded")
     SPLIT_LOG = ("F413", "a run in several files is not read as one")
+    PROCESS_KILLED = ("F414", "the process that audited the log was killed")
 
     UNKNOWN_PARENT = ("F501", "a parent is not declared")
     BAD_HAZARDS = ("F502", "the hazards cannot be read")
@@ -104,6 +105,10 @@ class Code(Enum):
     BAD_USAGE = ("F907", "the command is used in a wrong way")
     MISSING_EXTRA = ("F908", "an optional part of fretc is not installed")
     NOTHING_TO_DO = ("F909", "nothing was given to work on")
+    NO_FLEET = ("F910", "the fleet cannot be reached")
+    OTHER_EDITION = ("F911", "a machine of the fleet has no fretc, or another one")
+    BUSY = ("F912", "another audit writes the same evidence")
+    BAD_QUERY = ("F913", "the query cannot be answered")
     INTERNAL = ("F999", "fretc itself is at fault")
 
     @property

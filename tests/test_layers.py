@@ -22,7 +22,7 @@ DOORS = {
     "jinja2": {"compiler/templating.py"},
     "click": {
         f"compiler/cli/{name}.py"
-        for name in ("__init__", "group", "output", "requirements", "runs", "verify")
+        for name in ("__init__", "group", "output", "progress", "requirements", "runs", "verify")
     },
     "mujoco": {"simulation/robot.py"},
     "rosbags": {"simulation/recording.py"},

@@ -7,10 +7,11 @@ import os
 import sys
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import click
 
+from compiler.cli.audits import audit_all
 from compiler.cli.output import (
     BAD,
     NOT_SHOWN,
@@ -22,6 +23,7 @@ from compiler.cli.output import (
     say_line,
     stop,
 )
+from compiler.cli.progress import progress
 from fretish.diagnostic import Code, Diagnostic, has_errors
 
 if TYPE_CHECKING:
@@ -47,7 +49,7 @@ if TYPE_CHECKING:
     help="What is printed: for a person, as JSON, as JUnit XML, as annotations of GitHub Actions.",
 )
 @click.option(
-    "--engine",
+    "--evaluation",
     type=click.Choice(("columns", "online")),
     default="columns",
     show_default=True,
@@ -59,14 +61,16 @@ if TYPE_CHECKING:
     default=os.cpu_count() or 1,
     help="Processes that share the logs; as many as there are cores, if not given.",
 )
+@click.option("--resume", is_flag=True, help="Go on with an audit that was stopped.")
 def audit(
     paths: tuple[str, ...],
     requirements: str,
     bindings: str | None,
     evidence: str,
     form: str,
-    engine: str,
+    evaluation: str,
     jobs: int,
+    resume: bool,
 ) -> None:
     """Audit recorded runs against all requirements.
 
@@ -74,8 +78,14 @@ def audit(
     verdict: satisfied, violated, inconclusive, vacuous or no data; the evidence goes to a JSON
     file.
     """
-    from compiler.auditing import audit_logs
+    if resume and evidence == "-":
+        stop(_nothing_kept())
+    if evidence != "-" and os.path.exists(evidence) and not os.path.isfile(evidence):
+        stop(not_written(evidence, "it is no regular file"))
+    from compiler.auditing import locally
+    from compiler.journal import Journal
     from compiler.logs import logs as logs_of
+    from compiler.plan import Plan, planned
     from compiler.project import beside, load, requirement_files
 
     logs = logs_of(paths)
@@ -88,13 +98,16 @@ def audit(
     say(project.diagnostics)
     if has_errors(project.diagnostics):
         raise SystemExit(BAD)
-    with _counted(len(logs)) as tell:
-        result = audit_logs(project, logs, engine, jobs, tell)
+    plan = planned(project, evaluation)
+    if not isinstance(plan, Plan):
+        stop(*plan)
+    journal = Journal(Path(evidence), plan) if evidence != "-" and len(logs) > 1 else None
+    result = audit_all(plan, logs, locally(jobs), journal, resume=resume)
     say(result.diagnostics)
-    if not result.results:
-        raise SystemExit(BAD)
     if result.read:  # a mistyped name must not cost the evidence of the last audit
         deliver({Path(evidence): result.evidence}, (*logs, *files))
+        if journal is not None:
+            journal.remove()
     click.echo(_printed(result, project, form), nl=False)
     if has_errors(result.diagnostics):
         raise SystemExit(BAD)
@@ -115,19 +128,12 @@ def _printed(result: Audit, project: Project, form: str) -> str:
             return _coloured(result.text)
 
 
-def _counted(count: int) -> Any:
-    """A context manager that gives a function to call after each log."""
-    from contextlib import contextmanager
-
-    @contextmanager
-    def shown() -> Any:
-        if count < 2 or not sys.stderr.isatty():
-            yield lambda: None
-            return
-        with click.progressbar(length=count, label="auditing", file=sys.stderr) as bar:
-            yield lambda: bar.update(1)
-
-    return shown()
+def _nothing_kept() -> Diagnostic:
+    return Diagnostic(
+        Code.BAD_USAGE,
+        "`--resume` goes on with evidence in a file, and this is printed",
+        help="name a file with `--evidence`",
+    )
 
 
 def _coloured(lines: Sequence[tuple[str, str | None]]) -> str:
@@ -240,9 +246,9 @@ def simulate(out: str, seed: int, duration: float) -> None:
         stop(not_written(out, "it is no regular file"))
     if out == "-" or not math.isfinite(duration):
         stop(not_written(out, "a log is a file, and a mission ends"))
-    with _progress(duration) as tell:
+    with progress(int(duration), "simulating") as tell:
         try:
-            mission = record(path, seed, duration, tell)
+            mission = record(path, seed, duration, lambda now: tell(int(now), f"{now:.0f} s"))
         except OSError as error:
             stop(not_written(out, error.strerror or str(error)))
     say_line(f"wrote {out}")
@@ -251,23 +257,6 @@ def simulate(out: str, seed: int, duration: float) -> None:
         f"{mission.goals_reached} of {mission.goals_total} goals, {mission.stops} stops, "
         f"least clearance {mission.true_clearance * 100:.1f} cm, {mission.messages} messages"
     )
-
-
-def _progress(seconds: float) -> Any:
-    """A context manager that gives a function to tell the simulated seconds to."""
-    from contextlib import contextmanager
-
-    @contextmanager
-    def shown() -> Any:
-        if not sys.stderr.isatty():
-            yield None
-            return
-        with click.progressbar(
-            length=int(seconds * 10), label="simulating", file=sys.stderr
-        ) as bar:
-            yield lambda now: bar.update(int(now * 10) - bar.pos)
-
-    return shown()
 
 
 def _missing_extra(absent: Sequence[str]) -> Diagnostic:

@@ -212,7 +212,7 @@ def test_a_folder_of_logs_gives_the_same_with_any_number_of_processes(fretc: Fre
 def test_stepping_shows_the_same_as_columns(fretc: Fretc) -> None:
     fretc("audit", "run.mcap")
     before = Path("build/evidence.json").read_bytes()
-    fretc("audit", "run.mcap", "--engine", "online")
+    fretc("audit", "run.mcap", "--evaluation", "online")
     assert Path("build/evidence.json").read_bytes() == before
 
 
