@@ -22,8 +22,21 @@ DOORS = {
     "jinja2": {"compiler/templating.py"},
     "click": {
         f"compiler/cli/{name}.py"
-        for name in ("__init__", "group", "output", "progress", "requirements", "runs", "verify")
+        for name in (
+            "__init__",
+            "group",
+            "output",
+            "progress",
+            "requirements",
+            "runs",
+            "summaries",
+            "verify",
+        )
     },
+    "pyarrow": {"compiler/table.py"},
+    "duckdb": {"compiler/summary.py"},
+    "distributed": {"compiler/fleet.py"},
+    "dask": {"compiler/fleet.py"},
     "mujoco": {"simulation/robot.py"},
     "rosbags": {"simulation/recording.py"},
     "mcap": {"monitors/container.py", "monitors/walk.py", "simulation/recording.py"},

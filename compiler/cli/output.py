@@ -35,7 +35,7 @@ def say_line(text: str) -> None:
         click.echo(text, err=True)
 
 
-def deliver(files: Mapping[Path, str], protected: Iterable[str] = ()) -> None:
+def deliver(files: Mapping[Path, str | bytes], protected: Iterable[str] = ()) -> None:
     """Write the texts, all or none, and name them.
 
     Args:

@@ -24,6 +24,7 @@ from compiler.cli.output import (
     stop,
 )
 from compiler.cli.progress import progress
+from compiler.cli.summaries import summarize
 from fretish.diagnostic import Code, Diagnostic, has_errors
 
 if TYPE_CHECKING:
@@ -62,6 +63,11 @@ if TYPE_CHECKING:
     help="Processes that share the logs; as many as there are cores, if not given.",
 )
 @click.option("--resume", is_flag=True, help="Go on with an audit that was stopped.")
+@click.option("--parquet", help="Where a table goes, too: a row for each run and requirement.")
+@click.option(
+    "--summary", is_flag=True, help="Say what tables or evidence say; LOG is one of them."
+)
+@click.option("--query", metavar="SQL", help="Ask them: SQL of DuckDB on the table `results`.")
 def audit(
     paths: tuple[str, ...],
     requirements: str,
@@ -71,17 +77,20 @@ def audit(
     evaluation: str,
     jobs: int,
     resume: bool,
+    parquet: str | None,
+    summary: bool,
+    query: str | None,
 ) -> None:
     """Audit recorded runs against all requirements.
 
     LOG is an MCAP file, or a folder: all MCAP files below it. Each run and requirement gets a
     verdict: satisfied, violated, inconclusive, vacuous or no data; the evidence goes to a JSON
-    file.
+    file. With `--summary` or `--query`, nothing is audited: LOG is a table or evidence that was
+    written before.
     """
-    if resume and evidence == "-":
-        stop(_nothing_kept())
-    if evidence != "-" and os.path.exists(evidence) and not os.path.isfile(evidence):
-        stop(not_written(evidence, "it is no regular file"))
+    if summary or query is not None:
+        summarize(paths, query, form)
+    _check_outputs(evidence, parquet, resume=resume)
     from compiler.auditing import locally
     from compiler.journal import Journal
     from compiler.logs import logs as logs_of
@@ -105,7 +114,10 @@ def audit(
     result = audit_all(plan, logs, locally(jobs), journal, resume=resume)
     say(result.diagnostics)
     if result.read:  # a mistyped name must not cost the evidence of the last audit
-        deliver({Path(evidence): result.evidence}, (*logs, *files))
+        forms: dict[Path, str | bytes] = {Path(evidence): result.evidence}
+        if parquet is not None:
+            forms[Path(parquet)] = _table(result)
+        deliver(forms, (*logs, *files))
         if journal is not None:
             journal.remove()
     click.echo(_printed(result, project, form), nl=False)
@@ -126,6 +138,32 @@ def _printed(result: Audit, project: Project, form: str) -> str:
             return github(result.results, project.rules)
         case _:
             return _coloured(result.text)
+
+
+def _check_outputs(evidence: str, parquet: str | None, *, resume: bool) -> None:
+    """Stop where they cannot be written, before hours of audit have gone by."""
+    if resume and evidence == "-":
+        stop(_nothing_kept())
+    if parquet == "-":
+        stop(not_written(parquet, "a table is a file"))
+    for path in (evidence, parquet):
+        if path not in ("-", None) and os.path.exists(path) and not os.path.isfile(path):
+            stop(not_written(path, "it is no regular file"))
+    if parquet is not None:
+        from compiler.table import missing
+
+        absent = missing()
+        if absent is not None:
+            stop(absent)
+        if os.path.realpath(parquet) == os.path.realpath(evidence):
+            stop(not_written(parquet, "two outputs would go there"))
+
+
+def _table(result: Audit) -> bytes:
+    from compiler import __version__
+    from compiler.table import parquet
+
+    return parquet(result.results, __version__)
 
 
 def _nothing_kept() -> Diagnostic:
