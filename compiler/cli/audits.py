@@ -55,7 +55,8 @@ def audit_all(
         raise SystemExit(INTERRUPTED) from None
     if isinstance(result, Diagnostic):
         say([result])
-        say_line(f"not finished{_kept(kept, len(logs))}")
+        if kept:
+            say_line(f"not finished{_kept(kept, len(logs))}")
         raise SystemExit(BAD)
     return result
 

@@ -28,7 +28,7 @@ from compiler.cli.summaries import summarize
 from fretish.diagnostic import Code, Diagnostic, has_errors
 
 if TYPE_CHECKING:
-    from compiler.auditing import Audit
+    from compiler.auditing import Audit, Engine
     from compiler.project import Project
 
 
@@ -62,6 +62,12 @@ if TYPE_CHECKING:
     default=os.cpu_count() or 1,
     help="Processes that share the logs; as many as there are cores, if not given.",
 )
+@click.option(
+    "--engine",
+    default="local",
+    show_default=True,
+    help="Where logs are audited: local, dask (a cluster of this machine), dask://HOST:PORT.",
+)
 @click.option("--resume", is_flag=True, help="Go on with an audit that was stopped.")
 @click.option("--parquet", help="Where a table goes, too: a row for each run and requirement.")
 @click.option(
@@ -76,6 +82,7 @@ def audit(
     form: str,
     evaluation: str,
     jobs: int,
+    engine: str,
     resume: bool,
     parquet: str | None,
     summary: bool,
@@ -91,7 +98,6 @@ def audit(
     if summary or query is not None:
         summarize(paths, query, form)
     _check_outputs(evidence, parquet, resume=resume)
-    from compiler.auditing import locally
     from compiler.journal import Journal
     from compiler.logs import logs as logs_of
     from compiler.plan import Plan, planned
@@ -111,7 +117,7 @@ def audit(
     if not isinstance(plan, Plan):
         stop(*plan)
     journal = Journal(Path(evidence), plan) if evidence != "-" and len(logs) > 1 else None
-    result = audit_all(plan, logs, locally(jobs), journal, resume=resume)
+    result = audit_all(plan, logs, _engine(engine, jobs), journal, resume=resume)
     say(result.diagnostics)
     if result.read:  # a mistyped name must not cost the evidence of the last audit
         forms: dict[Path, str | bytes] = {Path(evidence): result.evidence}
@@ -138,6 +144,19 @@ def _printed(result: Audit, project: Project, form: str) -> str:
             return github(result.results, project.rules)
         case _:
             return _coloured(result.text)
+
+
+def _engine(name: str, jobs: int) -> Engine:
+    if name == "local":
+        from compiler.auditing import locally
+
+        return locally(jobs)
+    from compiler import fleet
+
+    engine = fleet.engine(name, jobs)
+    if isinstance(engine, Diagnostic):
+        stop(engine)
+    return engine
 
 
 def _check_outputs(evidence: str, parquet: str | None, *, resume: bool) -> None:
