@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Callable, Generator, Mapping, Sequence
 from contextlib import closing
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from types import MappingProxyType
 from typing import Any
@@ -154,9 +154,26 @@ def gathered(plan: Plan, found: Sequence[Audited]) -> Audit:
     return Audit(
         tuple(results),
         _evidence(plan, results),
-        tuple(diagnostic for shown in found for diagnostic in shown.diagnostics),
+        _told(found),
         sum(shown.read for shown in found),
     )
+
+
+def _told(found: Sequence[Audited]) -> tuple[Diagnostic, ...]:
+    """What there is to say of the logs; what is true of many, at a place in the bindings, once."""
+    runs: dict[Diagnostic, list[str]] = {}
+    for shown in found:
+        for diagnostic in shown.diagnostics:
+            runs.setdefault(diagnostic, []).append(str(shown.results[0]["run"]))
+    return tuple(_of(diagnostic, of, len(found)) for diagnostic, of in runs.items())
+
+
+def _of(diagnostic: Diagnostic, runs: Sequence[str], count: int) -> Diagnostic:
+    """With the logs that it is about, where its place is none of them."""
+    if count == 1 or (diagnostic.span and diagnostic.span.source.name == runs[0]):
+        return diagnostic
+    which = f"in {len(runs)} of {count} logs, first in `{runs[0]}`"
+    return replace(diagnostic, message=f"{diagnostic.message} ({which})")
 
 
 def audited(plan: Plan, log: str) -> Audited:

@@ -285,3 +285,19 @@ def test_evidence_that_cannot_be_written_is_told_before_the_audit(fretc: Fretc) 
         "",
         "F905 `requirements` cannot be written: it is no regular file\nhelp: name another file\n",
     )
+
+
+def test_what_is_true_of_many_logs_is_told_once(fretc: Fretc) -> None:
+    change("requirements/bindings.toml", 'reduce    = "outline"', 'reduce    = "min"')
+    alone = fretc("audit", "run.mcap").err
+    logs = [f"{number}.mcap" for number in range(4)]
+    for log in logs:
+        shutil.copy("run.mcap", log)
+    Path(logs[2]).write_bytes(Path("run.mcap").read_bytes()[:900_000])
+    said = fretc("audit", *logs).err
+    first, *others = alone.splitlines()
+    assert said.splitlines()[0] == f"{first} (in 4 of 4 logs, first in `0.mcap`)"
+    assert said.count("F311") == 1
+    assert said.splitlines()[1 : len(others)] == others[:-1]
+    assert said.count("F403") == 1
+    assert "  --> 2.mcap\n" in said
