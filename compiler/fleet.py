@@ -18,7 +18,7 @@ from importlib.util import find_spec
 from typing import TYPE_CHECKING, Any
 from urllib.parse import urlsplit
 
-from compiler.auditing import Audited, Engine, Found, audited, given_up
+from compiler.auditing import EVALUATIONS, Audited, Engine, Found, audited, given_up
 from compiler.edition import edition
 from compiler.plan import Plan, packed, unpacked
 from fretish.diagnostic import Code, Diagnostic
@@ -245,7 +245,9 @@ def _bad_engine(name: str) -> Diagnostic:
     return Diagnostic(
         Code.BAD_USAGE,
         f"`{name}` is no engine",
-        help="it is `local`, `dask`, or `dask://HOST:PORT`",
+        help=f"write `--evaluation {name}`"
+        if name in EVALUATIONS
+        else "it is `local`, `dask`, or `dask://HOST:PORT`",
     )
 
 

@@ -6,6 +6,7 @@ Each process has a pipe of its own, so that it is certain which thing it worked 
 from __future__ import annotations
 
 import multiprocessing
+import pickle
 import signal
 import traceback
 from collections import deque
@@ -167,4 +168,13 @@ def _answer(function: Callable[[Any], Any], thing: Any) -> tuple[bool, Any]:
         return True, function(thing)
     except Exception as error:
         error.add_note(traceback.format_exc())
-        return False, error
+        return False, _sendable(error)
+
+
+def _sendable(error: Exception) -> Exception:
+    """The error, or one that says the same, where it would not arrive."""
+    try:
+        pickle.loads(pickle.dumps(error))
+    except Exception:
+        return RuntimeError(f"{type(error).__name__}: {error}")
+    return error

@@ -26,6 +26,17 @@ def test_a_mistake_in_the_work_is_raised(jobs: int) -> None:
     assert not active_children()
 
 
+def test_a_mistake_that_cannot_be_sent_is_raised_in_words() -> None:
+    class LocalError(Exception):
+        pass
+
+    def work(thing: int) -> None:
+        raise LocalError(f"of {thing}")
+
+    with pytest.raises(RuntimeError, match=r"LocalError: of \d"):
+        list(each(work, [0, 1], 2))
+
+
 def test_a_result_comes_when_it_is_done() -> None:
     def wait(seconds: float) -> float:
         time.sleep(seconds)
