@@ -85,7 +85,7 @@ class Code(Enum):
     OUT_OF_ORDER = ("F411", "the messages of a topic are not in order of time")
     BAD_MESSAGE = ("F412", "a message cannot be decoded")
     SPLIT_LOG = ("F413", "a run in several files is not read as one")
-    PROCESS_KILLED = ("F414", "the process that audited the log was killed")
+    PROCESS_KILLED = ("F419", "the process that audited the log was killed")
 
     UNKNOWN_PARENT = ("F501", "a parent is not declared")
     BAD_HAZARDS = ("F502", "the hazards cannot be read")

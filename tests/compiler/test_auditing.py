@@ -245,7 +245,7 @@ def test_a_log_whose_audit_kills_its_process_is_no_data_and_the_others_are_audit
     run = fretc("audit", "run.mcap", "bad.mcap", "other.mcap", "--jobs", jobs)
     assert run.status == 2
     assert run.err == (
-        "F414 the process that audited `bad.mcap` was killed, and again when it ran alone: "
+        "F419 the process that audited `bad.mcap` was killed, and again when it ran alone: "
         "signal 9\n"
         "  --> bad.mcap\n"
         "help: was there memory enough? audit this log on a machine that has more\n"

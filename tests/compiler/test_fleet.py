@@ -127,7 +127,7 @@ def test_a_log_that_kills_its_workers_is_told_and_the_others_are_audited(
     assert lost["hashes"] == here.results[3]["hashes"]
     (finding,) = lost["health"]["findings"]
     assert (finding["code"], finding["message"]) == (
-        "F414",
+        "F419",
         f"the process that audited `{LOGS[3]}` was killed, and again when it ran alone: "
         "all workers of Dask that tried it died",
     )
