@@ -1,33 +1,28 @@
-"""From a project and logs to verdicts: compile the monitors, read each log, run them over it."""
+"""From a plan and logs to verdicts: read each log, run the monitors, gather the evidence."""
 
 from __future__ import annotations
 
-import hashlib
 import json
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Generator, Mapping, Sequence
+from contextlib import closing
+from dataclasses import dataclass, replace
 from functools import partial
-from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 
 from compiler import __version__
 from compiler.constancy import never_changed, tallies_of
-from compiler.files import sha256
-from compiler.missing import demand
-from compiler.pipeline import unbound
-from compiler.project import Project, fingerprint
-from compiler.record import wording
-from compiler.rule import Rule
-from compiler.targets import monitor as monitors
+from compiler.files import Stamp, file_sha256, stamp
+from compiler.plan import Plan, watched
 from compiler.templating import to_json
-from compiler.workers import each
-from fretish.declarations import Declarations
-from fretish.diagnostic import Code, Diagnostic
+from compiler.workers import Killed, each, was_killed
+from fretish.diagnostic import Diagnostic
 from monitors import kernel
-from monitors.audit import Engine, Watched, audit, examined, signals_of
+from monitors.audit import Engine as Evaluation
+from monitors.audit import audit, examined, signals_of
 from monitors.evidence import SCHEMA, as_record, unread
-from monitors.inputs import STDIN, shown
-from monitors.loading import load
+from monitors.inputs import STDIN
+from monitors.inputs import shown as called
 from monitors.recordings import read
 
 GLYPHS: Mapping[str, tuple[str, str]] = {
@@ -82,135 +77,162 @@ class Audit:
         return tuple(lines)
 
 
-ENGINES: Mapping[str, Engine] = {"columns": kernel.evaluate, "online": kernel.stepped}
+EVALUATIONS: Mapping[str, Evaluation] = {"columns": kernel.evaluate, "online": kernel.stepped}
 """How monitors are run: whole traces at once, or step by step."""
 
 
+@dataclass(frozen=True, slots=True)
+class Audited:
+    """What the audit of one log has shown."""
+
+    results: tuple[Mapping[str, Any], ...]
+    """The record of each claim, in their order."""
+    diagnostics: tuple[Diagnostic, ...]
+    read: bool
+    """Whether the log could be read."""
+    stamp: Stamp | None = None
+    """The file's before its audit; None where it is no file, or has changed since."""
+
+
+Found = Generator[tuple[str, Audited] | Diagnostic, None, None]
+"""Logs with what was shown of them, as they are done; a diagnostic where it gives up."""
+
+Engine = Callable[[Plan, Sequence[str]], Found]
+"""Where logs are audited. Closing what it gives ends all work at once."""
+
+
+def locally(jobs: int) -> Engine:
+    """On this machine, in some processes."""
+
+    def engine(plan: Plan, logs: Sequence[str]) -> Found:
+        watched(plan)  # before the processes are born: they inherit it
+        if STDIN in logs:  # another process does not have it
+            yield STDIN, audited(plan, STDIN)
+        files = [log for log in logs if log != STDIN]
+        with closing(each(partial(audited, plan), files, jobs)) as done:
+            for place, found in done:
+                log = files[place]
+                yield log, given_up(plan, log, str(found)) if isinstance(found, Killed) else found
+
+    return engine
+
+
+IN_TURN = locally(1)
+"""One after the other."""
+
+
 def audit_logs(
-    project: Project,
+    plan: Plan,
     logs: Sequence[str],
-    engine: str = "columns",
-    jobs: int = 1,
-    tell: Callable[[], None] = lambda: None,
-) -> Audit:
-    """Audit every log against every requirement that is not retired.
+    engine: Engine = IN_TURN,
+    known: Mapping[str, Audited] = MappingProxyType({}),
+    tell: Callable[[str, Audited], None] = lambda log, audited: None,
+) -> Audit | Diagnostic:
+    """Audit every log against every claim.
 
     Args:
-        project: read without errors.
-        logs: files, folders of rosbag2, URLs, or `-` for standard input.
-        engine: one of `ENGINES`; the results are the same.
-        jobs: how many processes share the logs; the results are the same.
-        tell: is called after each log.
+        plan: what the logs are judged by.
+        logs: files, folders of rosbag2, URLs, or `-` for standard input, each once.
+        engine: where; what is shown is the same.
+        known: logs that have been audited by this plan already.
+        tell: is called with each other log when it is done.
+
+    Returns:
+        The audit, which depends on neither the engine nor the order in which logs were done; or
+        why the engine gave up.
     """
-    rules = [rule for rule in project.rules if rule.requirement.status != "retired"]
-    declarations = project.declarations
-    wrong = _not_auditable(rules, declarations)
-    if wrong or declarations is None:
-        return Audit((), "", tuple(wrong))
-    bindings = fingerprint(declarations)
-    watched = [_watched(rule, bindings) for rule in rules]
-    results: list[Mapping[str, Any]] = []
-    said: list[Diagnostic] = []
-    read = 0
-    work = partial(_audit_log, declarations=declarations, watched=watched, engine=ENGINES[engine])
-    if STDIN in logs:  # another process would not have it
-        jobs = 1
-    for found, told, could_be_read in each(work, tuple(dict.fromkeys(logs)), jobs):
-        tell()
-        results.extend(found)
-        said.extend(told)
-        read += could_be_read
-    said.extend(never_changed(tallies_of(results), declarations))
+    done = {log: known[log] for log in logs if log in known}
+    with closing(engine(plan, [log for log in logs if log not in done])) as finished:
+        for found in finished:
+            if isinstance(found, Diagnostic):
+                return found
+            log, shown = found
+            assert log not in done
+            done[log] = shown
+            tell(log, shown)
+    return gathered(plan, [done[log] for log in logs])
+
+
+def gathered(plan: Plan, found: Sequence[Audited]) -> Audit:
+    """What was shown of all logs, in their order, as one."""
+    results = [result for shown in found for result in shown.results]
     return Audit(
         tuple(results),
-        _evidence(rules, declarations.source.name, bindings, results),
-        tuple(said),
-        read,
+        _evidence(plan, results),
+        (*_told(found), *never_changed(tallies_of(results), plan.declarations)),
+        sum(shown.read for shown in found),
     )
 
 
-def _not_auditable(rules: Sequence[Rule], declarations: Declarations | None) -> list[Diagnostic]:
-    if not rules:
-        return [Diagnostic(Code.NOTHING_TO_DO, "there is no requirement to audit")]
-    if declarations is None:
-        return [
-            Diagnostic(
-                Code.UNBOUND,
-                "no bindings say what the propositions mean in the messages",
-                rules[0].requirement.wording,
-                help="write `bindings.toml` beside the requirements, or name it with `--bindings`",
-            )
-        ]
-    if not declarations.clock.declared:
-        return [
-            Diagnostic(
-                Code.NO_CLOCK,
-                f"`{declarations.source.name}` declares no clock",
-                declarations.source.span(0, 0),
-                help='add `[clock]` with `tick = "100 ms"`',
-            )
-        ]
-    refused = [monitors.refuse(rule) for rule in rules]
-    missing = [diagnostic for rule in rules for diagnostic in unbound(rule, declarations)]
-    return [*(diagnostic for diagnostic in refused if diagnostic), *missing]
+def _told(found: Sequence[Audited]) -> tuple[Diagnostic, ...]:
+    """What there is to say of the logs; what is true of many, at a place in the bindings, once."""
+    runs: dict[Diagnostic, list[str]] = {}
+    for shown in found:
+        for diagnostic in shown.diagnostics:
+            runs.setdefault(diagnostic, []).append(str(shown.results[0]["run"]))
+    return tuple(_of(diagnostic, of, len(found)) for diagnostic, of in runs.items())
 
 
-def _watched(rule: Rule, bindings: str) -> Watched:
-    text = monitors.text(rule)
-    return Watched(
-        load(f"{rule.id}_monitor", text),
-        {
-            "sentence": rule.fingerprint,
-            "bindings": bindings,
-            "monitor": sha256(text),
-        },
-        demand(rule),
-    )
+def _of(diagnostic: Diagnostic, runs: Sequence[str], count: int) -> Diagnostic:
+    """With the logs that it is about, where its place is none of them."""
+    if count == 1 or (diagnostic.span and diagnostic.span.source.name == runs[0]):
+        return diagnostic
+    which = f"in {len(runs)} of {count} logs, first in `{runs[0]}`"
+    return replace(diagnostic, message=f"{diagnostic.message} ({which})")
 
 
-def _audit_log(
-    log: str, declarations: Declarations, watched: Sequence[Watched], engine: Engine
-) -> tuple[list[dict[str, Any]], list[Diagnostic], bool]:
-    """The results of one log, what there is to say of it, and whether it could be read."""
-    names = tuple(dict.fromkeys(name for w in watched for name in w.monitor.PROPOSITIONS))
-    recording = read(log, declarations, signals_of(declarations, names))
+def audited(plan: Plan, log: str) -> Audited:
+    """Audit one log; all that is needed for it is in the plan."""
+    declarations, monitors = plan.declarations, watched(plan)
+    before = stamp(log)
+    names = tuple(dict.fromkeys(name for w in monitors for name in w.monitor.PROPOSITIONS))
+    recording = read(log, declarations, signals_of(declarations, names), plan.integrity)
     if isinstance(recording, Diagnostic):
-        hashes = _hash_of(log)
-        return (
-            [
-                unread(shown(log), w.monitor.REQUIREMENTS[0].id, recording, {**hashes, **w.hashes})
-                for w in watched
-            ],
-            [recording],
-            False,
-        )
+        return _unread(plan, log, recording)
     recording = examined(recording, declarations, names)
-    evidence = audit(recording, declarations, watched, engine)
-    return [as_record(e) for e in evidence], list(recording.findings), True
+    evidence = audit(recording, declarations, monitors, EVALUATIONS[plan.evaluation])
+    return Audited(
+        tuple(as_record(e) for e in evidence),
+        tuple(recording.findings),
+        read=True,
+        stamp=before if before == stamp(log) else None,
+    )
+
+
+def given_up(plan: Plan, log: str, how: str) -> Audited:
+    """What is shown of a log whose audit has killed its process twice: nothing.
+
+    Args:
+        plan: what it was to be judged by.
+        log: its path.
+        how: the process ended.
+    """
+    return _unread(plan, log, was_killed(log, how))
+
+
+def _unread(plan: Plan, log: str, why: Diagnostic) -> Audited:
+    hashes = _hash_of(log)
+    records = [
+        unread(called(log), c.id, why, {**hashes, **c.hashes(plan.bindings)}) for c in plan.claims
+    ]
+    return Audited(tuple(records), (why,), read=False)
 
 
 def _hash_of(log: str) -> dict[str, str]:
     """SHA-256 of a log that could not be read as one, where its bytes can be."""
-    if not Path(log).is_file():
-        return {}
-    try:
-        with Path(log).open("rb") as file:
-            return {"log": hashlib.file_digest(file, "sha256").hexdigest()}
-    except OSError:
-        return {}
+    digest = file_sha256(log)
+    return {} if digest is None else {"log": digest}
 
 
-def _evidence(
-    rules: Sequence[Rule], file: str, bindings: str, results: Sequence[Mapping[str, Any]]
-) -> str:
+def _evidence(plan: Plan, results: Sequence[Mapping[str, Any]]) -> str:
     """The evidence file: the same inputs give the same bytes."""
     content = {
         "schema": SCHEMA,
         "fretc": __version__,
-        "bindings": {"file": file, "sha256": bindings},
+        "bindings": {"file": plan.declarations.source.name, "sha256": plan.bindings},
         "requirements": [
-            {"id": rule.id, "sentence": wording(rule.requirement), "sha256": rule.fingerprint}
-            for rule in rules
+            {"id": claim.id, "sentence": claim.sentence, "sha256": claim.sha256}
+            for claim in plan.claims
         ],
         "results": list(results),
     }

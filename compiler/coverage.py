@@ -10,7 +10,7 @@ from functools import partial
 from typing import Any
 
 from compiler.constancy import never_changed
-from compiler.workers import each
+from compiler.workers import Killed, each, was_killed
 from fretish.declarations import Declarations, Signal
 from fretish.diagnostic import Code, Diagnostic
 from fretish.rendering import as_json, visible
@@ -153,7 +153,14 @@ def coverage(declarations: Declarations, logs: Sequence[str], jobs: int) -> Cove
             help=f"add `{mend}`; `fretc bind --from LOG` drafts it",
         )
     look = partial(_seen, declarations=declarations)
-    return Coverage(declarations, tuple(each(look, tuple(dict.fromkeys(logs)), jobs)))
+    logs = tuple(dict.fromkeys(logs))
+    seen = {
+        place: Seen(logs[place], 0, None, (was_killed(logs[place], str(found)),))
+        if isinstance(found, Killed)
+        else found
+        for place, found in each(look, logs, jobs)
+    }
+    return Coverage(declarations, tuple(seen[place] for place in range(len(logs))))
 
 
 def _seen(log: str, declarations: Declarations) -> Seen:

@@ -6,7 +6,9 @@ import hashlib
 import os
 import secrets
 import stat
+import time
 from collections.abc import Mapping
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from fretish.diagnostic import Code, Diagnostic, suggestion
@@ -111,3 +113,48 @@ def _fill(temporary: Path, content: str | bytes, *, like: Path) -> None:
 def sha256(text: str) -> str:
     """Of the text in UTF-8, in hexadecimal."""
     return hashlib.sha256(text.encode()).hexdigest()
+
+
+def file_sha256(path: str) -> str | None:
+    """Of the bytes of a regular file, in hexadecimal; None where it is none or cannot be read."""
+    if not Path(path).is_file():
+        return None
+    try:
+        with Path(path).open("rb") as file:
+            return hashlib.file_digest(file, "sha256").hexdigest()
+    except OSError:
+        return None
+
+
+@dataclass(frozen=True, slots=True)
+class Stamp:
+    """What the file system tells of a regular file: while it is the same, so are the bytes.
+
+    `mtime_ns` can be set back by anybody, `ctime_ns` by the clock of the machine only.
+    """
+
+    size: int
+    mtime_ns: int
+    ctime_ns: int
+    inode: int
+    settled: bool = field(compare=False)
+    """False where the file had just been changed: if that happened again within the same tick of
+    its file system's clock, no stamp would show it."""
+
+
+def stamp(path: str) -> Stamp | None:
+    """The stamp of a file; None where there is none, or no regular one."""
+    try:
+        found = os.stat(path)
+    except OSError:
+        return None
+    if not stat.S_ISREG(found.st_mode):
+        return None
+    age = time.time_ns() - max(found.st_mtime_ns, found.st_ctime_ns)
+    return Stamp(
+        found.st_size, found.st_mtime_ns, found.st_ctime_ns, found.st_ino, settled=age > _COARSEST
+    )
+
+
+_COARSEST = 2 * 10**9
+"""Nanoseconds: the clock of FAT ticks every two seconds."""

@@ -92,6 +92,7 @@ class Code(Enum):
     ZERO_STAMP = ("F416", "messages of a topic have a zero for a time")
     CLOCK_JUMP = ("F417", "the clock of a topic jumps")
     MIXED_CLOCKS = ("F418", "the stamps of two topics are of different clocks")
+    PROCESS_KILLED = ("F419", "the process that audited the log was killed")
 
     UNKNOWN_PARENT = ("F501", "a parent is not declared")
     BAD_HAZARDS = ("F502", "the hazards cannot be read")
@@ -111,6 +112,10 @@ class Code(Enum):
     BAD_USAGE = ("F907", "the command is used in a wrong way")
     MISSING_EXTRA = ("F908", "an optional part of fretc is not installed")
     NOTHING_TO_DO = ("F909", "nothing was given to work on")
+    NO_FLEET = ("F910", "the fleet cannot be reached")
+    OTHER_EDITION = ("F911", "a machine of the fleet has no fretc, or another one")
+    BUSY = ("F912", "another audit writes the same evidence")
+    BAD_QUERY = ("F913", "the query cannot be answered")
     INTERNAL = ("F999", "fretc itself is at fault")
 
     @property

@@ -22,8 +22,22 @@ DOORS = {
     "jinja2": {"compiler/templating.py"},
     "click": {
         f"compiler/cli/{name}.py"
-        for name in ("__init__", "bind", "group", "output", "requirements", "runs", "verify")
+        for name in (
+            "__init__",
+            "bind",
+            "group",
+            "output",
+            "progress",
+            "requirements",
+            "runs",
+            "summaries",
+            "verify",
+        )
     },
+    "pyarrow": {"compiler/table.py"},
+    "duckdb": {"compiler/summary.py"},
+    "distributed": {"compiler/fleet.py"},
+    "dask": {"compiler/fleet.py"},
     "mujoco": {"simulation/robot.py"},
     "rosbags": {"simulation/recording.py", "monitors/idl.py", "monitors/bags.py"},
     "mcap": {

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import math
 import os
-import sys
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import click
 
+from compiler.cli.audits import audit_all
 from compiler.cli.output import (
     BAD,
     NOT_SHOWN,
@@ -23,10 +23,12 @@ from compiler.cli.output import (
     say_line,
     stop,
 )
+from compiler.cli.progress import progress
+from compiler.cli.summaries import summarize
 from fretish.diagnostic import Code, Diagnostic, has_errors
 
 if TYPE_CHECKING:
-    from compiler.auditing import Audit
+    from compiler.auditing import Audit, Engine
     from compiler.project import Project
 
 
@@ -53,11 +55,19 @@ if TYPE_CHECKING:
     "as SARIF.",
 )
 @click.option(
-    "--engine",
+    "--evaluation",
     type=click.Choice(("columns", "online")),
     default="columns",
     show_default=True,
     help="Run the monitors over whole logs at once, or step by step; what they show is the same.",
+)
+@click.option(
+    "--integrity",
+    type=click.Choice(("index", "hash", "full")),
+    default="hash",
+    show_default=True,
+    help="What is looked at beyond the messages that are bound: nothing, each byte's share in the "
+    "SHA-256, or also every record, CRC and count.",
 )
 @click.option(
     "--jobs",
@@ -65,6 +75,18 @@ if TYPE_CHECKING:
     default=os.cpu_count() or 1,
     help="Processes that share the logs; as many as there are cores, if not given.",
 )
+@click.option(
+    "--engine",
+    default="local",
+    show_default=True,
+    help="Where logs are audited: local, dask (a cluster of this machine), dask://HOST:PORT.",
+)
+@click.option("--resume", is_flag=True, help="Go on with an audit that was stopped.")
+@click.option("--parquet", help="Where a table goes, too: a row for each run and requirement.")
+@click.option(
+    "--summary", is_flag=True, help="Say what tables or evidence say; LOG is one of them."
+)
+@click.option("--query", metavar="SQL", help="Ask them: SQL of DuckDB on the table `results`.")
 def audit(
     paths: tuple[str, ...],
     requirements: str,
@@ -73,20 +95,32 @@ def audit(
     annotate: bool,
     annotations: str | None,
     form: str,
-    engine: str,
+    evaluation: str,
+    integrity: str,
     jobs: int,
+    engine: str,
+    resume: bool,
+    parquet: str | None,
+    summary: bool,
+    query: str | None,
 ) -> None:
     """Audit recorded runs against all requirements.
 
     LOG is an MCAP file, a bag (.bag, .db3), a folder: all logs below it, a quoted pattern
     ('runs/**/*.mcap'), a URL, or - for standard input. A folder of rosbag2 with several files is
     one log. Each run and requirement gets a verdict: satisfied, violated, inconclusive, vacuous or
-    no data; the evidence goes to a JSON file.
+    no data; the evidence goes to a JSON file. With `--summary` or `--query`, nothing is audited:
+    LOG is a table or evidence that was written before.
     """
-    from compiler.auditing import audit_logs
+    if summary or query is not None:
+        summarize(paths, query, form)
+    _check_outputs(evidence, parquet, resume=resume)
+    from compiler.journal import Journal
     from compiler.logs import files_of
     from compiler.logs import logs as logs_of
+    from compiler.plan import Plan, planned
     from compiler.project import beside, load, requirement_files
+    from monitors.integrity import Integrity
 
     logs = logs_of(paths)
     if isinstance(logs, Diagnostic):
@@ -98,16 +132,22 @@ def audit(
     say(project.diagnostics)
     if has_errors(project.diagnostics):
         raise SystemExit(BAD)
-    with _counted(len(logs)) as tell:
-        result = audit_logs(project, logs, engine, jobs, tell)
+    plan = planned(project, evaluation, Integrity(integrity))
+    if not isinstance(plan, Plan):
+        stop(*plan)
+    journal = Journal(Path(evidence), plan) if evidence != "-" and len(logs) > 1 else None
+    result = audit_all(plan, logs, _engine(engine, jobs), journal, resume=resume)
     say(result.diagnostics)
-    if not result.results:
-        raise SystemExit(BAD)
     if result.read:  # a mistyped name must not cost the evidence of the last audit
         marked = _marked(result, project, annotations) if annotate or annotations else {}
-        if os.path.realpath(evidence) in map(os.path.realpath, marked):
+        forms: dict[Path, str | bytes] = {Path(evidence): result.evidence}
+        if parquet is not None:
+            forms[Path(parquet)] = _table(result)
+        if {*map(os.path.realpath, forms)} & {*map(os.path.realpath, marked)}:
             stop(not_written(evidence, "two outputs would go there"))
-        deliver({Path(evidence): result.evidence, **marked}, (*files_of(logs), *files))
+        deliver({**forms, **marked}, (*files_of(logs), *files))
+        if journal is not None:
+            journal.remove()
     click.echo(_printed(result, project, form), nl=False)
     if has_errors(result.diagnostics):
         raise SystemExit(BAD)
@@ -137,19 +177,51 @@ def _printed(result: Audit, project: Project, form: str) -> str:
             return coloured(result.text)
 
 
-def _counted(count: int) -> Any:
-    """A context manager that gives a function to call after each log."""
-    from contextlib import contextmanager
+def _engine(name: str, jobs: int) -> Engine:
+    if name == "local":
+        from compiler.auditing import locally
 
-    @contextmanager
-    def shown() -> Any:
-        if count < 2 or not sys.stderr.isatty():
-            yield lambda: None
-            return
-        with click.progressbar(length=count, label="auditing", file=sys.stderr) as bar:
-            yield lambda: bar.update(1)
+        return locally(jobs)
+    from compiler import fleet
 
-    return shown()
+    engine = fleet.engine(name, jobs)
+    if isinstance(engine, Diagnostic):
+        stop(engine)
+    return engine
+
+
+def _check_outputs(evidence: str, parquet: str | None, *, resume: bool) -> None:
+    """Stop where they cannot be written, before hours of audit have gone by."""
+    if resume and evidence == "-":
+        stop(_nothing_kept())
+    if parquet == "-":
+        stop(not_written(parquet, "a table is a file"))
+    for path in (evidence, parquet):
+        if path not in ("-", None) and os.path.exists(path) and not os.path.isfile(path):
+            stop(not_written(path, "it is no regular file"))
+    if parquet is not None:
+        from compiler.table import missing
+
+        absent = missing()
+        if absent is not None:
+            stop(absent)
+        if os.path.realpath(parquet) == os.path.realpath(evidence):
+            stop(not_written(parquet, "two outputs would go there"))
+
+
+def _table(result: Audit) -> bytes:
+    from compiler import __version__
+    from compiler.table import parquet
+
+    return parquet(result.results, __version__)
+
+
+def _nothing_kept() -> Diagnostic:
+    return Diagnostic(
+        Code.BAD_USAGE,
+        "`--resume` goes on with evidence in a file, and this is printed",
+        help="name a file with `--evidence`",
+    )
 
 
 @click.command(short_help="Say what is in recorded runs, and how healthy they are.")
@@ -254,9 +326,9 @@ def simulate(out: str, seed: int, duration: float) -> None:
         stop(not_written(out, "it is no regular file"))
     if out == "-" or not math.isfinite(duration):
         stop(not_written(out, "a log is a file, and a mission ends"))
-    with _progress(duration) as tell:
+    with progress(int(duration), "simulating") as tell:
         try:
-            mission = record(path, seed, duration, tell)
+            mission = record(path, seed, duration, lambda now: tell(int(now), f"{now:.0f} s"))
         except OSError as error:
             stop(not_written(out, error.strerror or str(error)))
     say_line(f"wrote {out}")
@@ -265,23 +337,6 @@ def simulate(out: str, seed: int, duration: float) -> None:
         f"{mission.goals_reached} of {mission.goals_total} goals, {mission.stops} stops, "
         f"least clearance {mission.true_clearance * 100:.1f} cm, {mission.messages} messages"
     )
-
-
-def _progress(seconds: float) -> Any:
-    """A context manager that gives a function to tell the simulated seconds to."""
-    from contextlib import contextmanager
-
-    @contextmanager
-    def shown() -> Any:
-        if not sys.stderr.isatty():
-            yield None
-            return
-        with click.progressbar(
-            length=int(seconds * 10), label="simulating", file=sys.stderr
-        ) as bar:
-            yield lambda now: bar.update(int(now * 10) - bar.pos)
-
-    return shown()
 
 
 def _missing_extra(absent: Sequence[str]) -> Diagnostic:

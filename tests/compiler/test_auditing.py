@@ -1,13 +1,17 @@
 """The audit as a user runs it, on the recorded mission that the repository carries."""
 
 import json
+import os
 import shutil
+import signal
 from pathlib import Path
 from typing import Any
 
 import jsonschema  # type: ignore[import-untyped]
 import pytest
 
+from compiler import auditing
+from compiler.plan import Plan
 from tests.command import Fretc, Run
 
 ROOT = Path(__file__).parent.parent.parent
@@ -212,7 +216,7 @@ def test_a_folder_of_logs_gives_the_same_with_any_number_of_processes(fretc: Fre
 def test_stepping_shows_the_same_as_columns(fretc: Fretc) -> None:
     fretc("audit", "run.mcap")
     before = Path("build/evidence.json").read_bytes()
-    fretc("audit", "run.mcap", "--engine", "online")
+    fretc("audit", "run.mcap", "--evaluation", "online")
     assert Path("build/evidence.json").read_bytes() == before
 
 
@@ -222,3 +226,78 @@ def test_results_can_be_read_by_other_tools(fretc: Fretc) -> None:
     assert '<testcase name="R1" classname="run.mcap"' in junit.out
     github = fretc("audit", "run.mcap", "--format", "github")
     assert github.out.startswith("::notice file=requirements/r1.fret,line=")
+
+
+@pytest.mark.parametrize("jobs", ["1", "2"])
+def test_a_log_whose_audit_kills_its_process_is_no_data_and_the_others_are_audited(
+    fretc: Fretc, monkeypatch: pytest.MonkeyPatch, jobs: str
+) -> None:
+    real = auditing.audited
+
+    def deadly(plan: Plan, log: str) -> auditing.Audited:
+        if log == "bad.mcap":
+            os.kill(os.getpid(), signal.SIGKILL)
+        return real(plan, log)
+
+    monkeypatch.setattr(auditing, "audited", deadly)
+    shutil.copy("run.mcap", "bad.mcap")
+    shutil.copy("run.mcap", "other.mcap")
+    run = fretc("audit", "run.mcap", "bad.mcap", "other.mcap", "--jobs", jobs)
+    assert run.status == 2
+    assert run.err == (
+        "F419 the process that audited `bad.mcap` was killed, and again when it ran alone: "
+        "signal 9\n"
+        "  --> bad.mcap\n"
+        "help: was there memory enough? audit this log on a machine that has more\n"
+        "wrote build/evidence.json\n"
+    )
+    found = evidence()
+    jsonschema.validate(found, SCHEMA)
+    verdicts = [(result["run"], result["verdict"]) for result in found["results"]]
+    assert verdicts == [
+        ("run.mcap", "satisfied"),
+        ("bad.mcap", "no data"),
+        ("other.mcap", "satisfied"),
+    ]
+    hashes = [result["hashes"] for result in found["results"]]
+    assert hashes[1] == hashes[0]
+
+
+def test_a_table_is_written_beside_the_evidence(fretc: Fretc) -> None:
+    run = fretc("audit", "run.mcap", "--parquet", "build/runs.parquet")
+    assert run.err == "wrote build/evidence.json\nwrote build/runs.parquet\n"
+    table = fretc("audit", "--summary", "build/runs.parquet", "--format", "json")
+    assert table.out == fretc("audit", "--summary", "build/evidence.json", "--format", "json").out
+    assert table.status == 0
+
+
+@pytest.mark.parametrize("path", ["-", "requirements", "build/evidence.json"])
+def test_a_table_goes_to_a_file_of_its_own(fretc: Fretc, path: str) -> None:
+    run = fretc("audit", "run.mcap", "--parquet", path)
+    assert (run.status, run.out, run.err[:4]) == (2, "", "F905")
+    assert not Path("build").exists()
+
+
+def test_evidence_that_cannot_be_written_is_told_before_the_audit(fretc: Fretc) -> None:
+    run = fretc("audit", "run.mcap", "no.mcap", "--evidence", "requirements")
+    assert run == Run(
+        2,
+        "",
+        "F905 `requirements` cannot be written: it is no regular file\nhelp: name another file\n",
+    )
+
+
+def test_what_is_true_of_many_logs_is_told_once(fretc: Fretc) -> None:
+    change("requirements/bindings.toml", 'reduce    = "outline"', 'reduce    = "min"')
+    alone = fretc("audit", "run.mcap").err
+    logs = [f"{number}.mcap" for number in range(4)]
+    for log in logs:
+        shutil.copy("run.mcap", log)
+    Path(logs[2]).write_bytes(Path("run.mcap").read_bytes()[:900_000])
+    said = fretc("audit", *logs).err
+    first, *others = alone.splitlines()
+    assert said.splitlines()[0] == f"{first} (in 4 of 4 logs, first in `0.mcap`)"
+    assert said.count("F311") == 1
+    assert said.splitlines()[1 : len(others)] == others[:-1]
+    assert said.count("F403") == 1
+    assert "  --> 2.mcap\n" in said

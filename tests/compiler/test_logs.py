@@ -1,11 +1,10 @@
-"""Which logs are meant by files and folders, and how several processes share them."""
+"""Which logs are meant by files and folders."""
 
 from pathlib import Path
 
 import pytest
 
 from compiler.logs import files_of, logs
-from compiler.workers import each
 from fretish.diagnostic import Diagnostic
 from tests.command import write
 
@@ -121,14 +120,3 @@ def test_links_that_lead_in_circles_are_not_followed() -> None:
     made("runs/a.mcap")
     Path("runs/again").symlink_to(Path("runs").resolve())
     assert logs(["runs"]) == ["runs/a.mcap"]
-
-
-@pytest.mark.parametrize("jobs", [1, 2, 5])
-def test_results_come_in_the_order_of_the_things(jobs: int) -> None:
-    assert list(each(lambda thing: thing * thing, range(40), jobs)) == [i * i for i in range(40)]
-
-
-@pytest.mark.parametrize("jobs", [1, 3])
-def test_a_mistake_in_the_work_is_raised(jobs: int) -> None:
-    with pytest.raises(ZeroDivisionError):
-        list(each(lambda thing: 1 // thing, [2, 1, 0, 3], jobs))

@@ -6,7 +6,8 @@ from typing import Any
 import jsonschema  # type: ignore[import-untyped]
 import pytest
 
-from compiler.auditing import audit_logs
+from compiler.auditing import Audit, audit_logs
+from compiler.plan import Plan, planned
 from compiler.project import load
 from compiler.report import make
 from compiler.templating import template_root
@@ -614,7 +615,10 @@ def test_evidence_made_by_hand_fits_its_schema(tmp_path: Path) -> None:
 @pytest.mark.skipif(not Path(TRACE).is_file(), reason="needs the recorded run of the checkout")
 def test_the_evidence_of_the_recorded_run_fits_its_schema_and_is_reported(tmp_path: Path) -> None:
     known = load(["requirements/r1.fret"], hazards="requirements/hazards.toml")
-    audit = audit_logs(known, [TRACE, "traces/none.mcap"])
+    plan = planned(known)
+    assert isinstance(plan, Plan)
+    audit = audit_logs(plan, [TRACE, "traces/none.mcap"])
+    assert isinstance(audit, Audit)
     validate("evidence.schema.json", json.loads(audit.evidence))
     file = tmp_path / "evidence.json"
     file.write_text(audit.evidence, encoding="utf-8")
