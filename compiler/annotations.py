@@ -148,7 +148,8 @@ def _metadata(results: Sequence[Mapping[str, Any]]) -> dict[str, str]:
     """What was judged, by what, and how it came out."""
     first = results[0]
     found = {"fretc": __version__, "run": first["run"], "clock": first["clock"]}
-    found |= {f"sha256.{name}": first["hashes"][name] for name in ("log", "bindings")}
+    names = ("log", "log_summary", "bindings")
+    found |= {f"sha256.{n}": first["hashes"][n] for n in names if n in first["hashes"]}
     for result in results:
         id, hashes = result["requirement"], result["hashes"]
         found |= {f"{id}.verdict": result["verdict"], f"{id}.reason": result["reason"]}

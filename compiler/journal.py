@@ -182,7 +182,7 @@ def _entry(log: str, audited: Audited, plan: Plan) -> bytes:
     return _line(
         {
             "log": log,
-            "sha256": audited.results[0]["hashes"]["log"],
+            "sha256": audited.results[0]["hashes"].get("log", ""),
             "stamp": astuple(audited.stamp),
             "results": audited.results,
             "diagnostics": [_plain(diagnostic, bindings) for diagnostic in audited.diagnostics],

@@ -119,7 +119,7 @@ def _evidence(
         propositions={name: tally(column, ticks) for name, column in columns.items()},
         margins=tuple(margin for name in columns for margin in found[name]),
         units={name: base_name(declarations.signals[name].unit.dimension) for name in signals},
-        hashes={"log": recording.sha256, **watched.hashes},
+        hashes={_hashed(recording): recording.sha256, **watched.hashes},
         health=health(recording),
         assumptions=declarations.assumptions,
     )
@@ -127,6 +127,11 @@ def _evidence(
 
 
 _SHOWN = (kernel.SATISFIED, kernel.VACUOUS)
+
+
+def _hashed(recording: Recording) -> str:
+    """What the SHA-256 is of."""
+    return "log" if recording.checked.hashed else "log_summary"
 
 
 def _undone(

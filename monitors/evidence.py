@@ -13,6 +13,7 @@ from typing import Any
 
 from fretish.diagnostic import Diagnostic
 from fretish.rendering import as_json
+from monitors.integrity import Checked
 from monitors.kernel import NO_DATA, Outcome
 from monitors.margins import CROSSED, Margin
 from monitors.samples import Recording, Samples
@@ -63,6 +64,7 @@ def health(recording: Recording) -> dict[str, Any]:
     return {
         "intact": recording.intact,
         "size": recording.size,
+        "checked": _checked(recording.checked),
         "gaps": [{"start_ns": start, "end_ns": end} for start, end in recording.gaps],
         "findings": [as_json(finding) for finding in recording.findings],
         "topics": {
@@ -81,6 +83,17 @@ def health(recording: Recording) -> dict[str, Any]:
             }
             for name, topic in sorted(recording.topics.items())
         },
+    }
+
+
+def _checked(checked: Checked) -> dict[str, Any]:
+    return {
+        "by_index": checked.by_index,
+        "chunks": checked.chunks,
+        "crc_checked": checked.crc_checked,
+        "crc_unchecked": checked.crc_unchecked,
+        "without_crc": checked.without_crc,
+        "skipped": checked.skipped,
     }
 
 
@@ -144,6 +157,7 @@ def unread(
         "health": {
             "intact": False,
             "size": None,
+            "checked": None,
             "gaps": [],
             "findings": [as_json(diagnostic)],
             "topics": {},

@@ -78,8 +78,9 @@ class Topic:
     count: int
     first_ns: int | None
     last_ns: int | None
-    longest_gap_ns: int
-    out_of_order: int
+    longest_gap_ns: int | None
+    out_of_order: int | None
+    """None where the messages were only counted."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -93,11 +94,24 @@ class Finding:
 
 
 @dataclass(frozen=True, slots=True)
+class Checked:
+    """What was looked at of the chunks of a log."""
+
+    by_index: bool
+    chunks: int
+    crc_checked: int
+    crc_unchecked: int
+    without_crc: int
+    skipped: int
+
+
+@dataclass(frozen=True, slots=True)
 class Health:
     """Whether the data of a run can be trusted; `size` in bytes, gaps in nanoseconds of the log."""
 
     intact: bool
     size: int | None
+    checked: Checked | None
     gaps: tuple[tuple[int, int], ...]
     findings: tuple[Finding, ...]
     topics: tuple[Topic, ...]
@@ -289,12 +303,24 @@ def _health(at: Shape) -> Health:
     return Health(
         intact=at.field("intact").flag(),
         size=at.field("size").or_none(Shape.count),
+        checked=at.field("checked").or_none(_checked),
         gaps=tuple(
             (gap.field("start_ns").whole(), gap.field("end_ns").whole())
             for gap in at.field("gaps").items()
         ),
         findings=tuple(map(_finding, at.field("findings").items())),
         topics=tuple(_topic(name, topic) for name, topic in at.field("topics").fields().items()),
+    )
+
+
+def _checked(at: Shape) -> Checked:
+    return Checked(
+        by_index=at.field("by_index").flag(),
+        chunks=at.field("chunks").count(),
+        crc_checked=at.field("crc_checked").count(),
+        crc_unchecked=at.field("crc_unchecked").count(),
+        without_crc=at.field("without_crc").count(),
+        skipped=at.field("skipped").count(),
     )
 
 
@@ -314,6 +340,6 @@ def _topic(name: str, at: Shape) -> Topic:
         count=at.field("count").count(),
         first_ns=at.field("first_ns").or_none(Shape.whole),
         last_ns=at.field("last_ns").or_none(Shape.whole),
-        longest_gap_ns=at.field("longest_gap_ns").count(),
-        out_of_order=at.field("out_of_order").count(),
+        longest_gap_ns=at.field("longest_gap_ns").or_none(Shape.count),
+        out_of_order=at.field("out_of_order").or_none(Shape.count),
     )

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from compiler.project import Project
 from compiler.report import phrases
-from compiler.report.evidence import Evidence, Finding, Result, Topic
+from compiler.report.evidence import Checked, Evidence, Finding, Result, Topic
 from compiler.report.views import Mark, Remark, RunView, TopicView
 
 _NONE = "\N{EN DASH}"
@@ -70,6 +70,7 @@ def _view(run: Run, project: Project) -> RunView:
         clock=result.clock,
         intact=health.intact,
         health=_INTACT if health.intact else _DAMAGED if health.topics else _UNREAD,
+        checked=_checked(health.checked),
         gaps=_gaps(result),
         findings=tuple(_finding(finding) for finding in health.findings),
         topics=tuple(_topic(topic, project) for topic in health.topics),
@@ -80,6 +81,28 @@ def _duration(result: Result) -> str:
     if result.start_ns is None or result.end_ns is None:
         return "not known"
     return phrases.seconds((result.end_ns - result.start_ns) / 1e9)
+
+
+def _checked(checked: Checked | None) -> str:
+    """What could be checked of the file, and what was not."""
+    if checked is None:
+        return "not known"
+    if not checked.chunks:
+        return "every record" if not checked.by_index else "nothing: it has no chunks"
+    parts = [
+        f"{count} of {checked.chunks} chunks {what}"
+        for count, what in (
+            (checked.crc_checked, "have the CRC that they state"),
+            (
+                checked.crc_unchecked,
+                "have a CRC that was not checked: only their beginning was read",
+            ),
+            (checked.without_crc, "state no CRC"),
+            (checked.skipped, "hold nothing that is bound and were not read"),
+        )
+        if count
+    ]
+    return "; ".join([*parts, "by the index" if checked.by_index else "every record"])
 
 
 def _gaps(result: Result) -> tuple[str, ...]:
@@ -101,10 +124,16 @@ def _topic(topic: Topic, project: Project) -> TopicView:
         type=topic.type,
         count=phrases.whole(topic.count),
         rate=_rate(topic),
-        longest_gap=phrases.seconds(topic.longest_gap_ns / 1e9) if topic.count > 1 else _NONE,
-        out_of_order=phrases.whole(topic.out_of_order),
+        longest_gap=_longest_gap(topic),
+        out_of_order=_NONE if topic.out_of_order is None else phrases.whole(topic.out_of_order),
         read_for=tuple(signal.name for signal in signals if signal.path.topic == topic.name),
     )
+
+
+def _longest_gap(topic: Topic) -> str:
+    if topic.longest_gap_ns is None or topic.count < 2:
+        return _NONE
+    return phrases.seconds(topic.longest_gap_ns / 1e9)
 
 
 def _rate(topic: Topic) -> str:

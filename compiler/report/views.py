@@ -72,6 +72,7 @@ class RunView:
     clock: str
     intact: bool
     health: Mark
+    checked: str
     gaps: tuple[str, ...]
     findings: tuple[Remark, ...]
     topics: tuple[TopicView, ...]

@@ -173,6 +173,14 @@ def result(
     health = {
         "intact": True,
         "size": 1234567,
+        "checked": {
+            "by_index": True,
+            "chunks": 9,
+            "crc_checked": 4,
+            "crc_unchecked": 2,
+            "without_crc": 0,
+            "skipped": 3,
+        },
         "gaps": [],
         "findings": [],
         "topics": {"/odom": {**ODOM}},

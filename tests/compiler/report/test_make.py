@@ -495,6 +495,9 @@ def test_a_run_is_shown_with_its_health(tmp_path: Path) -> None:
         "clock": "100 ms, by log_time",
         "intact": False,
         "health": {"word": "damaged", "glyph": "✘", "kind": "violated"},
+        "checked": "4 of 9 chunks have the CRC that they state; 2 of 9 chunks have a CRC that was "
+        "not checked: only their beginning was read; 3 of 9 chunks hold nothing that is bound and "
+        "were not read; by the index",
         "gaps": ["1 s to 2 s"],
         "findings": [
             {

@@ -23,7 +23,7 @@ EMPTY = Result(
     thresholds=(),
     units={},
     hashes={},
-    health=Health(True, 1, (), (), ()),
+    health=Health(True, 1, None, (), (), ()),
     assumptions=(),
 )
 
