@@ -12,6 +12,8 @@ from numpy.typing import NDArray
 
 from fretish import expressions as e
 from fretish.declarations import Invalid, Reading, Reduce, Signal
+from monitors.outline import distances, places
+from monitors.payloads import Places
 from monitors.propositions import COMPARE, TRUE, Scope, number, truth
 from monitors.samples import Numbers
 from monitors.signals import clearance
@@ -239,9 +241,7 @@ def _reduced(signal: Signal, readings: Numbers, beside: Mapping[str, Numbers]) -
         case Reduce.MEAN:
             return np.array([_mean(row) for row in readings])
         case Reduce.OUTLINE:
-            starts, increments = beside["angle_min"], beside["angle_increment"]
-            rows = zip(readings, starts, increments, strict=True)
-            return np.array([_outline(signal, *row) for row in rows])
+            return _clearances(signal, readings, beside["angle_min"], beside["angle_increment"])
 
 
 def _mean(readings: Numbers) -> float:
@@ -249,5 +249,58 @@ def _mean(readings: Numbers) -> float:
     return float(measured.mean()) if len(measured) else float("nan")
 
 
-def _outline(signal: Signal, readings: Numbers, start: float, increment: float) -> float:
-    return clearance(signal, readings, float(start), float(increment))
+# The robot's outline
+
+_SLACK = 1e-6
+"""Metres by which rounding could make a distance too small, many times over."""
+_TOO_FAR = 1e9
+"""Metres; with farther ends of beams numbers may become too large on the way."""
+
+
+def _clearances(signal: Signal, readings: Numbers, starts: Numbers, increments: Numbers) -> Numbers:
+    """`clearance` of each message.
+
+    A point is at most so much nearer to the outline than to the sensor as the farthest corner is
+    from the sensor. So once the end of the nearest beam has been measured, most of the others are
+    too far away to be nearer.
+    """
+    found = np.empty(len(readings))
+    usual = _usual(signal, readings, starts, increments)
+    for row in np.flatnonzero(~usual):
+        found[row] = clearance(signal, readings[row], float(starts[row]), float(increments[row]))
+    for rows in _of_one_kind(np.flatnonzero(usual), starts, increments):
+        beams = np.arange(readings.shape[1], dtype=float)
+        angles = starts[rows[0]] + increments[rows[0]] * beams
+        found[rows] = _least(signal, readings[rows] * float(signal.unit.factor), angles)
+    return found
+
+
+def _usual(signal: Signal, readings: Numbers, starts: Numbers, increments: Numbers) -> Truths:
+    """Which messages measure something, nothing beyond measure, and nothing too near to measure."""
+    last = starts + increments * readings.shape[1]
+    most = np.where(np.isfinite(readings), np.abs(readings), -1.0).max(axis=1)
+    sound: Truths = np.isfinite(starts) & np.isfinite(increments) & np.isfinite(last)
+    sound &= (most >= 0) & (most * float(signal.unit.factor) < _TOO_FAR)
+    return sound & ~np.isneginf(readings).any(axis=1)
+
+
+def _of_one_kind(rows: Places, starts: Numbers, increments: Numbers) -> Iterator[Places]:
+    """Messages of which the beams have the same directions."""
+    while len(rows):
+        same = (starts[rows] == starts[rows[0]]) & (increments[rows] == increments[rows[0]])
+        yield rows[same]
+        rows = rows[~same]
+
+
+def _least(signal: Signal, ranges: Numbers, angles: Numbers) -> Numbers:
+    """The least distance from the outline in each row of ranges, which are in metres."""
+    ranges = np.where(np.isfinite(ranges), ranges, np.inf)
+    first = ranges.argmin(axis=1)
+    rows = np.arange(len(ranges))
+    found = distances(places(ranges[rows, first], angles[first], signal.sensor), signal.footprint)
+    corners = np.array(signal.footprint) - np.array(signal.sensor[:2])
+    reach = float(np.hypot(*corners.T).max()) + _SLACK
+    row, beam = np.nonzero(ranges <= (found + reach)[:, None])
+    ends = places(ranges[row, beam], angles[beam], signal.sensor)
+    np.minimum.at(found, row, distances(ends, signal.footprint))
+    return found
