@@ -8,8 +8,10 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Sequence
 from contextlib import redirect_stderr, redirect_stdout
-from dataclasses import replace
+from functools import lru_cache
 from io import StringIO
+
+from mcap.records import Schema
 
 from monitors import idl, jsontext, protobuf
 from monitors.container import Stream
@@ -67,9 +69,11 @@ def decoder(stream: Stream) -> Decode | str:
                 decode = idl.decoder(stream)
                 return lambda payload: decode(_plain(payload))
             case "cdr", "ros2msg":
-                return _ros2(stream)
+                assert schema is not None
+                return _ros2(schema.name, schema.data)
             case "ros1", "ros1msg":
-                return _ros1(stream)
+                assert schema is not None
+                return _ros1(schema.name, schema.data)
             case _, defined:
                 return f"its messages are encoded as `{encoding}`, defined in `{defined}`"
     except ModuleNotFoundError:
@@ -84,16 +88,25 @@ def shape(stream: Stream) -> Shape | None:
     schema = stream.schema
     if schema is None or schema.encoding not in _LAID_OUT:
         return None
-    ros1 = schema.encoding == "ros1msg"
+    return _shape(schema.encoding, schema.name, schema.data)
+
+
+_MOST = 256
+"""Definitions that are kept: all logs of a robot have the same ones."""
+
+
+@lru_cache(_MOST)
+def _shape(encoding: str, name: str, data: bytes) -> Shape | None:
+    ros1 = encoding == "ros1msg"
     try:
-        definition = schema.data.decode()
-        if schema.encoding == "ros2idl":
-            known = idl.types(schema.name, definition)
+        definition = data.decode()
+        if encoding == "ros2idl":
+            known = idl.types(name, definition)
         else:
-            known = types(schema.name, definition, ros1=ros1)
+            known = types(name, definition, ros1=ros1)
     except Exception:  # no UTF-8, nothing that is laid out, or a parser that trusts it
         return None
-    return Shape(short_type(schema.name), known, cdr=not ros1)
+    return Shape(short_type(name), known, cdr=not ros1)
 
 
 def numbers(stream: Stream, payloads: Sequence[bytes] = ()) -> tuple[str, ...] | None:
@@ -124,11 +137,12 @@ def numbers(stream: Stream, payloads: Sequence[bytes] = ()) -> tuple[str, ...] |
     )
 
 
-def _ros2(stream: Stream) -> Decode:
+@lru_cache(_MOST)
+def _ros2(name: str, data: bytes) -> Decode:
     from mcap_ros2.decoder import DecoderFactory
 
     with redirect_stdout(StringIO()), redirect_stderr(StringIO()):  # its parser prints
-        decode = DecoderFactory().decoder_for("cdr", stream.schema)
+        decode = DecoderFactory().decoder_for("cdr", Schema(1, data, "ros2msg", name))
     assert decode is not None
     return lambda payload: decode(_plain(payload))
 
@@ -140,7 +154,8 @@ def _plain(payload: bytes) -> bytes:
     return payload
 
 
-def _ros1(stream: Stream) -> Decode:
+@lru_cache(_MOST)
+def _ros1(name: str, data: bytes) -> Decode:
     """With the decoder that is made of the fields alone.
 
     It makes Python code of the definition and runs it: constants, comments and names of any
@@ -151,11 +166,9 @@ def _ros1(stream: Stream) -> Decode:
     """
     from mcap_ros1.decoder import DecoderFactory
 
-    schema = stream.schema
-    assert schema is not None
-    if not _ROS1_TYPE.fullmatch(schema.name):
-        raise ValueError(f"`{schema.name}` is no type")
-    bare = replace(schema, data=_fields_only(schema.data.decode()).encode())
+    if not _ROS1_TYPE.fullmatch(name):
+        raise ValueError(f"`{name}` is no type")
+    bare = Schema(1, _fields_only(data.decode()).encode(), "ros1msg", name)
     decode = DecoderFactory().decoder_for("ros1", bare)
     assert decode is not None
     return decode

@@ -7,7 +7,7 @@ messages have other bytes everywhere, and lengths that move what follows.
 from __future__ import annotations
 
 import random
-from functools import reduce
+from functools import lru_cache, reduce
 
 import numpy as np
 
@@ -22,6 +22,7 @@ _LARGEST = 2**18
 """Bytes of a made-up message; one that would be longer is not made."""
 
 
+@lru_cache(256)
 def trusted(shape: Shape, decode: Decode) -> bool:
     """Whether the decoder reads each number of some made-up messages as the layout does."""
     payloads = [probe(shape, seed) for seed in range(_PROBES)]

@@ -44,6 +44,7 @@ DOORS = {
         "compiler/annotations.py",
         "monitors/bags.py",
         "monitors/container.py",
+        "monitors/decoding.py",
         "monitors/index.py",
         "monitors/projection.py",
         "monitors/walk.py",
