@@ -13,6 +13,8 @@ from monitors.payloads import Bytes
 
 SIZE = 2**22
 """Bytes that are filled before they are read."""
+_CHUNK = 2**20
+"""Bytes of the chunk that fills it; more are made room for when they come."""
 SPARE = 64
 """Bytes that stay free behind what is unpacked: more than the head of a message."""
 
@@ -21,7 +23,7 @@ class Arena:
     """Bytes of chunks, one behind the other."""
 
     def __init__(self) -> None:
-        self.data: Bytes = np.zeros(SIZE + SPARE, np.uint8)
+        self.data: Bytes = np.zeros(SIZE + _CHUNK + SPARE, np.uint8)
         self.used = 0
 
     def clear(self) -> None:

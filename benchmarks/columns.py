@@ -1,0 +1,257 @@
+"""Columns of a log against what they cost at least, and against other readers.
+
+    python -m benchmarks.columns LOG... [--peers] [--check]
+
+The columns: the least range of `/scan` within its limits, `linear.x` of `/cmd_vel`, and the two
+speeds of `/odom`, each with its times. The floor is what nobody can leave out: the needed bytes are
+read, the needed beginnings of chunks unpacked, and the least of each scan taken; nothing is parsed.
+`python -m benchmarks.logs` writes such logs.
+
+CPU time, the least of five after one run to warm up; each figure also as a multiple of the floor.
+Memory is the peak above the interpreter with everything imported, in a process of its own.
+`--check` fails where columns of a compressed log take more than twice the floor.
+"""
+
+from __future__ import annotations
+
+import argparse
+import importlib
+import resource
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import zstandard
+from mcap.reader import make_reader
+from mcap.records import ChunkIndex
+from mcap_ros1.decoder import DecoderFactory as Ros1
+from mcap_ros2.decoder import DecoderFactory as Ros2
+
+from benchmarks.timing import least
+from compiler.auditing import Audit, audit_logs
+from compiler.plan import Plan, planned
+from compiler.project import load
+from fretish.bindings import read_bindings
+from fretish.declarations import Declarations
+from fretish.source import Source
+from monitors.integrity import Integrity
+from monitors.recordings import read
+from monitors.samples import Recording
+
+HERE = Path(__file__).parent / "job"
+"""Three requirements and their bindings."""
+TOPICS = ("/scan", "/cmd_vel", "/odom")
+LONGEST = 8192
+"""Bytes of the longest message of these topics, and some more."""
+LIMIT = 2.0
+"""Times the floor."""
+
+
+def declarations() -> Declarations:
+    found, wrong = read_bindings(Source("job", (HERE / "bindings.toml").read_text("utf-8")))
+    assert found is not None, wrong
+    return found
+
+
+# The floor
+
+
+def floor(path: str) -> float:
+    """Seconds."""
+    with Path(path).open("rb") as stream:
+        summary = make_reader(stream).get_summary()
+        assert summary is not None
+        wanted = {id for id, channel in summary.channels.items() if channel.topic in TOPICS}
+        parts = [part for chunk in summary.chunk_indexes if (part := _part(stream, chunk, wanted))]
+        scans = np.random.default_rng(1).random((_count(summary), 720), np.float32)
+        target = memoryview(bytearray(max(size for *_, size in parts)))
+        source = memoryview(bytearray(max(length for _, _, length, _ in parts)))
+
+        def once() -> None:
+            for compression, at, length, size in parts:
+                stream.seek(at)
+                stream.readinto(source[:length])
+                _unpack(compression, source[:length], target[:size])
+            scans.min(axis=1)
+
+        return least(once)
+
+
+def _count(summary: Any) -> int:
+    counts = summary.statistics.channel_message_counts
+    return sum(counts.get(id, 0) for id, c in summary.channels.items() if c.topic == "/scan")
+
+
+def _part(stream: Any, chunk: ChunkIndex, wanted: set[int]) -> tuple[str, int, int, int] | None:
+    """Compression, place and length of what must be read of a chunk, and how much it unpacks to."""
+    last = -1
+    for id in wanted & chunk.message_index_offsets.keys():
+        stream.seek(chunk.message_index_offsets[id] + 11)
+        entries = stream.read(int.from_bytes(stream.read(4), "little"))
+        last = max(last, int(np.frombuffer(entries, "<u8")[1::2].max()))
+    if last < 0:
+        return None
+    size = min(chunk.uncompressed_size, last + LONGEST)
+    blocks = -(-size // 2**17) * 2**17
+    length = chunk.compressed_size
+    if size < chunk.uncompressed_size:
+        share = int(blocks * chunk.compressed_size / chunk.uncompressed_size * 1.3) + 2**14
+        length = min(length, share if chunk.compression else size)
+    at = chunk.chunk_start_offset + 49 + len(chunk.compression)
+    return chunk.compression, at, length, size
+
+
+_ZSTD = zstandard.ZstdDecompressor()
+
+
+def _unpack(compression: str, packed: memoryview, target: memoryview) -> None:
+    if compression == "zstd":
+        with _ZSTD.stream_reader(packed) as stream:
+            done = 0
+            while done < len(target) and (more := stream.readinto(target[done:])):
+                done += more
+    elif compression == "lz4":
+        import lz4.frame
+
+        lz4.frame.LZ4FrameDecompressor().decompress(packed, max_length=len(target))
+
+
+# Readers
+
+
+def ours(path: str, found: Declarations, integrity: Integrity) -> Recording:
+    recording = read(path, found, tuple(found.signals), integrity)
+    assert isinstance(recording, Recording), recording.message
+    return recording
+
+
+def official(path: str) -> list[list[float]]:
+    """With the official library and its decoders."""
+    columns: list[list[float]] = [[], [], [], []]
+    with Path(path).open("rb") as stream:
+        reader = make_reader(stream, decoder_factories=[Ros2(), Ros1()])
+        for _, channel, _, message in reader.iter_decoded_messages(topics=TOPICS):
+            _take(columns, channel.topic, message)
+    return columns
+
+
+def rosbags(path: str) -> list[list[float]]:
+    """With rosbags, the fastest reader with a permissive licence that needs no code of ours."""
+    from rosbags.rosbag2.storage_mcap import McapReader
+    from rosbags.typesys import Stores, get_types_from_msg, get_typestore
+
+    columns: list[list[float]] = [[], [], [], []]
+    reader = McapReader(Path(path))
+    reader.open()
+    store = get_typestore(Stores.ROS2_JAZZY)
+    for one in reader.connections:
+        store.register({k: v for k, v in get_types_from_msg(one.msgdef.data, one.msgtype).items()
+                        if k not in store.fielddefs})  # fmt: skip
+    chosen = [one for one in reader.connections if one.topic in TOPICS]
+    for connection, _, data in reader.messages(chosen):
+        _take(columns, connection.topic, store.deserialize_cdr(data, connection.msgtype))
+    reader.close()
+    return columns
+
+
+def _take(columns: list[list[float]], topic: str, message: Any) -> None:
+    if topic == "/scan":
+        ranges = np.array(message.ranges, np.float32)
+        valid = (ranges >= message.range_min) & (ranges <= message.range_max)
+        columns[0].append(float(ranges[valid].min()))
+    elif topic == "/cmd_vel":
+        columns[1].append(message.linear.x)
+    else:
+        columns[2].append(message.twist.twist.linear.x)
+        columns[3].append(message.twist.twist.angular.z)
+
+
+def same(recording: Recording, columns: list[list[float]]) -> bool:
+    """Whether both have read the same."""
+    mine = [recording.samples[name].values for name in ("min_range", "v", "vx", "wz")]
+    return all(np.array_equal(a, np.array(b)) for a, b in zip(mine, columns, strict=True))
+
+
+# The audit, and memory
+
+
+def plan(integrity: Integrity) -> Plan:
+    made = planned(load([str(HERE / "r.fret")], str(HERE / "bindings.toml")), integrity=integrity)
+    assert isinstance(made, Plan), made
+    return made
+
+
+def audited(path: str, judged: Plan) -> Audit:
+    audit = audit_logs(judged, [path])
+    assert isinstance(audit, Audit), audit.message
+    assert audit.read == 1
+    return audit
+
+
+def memory(path: str, what: str) -> float:
+    """MB above the interpreter, in a process of its own."""
+    command = [sys.executable, "-m", "benchmarks.columns", path, "--peak", what]
+    return float(subprocess.run(command, check=True, capture_output=True, text=True).stdout)
+
+
+def peak(path: str, what: str) -> float:
+    """MB by which this process grows for a log, from when everything is imported."""
+    found, judged = declarations(), plan(Integrity.HASH)
+    use: Callable[[str], object] = {
+        "columns": lambda log: ours(log, found, Integrity.INDEX),
+        "audit": lambda log: audited(log, judged),
+    }[what]
+    for name in ("lz4.frame", "concurrent.futures", "hashlib", "json"):
+        importlib.import_module(name)
+    before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    use(path)
+    return (resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before) / 1024
+
+
+# What is printed
+
+
+def measured(path: str, *, peers: bool) -> float:
+    """Print the figures of one log; gives the columns as a multiple of the floor."""
+    found, bottom = declarations(), floor(path)
+    print(f"{path}: {Path(path).stat().st_size / 1e6:.0f} MB; floor {bottom:.4f} s")
+    mine = least(lambda: ours(path, found, Integrity.INDEX))
+    rows = {"columns": mine}
+    for integrity in (Integrity.HASH, Integrity.FULL):
+        rows[f"columns, --integrity {integrity}"] = least(lambda i=integrity: ours(path, found, i))
+    for integrity in Integrity:
+        judged = plan(integrity)
+        rows[f"audit, --integrity {integrity}"] = least(lambda j=judged: audited(path, j))
+    if peers:
+        recording = ours(path, found, Integrity.INDEX)
+        for reader in (official, rosbags):
+            assert same(recording, reader(path)), reader
+            rows[reader.__name__] = least(lambda r=reader: r(path), 1)
+    for name, taken in rows.items():
+        print(f"  {name:<26} {taken:8.4f} s  {taken / bottom:6.1f} x floor {taken / mine:6.1f} x")
+    for what in ("columns", "audit"):
+        print(f"  memory of {what:<16} {memory(path, what):8.1f} MB")
+    return mine / bottom
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("logs", nargs="+")
+    parser.add_argument("--peers", action="store_true", help="ROS 2 only")
+    parser.add_argument("--check", action="store_true")
+    parser.add_argument("--peak", choices=("columns", "audit"), help=argparse.SUPPRESS)
+    chosen = parser.parse_args()
+    if chosen.peak:
+        print(peak(chosen.logs[0], chosen.peak))
+        return
+    shares = {log: measured(log, peers=chosen.peers) for log in chosen.logs}
+    slow = [log for log, share in shares.items() if share > LIMIT]
+    if chosen.check and slow:
+        raise SystemExit(f"more than {LIMIT} times the floor: {', '.join(slow)}")
+
+
+if __name__ == "__main__":
+    main()
