@@ -1,5 +1,6 @@
 """The audit as a user runs it, on the recorded mission that the repository carries."""
 
+import hashlib
 import json
 import os
 import shutil
@@ -303,3 +304,28 @@ def test_what_is_true_of_many_logs_is_told_once(fretc: Fretc) -> None:
     assert said.count("F314") == 1
     assert said.count("F403") == 1
     assert "  --> 2.mcap\n" in said
+
+
+@pytest.mark.parametrize("integrity", ["index", "hash", "full"])
+def test_verdicts_do_not_depend_on_what_is_looked_at_of_the_log(
+    fretc: Fretc, integrity: str
+) -> None:
+    assert fretc("audit", "run.mcap").status == 0
+    (usual,) = evidence()["results"]
+    assert fretc("audit", "run.mcap", "--integrity", integrity).status == 0
+    found = evidence()
+    jsonschema.validate(found, SCHEMA)
+    (result,) = found["results"]
+    assert {**result, "health": 0, "hashes": 0} == {**usual, "health": 0, "hashes": 0}
+    assert result["health"]["checked"]["by_index"] is (integrity != "full")
+    whole = hashlib.sha256(Path("run.mcap").read_bytes()).hexdigest()
+    assert result["hashes"].get("log") == (None if integrity == "index" else whole)
+    assert ("log_summary" in result["hashes"]) is (integrity == "index")
+
+
+def test_a_log_that_was_not_read_whole_is_reported_as_such(fretc: Fretc) -> None:
+    fretc("audit", "run.mcap", "--integrity", "index")
+    assert fretc("report", "--json", "report.json").status == 0
+    (run,) = json.loads(Path("report.json").read_text("utf-8"))["runs"]
+    assert run["sha256"] == ""
+    assert run["checked"].endswith("by the index")
