@@ -30,6 +30,8 @@ from monitors import findings, refusals
 STDIN = "-"
 _BLOCK = 2**22
 """Bytes that are asked of a server at once."""
+_SMALL_BLOCK = 2**17
+"""The same where most of the file is passed by."""
 _URL = re.compile(r"[A-Za-z][A-Za-z0-9+.:-]*://.*", re.DOTALL)
 _SECRET = re.compile(r"sig|token|key|cred|secret|passw|auth", re.IGNORECASE)
 
@@ -72,14 +74,18 @@ def shown(path: str) -> str:
 
 
 @contextmanager
-def opened(path: str) -> Iterator[Input | Diagnostic]:
+def opened(path: str, *, whole: bool = True) -> Iterator[Input | Diagnostic]:
     """The log at a path, for as long as it is needed; or why there is none.
+
+    Args:
+        path: a file, a URL, or `-`.
+        whole: whether all of it will be read; else a server is asked for less at once.
 
     Reading from it can raise OSError.
     """
     with ExitStack() as stack:
         try:
-            found = _opened(path, stack)
+            found = _opened(path, stack, _BLOCK if whole else _SMALL_BLOCK)
         except FileNotFoundError:
             found = findings.no_such_file(Source(shown(path), "").span())
         except OSError as error:
@@ -87,11 +93,11 @@ def opened(path: str) -> Iterator[Input | Diagnostic]:
         yield found
 
 
-def _opened(path: str, stack: ExitStack) -> Input | Diagnostic:
+def _opened(path: str, stack: ExitStack, block: int) -> Input | Diagnostic:
     if path == STDIN:
         return _stdin(stack)
     if is_url(path):
-        return _remote(path, stack)
+        return _remote(path, stack, block)
     mode = os.stat(path).st_mode
     if stat.S_ISDIR(mode):
         return findings.is_a_directory(Source(path, "").span())
@@ -219,7 +225,7 @@ class _Hashed(io.RawIOBase):
         return self._digest.hexdigest()
 
 
-def _remote(url: str, stack: ExitStack) -> Input | Diagnostic:
+def _remote(url: str, stack: ExitStack, block: int) -> Input | Diagnostic:
     place = Source(shown(url), "").span()
     try:
         import fsspec
@@ -233,13 +239,13 @@ def _remote(url: str, stack: ExitStack) -> Input | Diagnostic:
         if about.get("size") is None or about.get("partial") is False:
             whole = stack.enter_context(system.open(path, "rb", block_size=0))
             return _copy(_copied(_Raising(whole), stack))
-        file = stack.enter_context(system.open(path, "rb", block_size=_BLOCK))
+        file = stack.enter_context(system.open(path, "rb", block_size=block))
     except ImportError as error:
         return refusals.no_protocol_package(url.partition("://")[0], str(error), place)
     except Exception as error:  # each protocol has its own
         raise _as_os_error(error) from error
     hashed = _Hashed(file, about["size"])
-    stream = stack.enter_context(io.BufferedReader(hashed, _BLOCK))
+    stream = stack.enter_context(io.BufferedReader(hashed, block))
     return Input(
         cast("io.BufferedReader", stream), about["size"], hashed.sha256, lambda: None, None
     )

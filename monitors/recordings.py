@@ -135,7 +135,7 @@ def _opened(path: str, new: Callable[[], Columns], integrity: Integrity) -> _Rea
     try:
         if is_folder(path):
             return _tried(partial(_folder, path), place, new, integrity)
-        with opened(path) as log:
+        with opened(path, whole=integrity is not Integrity.INDEX) as log:
             if isinstance(log, Diagnostic):
                 return log
             return _tried(partial(_file, path, log), place, new, integrity)

@@ -3,6 +3,7 @@
 import hashlib
 import io
 import os
+import random
 import re
 import subprocess
 import sys
@@ -19,10 +20,11 @@ import pytest
 
 from fretish.diagnostic import Code, Diagnostic
 from monitors.inputs import is_url, opened, shown
+from monitors.integrity import Integrity
 from monitors.recordings import read
 from monitors.refusals import install
 from monitors.samples import Recording
-from tests.monitors.logs import NONE, TWELVE, X, damaged, values, write
+from tests.monitors.logs import NONE, TWELVE, S, Sent, X, damaged, number, values, write
 
 ROOT = Path(__file__).parents[2]
 
@@ -237,6 +239,24 @@ def test_a_log_on_a_server_is_the_log(server: tuple[type[Server], str], ranges: 
     assert values(found, "x") == [i / 100 for i in range(12)]
     assert found.sha256 == hashlib.sha256(handler.data).hexdigest()
     assert handler.sent <= 2 * len(handler.data)
+
+
+def test_by_its_index_little_is_asked_of_a_server(
+    server: tuple[type[Server], str], tmp_path: Path
+) -> None:
+    handler, url = server
+    noise = random.Random(1).randbytes(2**20)
+    images = [Sent("/camera", "std_msgs/msg/String", noise, i * S) for i in range(1, 40)]
+    sent = sorted([*(number(float(i), i * S) for i in range(0, 40, 20)), *images], key=sent_at)
+    handler.data = write(tmp_path / "large.mcap", sent, per_chunk=1).read_bytes()
+    found = read(url, X, ["x"], Integrity.INDEX)
+    assert isinstance(found, Recording), found
+    assert (values(found, "x"), found.checked.skipped) == ([0.0, 20.0], 39)
+    assert handler.sent < 0.1 * len(handler.data)
+
+
+def sent_at(message: Sent) -> int:
+    return message.time
 
 
 @pytest.mark.parametrize(
