@@ -66,6 +66,7 @@ class Shape:
 
     def __init__(self, name: str, types: Types, *, cdr: bool) -> None:
         self.name, self.types, self.cdr = name, types, cdr
+        self._asked: dict[Where, Field | None] = {}
 
     def number(self, where: Where) -> Field | None:
         """The number, or the array of numbers, at that place of each message.
@@ -73,6 +74,11 @@ class Shape:
         None also for a time of ROS 1 that stands in the message itself: its decoder carries
         nanoseconds over into seconds.
         """
+        if where not in self._asked:
+            self._asked[where] = self._number(where)
+        return self._asked[where]
+
+    def _number(self, where: Where) -> Field | None:
         name = self.name
         for depth, part in enumerate(where, 1):
             fields = self.types.get(name, ())
