@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable, Generator, Mapping, Sequence
 from contextlib import closing
 from dataclasses import dataclass, replace
@@ -59,7 +58,7 @@ class Audit:
     @property
     def as_json(self) -> str:
         """One JSON array, an object per run and requirement."""
-        return f"{json.dumps(list(self.results), indent=2, allow_nan=False)}\n"
+        return f"{to_json(list(self.results))}\n"
 
     @property
     def text(self) -> tuple[tuple[str, str | None], ...]:

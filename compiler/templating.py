@@ -80,6 +80,29 @@ def _written(name: str, value: object) -> str:
     return tomli_w.dumps({name: value}).removesuffix("\n")
 
 
-def to_json(value: object) -> str:
-    """Indented JSON with a fixed order of keys, in ASCII."""
-    return json.dumps(value, indent=2, allow_nan=False)
+_WIDTH = 100
+"""Columns of a line of JSON, for what fits on one."""
+_encode = json.JSONEncoder(allow_nan=False).encode
+
+
+def to_json(value: object, indent: str = "") -> str:
+    """JSON with a fixed order of keys, in ASCII; indented, and what fits on a line stands on one.
+
+    Args:
+        value: of JSON.
+        indent: what the lines after the first begin with.
+
+    Raises:
+        ValueError: a number is infinite or not a number.
+    """
+    line = _encode(value)
+    if len(line) + len(indent) <= _WIDTH or not isinstance(value, dict | list | tuple):
+        return line
+    inner = f"{indent}  "
+    if isinstance(value, dict):
+        parts = [f"{_encode(str(k))}: {to_json(v, inner)}" for k, v in value.items()]
+    else:
+        parts = [to_json(part, inner) for part in value]
+    opening, closing = "{}" if isinstance(value, dict) else "[]"
+    separator = f",\n{inner}"
+    return f"{opening}\n{inner}{separator.join(parts)}\n{indent}{closing}"
