@@ -155,10 +155,11 @@ def audit_logs(
 def gathered(plan: Plan, found: Sequence[Audited]) -> Audit:
     """What was shown of all logs, in their order, as one."""
     results = [result for shown in found for result in shown.results]
+    told = _told(found)
     return Audit(
         tuple(results),
         _evidence(plan, results),
-        (*_told(found), *never_changed(tallies_of(results), plan.declarations)),
+        (*told, *never_changed(tallies_of(results), plan.declarations, told)),
         sum(shown.read for shown in found),
     )
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
 from fretish.declarations import Declarations
@@ -23,17 +23,25 @@ def tallies_of(results: Sequence[Mapping[str, Any]]) -> dict[str, list[Tally]]:
 
 
 def never_changed(
-    tallies: Mapping[str, Sequence[Tally]], declarations: Declarations
+    tallies: Mapping[str, Sequence[Tally]],
+    declarations: Declarations,
+    said: Iterable[Diagnostic] = (),
 ) -> Iterator[Diagnostic]:
     """F314 for each proposition that changed in none of the runs.
 
     Args:
         tallies: of each declared proposition one for each run.
         declarations: where it points to.
+        said: what is told of the runs; where an error is in the bindings (no such topic, no such
+            field), propositions that were unknown throughout are not told again.
     """
+    source = declarations.source.name
+    explained = any(d.is_error and d.span and d.span.source.name == source for d in said)
     for name, counted in tallies.items():
         whole = sum(counted, NOTHING)
         if whole.changes or not whole.true + whole.false + whole.unknown:
+            continue
+        if explained and not whole.true + whole.false:
             continue
         runs = "the log" if len(counted) == 1 else f"any of {len(counted)} logs"
         yield Diagnostic(

@@ -40,8 +40,15 @@ class Coverage:
     @property
     def diagnostics(self) -> tuple[Diagnostic, ...]:
         """What there is to say: of each log, and then of all of them."""
-        constant = never_changed(self._tallies, self.declarations)
-        return (*(finding for log in self.logs for finding in log.findings), *constant)
+        return (*self._told, *self._constant)
+
+    @property
+    def _told(self) -> tuple[Diagnostic, ...]:
+        return tuple(finding for log in self.logs for finding in log.findings)
+
+    @property
+    def _constant(self) -> tuple[Diagnostic, ...]:
+        return tuple(never_changed(self._tallies, self.declarations, self._told))
 
     @property
     def shown(self) -> bool:
@@ -95,9 +102,7 @@ class Coverage:
                 for log in self.logs
             ],
             "propositions": [self._proposition(name) for name in self.declarations.propositions],
-            "findings": [
-                as_json(finding) for finding in never_changed(self._tallies, self.declarations)
-            ],
+            "findings": [as_json(finding) for finding in self._constant],
         }
 
     def _proposition(self, name: str) -> dict[str, Any]:

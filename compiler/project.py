@@ -69,6 +69,7 @@ def load(paths: Sequence[str], bindings: str | None = None, hazards: str | None 
     """
     declarations, said = _declarations(bindings or _beside(paths, BINDINGS))
     known, told = _hazards(hazards) if hazards else ({}, ())
+    unsaid = frozenset({Code.NO_CLOCK}) if has_errors(said) else frozenset()  # it may be there
     written: list[Requirement] = []
     diagnostics = [*said, *told]
     for path in paths:
@@ -80,7 +81,7 @@ def load(paths: Sequence[str], bindings: str | None = None, hazards: str | None 
     rules, failed = [], []
     for requirement in written:
         rule, remarks = formalize(requirement, declarations)
-        diagnostics.extend(remarks)
+        diagnostics.extend(remark for remark in remarks if remark.code not in unsaid)
         if rule is not None:
             rules.append(rule)
         else:

@@ -150,7 +150,7 @@ def _asked(table: Table) -> Iterator[duckdb.DuckDBPyConnection]:
     # A query reads no file, writes none, and fetches no extension from anywhere.
     with duckdb.connect(":memory:", config={"enable_external_access": False}) as connection:
         connection.register("given", table)
-        connection.execute("CREATE TABLE results AS SELECT DISTINCT * FROM given")
+        connection.execute("CREATE TABLE results AS SELECT DISTINCT * FROM given ORDER BY ALL")
         connection.unregister("given")
         connection.execute("SET lock_configuration = true")
         yield connection

@@ -239,9 +239,13 @@ def is_truth(expression: e.Expression) -> bool:
     return not isinstance(expression, numbers)
 
 
+_SPELT = {"mps": "m/s", "kph": "km/h", "kmh": "km/h", "rps": "rad/s", "degrees": "deg"}
+"""Units by names that are nearer to those of other units."""
+
+
 def unknown_unit(name: str, span: Span) -> Diagnostic:
     """F306, with the nearest unit."""
-    near = suggestion(name, NAMES)
+    near = _SPELT.get(name) or suggestion(name, NAMES)
     known = "m, cm, s, ms, rad, deg, m/s, rad/s, m/s^2, kg, A, V, Hz, %"
     return Diagnostic(
         Code.UNKNOWN_UNIT,
@@ -281,6 +285,13 @@ def _unknown_function(name: str, span: Span) -> Diagnostic:
 
 
 def _unexpected(error: UnexpectedInput, text: Span) -> Diagnostic:
+    if text.text.startswith("TODO"):
+        return Diagnostic(
+            Code.BAD_EXPRESSION,
+            "the expression is still to be written",
+            text,
+            help="say when the proposition is true, such as `min_range < 5 cm`",
+        )
     at = error.pos_in_stream
     length = 1
     if not isinstance(error, UnexpectedCharacters):

@@ -213,8 +213,18 @@ def _unknown(evidence: Evidence, recording: Recording) -> str:
     runs = evidence.outcome.unknown
     ticks = sum(last - first + 1 for first, last in runs)
     if not runs:
-        return "the propositions are unknown where it matters"
+        return f"unknown where it matters{_of_whom(evidence)}"
     return f"unknown at {_times(ticks, 'tick')}, first at tick {runs[0][0]}"
+
+
+def _of_whom(evidence: Evidence) -> str:
+    """The propositions that were unknown at all."""
+    parts = [
+        f"`{name}` at {_times(tally.unknown, 'tick')}"
+        for name, tally in evidence.propositions.items()
+        if tally.unknown
+    ]
+    return f": {', '.join(parts)}" if parts else ""
 
 
 def _latency(evidence: Evidence) -> str:

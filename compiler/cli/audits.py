@@ -36,7 +36,7 @@ def audit_all(
         stop(known)
     if resume:
         stale = journal is not None and journal.stale
-        say_line(f"{len(known)} of {len(logs)} logs are audited already{_STALE if stale else ''}")
+        say_line(_resumed(len(known), len(logs), stale=stale))
     kept = len(known)
 
     def keep(log: str, audited: Audited) -> None:
@@ -61,7 +61,11 @@ def audit_all(
     return result
 
 
-_STALE = ": requirements, bindings or fretc have changed since then"
+def _resumed(known: int, count: int, *, stale: bool) -> str:
+    if not known and not stale:
+        return "no stopped audit was found: all logs are audited"
+    why = ": requirements, bindings or fretc have changed since then" if stale else ""
+    return f"{known} of {count} logs are audited already{why}"
 
 
 def _kept(kept: int, count: int) -> str:

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
 import click
 
@@ -40,6 +41,22 @@ class Compile(click.Command):
     def format_usage(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         """As it is typed."""
         formatter.write_usage("fretc", "FILE... [OPTIONS]")
+
+
+class Grouped(click.Command):
+    """A command with many options: its help shows them under headings."""
+
+    def __init__(self, *, headings: Mapping[str, Sequence[str]], **attributes: Any) -> None:
+        super().__init__(**attributes)
+        self._headings = headings
+
+    def format_options(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        """The options under each heading in its order; those under none come last."""
+        options = {o.name: o for o in self.get_params(ctx) if isinstance(o, click.Option)}
+        named = {heading: [options.pop(n) for n in ns] for heading, ns in self._headings.items()}
+        for heading, some in (*named.items(), ("Other", [*options.values()])):
+            with formatter.section(heading):
+                formatter.write_dl([r for o in some if (r := o.get_help_record(ctx)) is not None])
 
 
 def _is_path(word: str) -> bool:

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 import click
 
 from compiler.cli.audits import audit_all
+from compiler.cli.group import Grouped
 from compiler.cli.output import (
     BAD,
     NOT_SHOWN,
@@ -32,18 +33,36 @@ if TYPE_CHECKING:
     from compiler.project import Project
 
 
-@click.command(short_help="Audit recorded runs against all requirements.")
+_AUDIT = {
+    "Judged by": ("requirements", "bindings", "integrity", "evaluation"),
+    "Printed and written": ("form", "evidence", "parquet", "annotate", "annotations"),
+    "Many logs": ("jobs", "resume", "engine"),
+    "Questions to tables and evidence: LOG is one of them, nothing is audited": (
+        "summary",
+        "query",
+    ),
+}
+
+
+@click.command(
+    cls=Grouped, headings=_AUDIT, short_help="Audit recorded runs against all requirements."
+)
 @click.argument("paths", nargs=-1, required=True, metavar="LOG...")
 @click.option(
     "--requirements", default="requirements", show_default=True, help="Folder, or one file."
 )
 @click.option("--bindings", help="bindings.toml; the one in the requirements' folder if not given.")
 @click.option(
-    "--evidence", default="build/evidence.json", show_default=True, help="Where evidence goes."
+    "--evidence",
+    default="build/evidence.json",
+    show_default=True,
+    help="Where evidence goes; - prints it.",
 )
-@click.option("--annotate", is_flag=True, help="Also write a log beside each one, for Foxglove.")
+@click.option("--annotate", is_flag=True, help="Also write its verdicts as a log, for Foxglove.")
 @click.option(
-    "--annotations", metavar="FOLDER", help="Where these go: build/annotations, if not given."
+    "--annotations",
+    metavar="FOLDER",
+    help="Where these go: build/annotations, if not given. Implies --annotate.",
 )
 @click.option(
     "--format",
@@ -66,8 +85,8 @@ if TYPE_CHECKING:
     type=click.Choice(("index", "hash", "full")),
     default="hash",
     show_default=True,
-    help="What is looked at beyond the messages that are bound: nothing, each byte's share in the "
-    "SHA-256, or also every record, CRC and count.",
+    help="How much of a log is read: what is bound (index); that, and all bytes are hashed (hash); "
+    "every record, CRC and count (full).",
 )
 @click.option(
     "--jobs",
@@ -84,9 +103,9 @@ if TYPE_CHECKING:
 @click.option("--resume", is_flag=True, help="Go on with an audit that was stopped.")
 @click.option("--parquet", help="Where a table goes, too: a row for each run and requirement.")
 @click.option(
-    "--summary", is_flag=True, help="Say what tables or evidence say; LOG is one of them."
+    "--summary", is_flag=True, help="How many of which verdict, worst runs, slowest answers."
 )
-@click.option("--query", metavar="SQL", help="Ask them: SQL of DuckDB on the table `results`.")
+@click.option("--query", metavar="SQL", help="The answer to SQL of DuckDB; the table is `results`.")
 def audit(
     paths: tuple[str, ...],
     requirements: str,
@@ -106,11 +125,12 @@ def audit(
 ) -> None:
     """Audit recorded runs against all requirements.
 
-    LOG is an MCAP file, a bag (.bag, .db3), a folder: all logs below it, a quoted pattern
+    LOG is an MCAP file, a bag (.bag, .db3), a folder (all logs below it), a quoted pattern
     ('runs/**/*.mcap'), a URL, or - for standard input. A folder of rosbag2 with several files is
-    one log. Each run and requirement gets a verdict: satisfied, violated, inconclusive, vacuous or
-    no data; the evidence goes to a JSON file. With `--summary` or `--query`, nothing is audited:
-    LOG is a table or evidence that was written before.
+    one log.
+
+    Each run and requirement gets a verdict: satisfied, violated, inconclusive, vacuous or no data.
+    Exit status: 0 all satisfied, 1 a violation, 2 bad use or bad input, 3 something is not shown.
     """
     if summary or query is not None:
         summarize(paths, query, form)
@@ -137,6 +157,8 @@ def audit(
         stop(*plan)
     journal = Journal(Path(evidence), plan) if evidence != "-" and len(logs) > 1 else None
     result = audit_all(plan, logs, _engine(engine, jobs), journal, resume=resume)
+    if project.diagnostics and result.diagnostics:
+        say_line("")
     say(result.diagnostics)
     if result.read:  # a mistyped name must not cost the evidence of the last audit
         marked = _marked(result, project, annotations) if annotate or annotations else {}
@@ -233,7 +255,7 @@ def _nothing_kept() -> Diagnostic:
 def info(paths: tuple[str, ...], whole: bool, form: str) -> None:
     """Say what is in recorded runs, and how healthy they are.
 
-    LOG is an MCAP file, a bag (.bag, .db3), a folder: all logs below it, a quoted pattern
+    LOG is an MCAP file, a bag (.bag, .db3), a folder (all logs below it), a quoted pattern
     ('runs/**/*.mcap'), a URL, or - for standard input. Of each topic its type, count, rate and
     longest gap, and the fields that a signal of `bindings.toml` can read. Exit status: 0 read, 3
     something is damaged, 2 a log cannot be read.

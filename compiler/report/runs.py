@@ -70,7 +70,7 @@ def _view(run: Run, project: Project) -> RunView:
         clock=result.clock,
         intact=health.intact,
         health=_INTACT if health.intact else _DAMAGED if health.topics else _UNREAD,
-        checked=_checked(health.checked),
+        checked=_checked(health.checked, hashed="log_summary" not in result.hashes),
         gaps=_gaps(result),
         findings=tuple(_finding(finding) for finding in health.findings),
         topics=tuple(_topic(topic, project) for topic in health.topics),
@@ -83,12 +83,12 @@ def _duration(result: Result) -> str:
     return phrases.seconds((result.end_ns - result.start_ns) / 1e9)
 
 
-def _checked(checked: Checked | None) -> str:
+def _checked(checked: Checked | None, *, hashed: bool) -> str:
     """What could be checked of the file, and what was not."""
     if checked is None:
         return "not known"
     if not checked.chunks:
-        return "every record" if not checked.by_index else "nothing: it has no chunks"
+        return "every record was read" if not checked.by_index else "nothing: it has no chunks"
     parts = [
         f"{count} of {checked.chunks} chunks {what}"
         for count, what in (
@@ -102,7 +102,8 @@ def _checked(checked: Checked | None) -> str:
         )
         if count
     ]
-    return "; ".join([*parts, "by the index" if checked.by_index else "every record"])
+    parts.append("read by the index" if checked.by_index else "every record was read")
+    return "; ".join(parts if hashed else [*parts, "not hashed"])
 
 
 def _gaps(result: Result) -> tuple[str, ...]:

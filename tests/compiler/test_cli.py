@@ -326,3 +326,30 @@ def test_names_that_become_one_in_one_file_are_refused(fretc: Fretc) -> None:
     found = fretc("req", "--emit", "monitor", "--one-file")
     assert (found.status, found.out) == (2, "")
     assert "F116 `a.b` and `a_DOT_b` would be one name" in found.err
+
+
+def test_broken_bindings_are_not_told_to_have_no_clock(fretc: Fretc) -> None:
+    write("bindings.toml", '[clock]\ntick = "100 ms"\n[signal.x]\npath = "/x.data"\nunit = "mps"\n')
+    run = fretc(write("r.fret", "whenever p the rover shall within 3 seconds satisfy q"))
+    assert (run.status, run.out) == (2, "")
+    assert run.err == (
+        "F306 `mps` is no unit\n"
+        "  --> bindings.toml:5:8\n"
+        '   | unit = "mps"\n'
+        "   |        ^^^^^\n"
+        "help: did you mean `m/s`?\n"
+    )
+
+
+def test_the_options_of_an_audit_stand_under_headings(fretc: Fretc) -> None:
+    text = fretc("audit", "--help").out
+    headings = [line for line in text.splitlines() if line.endswith(":") and line[0] != " "]
+    assert headings == [
+        "Judged by:",
+        "Printed and written:",
+        "Many logs:",
+        "Questions to tables and evidence: LOG is one of them, nothing is audited:",
+        "Other:",
+    ]
+    assert text.index("--requirements") < text.index("--format") < text.index("--jobs")
+    assert text.endswith("Other:\n  --help  Show this message and exit.\n")

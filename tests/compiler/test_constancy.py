@@ -1,4 +1,6 @@
 from compiler.constancy import never_changed, tallies_of
+from fretish.diagnostic import Code, Diagnostic
+from fretish.source import Source
 from monitors.tallies import Tally
 from tests.monitors.logs import X
 
@@ -32,3 +34,12 @@ def test_a_proposition_of_two_requirements_counts_once_in_each_run() -> None:
         {"run": "b", "requirement": "R1", "propositions": {}},
     ]
     assert tallies_of(results) == {"low": [Tally(1, 2, 3, 0)]}
+
+
+def test_what_an_error_in_the_bindings_explains_is_not_told_again() -> None:
+    unknown, low = {"low": [Tally(0, 0, 7, 0)]}, {"low": [Tally(0, 7, 1, 0)]}
+    missing = Diagnostic(Code.NO_TOPIC, "the topic `/y` is not in the log", X.source.span())
+    elsewhere = Diagnostic(Code.NO_SUCH_FILE, "there is no such file", Source("a", "").span())
+    assert [*never_changed(unknown, X, [missing])] == []
+    assert len([*never_changed(low, X, [missing])]) == 1
+    assert len([*never_changed(unknown, X, [elsewhere])]) == 1

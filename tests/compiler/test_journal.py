@@ -169,6 +169,11 @@ def test_another_requirement_or_binding_makes_all_of_it_new(
     )
 
 
+def test_an_audit_that_was_not_stopped_is_said_to_begin_anew(fretc: Fretc) -> None:
+    run = fretc("audit", *LOGS, "--resume")
+    assert run.err.startswith("no stopped audit was found: all logs are audited\n")
+
+
 def test_another_fretc_or_evaluation_makes_all_of_it_new(
     fretc: Fretc, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -126,6 +126,16 @@ def test_a_query_is_answered_for_a_person_and_for_a_program(
     assert json.loads(run.out)[0] == {"verdict": "satisfied", "n": 3}
 
 
+def test_the_rows_of_a_table_are_in_the_order_of_runs_and_requirements(
+    fretc: Fretc, results: list[dict[str, Any]]
+) -> None:
+    query = "SELECT run, requirement FROM results"
+    run = fretc("audit", "runs.parquet", "--query", query, "--format", "json")
+    rows = [(row["run"], row["requirement"]) for row in json.loads(run.out)]
+    assert rows == sorted(rows)
+    assert len(rows) == 6
+
+
 def test_what_json_has_no_word_for_is_null_or_text(
     fretc: Fretc, results: list[dict[str, Any]]
 ) -> None:

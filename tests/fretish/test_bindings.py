@@ -265,6 +265,12 @@ def test_a_path_names_a_topic_and_a_field(text: str, expected: Path | None) -> N
         ('"min_range < 5 cm"', '"min_range < 5 cm!"', "F308 {}:21:25", "`!` does not fit here"),
         (
             '"min_range < 5 cm"',
+            '"TODO: when is it true?"',
+            "F308 {}:21:9",
+            "the expression is still to be written",
+        ),
+        (
+            '"min_range < 5 cm"',
             '"min_range"',
             "F308 {}:21:8",
             "a proposition must be true or false, and this is a number",

@@ -114,6 +114,7 @@ def test_what_never_triggers_is_vacuous() -> None:
 def test_an_unknown_trigger_is_no_data() -> None:
     evidence = audited(EVENTUALLY, recorded([FAR, float("nan"), FAR], [MOVING, MOVING, STILL]))
     assert evidence.verdict == "no data"
+    assert evidence.reason == "unknown where it matters: `near` at 1 tick"
 
 
 def test_a_stale_response_is_no_data_and_never_a_pass() -> None:

@@ -497,7 +497,7 @@ def test_a_run_is_shown_with_its_health(tmp_path: Path) -> None:
         "health": {"word": "damaged", "glyph": "✘", "kind": "violated"},
         "checked": "4 of 9 chunks have the CRC that they state; 2 of 9 chunks have a CRC that was "
         "not checked: only their beginning was read; 3 of 9 chunks hold nothing that is bound and "
-        "were not read; by the index",
+        "were not read; read by the index",
         "gaps": ["1 s to 2 s"],
         "findings": [
             {
@@ -631,3 +631,13 @@ def test_the_evidence_of_the_recorded_run_fits_its_schema_and_is_reported(tmp_pa
     assert words(content["requirements"][0]["results"]) == ["satisfied", "no data"]
     assert [run["health"]["word"] for run in content["runs"]] == ["intact", "not readable"]
     assert report.diagnostics == ()
+
+
+def test_a_log_that_was_not_hashed_is_said_not_to_be(tmp_path: Path) -> None:
+    known = project(tmp_path)
+    audited = result(known, "satisfied")
+    hashes = {name: value for name, value in audited["hashes"].items() if name != "log"}
+    hashes["log_summary"] = "cd" * 32
+    (run,) = said(made(known, tmp_path, {**audited, "hashes": hashes}))["runs"]
+    assert run["sha256"] == ""
+    assert run["checked"].endswith("; not hashed")
