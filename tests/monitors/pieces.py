@@ -8,7 +8,8 @@ from __future__ import annotations
 import zlib
 from collections import Counter
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from typing import Any
 
 import lz4.frame  # type: ignore[import-untyped]
 import zstandard
@@ -72,7 +73,8 @@ CHANNELS = {
 class Piece:
     """A chunk, or messages that stand in none."""
 
-    messages: Sequence[Message]
+    messages: Sequence[McapRecord]
+    """And other records that stand among them."""
     compression: str = ""
     crc: bool = True
     chunked: bool = True
@@ -82,6 +84,8 @@ class Piece:
     """Whether the definitions of its topics stand in it."""
     after: Sequence[str] = ()
     """What follows it: keys of `BETWEEN`."""
+    also: Sequence[McapRecord] = ()
+    """Other definitions that stand at its beginning."""
 
 
 @dataclass
@@ -109,6 +113,7 @@ def built(
     data_crc: bool = False,
     summary_crc: bool = True,
     outside: bool = False,
+    **stated: Any,
 ) -> Put:
     """A log of these pieces, with all indexes and statistics.
 
@@ -118,6 +123,7 @@ def built(
         data_crc: whether the data has a CRC, over all chunks.
         summary_crc: whether the summary has one.
         outside: whether all definitions also stand before the first chunk.
+        stated: what the statistics state instead of what is right.
     """
     put = Put()
     put.put(Header("ros2", "pieces"))
@@ -131,31 +137,39 @@ def built(
         put.put(*(BETWEEN[name] for name in piece.after), padded=padded)
     put.put(DataEnd(zlib.crc32(put.data) if data_crc else 0))
     put.summary = len(put.data)
-    messages = [message for piece in pieces for message in piece.messages]
+    messages = [message for piece in pieces for message in _messages(piece)]
     put.put(*SCHEMAS.values(), *CHANNELS.values(), *put.chunks, padded=padded)
-    put.put(_statistics(messages, len(put.chunks)), padded=padded)
+    put.put(replace(_statistics(messages, len(put.chunks)), **stated), padded=padded)
     footer = framed(Footer(put.summary, 0, 0))[:-4]
     crc = zlib.crc32(put.data[put.summary :] + footer) if summary_crc else 0
     put.data += footer + crc.to_bytes(4, "little") + MAGIC
     return put
 
 
+def _messages(piece: Piece) -> list[Message]:
+    return [record for record in piece.messages if isinstance(record, Message)]
+
+
 def _declared(piece: Piece) -> list[McapRecord]:
-    ids = dict.fromkeys(message.channel_id for message in piece.messages)
+    ids = dict.fromkeys(message.channel_id for message in _messages(piece))
     channels = [CHANNELS[id] for id in ids]
     schemas = dict.fromkeys(channel.schema_id for channel in channels)
-    return [*(SCHEMAS[id] for id in schemas), *channels] if piece.declares else []
+    declared = [*(SCHEMAS[id] for id in schemas), *channels] if piece.declares else []
+    return [*piece.also, *declared]
 
 
 def _chunk(put: Put, piece: Piece, *, padded: bool) -> None:
     content = bytearray(b"".join(map(framed, _declared(piece))))
     indexes: dict[int, MessageIndex] = {}
     for message in piece.messages:
+        if not isinstance(message, Message):
+            content += framed(message)
+            continue
         entry = message.log_time, len(content)
         index = indexes.setdefault(message.channel_id, MessageIndex(message.channel_id, []))
         index.records.append(entry)
         content += framed(message)
-    times = [message.log_time for message in piece.messages] or [0]
+    times = [message.log_time for message in _messages(piece)] or [0]
     packed = PACK[piece.compression](bytes(content))
     crc = zlib.crc32(content) if piece.crc else 0
     chunk = Chunk(piece.compression, packed, max(times), min(times), crc, len(content))
