@@ -79,10 +79,21 @@ def _named(path: str) -> Iterator[str | Diagnostic]:
                 yield match
 
 
-def _below(path: Path) -> Iterator[str | Diagnostic]:
+def _below(path: Path, seen: set[str] | None = None) -> Iterator[str | Diagnostic]:
+    """The logs in a folder; a link that leads to none is one that cannot be read, and never lost.
+
+    Args:
+        path: the folder.
+        seen: folders that were looked into already: links may lead in circles.
+    """
+    seen = set() if seen is None else seen
+    real = os.path.realpath(path)
+    if real in seen:
+        return
+    seen.add(real)
     entries = sorted(path.iterdir())
     logs = [entry for entry in entries if not entry.name.endswith(ANNOTATIONS)]
-    files = [entry for entry in logs if entry.suffix in _LOGS and entry.is_file()]
+    files = [entry for entry in logs if entry.suffix in _LOGS and not entry.is_dir()]
     run = folder(str(path)) if is_folder(str(path)) else None
     if isinstance(run, Diagnostic) and len(files) > 1:
         yield run
@@ -93,8 +104,8 @@ def _below(path: Path) -> Iterator[str | Diagnostic]:
     for entry in entries:
         if entry in files:
             yield str(entry)
-        elif entry.is_dir() and not entry.is_symlink():
-            yield from _below(entry)
+        elif entry.is_dir():
+            yield from _below(entry, seen)
 
 
 def _whole(found: dict[str, str]) -> list[str]:

@@ -13,6 +13,8 @@ from monitors.samples import Recording, Topic
 
 _MOST = 8
 """Fields of a topic that a person is shown."""
+_WIDEST = 60
+"""Characters of a topic's name that the others stand clear of."""
 
 
 def as_record(overview: Overview) -> dict[str, Any]:
@@ -56,7 +58,7 @@ def _moment(ns: int) -> str:
 
 def _topics(overview: Overview, *, whole: bool) -> Iterator[str]:
     topics = overview.recording.topics
-    width = max((len(name) for name in topics), default=0)
+    width = min(_WIDEST, max((len(name) for name in topics), default=0))
     for name, topic in topics.items():
         odd = "".join(_oddities(topic))
         yield f"  {name:<{width}}  {topic.type or '?'}, {_count(topic)}{odd}"

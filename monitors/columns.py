@@ -76,6 +76,8 @@ class Column:
     unstamped: int = 0
     unset: bytearray = field(default_factory=bytearray)
     """For each message 1 where its time was never set: it is zero, and its samples are unknown."""
+    adrift: bool = True
+    """Whether the declared clock has not told the time of any of its messages yet."""
     stated: int = 0
     """How many messages the log says it holds of it that were not read."""
 
@@ -253,12 +255,17 @@ class Columns:
                 column.unstamped += int((extract.decoded & ~extract.stamped).sum())
                 times, known = np.where(extract.stamped, extract.stamps, logs), extract.decoded
         unset = known & (times == 0) & (logs >= JUMP)  # a log may begin at zero itself
-        first = times[known & ~unset][:1]
-        before = column.times[-1] if column.times else int(first[0]) if len(first) else None
-        for i in np.flatnonzero(~known | unset):  # as the message before it
-            if i:
-                before = int(times[i - 1])
-            times[i] = logs[i] if before is None else before
+        lost, placed = ~known | unset, known & ~unset & (times < LATEST)
+        first = times[placed][:1]
+        if column.adrift and len(first):  # those so far are as the first one that has a time
+            column.adrift = False
+            column.times = array("q", first.tolist()) * len(column.times)
+        if column.adrift:
+            times[lost] = logs[lost]
+            return times, unset
+        before = column.times[-1] if column.times else first[0]
+        rows = np.maximum.accumulate(np.where(placed, np.arange(len(times)), -1))
+        times[lost] = np.where(rows < 0, before, times[rows])[lost]  # as the message before it
         return times, unset
 
     # The results

@@ -7,7 +7,7 @@ record has to be looked at (`monitors.walk`).
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from io import BufferedReader
 
@@ -47,6 +47,8 @@ def indexed(stream: BufferedReader, size: int, found: Summary | None) -> Index |
     if found is None or not found.sound or found.after != size or found.statistics is None:
         return None
     statistics, chunks = found.statistics, tuple(found.chunks[at] for at in sorted(found.chunks))
+    if not chunks:
+        return None
     streams = {
         id: Stream(channel, found.schemas.get(channel.schema_id))
         for id, channel in found.channels.items()
@@ -58,6 +60,8 @@ def indexed(stream: BufferedReader, size: int, found: Summary | None) -> Index |
         or not streams.keys() >= {id for id, count in counts.items() if count}
         or any(one.schema is None and one.channel.schema_id for one in streams.values())
         or not all(map(_is_usual, chunks))
+        or statistics.message_start_time != min(chunk.message_start_time for chunk in chunks)
+        or statistics.message_end_time != max(chunk.message_end_time for chunk in chunks)
     ):
         return None
     try:
@@ -96,7 +100,9 @@ def _between(
                 return None
             if opcode == Opcode.DATA_END:
                 end = place, parse(DataEnd.read, content).data_section_crc
-            elif not _is_known(found, opcode, content):
+            elif opcode not in _PASSED_BY and not is_known(
+                opcode, content, found.schemas, found.channels
+            ):
                 return None
         if chunk is not None:
             at = wall + chunk.chunk_length + chunk.message_index_length
@@ -119,12 +125,18 @@ def _records(stream: BufferedReader, at: int, wall: int) -> Iterator[tuple[int, 
         at += HEAD.size + length
 
 
-def _is_known(found: Summary, opcode: int, content: bytes) -> bool:
-    """Whether it holds no message, and declares nothing that the summary does not."""
+def is_known(
+    opcode: int, content: bytes, schemas: Mapping[int, Schema], channels: Mapping[int, Channel]
+) -> bool:
+    """Whether a record declares a topic or its messages, and as the summary does.
+
+    Raises:
+        BrokenError: it cannot be read.
+    """
     if opcode == Opcode.SCHEMA:
         schema = parse(Schema.read, content)
-        return bool(found.schemas.get(schema.id) == schema)
+        return bool(schemas.get(schema.id) == schema)
     if opcode == Opcode.CHANNEL:
         channel = parse(Channel.read, content)
-        return bool(found.channels.get(channel.id) == channel)
-    return opcode in _PASSED_BY
+        return bool(channels.get(channel.id) == channel)
+    return False

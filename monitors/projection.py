@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 from monitors.arena import SIZE, Arena
 from monitors.container import CHUNK, ENTRY, HEAD, INDEX, BrokenError, Stream, is_absurd
 from monitors.damage import LATEST
-from monitors.index import Index
+from monitors.index import Index, is_known
 from monitors.integrity import Checked
 from monitors.messages import Messages, Sink
 from monitors.payloads import Places
@@ -56,6 +56,13 @@ class Projection:
         self._found: defaultdict[int, _Found] = defaultdict(_Found)
         self._counts: Counter[int] = Counter()
         self._unpacked = self._crc_checked = self._without_crc = 0
+        some = [one.schema for one in streams.values() if one.schema is not None]
+        self._schemas = {schema.id: schema for schema in some}
+        self._channels = {id: one.channel for id, one in streams.items()}
+        self._known: set[tuple[int, bytes]] = set()
+        """Records in chunks that declare what the summary does."""
+        self._met: set[int] = set()
+        """Channels of which a message was found."""
 
     @property
     def checked(self) -> Checked:
@@ -115,6 +122,9 @@ class Projection:
             self._crc_checked += 1
         self._without_crc += not crc
         self._unpacked += 1
+        firsts = [int(some["place"].min()) for id, some, _ in entries if id not in self._met]
+        self._met.update(id for id, _, _ in entries)
+        self._declared(base, needed, max(firsts, default=0))
         span = chunk.message_start_time, chunk.message_end_time
         for id, some, _ in entries:
             found = self._found[id]
@@ -122,6 +132,25 @@ class Projection:
             found.places.append(some["place"].astype(np.int64) + base)
             found.limits.append((len(some), base + needed, *span))
         self._arena.used += needed
+
+    def _declared(self, base: int, needed: int, until: int) -> None:
+        """Hold what a chunk declares against the summary: at its beginning, and `until` a place.
+
+        A log that was merged from others may call two topics by the same number.
+        """
+        data, at, end = self._arena.data.data, base, base + needed
+        while at + HEAD.size <= end:
+            opcode, length = HEAD.unpack_from(data, at)
+            start, at = at + HEAD.size, at + HEAD.size + length
+            if opcode == Opcode.MESSAGE:
+                if at > base + until:
+                    return
+            elif at > end:
+                return
+            elif (record := (opcode, bytes(data[start:at]))) not in self._known:
+                if not is_known(*record, self._schemas, self._channels):
+                    raise BrokenError("a chunk declares what its summary does not")
+                self._known.add(record)
 
     def _entries(self, chunk: ChunkIndex) -> list[tuple[int, NDArray[np.void], int]]:
         """Of each wanted channel in the chunk: its number, its index, and its last place."""

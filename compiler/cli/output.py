@@ -45,11 +45,9 @@ def deliver(files: Mapping[Path, str | bytes], protected: Iterable[str] = ()) ->
     """
     from compiler.files import write
 
-    inputs = {os.path.realpath(path): path for path in protected if path != "-"}
+    protect(files, protected)
     targets = [os.path.realpath(path) for path in files]
     for path, target in zip(files, targets, strict=True):
-        if target in inputs:
-            stop(not_written(str(path), f"it is `{inputs[target]}`, which is read"))
         if targets.count(target) > 1:
             stop(not_written(str(path), "two outputs would go there"))
     printed = files.get(Path("-"))
@@ -61,6 +59,15 @@ def deliver(files: Mapping[Path, str | bytes], protected: Iterable[str] = ()) ->
         stop(wrong)
     for path in written:
         say_line(f"wrote {path}")
+
+
+def protect(outputs: Iterable[Path], protected: Iterable[str]) -> None:
+    """Stop where an output would replace a file that is read."""
+    inputs = {os.path.realpath(path): path for path in protected if path != "-"}
+    for path in outputs:
+        target = os.path.realpath(path)
+        if path != Path("-") and target in inputs:
+            stop(not_written(str(path), f"it is `{inputs[target]}`, which is read"))
 
 
 def coloured(lines: Sequence[tuple[str, str | None]]) -> str:

@@ -20,6 +20,7 @@ from compiler.cli.output import (
     coloured,
     deliver,
     not_written,
+    protect,
     say,
     say_line,
     stop,
@@ -148,6 +149,8 @@ def audit(
     files = requirement_files(requirements)
     if isinstance(files, Diagnostic):
         stop(files)
+    outputs = [Path(path) for path in (evidence, f"{evidence}.journal", parquet) if path]
+    protect(outputs, (*files_of(logs), *files))
     project = load(files, bindings or beside(requirements, "bindings.toml"))
     say(project.diagnostics)
     if has_errors(project.diagnostics):

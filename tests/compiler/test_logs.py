@@ -1,5 +1,6 @@
 """Which logs are meant by files and folders."""
 
+import os
 from pathlib import Path
 
 import pytest
@@ -120,3 +121,21 @@ def test_links_that_lead_in_circles_are_not_followed() -> None:
     made("runs/a.mcap")
     Path("runs/again").symlink_to(Path("runs").resolve())
     assert logs(["runs"]) == ["runs/a.mcap"]
+
+
+def test_a_folder_of_links_is_the_logs_that_they_lead_to() -> None:
+    made("disk/one/a.mcap", "disk/b.mcap", "disk/z.txt")
+    Path("runs").mkdir()
+    Path("runs/day").symlink_to(Path("disk/one").resolve())
+    Path("runs/b.mcap").symlink_to(Path("disk/b.mcap").resolve())
+    Path("runs/same.mcap").symlink_to(Path("disk/b.mcap").resolve())
+    Path("disk/one/up").symlink_to(Path("runs").resolve())
+    assert logs(["runs"]) == ["runs/b.mcap", "runs/day/a.mcap"]
+
+
+def test_a_link_to_a_log_that_is_not_there_is_not_passed_by() -> None:
+    # As of data that was not fetched: the other logs alone would show too much.
+    made("runs/a.mcap")
+    Path("runs/b.mcap").symlink_to("nowhere")
+    os.mkfifo("runs/c.mcap")
+    assert logs(["runs"]) == ["runs/a.mcap", "runs/b.mcap", "runs/c.mcap"]

@@ -196,3 +196,20 @@ def test_a_monitor_with_a_closed_or_full_stream_tells_so(folder: Path, shell: st
     assert done.returncode == 2
     assert done.stderr.startswith("standard ")
     assert "Traceback" not in done.stderr
+
+
+@pytest.mark.parametrize("evidence", ["runs/b.mcap", "runs/a.mcap", "build/x"])
+def test_no_audit_is_begun_whose_evidence_or_journal_would_replace_a_log(
+    folder: Path, evidence: str
+) -> None:
+    (folder / "runs").mkdir()
+    (folder / "build").mkdir()
+    for name in ("runs/b.mcap", "runs/a.mcap.journal", "build/x.journal"):
+        shutil.copy(LOG, folder / name)
+    logs = "runs/b.mcap runs/a.mcap.journal build/x.journal"
+    done = fretc(folder, f"audit {logs} --evidence {evidence}")
+    assert done.returncode == 2
+    assert done.stderr.startswith("F905 ")
+    assert "wrote" not in done.stderr
+    assert sum(path.is_file() for path in (*folder.glob("runs/*"), *folder.glob("build/*"))) == 3
+    assert (folder / "build/x.journal").read_bytes() == Path(LOG).read_bytes()

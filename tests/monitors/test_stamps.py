@@ -7,6 +7,8 @@ import numpy as np
 import pytest
 
 from fretish.diagnostic import Severity
+from monitors.integrity import Integrity
+from monitors.recordings import read
 from monitors.samples import Recording
 from monitors.stamps import Stamps, stamps
 from tests.monitors.logs import (
@@ -158,3 +160,24 @@ def test_of_three_topics_the_one_that_differs_is_told(tmp_path: Path) -> None:
     recording = recorded(write(tmp_path / "log.mcap", sent), declare(text))
     (finding,) = recording.findings
     assert finding.message.startswith("the stamps of `/scan` are 5.000 s behind those of `/back`")
+
+
+@pytest.mark.parametrize("unset", [3, 4096, 5000])
+@pytest.mark.parametrize("integrity", list(Integrity))
+def test_many_messages_before_the_first_stamp_are_as_that_one(
+    tmp_path: Path, unset: int, integrity: Integrity
+) -> None:
+    # So many are read at once; by log time instead, the log would last for fifty years.
+    first = 1_700_000_000 * S
+    sent = [number(0.5, first + i * MS) for i in range(unset)]
+    sent = [Sent(s.topic, s.type, s.payload, s.time, 0) for s in sent]
+    last = number(1.5, first + unset * MS)
+    sent.append(Sent(last.topic, last.type, last.payload, last.time, 7 * S))
+    path = write(tmp_path / "log.mcap", sent)
+    found = read(str(path), BY_PUBLISHER, ["x"], integrity)
+    assert isinstance(found, Recording), found
+    assert (found.start_ns, found.end_ns) == (7 * S, 7 * S)
+    assert set(times(found, "x")) == {7 * S}
+    assert np.isnan(values(found, "x")[:-1]).all()
+    assert values(found, "x")[-1] == 1.5
+    assert found.topics["/x"].zero_stamps == unset
