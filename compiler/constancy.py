@@ -49,7 +49,7 @@ def never_changed(
             f"`{name}` never changed in {runs}: {_always(whole)}",
             declarations.propositions[name].span,
             help="check its path, its unit and its bound, or audit a run in which it should change",
-            severity=Severity.WARNING,
+            severity=Severity.NOTE,
         )
 
 

@@ -42,7 +42,7 @@ def text(overview: Overview, *, whole: bool) -> str:
 
 def _head(recording: Recording) -> Iterator[str]:
     length = (recording.end_ns - recording.start_ns) / 1e9
-    state = "intact" if recording.intact else "damaged"
+    state = "no damage found" if recording.intact else "damaged"
     yield f"{recording.name}  {recording.size:,} bytes, {length:.3f} s, {state}"
     yield f"  from     {_moment(recording.start_ns)}"
     yield f"  SHA-256  {recording.sha256}"

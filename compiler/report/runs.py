@@ -11,7 +11,7 @@ from compiler.report.evidence import Checked, Evidence, Finding, Result, Topic
 from compiler.report.views import Mark, Remark, RunView, TopicView
 
 _NONE = "\N{EN DASH}"
-_INTACT = Mark("intact", "✔", "satisfied")
+_INTACT = Mark("no damage found", "✔", "satisfied")
 _DAMAGED = Mark("damaged", "✘", "violated")
 _UNREAD = Mark("not readable", "?", "no-data")
 
@@ -157,4 +157,8 @@ def trust(found: Sequence[Run]) -> str:
     if told:
         verb = "has" if len(told) == 1 else "have"
         return f"{phrases.some(told)} {verb} findings: read them before the verdicts."
-    return "The run is intact." if len(found) == 1 else f"All {len(found)} runs are intact."
+    return (
+        "No damage was found in the run."
+        if len(found) == 1
+        else f"No damage was found in any of {len(found)} runs."
+    )

@@ -124,7 +124,7 @@ def test_a_proposition_that_took_one_value_only_is_told_and_is_status_3(fretc: F
         "  run.mcap  true 0, false 12, unknown 0 of 12 ticks; changed 0 times\n"
     )
     assert run.err.startswith(
-        "F314 warning: `high` never changed in the log: it was false at 12 ticks\n"
+        "F314 note: `high` never changed in the log: it was false at 12 ticks\n"
         "  --> requirements/bindings.toml:"
     )
     assert run.err.count("F314") == 1

@@ -90,7 +90,7 @@ def test_each_verdict_has_its_overall_result(
     content = said(report)
     overall = content["overall"]
     assert (overall["mark"]["word"], overall["headline"]) == (word, headline)
-    assert overall["sentences"] == [sentence, "The run is intact."]
+    assert overall["sentences"] == [sentence, "No damage was found in the run."]
     assert words(content["requirements"]) == [verdict]
     assert words(content["requirements"][0]["results"]) == [verdict]
     assert [line["requirement"] for line in content["not_shown"]] == (
@@ -312,7 +312,7 @@ def test_a_project_with_errors_is_never_all_shown(tmp_path: Path) -> None:
     assert overall["headline"] == "Not everything that was claimed is shown."
     assert overall["sentences"] == [
         "The one requirement, R1, held in the audited run.",
-        "The run is intact.",
+        "No damage was found in the run.",
         "The requirements or what stands beside them have errors: this report is not complete.",
     ]
 
@@ -629,7 +629,7 @@ def test_the_evidence_of_the_recorded_run_fits_its_schema_and_is_reported(tmp_pa
     content = said(report)
     validate("report.schema.json", content)
     assert words(content["requirements"][0]["results"]) == ["satisfied", "no data"]
-    assert [run["health"]["word"] for run in content["runs"]] == ["intact", "not readable"]
+    assert [run["health"]["word"] for run in content["runs"]] == ["no damage found", "not readable"]
     assert report.diagnostics == ()
 
 
