@@ -16,6 +16,7 @@ from compiler.plan import Plan, watched
 from compiler.templating import to_json
 from compiler.workers import Killed, each, was_killed
 from fretish.diagnostic import Diagnostic
+from fretish.rendering import visible
 from monitors import kernel
 from monitors.audit import Engine as Evaluation
 from monitors.audit import audit, examined, signals_of
@@ -73,7 +74,7 @@ class Audit:
             glyph, colour = GLYPHS[result["verdict"]]
             name = f"{result['requirement']:<{width}}"
             lines.append((f"  {glyph} {name}  {result['verdict']:<12}  {result['reason']}", colour))
-        return tuple(lines)
+        return tuple((visible(line), colour) for line, colour in lines)
 
 
 EVALUATIONS: Mapping[str, Evaluation] = {"columns": kernel.evaluate, "online": kernel.stepped}

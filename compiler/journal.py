@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import Any
 
 from compiler.auditing import Audited
-from compiler.files import Stamp, file_sha256, stamp
+from compiler.files import Stamp, file_sha256, sha256, stamp
 from compiler.plan import Plan
 from fretish.diagnostic import Code, Diagnostic, Severity
 from fretish.source import Source, Span
@@ -158,11 +158,12 @@ class Journal:
 
 
 def _whole(line: bytes) -> bool:
-    """Whether the line has its end, and is what was written."""
+    """Whether the line has its end, and is what was written: verdicts are taken from it."""
     try:
-        return line.endswith(b"\n") and isinstance(json.loads(line), dict)
+        value = json.loads(line)
     except ValueError:
         return False
+    return isinstance(value, dict) and line == _line({**value, "check": ""})
 
 
 def _unchanged(entry: Mapping[str, Any]) -> bool:
@@ -173,7 +174,9 @@ def _unchanged(entry: Mapping[str, Any]) -> bool:
 
 
 def _line(value: Mapping[str, Any]) -> bytes:
-    return f"{json.dumps(value, allow_nan=False)}\n".encode()
+    """With the SHA-256 of itself, but for that, at its end."""
+    unchecked = json.dumps({**value, "check": ""}, allow_nan=False)
+    return f"{json.dumps({**value, 'check': sha256(unchecked)}, allow_nan=False)}\n".encode()
 
 
 def _entry(log: str, audited: Audited, plan: Plan) -> bytes:

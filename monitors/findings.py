@@ -42,6 +42,16 @@ def not_a_file(place: Span) -> Diagnostic:
     )
 
 
+def changed(place: Span) -> Diagnostic:
+    """F903: what was read and what was hashed may be different bytes."""
+    return Diagnostic(
+        Code.UNREADABLE,
+        "it was changed while it was read",
+        place,
+        "wait until its recording or its copy is complete",
+    )
+
+
 def unreadable(error: OSError, place: Span) -> Diagnostic:
     """The system, or the server, does not let it be read."""
     reason = error.strerror or str(error)

@@ -32,6 +32,8 @@ _BLOCK = 2**22
 """Bytes that are asked of a server at once."""
 _SMALL_BLOCK = 2**17
 """The same where most of the file is passed by."""
+_HASHED = 2**18
+"""Bytes that are hashed at once."""
 _URL = re.compile(r"[A-Za-z][A-Za-z0-9+.:-]*://.*", re.DOTALL)
 _SECRET = re.compile(r"sig|token|key|cred|secret|passw|auth", re.IGNORECASE)
 
@@ -48,6 +50,8 @@ class Input:
     """Hash them at the same time as they are read, where that can be."""
     file: str | None
     """Its path, where it has one of its own."""
+    changed: Callable[[], bool] = lambda: False
+    """Whether somebody has written to it since it was opened."""
 
 
 def is_url(path: str) -> bool:
@@ -103,22 +107,32 @@ def _opened(path: str, stack: ExitStack, block: int) -> Input | Diagnostic:
         return findings.is_a_directory(Source(path, "").span())
     if not stat.S_ISREG(mode):
         return findings.not_a_file(Source(path, "").span())
-    digest = _Digest(path)
     stream = stack.enter_context(Path(path).open("rb"))  # noqa: SIM115
-    return Input(stream, os.fstat(stream.fileno()).st_size, digest.result, digest.begin, path)
+    before = os.fstat(stream.fileno())
+
+    def changed() -> bool:
+        now = os.fstat(stream.fileno())
+        return (now.st_size, now.st_mtime_ns) != (before.st_size, before.st_mtime_ns)
+
+    digest = _Digest(stream.fileno(), before.st_size)
+    return Input(stream, before.st_size, digest.result, digest.begin, path, changed)
 
 
 class _Digest:
-    """The SHA-256 of a file, which a second thread takes: hashing leaves the interpreter free."""
+    """The SHA-256 of a file, which a second thread takes: hashing leaves the interpreter free.
 
-    def __init__(self, path: str) -> None:
-        self._path = path
+    It is of the very file that is read: another one may have its name by now.
+    """
+
+    def __init__(self, descriptor: int, size: int) -> None:
+        self._descriptor, self._size = descriptor, size
         self._thread: threading.Thread | None = None
         self._found: str | OSError = ""
 
     def begin(self) -> None:
         if self._thread is None:
-            self._thread = threading.Thread(target=self._run, daemon=True)
+            own = os.dup(self._descriptor)  # the reader may be gone before this is done
+            self._thread = threading.Thread(target=self._run, args=(own,), daemon=True)
             self._thread.start()
 
     def result(self) -> str:
@@ -129,12 +143,20 @@ class _Digest:
             raise self._found
         return self._found
 
-    def _run(self) -> None:
+    def _run(self, own: int) -> None:
+        digest, block, at = hashlib.sha256(), memoryview(bytearray(_HASHED)), 0
         try:
-            with Path(self._path).open("rb") as stream:
-                self._found = hashlib.file_digest(stream, "sha256").hexdigest()
+            while at < self._size:
+                read = os.preadv(own, [block[: self._size - at]], at)
+                if not read:
+                    raise OSError(None, "it became shorter while it was read")
+                digest.update(block[:read])
+                at += read
+            self._found = digest.hexdigest()
         except OSError as error:
             self._found = error
+        finally:
+            os.close(own)
 
 
 def _copy(stream: io.BufferedReader) -> Input:

@@ -169,8 +169,7 @@ def _file(
         return part
     if part.span is None:
         return findings.empty(place)
-    damages = [(place, *damage) for damage in part.damages]
-    notes = (*part.notes, *_alone(path, place))
+    damages, notes = [(place, *one) for one in part.damages], (*part.notes, *_alone(path, place))
     return _Run(part.sha256, part.size, (part.span,), damages, notes, part.checked)
 
 
@@ -191,6 +190,11 @@ def _part(log: Input, sink: Sink, integrity: Integrity, place: Span) -> Part | D
     Raises:
         BrokenError: the file is not as its index says.
     """
+    part = _taken(log, sink, integrity, place)
+    return findings.changed(place) if log.changed() else part
+
+
+def _taken(log: Input, sink: Sink, integrity: Integrity, place: Span) -> Part | Diagnostic:
     log.stream.seek(0)
     start = log.stream.read(16)
     if not start:

@@ -12,7 +12,7 @@ from typing import NoReturn
 import click
 
 from fretish.diagnostic import Code, Diagnostic
-from fretish.rendering import render_all
+from fretish.rendering import render_all, visible
 
 SHOWN, VIOLATION, BAD, NOT_SHOWN, INTERRUPTED = 0, 1, 2, 3, 130
 """Exit status: all shown, a violation, bad use or input, something not shown, Ctrl-C."""
@@ -58,7 +58,7 @@ def deliver(files: Mapping[Path, str | bytes], protected: Iterable[str] = ()) ->
     if wrong is not None:
         stop(wrong)
     for path in written:
-        say_line(f"wrote {path}")
+        say_line(visible(f"wrote {path}"))
 
 
 def protect(outputs: Iterable[Path], protected: Iterable[str]) -> None:

@@ -287,3 +287,16 @@ def test_an_audit_is_stopped_and_goes_on(fretc: Fretc, stop: signal.Signals) -> 
     assert resumed.err.startswith(f"{kept} of 24 logs are audited already\n")
     assert 0 < kept < 24
     assert [result["run"] for result in json.loads(EVIDENCE.read_text())["results"]] == logs
+
+
+def test_a_line_with_another_byte_is_not_believed(fretc: Fretc) -> None:
+    stopped()
+    data = JOURNAL.read_bytes()
+    second = data.rindex(b"\n", 0, -1) + 1
+    verdict = data.index(b'"satisfied"', second) + 1
+    for at in (verdict, *range(second, len(data), 977), len(data) - 1):
+        JOURNAL.write_bytes(data[:at] + bytes([data[at] ^ 1]) + data[at + 1 :])
+        assert finished() == ["a.mcap"], at
+    for line in (b'{"log": "b.mcap"}', b'{"log": "b.mcap", "check": ""}', b"[]", b"1"):
+        JOURNAL.write_bytes(data[:second] + line + b"\n")
+        assert finished() == ["a.mcap"], line

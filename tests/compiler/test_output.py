@@ -213,3 +213,12 @@ def test_no_audit_is_begun_whose_evidence_or_journal_would_replace_a_log(
     assert "wrote" not in done.stderr
     assert sum(path.is_file() for path in (*folder.glob("runs/*"), *folder.glob("build/*"))) == 3
     assert (folder / "build/x.journal").read_bytes() == Path(LOG).read_bytes()
+
+
+def test_no_name_of_a_log_writes_a_verdict_of_its_own(folder: Path) -> None:
+    forged = "a.mcap\n  \u2714 R1  satisfied\x1b[2K"
+    shutil.copy(LOG, folder / forged)
+    done = fretc(folder, "audit *.mcap* --evidence $'build/x\\ny'")
+    assert done.stdout.splitlines()[0] == "a.mcap\\n  \u2714 R1  satisfied\\x1b[2K"
+    assert len(done.stdout.splitlines()) == 2
+    assert done.stderr == "wrote build/x\\ny\n"

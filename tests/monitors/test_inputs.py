@@ -9,7 +9,7 @@ import subprocess
 import sys
 import tempfile
 import threading
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
@@ -19,6 +19,7 @@ import fsspec
 import pytest
 
 from fretish.diagnostic import Code, Diagnostic
+from monitors import contents, inputs, recordings
 from monitors.inputs import is_url, opened, shown
 from monitors.integrity import Integrity
 from monitors.recordings import read
@@ -330,3 +331,51 @@ def test_a_full_disk_has_its_code(monkeypatch: pytest.MonkeyPatch) -> None:
     assert diagnostic.code is Code.UNREADABLE
     assert "No space left on device" in diagnostic.message
     assert "TMPDIR" in str(diagnostic.help)
+
+
+def written_to(monkeypatch: pytest.MonkeyPatch, change: Callable[[], object]) -> None:
+    """Let somebody change a log when its messages have been read, and its hash has not."""
+
+    def read(*arguments: Any) -> Any:
+        found = contents.contents(*arguments)
+        change()
+        return found
+
+    monkeypatch.setattr(recordings, "contents", read)
+    monkeypatch.setattr(inputs._Digest, "begin", lambda self: None)
+    monkeypatch.setattr(inputs._Digest, "result", _later)
+
+
+_begin, _result = inputs._Digest.begin, inputs._Digest.result
+
+
+def _later(digest: inputs._Digest) -> str:
+    _begin(digest)
+    return _result(digest)
+
+
+@pytest.mark.parametrize("integrity", list(Integrity))
+@pytest.mark.parametrize("change", [b"", b"more", b"other"])
+def test_a_log_that_is_written_to_while_it_is_read_shows_nothing(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, integrity: Integrity, change: bytes
+) -> None:
+    path = write(tmp_path / "log.mcap", TWELVE)
+    os.utime(path, ns=(0, 0))
+    data = path.read_bytes()
+    new = {b"": data[:-20], b"more": data + b"more", b"other": data[:-1] + b"?"}[change]
+    written_to(monkeypatch, lambda: path.write_bytes(new))
+    found = read(str(path), X, ["x"], integrity)
+    assert isinstance(found, Diagnostic)
+    assert found.code is Code.UNREADABLE
+
+
+def test_the_hash_is_that_of_the_file_that_was_read(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path = write(tmp_path / "log.mcap", TWELVE)
+    other = write(tmp_path / "other.mcap", TWELVE[:4])
+    sha256 = hashlib.sha256(path.read_bytes()).hexdigest()
+    written_to(monkeypatch, lambda: other.replace(path))
+    found = read(str(path), X, ["x"])
+    assert isinstance(found, Recording)
+    assert (len(values(found, "x")), found.sha256) == (12, sha256)

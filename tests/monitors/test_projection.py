@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 from mcap.records import Message
 
 from fretish.diagnostic import Diagnostic
+from monitors import columns, extraction, projection
 from monitors.integrity import Integrity
 from monitors.recordings import read
 from monitors.samples import Recording
@@ -143,6 +144,29 @@ def test_by_its_index_a_sound_log_is_read_as_record_by_record(
         assert told(found) == full
         if found.checked.by_index:
             assert all(piece.chunked and piece.messages for piece in pieces)
+
+
+@settings(suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(
+    pieces(),
+    st.sampled_from(CLOCKS),
+    st.integers(1, 4),
+    st.sampled_from([1, 3, 1024]),
+    st.sampled_from([1, 2**22]),
+)
+def test_how_many_messages_are_read_at_once_makes_no_difference(
+    tmp_path: Path, pieces: list[Piece], clock: str, most: int, enough: int, size: int
+) -> None:
+    path = tmp_path / "log.mcap"
+    path.write_bytes(bytes(built(pieces).data))
+    expected = told(whole(path, Integrity.FULL, clock))
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(columns, "_MOST", most)
+        patch.setattr(columns, "_ENOUGH", enough)
+        patch.setattr(projection, "SIZE", size)
+        patch.setattr(extraction, "_FEW", 0)
+        for integrity in Integrity:
+            assert told(whole(path, integrity, clock)) == expected
 
 
 def test_the_logs_of_these_tests_are_read_by_their_index(tmp_path: Path) -> None:
