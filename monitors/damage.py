@@ -80,14 +80,19 @@ class Damages:
         anywhere: bool = False,
         code: Code = Code.DAMAGED_CHUNK,
     ) -> None:
-        """Keep one; of several without a message between them the first one tells."""
+        """Keep one; of several without a message between them the first one tells.
+
+        That the log breaks off is told all the same.
+        """
         located = not lossless and not anywhere
-        if located and self._open is not None:
+        if located and self._open is not None and code is not Code.TRUNCATED_LOG:
             self._open.stated += [stated] if stated else []
             self._open.also.append(at)
             return
         damage = self._new(at, what)
         damage.stated += [stated] if stated else []
+        if located and self._open is not None:
+            damage.stated += self._open.stated
         damage.lossless, damage.anywhere, damage.code = lossless, anywhere, code
         if located:
             self._open = damage
