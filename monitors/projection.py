@@ -25,22 +25,27 @@ from monitors.damage import LATEST
 from monitors.index import Index, is_known
 from monitors.integrity import Checked
 from monitors.messages import Messages, Sink
-from monitors.payloads import Places
 
 _SLACK = 4096
 """Bytes that the last message of a chunk is taken to have until a longer one was seen."""
+_FEW = 32
+"""Numbers that Python compares sooner than NumPy."""
 _BLOCK = 2**17
 """Bytes that a codec unpacks at once."""
+
+
+Entries = NDArray[np.uint64]
+"""Of a message index: time, place, time, place, ..."""
 
 
 @dataclass(slots=True)
 class _Found:
     """Messages of one channel in the arena."""
 
-    times: list[NDArray[np.uint64]] = field(default_factory=list)
-    places: list[Places] = field(default_factory=list)
-    limits: list[tuple[int, int, int, int]] = field(default_factory=list)
-    """Of each chunk: how many messages, where it ends, and between which times they are."""
+    entries: list[Entries] = field(default_factory=list)
+    """Of each chunk."""
+    limits: list[tuple[int, int, int, int, int]] = field(default_factory=list)
+    """Of each chunk: how many messages, where it begins and ends, and between which times."""
 
 
 class Projection:
@@ -105,12 +110,13 @@ class Projection:
             return
         crc = self._head(chunk)
         size, base = chunk.uncompressed_size, self._arena.used
-        needed = max(last + HEAD.size + self._longest[id] for id, _, last in entries)
+        last, final = max((last, id) for id, _, last in entries)
+        needed = last + HEAD.size + self._longest[final]
         while True:
             whole = needed > size // 2
             needed = size if whole else needed
             self._unpack(chunk, needed, whole=whole)
-            end = max(self._end(id, base, last, needed) for id, _, last in entries)
+            end = self._end(final, base, last, needed)
             if end <= needed:
                 break
             if end > size:
@@ -122,15 +128,14 @@ class Projection:
             self._crc_checked += 1
         self._without_crc += not crc
         self._unpacked += 1
-        firsts = [int(some["place"].min()) for id, some, _ in entries if id not in self._met]
+        firsts = [int(some[1::2].min()) for id, some, _ in entries if id not in self._met]
         self._met.update(id for id, _, _ in entries)
         self._declared(base, needed, max(firsts, default=0))
         span = chunk.message_start_time, chunk.message_end_time
         for id, some, _ in entries:
             found = self._found[id]
-            found.times.append(some["time"])
-            found.places.append(some["place"].astype(np.int64) + base)
-            found.limits.append((len(some), base + needed, *span))
+            found.entries.append(some)
+            found.limits.append((len(some) // 2, base, base + needed, *span))
         self._arena.used += needed
 
     def _declared(self, base: int, needed: int, until: int) -> None:
@@ -152,7 +157,7 @@ class Projection:
                     raise BrokenError("a chunk declares what its summary does not")
                 self._known.add(record)
 
-    def _entries(self, chunk: ChunkIndex) -> list[tuple[int, NDArray[np.void], int]]:
+    def _entries(self, chunk: ChunkIndex) -> list[tuple[int, Entries, int]]:
         """Of each wanted channel in the chunk: its number, its index, and its last place."""
         begin = chunk.chunk_start_offset + chunk.chunk_length
         self._stream.seek(begin)
@@ -172,8 +177,9 @@ class Projection:
             if INDEX.size + size > length or start + size > len(data):
                 raise BrokenError("a record is cut off")
             if size:
-                some = np.frombuffer(data, ENTRY, size // ENTRY.itemsize, start)
-                last = int(some["place"].max())
+                some = np.frombuffer(data, "<u8", size // 8, start)
+                places = some[1::2]
+                last = max(places.tolist()) if len(places) < _FEW else int(places.max())
                 if last >= chunk.uncompressed_size:
                     raise BrokenError("the index of a chunk names a place outside of it")
                 entries.append((id, some, last))
@@ -254,11 +260,12 @@ class Projection:
     def _messages(self, id: int) -> Messages:
         """Those of one channel, in the order of the file."""
         found = self._found[id]
-        places, times = np.concatenate(found.places), np.concatenate(found.times)
-        counts, ends, earliest, latest = np.array(found.limits, np.uint64).T
-        limits, first, last = (
-            np.repeat(some, counts.astype(np.int64)) for some in (ends, earliest, latest)
+        entries = np.concatenate(found.entries)
+        counts, *of_chunks = np.array(found.limits, np.uint64).T
+        bases, limits, first, last = (
+            np.repeat(some, counts.astype(np.int64)) for some in of_chunks
         )
+        times, places = entries[::2], (entries[1::2] + bases).astype(np.int64)
         if (places[1:] < places[:-1]).any():  # some writers sort the index by time
             order = np.argsort(places)
             places, times = places[order], times[order]
