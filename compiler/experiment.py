@@ -28,7 +28,7 @@ SAFETY_REQUIREMENT = "R1"
 _THRESHOLD = "clearance < 5 cm"
 """What the safety function compares; a scenario may put another number in."""
 
-_WINDOW = 1_000_000_000
+_WINDOW = 600_000_000
 """Nanoseconds that are remembered: more than any `max_age` and any `for` of the propositions."""
 
 

@@ -7,14 +7,11 @@ import heapq
 import math
 from collections import defaultdict
 from collections.abc import Callable, Mapping
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from simulation.scenario import Transport
-
-if TYPE_CHECKING:
-    from rosbags.typesys.store import Msg
 
 Handler = Callable[[Any, int], None]
 """Takes a message and the time at which it arrives."""
@@ -29,7 +26,7 @@ class Bus:
 
     def __init__(
         self,
-        record: Callable[[str, "Msg", int], None],
+        record: Callable[[str, Any, int], None],
         transports: Mapping[str, Transport],
         seed: int,
         faults_from: int = 0,
@@ -51,7 +48,7 @@ class Bus:
         """Hear every message of the topic from now on; who subscribed first hears first."""
         self._handlers[topic].append(handler)
 
-    def publish(self, topic: str, message: "Msg", time: int) -> None:
+    def publish(self, topic: str, message: Any, time: int) -> None:
         """Send a message at a time that is not past; it may arrive later, or never."""
         way = self._transports.get(topic)
         if way is not None and time >= self._faults_from:
@@ -80,7 +77,7 @@ class Bus:
         time, _, action = heapq.heappop(self._queue)
         action(time)
 
-    def _deliver(self, topic: str, message: "Msg", now: int) -> None:
+    def _deliver(self, topic: str, message: Any, now: int) -> None:
         self._record(topic, message, now)
         for handler in self._handlers[topic]:
             handler(message, now)

@@ -116,9 +116,7 @@ class Recording:
 
     def _bytes(self, message: "Msg") -> bytes:
         data = bytes(TYPES.serialize_cdr(message, message.__msgtype__, little_endian=True))
-        return (
-            data if self._ros1 is None else bytes(TYPES.cdr_to_ros1(data, message.__msgtype__))
-        )
+        return data if self._ros1 is None else bytes(TYPES.cdr_to_ros1(data, message.__msgtype__))
 
     def _register(self, topic: Topic) -> int:
         """Declare a topic and its message type; the number of its channel."""

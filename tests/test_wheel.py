@@ -43,6 +43,8 @@ def test_every_module_grammar_and_template_is_inside(wheel: Path) -> None:
     for path in (ROOT / "templates").rglob("*"):
         if path.is_file():
             assert f"compiler/{path.relative_to(ROOT)}" in packed
+    sentence = zipfile.ZipFile(wheel).read("compiler/requirements/mission/r01.fret")
+    assert sentence == (ROOT / "requirements/r1.fret").read_bytes()
 
 
 def test_it_makes_a_monitor_far_from_the_checkout(wheel: Path, tmp_path: Path) -> None:
