@@ -110,8 +110,8 @@ def test_the_table_has_a_line_for_each_scenario_and_the_violations() -> None:
         wrong={"R2": "violated"},
     )
     assert table([one, other]) == (
-        "scenario  as stated  complete  contact in      stops  seen cm  true cm  stop s  stop cm\n"
-        "walker    1/2        1/2       1/2 (1-99 %)    2-4    2.1      -0.1     0.12    0.5\n"
+        "scenario  as stated  complete  contact in    stops  seen cm  true cm  stop s  stop cm\n"
+        "walker    1/2        1/2       1/2 (1-99 %)  2-4    2.1      -0.1     0.12    0.5\n"
         "\n"
         "violated in, with 95 % intervals (Clopper-Pearson):\n"
         "  walker: R2 1/2 (1-99 %)\n"

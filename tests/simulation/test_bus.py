@@ -1,3 +1,4 @@
+from itertools import pairwise
 from typing import Any
 
 from simulation.bus import Bus
@@ -35,7 +36,7 @@ def test_a_share_of_the_messages_is_lost() -> None:
 def test_a_swapped_message_comes_after_the_next_one() -> None:
     numbers = [number for number, _ in heard({"/a": Transport(swap=0.2)}, 200)]
     assert sorted(numbers) == list(range(200))
-    late = sum(later < before for before, later in zip(numbers, numbers[1:], strict=False))
+    late = sum(later < before for before, later in pairwise(numbers))
     assert 15 < late < 55
 
 
