@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import tempfile
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import closing
+from contextlib import closing, contextmanager
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -121,21 +121,43 @@ def campaign(
     watched(plan())  # before the processes are born: they inherit it
     things = [(scenario, seed) for scenario in scenarios for seed in seeds]
     found: dict[int, Run] = {}
-    with closing(each(partial(_one, folder), things, jobs)) as done:
-        for place, run in done:
-            if isinstance(run, Killed):
-                raise RuntimeError(f"the process of a mission was killed: {run}")
-            found[place] = run
-            tell(len(found))
+    with _place(folder, things) as logs:
+        function = partial(_one, logs, folder is not None)
+        with closing(each(function, things, jobs)) as done:
+            for place, run in done:
+                if isinstance(run, Killed):
+                    raise RuntimeError(f"the process of a mission was killed: {run}")
+                found[place] = run
+                tell(len(found))
     return [found[place] for place in sorted(found)]
 
 
-def _one(folder: Path | None, thing: tuple[Scenario, int]) -> Run:
+@contextmanager
+def _place(folder: Path | None, things: Sequence[tuple[Scenario, int]]) -> Iterator[Path]:
+    """Where the logs go. What a process was writing when it was killed does not stay."""
+    if folder is None:
+        with tempfile.TemporaryDirectory() as temporary:
+            yield Path(temporary)
+        return
+    try:
+        yield folder
+    finally:
+        for scenario, seed in things:
+            for partly in folder.glob(f".{_name(scenario, seed)}.*.partial"):
+                partly.unlink(missing_ok=True)
+
+
+def _one(folder: Path, keep: bool, thing: tuple[Scenario, int]) -> Run:
     scenario, seed = thing
-    if folder is not None:
-        return simulated(scenario, seed, folder / f"{scenario.name}-{seed}.mcap")
-    with tempfile.TemporaryDirectory() as temporary:
-        return simulated(scenario, seed, Path(temporary) / "mission.mcap")
+    out = folder / _name(scenario, seed)
+    run = simulated(scenario, seed, out)
+    if not keep:
+        out.unlink()
+    return run
+
+
+def _name(scenario: Scenario, seed: int) -> str:
+    return f"{scenario.name}-{seed}.mcap"
 
 
 def table(runs: Sequence[Run]) -> str:

@@ -180,6 +180,9 @@ def _count(
     """Run the campaign and exit."""
     from compiler.campaign import campaign, table
 
+    called = [scenario.name for scenario in scenarios]
+    if len(set(called)) < len(called):
+        raise click.UsageError("two of the scenarios have the same name")
     folder = Path(out) if out is not None else None
     if folder is not None and not folder.is_dir():
         stop(not_written(str(out), "a campaign needs a folder that is there"))

@@ -1,6 +1,8 @@
 import json
+import signal
 import subprocess
 import sys
+import time
 from pathlib import Path
 
 import pytest
@@ -83,6 +85,7 @@ def test_a_campaign_ends_in_a_table_and_tells_what_is_not_as_stated(tmp_path: Pa
         (("--out", "a.mcap", "--png", "no/a.png"), "F905 `no/a.png` cannot be written"),
         (("--out", "a.mcap", "--duration", "inf"), "F905 `a.mcap` cannot be written: a mission"),
         (("--campaign", "1", "--png", "a.png"), "F907 a campaign takes no --png"),
+        (("walker", "walker", "--campaign", "1"), "F907 two of the scenarios have the same name"),
         (("--campaign", "1", "--out", "no"), "F905 `no` cannot be written: a campaign needs"),
     ],
 )
@@ -97,3 +100,26 @@ def test_what_cannot_be_done_is_refused_and_leaves_nothing(
     assert ran.returncode == 2
     assert said in ran.stderr
     assert sorted(path.name for path in tmp_path.iterdir()) == ["bad.toml", "ghost.toml"]
+
+
+def test_a_campaign_that_is_stopped_leaves_nothing_half_written(tmp_path: Path) -> None:
+    (tmp_path / "logs").mkdir()
+    (tmp_path / "temporary").mkdir()
+    for where in (["--out", "logs"], []):
+        words = ["simulate", "nominal", "walker", "--campaign", "4", "--jobs", "2", *where]
+        process = subprocess.Popen(
+            [sys.executable, "-c", "from compiler.cli import main; main()", *words],
+            cwd=tmp_path,
+            env={"PYTHONPATH": str(ROOT), "TMPDIR": str(tmp_path / "temporary")},
+            stderr=subprocess.PIPE,
+            text=True,
+        )
+        folders = (tmp_path / "logs", tmp_path / "temporary")
+        while not any([*path.rglob(".*.partial")] for path in folders):
+            assert process.poll() is None
+            time.sleep(0.05)
+        process.send_signal(signal.SIGINT)
+        _, said = process.communicate(timeout=30)
+        assert (process.returncode, said) == (130, "stopped\n")
+        assert [*tmp_path.rglob(".*.partial")] == []
+        assert [*(tmp_path / "temporary").iterdir()] == []
