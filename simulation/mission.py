@@ -20,7 +20,7 @@ from simulation.guarding import WARM_UP, Gate, SafetyFunction
 from simulation.lidar import Lidar
 from simulation.motion import STANDSTILL, Pose
 from simulation.navigation import RESOLUTION, PoseError
-from simulation.recording import Encoding, Recording, recording
+from simulation.recording import TOPICS, Encoding, Recording, recording
 from simulation.robot import PHYSICS_STEP, Robot
 from simulation.safety import Decision, TooClose
 from simulation.scenario import Scenario
@@ -158,6 +158,18 @@ def really(scene: Scene, scenario: Scenario) -> Scene:
     places = {o.name: moved.get(o.name, (o.x, o.y)) for o in scene.obstacles}
     obstacles = (replace(o, x=places[o.name][0], y=places[o.name][1]) for o in scene.obstacles)
     return replace(scene, obstacles=tuple(obstacles))
+
+
+def possible(scenario: Scenario) -> None:
+    """Whether its obstacles and topics exist.
+
+    Raises:
+        ValueError: one does not.
+    """
+    really(STORE, scenario)
+    unknown = sorted(scenario.transport.keys() - {topic.name for topic in TOPICS})
+    if unknown:
+        raise ValueError(f"the robot has no topic `{unknown[0]}`")
 
 
 class _Run:

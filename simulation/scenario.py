@@ -1,12 +1,13 @@
 """Scenarios: what is wrong in a mission, and which verdicts its log has to give, as small files."""
 
 import tomllib
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import MISSING, dataclass, field, fields, is_dataclass
 from importlib.resources import files
+from math import isfinite
 from pathlib import Path
 from types import MappingProxyType
-from typing import Any, TypeVar, get_args, get_origin, get_type_hints
+from typing import Any, Literal, TypeVar, get_args, get_origin, get_type_hints
 
 VERDICTS = ("satisfied", "violated", "vacuous", "inconclusive", "no data")
 """What a requirement can be in a log, in the order of the fields of `Expectations`."""
@@ -49,7 +50,7 @@ class Outage:
 
     at: float
     seconds: float
-    says: str = "nothing"
+    says: Literal["nothing", "nan"] = "nothing"
     """`nothing`: no message comes; `nan`: messages come, and each beam of them is NaN."""
 
 
@@ -58,7 +59,7 @@ class Sensor:
     """The lidar and its faults."""
 
     range_min: float = 0.12
-    nearer: str = "near"
+    nearer: Literal["near", "lost"] = "near"
     """What a return below `range_min` is: `near` (-inf, REP 117) or `lost` (+inf)."""
     nan_first: bool = False
     """The first beam of each scan is NaN."""
@@ -202,7 +203,42 @@ def load(name: str) -> Scenario:
         raise ScenarioError(f"`{name}` is no TOML: {error}") from None
     if "name" in data:
         raise ScenarioError("`name` cannot be set: a scenario is called by its file")
-    return _table(Scenario, {**data, "name": path.stem}, "")
+    scenario = _table(Scenario, {**data, "name": path.stem}, "")
+    for wrong in _mistakes(scenario):
+        raise ScenarioError(wrong)
+    return scenario
+
+
+def _mistakes(scenario: Scenario) -> Iterator[str]:
+    """Numbers with which there is no mission, and statements that contradict each other."""
+    planner, safety, recorder = scenario.planner, scenario.safety, scenario.recorder
+    more = {
+        "duration": scenario.duration,
+        "planner.speed": planner.speed,
+        "planner.turn": planner.turn,
+        "safety.threshold": safety.threshold,
+        "recorder.keep": recorder.keep,
+    }
+    none = {"safety.late": safety.late, "lidar.range_min": scenario.lidar.range_min}
+    shares = {"recorder.keep": recorder.keep}
+    for topic, way in scenario.transport.items():
+        none |= {f"transport.{topic}.delay": way.delay}
+        shares |= {f"transport.{topic}.loss": way.loss, f"transport.{topic}.swap": way.swap}
+    walker = scenario.store.walker
+    if walker is not None:
+        more |= {"store.walker.speed": walker.speed, "store.walker.radius": walker.radius}
+        if walker.start == walker.end:
+            yield "`store.walker` must not end where it starts"
+    yield from (f"`{name}` must be above 0" for name, value in more.items() if value <= 0)
+    yield from (f"`{name}` must not be below 0" for name, value in none.items() if value < 0)
+    for name, value in shares.items():
+        if not 0 <= value <= 1:
+            yield f"`{name}` must be between 0 and 1"
+    stated = scenario.expect
+    ids = [id for one in fields(stated) for id in getattr(stated, one.name)]
+    twice = next((id for id in ids if ids.count(id) > 1), None)
+    if twice is not None:
+        yield f"`expect` names {twice} twice"
 
 
 T = TypeVar("T")
@@ -238,7 +274,13 @@ def _value(kind: Any, value: object, where: str) -> Any:
         return _sequence(arguments, value, where)
     if origin is not None and isinstance(value, dict):
         return {key: _value(arguments[1], item, f"{where}.{key}") for key, item in value.items()}
+    if origin is Literal:
+        if value not in arguments:
+            raise ScenarioError(f"`{where}` must be {' or '.join(f'`{a}`' for a in arguments)}")
+        return value
     if kind is float and isinstance(value, int | float) and not isinstance(value, bool):
+        if not isfinite(value):
+            raise ScenarioError(f"`{where}` must be finite")
         return float(value)
     if isinstance(kind, type) and kind in (str, bool) and isinstance(value, kind):
         return value

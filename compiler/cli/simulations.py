@@ -88,13 +88,12 @@ def _installed() -> None:
 
 
 def _scenario(name: str) -> Scenario:
-    from simulation.mission import really
+    from simulation.mission import possible
     from simulation.scenario import ScenarioError, load
-    from simulation.scene import STORE
 
     try:
         scenario = load(name)
-        really(STORE, scenario)
+        possible(scenario)
     except OSError as error:
         stop(_bad_scenario(name, error.strerror or str(error)))
     except (ScenarioError, ValueError) as error:

@@ -13,9 +13,19 @@ from mcap_ros2.decoder import DecoderFactory
 from numpy.typing import NDArray
 from rosbags.highlevel import AnyReader
 
-from simulation.mission import Mission, really, record
+from simulation.mission import Mission, possible, really, record
 from simulation.recording import TOPICS
-from simulation.scenario import Interceptor, Operator, Outage, Safety, Scenario, Sensor, Store, load
+from simulation.scenario import (
+    Interceptor,
+    Operator,
+    Outage,
+    Safety,
+    Scenario,
+    Sensor,
+    Store,
+    Transport,
+    load,
+)
 from simulation.scene import STORE
 
 SECOND = 10**9
@@ -337,3 +347,9 @@ def test_only_what_the_scenario_moves_stands_somewhere_else() -> None:
         assert place == ((1.5, 2.6) if mapped.name == "barrel_9" else (mapped.x, mapped.y))
     with pytest.raises(ValueError, match="the store has no obstacle `barrel_11`"):
         really(STORE, Scenario("bad", store=Store(moved={"barrel_11": (1.0, 1.0)})))
+
+
+def test_a_fault_of_a_topic_that_is_not_there_is_refused() -> None:
+    possible(MOVED)
+    with pytest.raises(ValueError, match="the robot has no topic `/scam`"):
+        possible(Scenario("bad", transport={"/scam": Transport(loss=0.1)}))

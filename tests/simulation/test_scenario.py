@@ -48,6 +48,22 @@ no_data = ["R2"]
         ('title = "a"\n[operator]\nabsent = 1', "`operator` has no `absent`; it may have present"),
         ('title = "a"\n[store.moved]\nb = [1]', "`store.moved.b` must have 2 elements"),
         ('title = "a"\n[lidar]\noutages = 1', "`lidar.outages` must be a list"),
+        ('title = "a"\nduration = nan', "`duration` must be finite"),
+        ('title = "a"\nduration = 0', "`duration` must be above 0"),
+        ('title = "a"\n[safety]\nlate = -1', "`safety.late` must not be below 0"),
+        ('title = "a"\n[lidar]\nnearer = "x"', "`lidar.nearer` must be `near` or `lost`"),
+        (
+            'title = "a"\n[transport."/scan"]\nloss = 2',
+            "`transport./scan.loss` must be between 0 and 1",
+        ),
+        (
+            'title = "a"\n[store.walker]\nstart = [1, 1]\nend = [1, 1]\nnear = [1, 1]',
+            "`store.walker` must not end where it starts",
+        ),
+        (
+            'title = "a"\n[expect]\nvacuous = ["R1"]\nviolated = ["R1"]',
+            "`expect` names R1 twice",
+        ),
         ('title = "a"\n[lidar]\noutages = [{ at = 1 }]', "`lidar.outages.seconds` is missing"),
     ],
 )
