@@ -55,6 +55,8 @@ class Stop:
     """Seconds until it stood; None: it was released before."""
     distance: float
     """Metres that it moved until then."""
+    seconds: float
+    """Simulated time of the request."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -327,5 +329,6 @@ class _Judge:
         began, at = self._braking
         here = self._robot.pose
         latency = None if now is None else (now - began) / _SECOND
-        self.stops.append(Stop(at, latency, math.dist((at.x, at.y), (here.x, here.y))))
+        distance = math.dist((at.x, at.y), (here.x, here.y))
+        self.stops.append(Stop(at, latency, distance, (began - EPOCH) / _SECOND))
         self._braking = None

@@ -1,12 +1,15 @@
 """A mission seen from above: the map, what was not where the map has it, the way, the stops."""
 
-from pathlib import Path
+from io import BytesIO
 from typing import Any
 
+import numpy as np
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.patches import Circle, Polygon
 from matplotlib.transforms import Affine2D
+from numpy.typing import NDArray
+from PIL import Image
 
 from simulation.mission import Mission
 from simulation.motion import Pose
@@ -21,18 +24,48 @@ _INK, _MAPPED, _MOVED, _WAY, _STOP, _GOAL = (
     "#2e8540",
 )
 
+_EVERY, _FRAME = 20, 66
+"""Tenths of a simulated second from a frame to the next; milliseconds that it is shown."""
 
-def draw(mission: Mission, path: Path) -> None:
-    """Write the picture as PNG.
 
-    Raises:
-        OSError: the file cannot be written.
-    """
-    figure = Figure(figsize=(9.0, 7.6), dpi=110, layout="constrained")
-    canvas = FigureCanvasAgg(figure)
+def draw(mission: Mission) -> bytes:
+    """The picture as PNG."""
+    figure, axes = _figure(mission, 110)
+    _way(axes, mission)
+    figure.legend(loc="outside lower center", ncols=4, frameon=False, fontsize=9)
+    image = BytesIO()
+    figure.savefig(image, format="png")
+    return image.getvalue()
+
+
+def animate(mission: Mission) -> bytes:
+    """The mission as GIF, at some thirty times its speed."""
+    figure, axes = _figure(mission, 60)
+    canvas: Any = FigureCanvasAgg(figure)  # Any: it carries no annotations.
+    (line,) = axes.plot([], [], color=_WAY, lw=1.6)
+    robot = axes.add_patch(_outline(ROBOT, mission.track[0], facecolor=_WAY, alpha=0.6))
+    marks = axes.scatter([], [], marker="X", s=60, color=_STOP, zorder=5)
+    frames = []
+    for count in range(1, len(mission.track) + 1, _EVERY):
+        track = mission.track[:count]
+        line.set_data([p.x for p in track], [p.y for p in track])
+        robot.set_xy(_corners(ROBOT, track[-1]))
+        stops = [(s.at.x, s.at.y) for s in mission.stops if s.seconds <= (count - 1) / 10]
+        marks.set_offsets(np.array(stops).reshape(-1, 2))
+        canvas.draw()
+        shown = Image.fromarray(np.asarray(canvas.buffer_rgba())).convert("RGB")
+        frames.append(shown.quantize(colors=32))
+    image = BytesIO()
+    first, *others = frames
+    first.save(image, format="GIF", save_all=True, append_images=others, duration=_FRAME, loop=0)
+    return image.getvalue()
+
+
+def _figure(mission: Mission, dpi: int) -> tuple[Figure, Any]:
+    """The room with its inspection points, without the robot."""
+    figure = Figure(figsize=(9.0, 7.6), dpi=dpi, layout="constrained")
     axes = figure.add_subplot()
     _room(axes, mission)
-    _way(axes, mission)
     _goals(axes)
     axes.set_aspect("equal")
     axes.set_xlim(-0.25, STORE.length + 0.25)
@@ -41,8 +74,7 @@ def draw(mission: Mission, path: Path) -> None:
     axes.set_ylabel("y in m")
     figure.suptitle(f"{mission.scenario.title} (seed {mission.seed})", fontsize=13)
     axes.set_title(_summary(mission), fontsize=10, color=_INK)
-    figure.legend(loc="outside lower center", ncols=4, frameon=False, fontsize=9)
-    canvas.print_figure(path, format="png")
+    return figure, axes
 
 
 def _summary(mission: Mission) -> str:
@@ -84,10 +116,14 @@ def _shape(obstacle: Box | Barrel, **style: Any) -> Circle | Polygon:
 
 def _outline(box: Box, at: Pose, **style: Any) -> Polygon:
     """A box seen from above, somewhere else than where it says."""
+    return Polygon(_corners(box, at), closed=True, **style)
+
+
+def _corners(box: Box, at: Pose) -> NDArray[np.float64]:
     half, side = box.length / 2, box.width / 2
     corners = [(half, side), (-half, side), (-half, -side), (half, -side)]
     turned = Affine2D().rotate(at.yaw).translate(at.x, at.y).transform(corners)
-    return Polygon(turned, closed=True, **style)
+    return np.asarray(turned, np.float64)
 
 
 def _way(axes: Any, mission: Mission) -> None:

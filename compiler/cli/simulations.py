@@ -5,14 +5,14 @@ from __future__ import annotations
 import json
 import math
 import os
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
 
-from compiler.cli.output import SHOWN, VIOLATION, not_written, say_line, stop
+from compiler.cli.output import SHOWN, VIOLATION, deliver, not_written, say_line, stop
 from compiler.cli.progress import progress
 from fretish.diagnostic import Code, Diagnostic
 
@@ -31,6 +31,7 @@ if TYPE_CHECKING:
 )
 @click.option("--encoding", type=click.Choice(("ros2", "ros1")), default="ros2", show_default=True)
 @click.option("--png", metavar="FILE", help="Also draw the mission.")
+@click.option("--gif", metavar="FILE", help="Also draw it as it went on.")
 @click.option(
     "--campaign",
     type=click.IntRange(min=1),
@@ -49,6 +50,7 @@ def simulate(
     duration: float | None,
     encoding: str,
     png: str | None,
+    gif: str | None,
     campaign: int | None,
     jobs: int,
     form: str,
@@ -68,15 +70,15 @@ def simulate(
         return
     _installed()
     if campaign is not None:
-        if png is not None or duration is not None or encoding != "ros2":
-            raise click.UsageError("a campaign takes no --png, --duration or --encoding")
+        if png or gif or duration is not None or encoding != "ros2":
+            raise click.UsageError("a campaign takes no --png, --gif, --duration or --encoding")
         _count([_scenario(n) for n in scenarios or names()], seed, campaign, jobs, out, form)
     if len(scenarios) > 1:
         raise click.UsageError("several scenarios need --campaign")
     if out is None:
         raise click.UsageError("missing option '--out'")
     scenario = _scenario(scenarios[0] if scenarios else NOMINAL)
-    _record(scenario, out, seed, duration, encoding, png)
+    _record(scenario, out, seed, duration, encoding, {"png": png, "gif": gif})
 
 
 def _installed() -> None:
@@ -128,15 +130,16 @@ def _record(
     seed: int,
     duration: float | None,
     encoding: str,
-    png: str | None,
+    pictures: Mapping[str, str | None],
 ) -> None:
     from compiler import __version__
     from compiler.experiment import safety_function
     from simulation.mission import record
     from simulation.recording import Encoding
 
-    path, picture = _file(out), _file(png) if png is not None else None
-    if path == picture:
+    path = _file(out)
+    drawn = {form: _file(name) for form, name in pictures.items() if name is not None}
+    if len({path, *drawn.values()}) <= len(drawn):
         stop(not_written(out, "two outputs would go there"))
     limit = scenario.duration if duration is None else duration
     if not math.isfinite(limit):
@@ -157,14 +160,11 @@ def _record(
         except OSError as error:
             stop(not_written(out, error.strerror or str(error)))
     say_line(f"wrote {out}")
-    if picture is not None:
-        from simulation.picture import draw
+    if drawn:
+        from simulation.picture import animate, draw
 
-        try:
-            draw(mission, picture)
-        except OSError as error:
-            stop(not_written(str(png), error.strerror or str(error)))
-        say_line(f"wrote {png}")
+        painters = {"png": draw, "gif": animate}
+        deliver({Path(str(pictures[form])): painters[form](mission) for form in drawn})
     click.echo(
         f"{scenario.name}, seed {mission.seed}: {mission.duration:.1f} s, "
         f"{mission.goals_reached} of {mission.goals_total} goals, {len(mission.stops)} stops, "

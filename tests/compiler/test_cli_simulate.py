@@ -23,12 +23,25 @@ def fretc(folder: Path, *words: str) -> subprocess.CompletedProcess[str]:
 
 
 def test_a_mission_is_recorded_and_drawn(tmp_path: Path) -> None:
-    words = ("walker", "--seed", "3", "--duration", "2", "--out", "a.mcap", "--png", "a.png")
+    words = (
+        "walker",
+        "--seed",
+        "3",
+        "--duration",
+        "2",
+        "--out",
+        "a.mcap",
+        "--png",
+        "a.png",
+        "--gif",
+        "a.gif",
+    )
     ran = fretc(tmp_path, *words)
     assert ran.returncode == 0, ran.stderr
-    assert ran.stderr == "wrote a.mcap\nwrote a.png\n"
+    assert ran.stderr == "wrote a.mcap\nwrote a.png\nwrote a.gif\n"
     assert ran.stdout.startswith("walker, seed 3: 2.0 s, 0 of 4 goals, 0 stops, 0 contacts, least ")
     assert (tmp_path / "a.png").read_bytes().startswith(b"\x89PNG")
+    assert (tmp_path / "a.gif").read_bytes().startswith(b"GIF89a")
     with (tmp_path / "a.mcap").open("rb") as stream:
         reader = make_reader(stream)
         assert reader.get_header().profile == "ros2"
