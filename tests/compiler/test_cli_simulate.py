@@ -136,3 +136,29 @@ def test_a_campaign_that_is_stopped_leaves_nothing_half_written(tmp_path: Path) 
         assert (process.returncode, said) == (130, "stopped\n")
         assert [*tmp_path.rglob(".*.partial")] == []
         assert [*(tmp_path / "temporary").iterdir()] == []
+
+
+def test_without_the_extra_the_scenarios_are_named_and_a_mission_tells_what_to_install(
+    tmp_path: Path,
+) -> None:
+    program = (
+        "import simulation; simulation.missing = lambda: ('mujoco', 'scipy'); "
+        "import sys; sys.modules['mujoco'] = sys.modules['rosbags'] = sys.modules['scipy'] = None; "
+        "from compiler.cli import main; main()"
+    )
+    for words, status in ((("--list",), 0), (("--out", "a.mcap"), 2), (("--campaign", "1"), 2)):
+        ran = subprocess.run(
+            [sys.executable, "-c", program, "simulate", *words],
+            cwd=tmp_path,
+            env={"PYTHONPATH": str(ROOT)},
+            capture_output=True,
+            text=True,
+            check=False,
+        )
+        assert ran.returncode == status
+        if status:
+            assert ran.stderr == (
+                "F908 the simulated robot needs `mujoco` and `scipy`\n"
+                "help: install the extra: pip install 'fretc[sim]' "
+                "(in a checkout: .venv/bin/pip install '.[sim]')\n"
+            )
