@@ -61,7 +61,7 @@ def test_the_scenarios_are_named(tmp_path: Path) -> None:
     ran = fretc(tmp_path, "--list")
     assert ran.returncode == 0
     assert "\nnominal          Nominal mission\n" in ran.stdout
-    assert len(ran.stdout.splitlines()) == 18
+    assert len(ran.stdout.splitlines()) == 19
 
 
 def test_a_campaign_ends_in_a_table_and_tells_what_is_not_as_stated(tmp_path: Path) -> None:
