@@ -97,12 +97,15 @@ class SafetyFunction:
     def __init__(self, text: str, declarations: Declarations) -> None:
         self._monitor: Any = loaded("safety_function", text)
         names = tuple(self._monitor.PROPOSITIONS)
-        self._propositions = [declarations.propositions[name] for name in names]
+        used = [declarations.propositions[name] for name in names]
+        self._inputs = [one for one in used if one.role == "input"]
+        self._outputs = [one for one in used if one.role != "input"]
         self._declarations = declarations
-        used = dict.fromkeys(name for one in self._propositions for name in one.signals)
-        self._signals = [declarations.signals[name] for name in used]
-        self._times: dict[str, deque[int]] = {name: deque() for name in used}
-        self._values: dict[str, deque[float]] = {name: deque() for name in used}
+        self._demanded = False
+        read = dict.fromkeys(name for one in used for name in one.signals)
+        self._signals = [declarations.signals[name] for name in read]
+        self._times: dict[str, deque[int]] = {name: deque() for name in read}
+        self._values: dict[str, deque[float]] = {name: deque() for name in read}
         self._last = -1
 
     def hear(self, topic: str, message: Any, time: int) -> None:
@@ -119,14 +122,16 @@ class SafetyFunction:
     def step(self, time: int) -> bool:
         """Whether the robot must stop now; `time` in nanoseconds."""
         recording = self._recording(time)
-        truths = {
-            one.name: self._truth(one, recording, time, unknown=one.role == "input")
-            for one in self._propositions
-        }
+        truths = {one.name: self._truth(one, recording, time, unknown=True) for one in self._inputs}
+        asked = self._demanded or any(truths.values())  # else no answer is waited for
+        for one in self._outputs:
+            stands = asked and self._truth(one, recording, time, unknown=False)
+            truths[one.name] = stands
         self._last = time
         self._monitor.step(**{self._monitor.PROPOSITIONS[name]: t for name, t in truths.items()})
         (told,) = self._monitor.must.signals()
-        return bool(told.trigger or told.owed)
+        self._demanded = bool(told.trigger or told.owed)
+        return self._demanded
 
     def _recording(self, time: int) -> Recording:
         """What is remembered, in the form of a log."""
