@@ -116,6 +116,7 @@ class Code(Enum):
     OTHER_EDITION = ("F911", "a machine of the fleet has no fretc, or another one")
     BUSY = ("F912", "another audit writes the same evidence")
     BAD_QUERY = ("F913", "the query cannot be answered")
+    BAD_SCENARIO = ("F914", "the scenario of a simulation cannot be run")
     INTERNAL = ("F999", "fretc itself is at fault")
 
     @property

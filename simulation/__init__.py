@@ -1,11 +1,14 @@
-"""A simulated inspection robot with a safety function, recorded as a ROS 2 log.
+"""A simulated inspection robot with a safety function, recorded as a ROS log.
 
-Importing this package loads neither MuJoCo nor rosbags; `simulation.mission` does.
+Importing this package loads none of its optional packages; `simulation.mission` does.
 """
 
 from importlib.util import find_spec
 
-OPTIONAL_PACKAGES = ("mujoco", "rosbags")
+__version__ = "0.2.0"
+"""Of the simulation: another one gives other messages for the same seed."""
+
+OPTIONAL_PACKAGES = ("matplotlib", "mujoco", "rosbags", "scipy")
 
 
 def missing() -> tuple[str, ...]:

@@ -27,6 +27,8 @@ class Lidar:
     range_max: float = 12.0
     noise: float = 0.008
     period: float = 0.1
+    loses_near: bool = False
+    """What is nearer than `range_min` is not told from nothing, as some drivers have it."""
 
     @property
     def increment(self) -> float:
@@ -54,7 +56,7 @@ class Lidar:
         Source: REP 117, Informational Distance Measurements.
         """
         ranges = (distances + noise).astype(np.float32)
-        ranges[ranges < np.float32(self.range_min)] = -np.inf
+        ranges[ranges < np.float32(self.range_min)] = np.inf if self.loses_near else -np.inf
         ranges[ranges > np.float32(self.range_max)] = np.inf
         return ranges
 

@@ -1,54 +1,62 @@
 """One inspection mission from start to end, recorded.
 
-Simulated time is a whole number of ticks of 20 ms. Within a tick the order is: measure, decide,
-command, move. A command takes hold one physics step (2 ms) after its tick began, which is where
-the messages' latencies below end.
+The parts are wired by topics and share nothing else. A command takes hold at the end of the physics
+step (2 ms) within which it arrives.
 """
 
+import json
+import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
+from typing import Any
 
-from simulation import recording as log
-from simulation.lidar import Lidar, Points
-from simulation.motion import STANDSTILL, Pose, Velocity
-from simulation.navigation import MARGIN, MAX_SPEED, Navigator, PoseError
-from simulation.recovery import MANOEUVRE, STAND, Operator
+import numpy as np
+
+from simulation import __version__, messages
+from simulation.bus import Bus
+from simulation.driving import Driver
+from simulation.guarding import WARM_UP, Gate, SafetyFunction
+from simulation.lidar import Lidar
+from simulation.motion import STANDSTILL, Pose
+from simulation.navigation import RESOLUTION, PoseError
+from simulation.recording import TOPICS, Encoding, Recording, recording
 from simulation.robot import PHYSICS_STEP, Robot
-from simulation.safety import (
-    SAFE_DISTANCE,
-    Interceptor,
-    SafetyFunction,
-    TooClose,
-    outline_clearance,
-)
-from simulation.scene import ROBOT, STORE, Scene
+from simulation.safety import Decision, TooClose
+from simulation.scenario import Scenario
+from simulation.scene import STORE, Scene
+from simulation.walking import Walk
 
 EPOCH = 1_700_000_000 * 10**9
 """Nanoseconds; the log's time at the start of each mission."""
 
 TICK = 20_000_000
-"""Nanoseconds; the period of /odom and /ground_truth, and of the wheels' controller."""
+"""Nanoseconds; the period of /odom and /ground_truth."""
 
 SCAN_LATENCY = 300_000
 """Nanoseconds from the measurement to the message on /scan."""
 
-ANSWER_LATENCY = 1_200_000
-"""Nanoseconds from the message on /scan to the safety function's answer."""
-
-COMMAND_LATENCY = 1_000_000
-"""Nanoseconds from the control tick to the planner's command."""
-
-INTERCEPT_LATENCY = 200_000
-"""Nanoseconds from what the interceptor hears to what it says."""
-
 _SECOND = 10**9
 _TICKS_PER_SECOND = _SECOND // TICK
-_SCAN_EVERY, _SCAN_AT = 5, 0  # 10 Hz
-_CONTROL_EVERY, _CONTROL_AT = 5, 2  # 10 Hz, 40 ms after the scan: nobody synchronises them.
-_HEARTBEAT_EVERY, _HEARTBEAT_AT = 25, 13  # 2 Hz
-_STEPS = round(TICK / _SECOND / PHYSICS_STEP)
-_LINGER = 1 * _TICKS_PER_SECOND  # The log shows the robot standing at the last goal.
+_STEP = round(PHYSICS_STEP * _SECOND)
+_STEPS = TICK // _STEP
+_SCAN_PERIOD = 100_000_000
+_LINGER = 1 * _SECOND  # The log shows the robot standing at the last goal.
+_STANDING = 0.01  # m/s and rad/s; slower counts as standing.
+
+
+@dataclass(frozen=True, slots=True)
+class Stop:
+    """One intervention of the safety function."""
+
+    at: Pose
+    """Where the robot was when the request arrived."""
+    latency: float | None
+    """Seconds until it stood; None: it was released before."""
+    distance: float
+    """Metres that it moved until then."""
+    seconds: float
+    """Simulated time of the request."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,205 +64,271 @@ class Mission:
     """What happened, as the simulator knows it; the log has to show it by itself.
 
     Attributes:
-        seed: of the noise of lidar and pose.
+        scenario: of the mission.
+        seed: of the noise of lidar and pose, and of what gets lost.
         duration: simulated seconds.
         goals_reached: how many, in order.
         goals_total: how many there were; all reached means that the mission is complete.
-        stops: how often the safety function requested a stop.
-        measured_clearance: least clearance that the safety function computed from a scan, metres.
+        stops: the interventions.
+        measured_clearance: least clearance that a scan showed, metres.
         true_clearance: least true distance from chassis to obstacle, metres, negative in contact.
         contacts: how often the chassis began to touch an obstacle.
         messages: how many the log holds.
+        track: where the robot really was, at every tenth of a second.
+        scene: the room as it really was.
         path: the log.
     """
 
+    scenario: Scenario
     seed: int
     duration: float
     goals_reached: int
     goals_total: int
-    stops: int
+    stops: tuple[Stop, ...]
     measured_clearance: float
     true_clearance: float
     contacts: int
     messages: int
+    track: tuple[Pose, ...]
+    scene: Scene
     path: Path
 
 
 def record(
     out: Path,
+    scenario: Scenario,
     seed: int = 1,
-    max_seconds: float = 240.0,
+    decision: Decision | None = None,
+    encoding: Encoding = Encoding.ROS2,
+    max_seconds: float | None = None,
     progress: Callable[[float], None] | None = None,
+    versions: dict[str, str] | None = None,
 ) -> Mission:
     """Run a mission and write its log to `out`, replacing what is there.
 
     Args:
         out: an .mcap file in a folder that exists.
+        scenario: what is wrong in it.
         seed: not negative; the same seed gives the same messages on the same machine.
-        max_seconds: simulated; a mission that takes longer is cut off and still recorded.
+        decision: when to stop; if not given, the threshold of the scenario by hand.
+        encoding: of the log's messages.
+        max_seconds: simulated; a mission that takes longer is cut off and still recorded. If not
+            given, what the scenario says.
         progress: called once for every simulated second, with the seconds so far.
+        versions: more to say in the log of what made it.
 
     Raises:
         OSError: `out` cannot be written. Whatever is raised, no half file stays behind.
+        ValueError: the scenario moves an obstacle that the store does not have.
     """
-    with log.recording(out) as recording:
-        run = _Run(STORE, seed, recording)
-        ticks = round(max_seconds * _SECOND / TICK)
+    limit = scenario.duration if max_seconds is None else max_seconds
+    with recording(out, encoding, scenario.recorder, EPOCH) as log:
+        run = _Run(scenario, seed, log, decision)
+        ticks = round(limit * _SECOND / TICK)
         while run.tick < ticks and not run.over:
             if progress and run.tick % _TICKS_PER_SECOND == 0:
                 progress(run.tick / _TICKS_PER_SECOND)
             run.step()
-        recording.finish("simulation", _options(seed, max_seconds))
-        return run.mission(seed, out)
+        log.finish("simulation", _about(scenario, seed, limit, versions or {}))
+        return run.mission(out)
 
 
-def _options(seed: int, max_seconds: float) -> dict[str, str]:
+def _about(scenario: Scenario, seed: int, limit: float, versions: dict[str, str]) -> dict[str, str]:
     """What made the log: names and values of the metadata record `simulation`."""
+    options = asdict(replace(scenario, transport=dict(scenario.transport)))
     return {
+        "simulation": __version__,
+        "scenario": scenario.name,
+        "title": scenario.title,
         "seed": str(seed),
-        "max_seconds": str(max_seconds),
-        "safe_distance": str(SAFE_DISTANCE),
-        "max_speed": str(MAX_SPEED),
-        "planner_margin": str(MARGIN),
-        "stand_seconds": str(STAND),
-        "manoeuvre_seconds": str(MANOEUVRE),
-        "robot_length": str(ROBOT.length),
-        "robot_width": str(ROBOT.width),
+        "max_seconds": str(limit),
+        "options": json.dumps(options, sort_keys=True),
+        **versions,
     }
+
+
+def really(scene: Scene, scenario: Scenario) -> Scene:
+    """The room with its obstacles where they really stand.
+
+    Raises:
+        ValueError: the scenario moves an obstacle that is not there.
+    """
+    moved = dict(scenario.store.moved)
+    unknown = sorted(moved.keys() - {obstacle.name for obstacle in scene.obstacles})
+    if unknown:
+        raise ValueError(f"the store has no obstacle `{unknown[0]}`")
+    places = {o.name: moved.get(o.name, (o.x, o.y)) for o in scene.obstacles}
+    obstacles = (replace(o, x=places[o.name][0], y=places[o.name][1]) for o in scene.obstacles)
+    return replace(scene, obstacles=tuple(obstacles))
+
+
+def possible(scenario: Scenario) -> None:
+    """Whether its obstacles and topics exist.
+
+    Raises:
+        ValueError: one does not.
+    """
+    really(STORE, scenario)
+    unknown = sorted(scenario.transport.keys() - {topic.name for topic in TOPICS})
+    if unknown:
+        raise ValueError(f"the robot has no topic `{unknown[0]}`")
 
 
 class _Run:
     """A mission under way: the parts, wired by topics as on the robot."""
 
-    def __init__(self, scene: Scene, seed: int, recording: log.Recording) -> None:
+    def __init__(
+        self, scenario: Scenario, seed: int, log: Recording, decision: Decision | None
+    ) -> None:
         self.tick = 0
-        self._log = recording
-        self._lidar = Lidar()
-        self._robot = Robot(scene, self._lidar, seed)
+        self._scenario, self._seed, self._log = scenario, seed, log
+        sensor = scenario.lidar
+        lidar = Lidar(range_min=sensor.range_min, loses_near=sensor.nearer == "lost")
+        self._lidar, self._scene = lidar, really(STORE, scenario)
+        self._walk = Walk(scenario.store.walker) if scenario.store.walker else None
+        walker = self._walk.obstacle if self._walk else None
+        self._robot = Robot(self._scene, lidar, seed, walker)
         self._error = PoseError(seed)
-        self._navigator = Navigator(scene)
-        self._operator = Operator(ROBOT)
-        self._safety = SafetyFunction(TooClose())
-        self._interceptor = Interceptor()
-        self._points: Points = self._lidar.points(self._robot.scan())
         self._wheels = STANDSTILL
-        self._manoeuvring = False
-        self._goal: Pose | None = None
-        self._goals_total = len(scene.goals)
-        self._arrived_at = 0
-        self._stops = self._contacts = 0
-        self._touching = False
-        self._measured = self._true = float("inf")
+        self._bus = Bus(log.write, scenario.transport, seed, EPOCH + WARM_UP)
+        self._bus.subscribe("/cmd_vel_filtered", self._hear_wheels)
+        self._driver = Driver(self._bus, STORE, scenario, lidar, EPOCH)
+        if scenario.safety.on:
+            rule = decision or TooClose(lidar, scenario.safety.threshold)
+            SafetyFunction(self._bus, rule, scenario.safety, EPOCH)
+        Gate(self._bus, scenario.interceptor, EPOCH)
+        self._judge = _Judge(self._robot)
+        self._bus.subscribe("/gwendolen_control", self._judge.hear_stop)
+        self._begin()
+
+    def _begin(self) -> None:
+        grid = self._driver.navigator.map
+        for topic, message in (
+            ("/map", messages.occupancy(EPOCH, grid, RESOLUTION)),
+            ("/tf_static", messages.fixed_transforms(EPOCH)),
+            ("/robot_description", messages.description()),
+        ):
+            self._bus.publish(topic, message, EPOCH)
+        self._bus.every(TICK, EPOCH, self._report)
+        self._bus.every(_SCAN_PERIOD, EPOCH, self._scan)
 
     @property
     def over(self) -> bool:
         """The last goal is reached and the robot has stood there for a moment."""
-        return self._navigator.goal is None and self.tick - self._arrived_at >= _LINGER
+        arrived = self._driver.arrived_at
+        return arrived is not None and self._now - arrived >= _LINGER
 
     @property
     def _now(self) -> int:
         return EPOCH + self.tick * TICK
 
     def step(self) -> None:
-        """One tick."""
-        before = self._wheels
-        self._report_pose()
-        if self.tick % _SCAN_EVERY == _SCAN_AT:
-            self._watch()
-        if self.tick % _CONTROL_EVERY == _CONTROL_AT:
-            self._control()
-        if self.tick % _HEARTBEAT_EVERY == _HEARTBEAT_AT:
-            self._say_stop(self._now)
-        self._robot.drive(before, 1)
-        self._robot.drive(self._wheels, _STEPS - 1)
+        """One tick: what the parts hear and say within it, and what the robot does meanwhile."""
+        now, done = self._now, 0
+        while self._bus.next < now + TICK:
+            due = math.ceil((self._bus.next - now) / _STEP)
+            self._drive(due - done)
+            done = due
+            self._bus.run()
+        self._drive(_STEPS - done)
         self._error.step(TICK / _SECOND)
-        self._judge()
+        if self._walk:
+            self._robot.place_walker(*self._walk.step(self.tick * TICK / _SECOND, self._robot.pose))
+        self._judge.step(self.tick)
         self.tick += 1
 
-    def mission(self, seed: int, out: Path) -> Mission:
+    def _drive(self, steps: int) -> None:
+        if steps > 0:
+            self._robot.drive(self._wheels, steps)
+
+    def mission(self, out: Path) -> Mission:
         """The summary so far."""
+        judge = self._judge
         return Mission(
-            seed=seed,
+            scenario=self._scenario,
+            seed=self._seed,
             duration=self.tick / _TICKS_PER_SECOND,
-            goals_reached=self._navigator.reached,
-            goals_total=self._goals_total,
-            stops=self._stops,
-            measured_clearance=self._measured,
-            true_clearance=self._true,
-            contacts=self._contacts,
+            goals_reached=self._driver.navigator.reached,
+            goals_total=len(STORE.goals),
+            stops=tuple(judge.stops),
+            measured_clearance=self._driver.measured,
+            true_clearance=judge.clearance,
+            contacts=judge.contacts,
             messages=self._log.messages,
+            track=tuple(judge.track),
+            scene=self._scene,
             path=out,
         )
 
-    def _report_pose(self) -> None:
-        pose, velocity, now = self._robot.pose, self._robot.velocity, self._now
+    def _hear_wheels(self, message: Any, now: int) -> None:
+        self._wheels = messages.velocity(message)
+
+    def _report(self, now: int) -> None:
+        """What the robot knows of its motion, and the truth."""
+        pose, velocity, publish = self._robot.pose, self._robot.velocity, self._bus.publish
         estimate = self._error.estimate(pose)
-        self._log.write("/ground_truth", log.odometry(now, log.MAP, pose, velocity), now)
-        self._log.write("/odom", log.odometry(now, log.ODOM, estimate, velocity), now)
-        if self.tick % _SCAN_EVERY == _SCAN_AT:
-            self._log.write("/tf", log.transforms(now, estimate), now)
+        publish("/ground_truth", messages.odometry(now, messages.MAP, pose, velocity), now)
+        publish("/ground_truth/clearance", messages.number(self._judge.present), now)
+        publish("/odom", messages.odometry(now, messages.ODOM, estimate, velocity), now)
+        if (now - EPOCH) % _SCAN_PERIOD == 0:
+            publish("/tf", messages.transforms(now, estimate), now)
+            publish("/clock", messages.clock(now), now)
 
-    def _watch(self) -> None:
-        """A scan, and the safety function's answer to it."""
-        ranges = self._robot.scan()
-        seen = self._now + SCAN_LATENCY
-        self._log.write("/scan", log.laser_scan(self._now, ranges, self._lidar), seen)
-        self._points = self._lidar.points(ranges)
-        clearance = outline_clearance(ranges, self._lidar, ROBOT)
-        self._measured = min(self._measured, clearance)
-        was_stopped = self._safety.stop_requested
-        if self._safety.step(clearance) and not was_stopped:
-            self._stops += 1
-            self._say_stop(seen + ANSWER_LATENCY)
-            self._intercept(seen + ANSWER_LATENCY + INTERCEPT_LATENCY)
+    def _scan(self, now: int) -> None:
+        """A turn of the lidar, with the faults of the scenario."""
+        ranges, sensor = self._robot.scan(), self._scenario.lidar
+        seconds = (now - EPOCH) / _SECOND
+        says = [o.says for o in sensor.outages if o.at <= seconds < o.at + o.seconds]
+        if sensor.nan_first:
+            ranges[0] = np.nan
+        if "nan" in says:
+            ranges[:] = np.nan
+        if "nothing" not in says:
+            self._bus.publish(
+                "/scan", messages.laser_scan(now, ranges, self._lidar), now + SCAN_LATENCY
+            )
 
-    def _control(self) -> None:
-        """The control tick: operator or planner commands, the interceptor passes it on."""
-        command = self._command()
-        heard = self._now + COMMAND_LATENCY
-        self._log.write("/cmd_vel", log.twist(command), heard)
-        self._interceptor = self._interceptor.hear_command(command)
-        self._intercept(heard + INTERCEPT_LATENCY)
 
-    def _command(self) -> Velocity:
-        """From the operator while there is a manoeuvre, else from the planner."""
-        now, stopped = self.tick / _TICKS_PER_SECOND, self._safety.stop_requested
-        manoeuvre = self._operator.step(now, stopped, self._robot.velocity, self._points)
-        if manoeuvre is not None:
-            if not self._manoeuvring:
-                self._safety.release()
-                self._say_stop(self._now)
-            self._manoeuvring = True
-            return manoeuvre
-        if self._manoeuvring:
-            self._safety.rearm()
-            self._navigator.replan()
-            self._manoeuvring = False
-        return self._navigate()
+class _Judge:
+    """Keeps the truth for the summary."""
 
-    def _navigate(self) -> Velocity:
-        """The planner's command; a goal that comes into force is published."""
-        command = self._navigator.step(self._error.estimate(self._robot.pose))
-        if self._navigator.goal != self._goal:
-            self._goal, self._arrived_at = self._navigator.goal, self.tick
-            if self._goal is not None:
-                self._log.write("/goal", log.goal_pose(self._now, self._goal), self._now)
-        return command
+    def __init__(self, robot: Robot) -> None:
+        self._robot = robot
+        self.present = self.clearance = robot.clearance()
+        self.contacts = 0
+        self.stops: list[Stop] = []
+        self.track: list[Pose] = []
+        self._touching = self._stop = False
+        self._braking: tuple[int, Pose] | None = None
 
-    def _say_stop(self, time: int) -> None:
-        """On /gwendolen_control, and the interceptor hears it."""
-        requested = self._safety.stop_requested
-        self._log.write("/gwendolen_control", log.boolean(requested), time)
-        self._interceptor = self._interceptor.hear_stop(requested)
+    def hear_stop(self, message: Any, now: int) -> None:
+        """On /gwendolen_control."""
+        requested = bool(message.data)
+        if requested and not self._stop:
+            self._braking = now, self._robot.pose
+        if not requested and self._braking:
+            self._stopped(None)
+        self._stop = requested
 
-    def _intercept(self, time: int) -> None:
-        """On /cmd_vel_filtered, and the wheels hear it."""
-        self._wheels = self._interceptor.output()
-        self._log.write("/cmd_vel_filtered", log.twist(self._wheels), time)
-
-    def _judge(self) -> None:
-        """Keep the truth for the summary."""
-        self._true = min(self._true, self._robot.clearance())
-        touching = self._robot.touching()
-        self._contacts += touching and not self._touching
+    def step(self, tick: int) -> None:
+        """After each tick."""
+        robot = self._robot
+        self.present = robot.clearance()
+        self.clearance = min(self.clearance, self.present)
+        touching = robot.touching()
+        self.contacts += touching and not self._touching
         self._touching = touching
+        if tick % 5 == 0:
+            self.track.append(robot.pose)
+        velocity = robot.velocity
+        if self._braking and abs(velocity.forward) < _STANDING and abs(velocity.turn) < _STANDING:
+            self._stopped(EPOCH + (tick + 1) * TICK)
+
+    def _stopped(self, now: int | None) -> None:
+        assert self._braking is not None
+        began, at = self._braking
+        here = self._robot.pose
+        latency = None if now is None else (now - began) / _SECOND
+        distance = math.dist((at.x, at.y), (here.x, here.y))
+        self.stops.append(Stop(at, latency, distance, (began - EPOCH) / _SECOND))
+        self._braking = None

@@ -1,7 +1,6 @@
 """The planner: A* on a grid, pursuit of its path, and a pose estimate that drifts.
 
-It stands for amcl and move_base, with the fault of the original experiment: its margin is that of
-a smaller robot, so now and then it leads the robot too close to something.
+It stands for amcl and move_base. It knows the map, and what it saw where the robot was stopped.
 """
 
 import heapq
@@ -12,25 +11,21 @@ from itertools import pairwise, product
 import numpy as np
 from numpy.typing import NDArray
 
+from simulation.lidar import Points
 from simulation.motion import STANDSTILL, Pose, Velocity
+from simulation.scenario import Planner
 from simulation.scene import Scene
 
 RESOLUTION = 0.05
 """Metres per cell."""
 
-MARGIN = 0.32
-"""Metres from path to obstacle; the robot's corners reach 0.42 m, so this is too little."""
-
-MAX_SPEED = 0.40
-"""m/s."""
-
-MAX_TURN = 1.0
-"""rad/s."""
-
 _CAUTIOUS_MARGIN = 0.55
-_TIGHT_MARGINS = (0.2, 0.1, 0.0)
+_TIGHT_MARGINS = (0.45, 0.32, 0.2, 0.1, 0.0)
 _LOOKAHEAD = 0.40
 _ARRIVED = 0.15
+_COMFORT = 0.3
+_SEEN_WITHIN = 2.5
+_UNMAPPED = 0.2
 
 Cell = tuple[int, int]
 _NEIGHBOURS = [(i, j, math.hypot(i, j)) for i, j in product((-1, 0, 1), repeat=2) if i or j]
@@ -100,23 +95,25 @@ def _way(before: dict[Cell, Cell], last: Cell) -> NDArray[np.float64]:
     return (np.array(cells[::-1]) + 0.5) * RESOLUTION
 
 
-def pursue(path: NDArray[np.float64], pose: Pose) -> Velocity:
+def pursue(path: NDArray[np.float64], pose: Pose, speed: float, turn: float) -> Velocity:
     """Steer at the point of the path that lies some 0.4 m ahead (pure pursuit).
 
     Args:
         path: shape (n, 2), n >= 1, metres.
         pose: where the robot believes it is.
+        speed: at most, m/s.
+        turn: at most, rad/s.
 
     Returns:
-        At most `MAX_SPEED` and `MAX_TURN`; slower the more the point lies to the side, and
-        turning on the spot when it lies more than some 70 degrees off.
+        Slower the more the point lies to the side, and turning on the spot when it lies too far
+        off for the robot to turn towards it on the way.
     """
     nearest = int(np.hypot(path[:, 0] - pose.x, path[:, 1] - pose.y).argmin())
     x, y = _ahead(path[nearest:], _LOOKAHEAD)
     bearing = math.remainder(math.atan2(y - pose.y, x - pose.x) - pose.yaw, 2 * math.pi)
-    turn = max(-MAX_TURN, min(MAX_TURN, 2.2 * bearing))
-    forward = MAX_SPEED * math.cos(bearing) ** 2 if abs(bearing) < 1.2 else 0.0
-    return Velocity(forward, turn)
+    widest = min(1.2, 2.0 * turn)
+    share = max(0.0, 1.0 - abs(bearing) / widest)
+    return Velocity(speed * share, max(-turn, min(turn, 2.2 * bearing)))
 
 
 def _ahead(path: NDArray[np.float64], distance: float) -> tuple[float, float]:
@@ -151,14 +148,26 @@ class PoseError:
 
 
 class Navigator:
-    """Leads the robot from goal to goal."""
+    """Leads the robot from goal to goal.
 
-    def __init__(self, scene: Scene) -> None:
-        self._clearance = clearance_grid(scene)
+    Args:
+        scene: as the map shows it.
+        planner: how it plans and drives.
+    """
+
+    def __init__(self, scene: Scene, planner: Planner = Planner()) -> None:  # noqa: B008 - frozen
+        self._map = clearance_grid(scene)
+        self._clearance = self._map
+        self._options = planner
         self._goals: Sequence[Pose] = scene.goals
         self._reached = 0
-        self._margin = MARGIN
+        self._margin = planner.margin
         self._path: NDArray[np.float64] | None = None
+
+    @property
+    def map(self) -> NDArray[np.float64]:
+        """Metres from each cell (x, y) to the nearest mapped obstacle."""
+        return self._map
 
     @property
     def reached(self) -> int:
@@ -170,26 +179,59 @@ class Navigator:
         """The goal in force; None when all are reached."""
         return self._goals[self._reached] if self._reached < len(self._goals) else None
 
-    def step(self, estimate: Pose) -> Velocity:
-        """The next command; standstill at a goal and after the last."""
+    def step(self, estimate: Pose, clearance: float = math.inf) -> Velocity:
+        """The next command; standstill at a goal and after the last.
+
+        Args:
+            estimate: where the robot believes it is.
+            clearance: metres to the nearest thing that it sees; NaN where it sees nothing at all.
+        """
         if self.goal is None:
             return STANDSTILL
         if math.hypot(self.goal.x - estimate.x, self.goal.y - estimate.y) < _ARRIVED:
             self._reached += 1
-            self._margin, self._path = MARGIN, None
+            self._margin, self._path = self._options.margin, None
             return STANDSTILL
         if self._path is None:
             self._path = self._planned(estimate, self.goal)
-        return STANDSTILL if self._path is None else pursue(self._path, estimate)
+        if self._path is None:
+            return STANDSTILL
+        free = clearance >= self._options.slow_below  # NaN compares false: unknown is slow
+        speed = self._options.speed if free else min(self._options.slow, self._options.speed)
+        return pursue(self._path, estimate, speed, self._options.turn)
 
-    def replan(self) -> None:
-        """The robot was stopped and moved: find a new way, and a wider one up to the next goal."""
+    def replan(self, estimate: Pose, points: Points) -> None:
+        """The robot was stopped and moved: keep away from what it sees, up to the next goal.
+
+        Args:
+            estimate: where the robot believes it is.
+            points: what the last scan saw, in the robot's frame.
+        """
+        self._clearance = np.minimum(self._clearance, self._away_from(estimate, points))
         self._margin, self._path = _CAUTIOUS_MARGIN, None
 
+    def _away_from(self, estimate: Pose, points: Points) -> NDArray[np.float64]:
+        """Metres from each cell to what is seen near the robot and is not on the map."""
+        cos, sin = math.cos(estimate.yaw), math.sin(estimate.yaw)
+        east = estimate.x + cos * points.x - sin * points.y
+        north = estimate.y + sin * points.x + cos * points.y
+        columns, rows = self._map.shape
+        i = np.clip((east / RESOLUTION).astype(int), 0, columns - 1)
+        j = np.clip((north / RESOLUTION).astype(int), 0, rows - 1)
+        new = (np.hypot(points.x, points.y) < _SEEN_WITHIN) & (self._map[i, j] > _UNMAPPED)
+        nearest = np.full(self._map.shape, np.inf)
+        x = (np.arange(columns) + 0.5)[:, None] * RESOLUTION
+        y = (np.arange(rows) + 0.5)[None, :] * RESOLUTION
+        for at_x, at_y in zip(east[new].tolist(), north[new].tolist(), strict=True):
+            nearest = np.minimum(nearest, np.hypot(x - at_x, y - at_y))
+        return nearest
+
     def _planned(self, estimate: Pose, goal: Pose) -> NDArray[np.float64] | None:
-        """The way with the widest margin that there is one for."""
-        for margin in (self._margin, MARGIN, *_TIGHT_MARGINS):
-            path = plan(self._clearance, estimate, goal, margin, self._margin)
-            if path is not None:
-                return path
+        """The way with the widest margin that there is one for; as the map has it, at the last."""
+        for clearance in (self._clearance, self._map):
+            for margin in (self._margin, *_TIGHT_MARGINS):
+                if margin <= self._margin:
+                    path = plan(clearance, estimate, goal, margin, self._margin + _COMFORT)
+                    if path is not None:
+                        return path
         return None

@@ -1,32 +1,35 @@
-"""The log: ROS 2 messages of the robot's topics, in one MCAP file.
+"""The log: messages of the robot's topics, as of ROS 2 or of ROS 1, in one MCAP file.
 
-The only module that imports rosbags and the MCAP writer. Times are whole nanoseconds; what is
-published and what is logged carry the same time.
+The only module that writes MCAP. Times are whole nanoseconds; what is published and what is logged
+carry the same time.
 """
 
-import math
 import os
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
+from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, BinaryIO
 
-import numpy as np
 from mcap.writer import CompressionType, Writer
-from numpy.typing import NDArray
-from rosbags.typesys import Stores, get_typestore
+from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
-from simulation.lidar import Lidar
-from simulation.motion import Pose, Velocity
+from simulation import __version__
+from simulation.messages import TYPES
+from simulation.scenario import Recorder
 
 if TYPE_CHECKING:
-    from rosbags.typesys.store import Msg, Msgarg
+    from rosbags.typesys.store import Msg, Typestore
 
-_TYPES = get_typestore(Stores.ROS2_JAZZY)
+_SECOND = 10**9
 
-MAP, ODOM, BASE, LIDAR = "map", "odom", "base_link", "velodyne"
-"""Frames, each at the child end of the one before."""
+
+class Encoding(StrEnum):
+    """Whose messages the log holds."""
+
+    ROS2 = "ros2"
+    ROS1 = "ros1"
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,23 +58,38 @@ TOPICS = (
     Topic("/scan", "sensor_msgs/msg/LaserScan", depth=5, reliability="best_effort"),
     Topic("/odom", "nav_msgs/msg/Odometry"),
     Topic("/ground_truth", "nav_msgs/msg/Odometry"),
+    Topic("/ground_truth/clearance", "std_msgs/msg/Float64"),
     Topic("/cmd_vel", "geometry_msgs/msg/Twist"),
     Topic("/cmd_vel_filtered", "geometry_msgs/msg/Twist"),
-    Topic("/gwendolen_control", "std_msgs/msg/Bool", depth=1, durability="transient_local"),
+    Topic("/gwendolen_control", "std_msgs/msg/Bool", 1, durability="transient_local"),
+    Topic("/manual_control", "std_msgs/msg/Bool", 1, durability="transient_local"),
+    Topic("/goal", "geometry_msgs/msg/PoseStamped", 1, durability="transient_local"),
     Topic("/tf", "tf2_msgs/msg/TFMessage", depth=100),
-    Topic("/goal", "geometry_msgs/msg/PoseStamped", depth=1, durability="transient_local"),
+    Topic("/tf_static", "tf2_msgs/msg/TFMessage", 1, durability="transient_local"),
+    Topic("/map", "nav_msgs/msg/OccupancyGrid", 1, durability="transient_local"),
+    Topic("/robot_description", "std_msgs/msg/String", 1, durability="transient_local"),
+    Topic("/clock", "rosgraph_msgs/msg/Clock", 1, reliability="best_effort"),
 )
 
 
 class Recording:
     """An MCAP file that is being written."""
 
-    def __init__(self, stream: BinaryIO) -> None:
+    def __init__(
+        self,
+        stream: BinaryIO,
+        encoding: Encoding = Encoding.ROS2,
+        faults: Recorder = Recorder(),  # noqa: B008 - frozen
+        epoch: int = 0,
+    ) -> None:
         # Any: the writer's `finish` carries no annotations.
         self._writer: Any = Writer(stream, compression=CompressionType.ZSTD)
-        self._writer.start(profile="ros2", library="fretc simulation")
+        self._ros1 = _ros1_types() if encoding is Encoding.ROS1 else None
+        self._writer.start(profile=str(encoding), library=f"fretc simulation {__version__}")
         self._channels = {topic.name: self._register(topic) for topic in TOPICS}
         self._counts = dict.fromkeys(self._channels, 0)
+        self._jump = round(faults.jump_by * _SECOND)
+        self._jump_at = None if faults.jump_at is None else epoch + round(faults.jump_at * _SECOND)
 
     @property
     def messages(self) -> int:
@@ -81,12 +99,14 @@ class Recording:
     def write(self, topic: str, message: "Msg", time: int) -> None:
         """Add a message; `topic` is one of `TOPICS`, `time` in nanoseconds."""
         self._counts[topic] += 1
+        if self._jump_at is not None and time >= self._jump_at:
+            time += self._jump
         self._writer.add_message(
             channel_id=self._channels[topic],
             log_time=time,
             publish_time=time,
             sequence=self._counts[topic],
-            data=bytes(_TYPES.serialize_cdr(message, message.__msgtype__, little_endian=True)),
+            data=self._bytes(message),
         )
 
     def finish(self, name: str, metadata: Mapping[str, str]) -> None:
@@ -94,21 +114,54 @@ class Recording:
         self._writer.add_metadata(name, dict(metadata))
         self._writer.finish()
 
+    def _bytes(self, message: "Msg") -> bytes:
+        data = bytes(TYPES.serialize_cdr(message, message.__msgtype__, little_endian=True))
+        return data if self._ros1 is None else bytes(TYPES.cdr_to_ros1(data, message.__msgtype__))
+
     def _register(self, topic: Topic) -> int:
         """Declare a topic and its message type; the number of its channel."""
-        text, _ = _TYPES.generate_msgdef(topic.type, ros_version=2)
+        if self._ros1 is not None:
+            return self._register_ros1(topic, self._ros1)
+        text, _ = TYPES.generate_msgdef(topic.type, ros_version=2)
         schema = self._writer.register_schema(topic.type, "ros2msg", text.encode())
         qos = {"offered_qos_profiles": topic.offered_qos_profiles()}
         return int(self._writer.register_channel(topic.name, "cdr", schema, qos))
 
+    def _register_ros1(self, topic: Topic, types: "Typestore") -> int:
+        text, digest = types.generate_msgdef(topic.type, ros_version=1)
+        name = topic.type.replace("/msg/", "/")
+        schema = self._writer.register_schema(name, "ros1msg", text.encode())
+        latching = str(int(topic.durability == "transient_local"))
+        about = {"topic": topic.name, "type": name, "md5sum": digest, "latching": latching}
+        return int(self._writer.register_channel(topic.name, "ros1", schema, about))
+
+
+def _ros1_types() -> "Typestore":
+    """Those of ROS 1, with the one that rosbags leaves out."""
+    types = get_typestore(Stores.ROS1_NOETIC)
+    name = "tf2_msgs/msg/TFMessage"
+    types.register(get_types_from_msg("geometry_msgs/TransformStamped[] transforms\n", name))
+    return types
+
 
 @contextmanager
-def recording(path: Path) -> Iterator[Recording]:
+def recording(
+    path: Path,
+    encoding: Encoding = Encoding.ROS2,
+    faults: Recorder = Recorder(),  # noqa: B008 - frozen
+    epoch: int = 0,
+) -> Iterator[Recording]:
     """Write a log that is there complete or not at all.
 
     Until the end of the block the file has another name in the same folder. Whatever ends the
     block early, Ctrl-C included, that file is removed and an older one at `path` stays.
     The block has to call `Recording.finish`.
+
+    Args:
+        path: of the file.
+        encoding: of its messages.
+        faults: of the recorder; a file that is to be cut is cut when it is complete.
+        epoch: when simulated time began, nanoseconds.
 
     Raises:
         OSError: the folder does not exist or cannot be written.
@@ -116,107 +169,10 @@ def recording(path: Path) -> Iterator[Recording]:
     partial = path.with_name(f".{path.name}.{os.getpid()}.partial")
     try:
         with partial.open("wb") as stream:
-            yield Recording(stream)
+            yield Recording(stream, encoding, faults, epoch)
+        if faults.keep < 1:
+            os.truncate(partial, round(partial.stat().st_size * faults.keep))
         partial.replace(path)
     except BaseException:
         partial.unlink(missing_ok=True)
         raise
-
-
-def laser_scan(time: int, ranges: NDArray[np.float32], lidar: Lidar) -> "Msg":
-    """A full turn measured at `time`; all beams at once, as the simulator measures them."""
-    return _new(
-        "sensor_msgs/msg/LaserScan",
-        header=_header(time, LIDAR),
-        angle_min=float(lidar.angles[0]),
-        angle_max=float(lidar.angles[-1]),
-        angle_increment=lidar.increment,
-        time_increment=0.0,
-        scan_time=lidar.period,
-        range_min=lidar.range_min,
-        range_max=lidar.range_max,
-        ranges=ranges,
-        intensities=np.zeros(0, np.float32),
-    )
-
-
-def odometry(time: int, frame: str, pose: Pose, velocity: Velocity) -> "Msg":
-    """A pose in `frame` and a velocity in the body's frame; covariances are left at 0, unknown."""
-    return _new(
-        "nav_msgs/msg/Odometry",
-        header=_header(time, frame),
-        child_frame_id=BASE,
-        pose=_new("geometry_msgs/msg/PoseWithCovariance", pose=_pose(pose), covariance=_unknown()),
-        twist=_new(
-            "geometry_msgs/msg/TwistWithCovariance", twist=twist(velocity), covariance=_unknown()
-        ),
-    )
-
-
-def twist(velocity: Velocity) -> "Msg":
-    """`linear.x` and `angular.z`."""
-    return _new(
-        "geometry_msgs/msg/Twist",
-        linear=_vector(velocity.forward, 0.0),
-        angular=_new("geometry_msgs/msg/Vector3", x=0.0, y=0.0, z=velocity.turn),
-    )
-
-
-def boolean(value: bool) -> "Msg":
-    """A bare truth value."""
-    return _new("std_msgs/msg/Bool", data=value)
-
-
-def goal_pose(time: int, pose: Pose) -> "Msg":
-    """A goal in the room's frame."""
-    return _new("geometry_msgs/msg/PoseStamped", header=_header(time, MAP), pose=_pose(pose))
-
-
-def transforms(time: int, estimate: Pose) -> "Msg":
-    """The whole chain from the map to the lidar; the map and the odometry's frame coincide."""
-    origin = Pose(0.0, 0.0)
-    links = ((MAP, ODOM, origin), (ODOM, BASE, estimate), (BASE, LIDAR, origin))
-    return _new(
-        "tf2_msgs/msg/TFMessage",
-        transforms=[
-            _new(
-                "geometry_msgs/msg/TransformStamped",
-                header=_header(time, parent),
-                child_frame_id=child,
-                transform=_new(
-                    "geometry_msgs/msg/Transform",
-                    translation=_vector(pose.x, pose.y),
-                    rotation=_quaternion(pose.yaw),
-                ),
-            )
-            for parent, child, pose in links
-        ],
-    )
-
-
-def _new(type_name: str, **fields: "Msgarg") -> "Msg":
-    return _TYPES.types[type_name](**fields)
-
-
-def _header(time: int, frame: str) -> "Msg":
-    seconds, nanoseconds = divmod(time, 10**9)
-    stamp = _new("builtin_interfaces/msg/Time", sec=seconds, nanosec=nanoseconds)
-    return _new("std_msgs/msg/Header", stamp=stamp, frame_id=frame)
-
-
-def _pose(pose: Pose) -> "Msg":
-    position = _new("geometry_msgs/msg/Point", x=pose.x, y=pose.y, z=0.0)
-    return _new("geometry_msgs/msg/Pose", position=position, orientation=_quaternion(pose.yaw))
-
-
-def _vector(x: float, y: float) -> "Msg":
-    return _new("geometry_msgs/msg/Vector3", x=x, y=y, z=0.0)
-
-
-def _quaternion(yaw: float) -> "Msg":
-    z, w = math.sin(yaw / 2), math.cos(yaw / 2)
-    return _new("geometry_msgs/msg/Quaternion", x=0.0, y=0.0, z=z, w=w)
-
-
-def _unknown() -> NDArray[np.float64]:
-    return np.zeros(36)

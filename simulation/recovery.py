@@ -14,7 +14,7 @@ MANOEUVRE = 2.0
 """Seconds that the operator drives."""
 
 _STANDING = 0.01  # m/s and rad/s; slower counts as standing.
-_CHOICES = [Velocity(forward, turn) for forward, turn in product((-0.15, 0.15), (0.0, -0.3, 0.3))]
+_CHOICES = [Velocity(forward, turn) for forward, turn in product((-0.14, 0.14), (0.0, -0.2, 0.2))]
 _LOOK_STEP = 0.1
 _ENOUGH = 0.40
 

@@ -29,14 +29,15 @@ class Robot:
     brakes with 2.6 m/s2.
     """
 
-    def __init__(self, scene: Scene, lidar: Lidar, seed: int) -> None:
-        self._model = mujoco.MjModel.from_xml_string(_mjcf(scene))
+    def __init__(self, scene: Scene, lidar: Lidar, seed: int, walker: Barrel | None = None) -> None:
+        self._model = mujoco.MjModel.from_xml_string(_mjcf(scene, walker))
         self._data = mujoco.MjData(self._model)
         self._data.qpos[:] = scene.start.x, scene.start.y, scene.start.yaw
         self._lidar = lidar
         self._noise = np.random.default_rng([seed, 1])
         self._chassis = self._model.geom(ROBOT.name).id
-        self._obstacles = [self._model.geom(obstacle.name).id for obstacle in scene.obstacles]
+        standing = (*scene.obstacles, walker) if walker else scene.obstacles
+        self._obstacles = [self._model.geom(obstacle.name).id for obstacle in standing]
         self._seen_groups = np.array([group != _ROBOT_GROUP for group in range(6)], np.uint8)
         mujoco.mj_forward(self._model, self._data)
 
@@ -53,8 +54,12 @@ class Robot:
         yaw = float(self._data.qpos[2])
         return Velocity(east * math.cos(yaw) + north * math.sin(yaw), turn)
 
+    def place_walker(self, x: float, y: float) -> None:
+        """Put the one obstacle that moves somewhere else; metres."""
+        self._data.mocap_pos[0, :2] = x, y
+
     def drive(self, command: Velocity, steps: int) -> None:
-        """Hold a command for a number of physics steps."""
+        """Hold a command for a number of physics steps, at least one; then the truth is new."""
         for _ in range(steps):
             yaw = float(self._data.qpos[2])
             forward = command.forward
@@ -104,9 +109,13 @@ class Robot:
         return distances
 
 
-def _mjcf(scene: Scene) -> str:
+def _mjcf(scene: Scene, walker: Barrel | None) -> str:
     """The scene and the robot as MuJoCo's model text."""
     obstacles = "\n    ".join(_geom(obstacle) for obstacle in scene.obstacles)
+    if walker is not None:
+        body = _geom(Barrel(walker.name, 0.0, 0.0, walker.radius))
+        where = f'pos="{walker.x} {walker.y} 0"'
+        obstacles += f'\n    <body name="walks" mocap="true" {where}>{body}</body>'
     return f"""<mujoco model="store">
   <compiler angle="radian"/>
   <option timestep="{PHYSICS_STEP}" integrator="implicitfast"/>

@@ -1,20 +1,23 @@
-"""The safety function: how far obstacles are from the robot's outline, and who may drive.
+"""The safety system as pure functions: how near things are, who must stop, what the wheels hear.
 
-No input, no output, no clock: each step takes a value and gives a value.
+No input, no output, no clock: each step takes values and gives values.
 """
 
 from dataclasses import dataclass, replace
-from typing import Protocol
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
+from simulation import scenario
 from simulation.lidar import Lidar
 from simulation.motion import STANDSTILL, Velocity
-from simulation.scene import Box
+from simulation.scene import ROBOT, Box
 
 SAFE_DISTANCE = 0.05
 """Metres from the outline; nearer is too close (R1 of the inspection experiment)."""
+
+_SECOND = 10**9
 
 
 def outline_clearance(ranges: NDArray[np.floating], lidar: Lidar, outline: Box) -> float:
@@ -41,74 +44,108 @@ def outline_clearance(ranges: NDArray[np.floating], lidar: Lidar, outline: Box) 
 
 
 class Decision(Protocol):
-    """What decides, scan by scan, whether the robot must stop; a monitor may stand here."""
+    """What decides whether the robot must stop: the monitor of a requirement stands here."""
 
-    def step(self, clearance: float) -> bool:
-        """True if the robot must stop now; `clearance` in metres, NaN where unknown."""
+    def hear(self, topic: str, message: Any, time: int) -> None:
+        """A message of /scan or /odom has arrived; `time` in nanoseconds."""
+        ...
+
+    def step(self, time: int) -> bool:
+        """True if the robot must stop now; asked at each scan, and when none comes."""
         ...
 
 
-@dataclass(frozen=True, slots=True)
 class TooClose:
     """R1 by hand: stop when the clearance is below `threshold` metres, or unknown."""
 
-    threshold: float = SAFE_DISTANCE
+    def __init__(
+        self, lidar: Lidar, threshold: float = SAFE_DISTANCE, max_age: float = 0.3
+    ) -> None:
+        self._lidar, self._threshold = lidar, threshold
+        self._max_age = round(max_age * _SECOND)
+        self._clearance, self._heard = float("nan"), 0
 
-    def step(self, clearance: float) -> bool:
+    def hear(self, topic: str, message: Any, time: int) -> None:
+        """Only scans count."""
+        if topic == "/scan":
+            self._clearance = outline_clearance(message.ranges, self._lidar, ROBOT)
+            self._heard = time
+
+    def step(self, time: int) -> bool:
         """True below the threshold; at the threshold the robot may go on."""
-        return not clearance >= self.threshold  # NaN compares false: unknown stops.
+        fresh = time - self._heard <= self._max_age
+        return not (fresh and self._clearance >= self._threshold)  # NaN compares false.
 
 
-class SafetyFunction:
-    """Keeps the stop that its decision demands until a person releases it.
+def stop_requested(before: bool, *, demanded: bool, manual: bool) -> bool:
+    """Whether the safety function requests a stop: from the demand until a person takes over.
 
-    After a release the robot is still too close, so the function lets it move until the clearance
-    has reached `rearm_at` metres or the person says that the manoeuvre is over.
+    A person with the hand on the switch may move the robot out of a place that is too close.
     """
-
-    def __init__(self, decision: Decision, rearm_at: float = 2 * SAFE_DISTANCE) -> None:
-        self._decision = decision
-        self._rearm_at = rearm_at
-        self._armed = True
-        self._stop = False
-
-    @property
-    def stop_requested(self) -> bool:
-        """True from the demand to stop until the release."""
-        return self._stop
-
-    def step(self, clearance: float) -> bool:
-        """Take one scan's clearance in metres; True if the robot has to stand still now."""
-        demanded = self._decision.step(clearance)
-        self._armed = self._armed or clearance >= self._rearm_at
-        self._stop = self._stop or (self._armed and demanded)
-        return self._stop
-
-    def release(self) -> None:
-        """A person takes over and may move the robot although it is too close."""
-        self._stop = False
-        self._armed = False
-
-    def rearm(self) -> None:
-        """The person's manoeuvre is over; from the next step on every demand counts again."""
-        self._armed = True
+    return not manual and (before or demanded)
 
 
 @dataclass(frozen=True, slots=True)
-class Interceptor:
-    """Stands between the planner and the wheels: forwards the last command, or zero on stop."""
+class Intercepted:
+    """What the interceptor remembers. Times in nanoseconds, None: never heard."""
 
-    stop_requested: bool = False
+    stop: bool = False
     command: Velocity = STANDSTILL
+    command_at: int | None = None
+    safety_at: int | None = None
 
-    def hear_stop(self, requested: bool) -> "Interceptor":
-        """On `/gwendolen_control`."""
-        return replace(self, stop_requested=requested)
 
-    def hear_command(self, command: Velocity) -> "Interceptor":
-        """On `/cmd_vel`."""
-        return replace(self, command=command)
+@dataclass(frozen=True, slots=True)
+class StopHeard:
+    """A message on /gwendolen_control."""
 
-    def output(self) -> Velocity:
-        """For `/cmd_vel_filtered`, on every tick of the timer and at once when a stop comes."""
-        return STANDSTILL if self.stop_requested else self.command
+    requested: bool
+
+
+@dataclass(frozen=True, slots=True)
+class CommandHeard:
+    """A message on /cmd_vel."""
+
+    command: Velocity
+
+
+@dataclass(frozen=True, slots=True)
+class TimerRang:
+    """The interceptor's own clock."""
+
+
+def intercept(
+    state: Intercepted,
+    heard: StopHeard | CommandHeard | TimerRang,
+    time: int,
+    options: scenario.Interceptor,
+) -> tuple[Intercepted, Velocity | None]:
+    """One step: the state after it, and what is said on /cmd_vel_filtered; None: nothing is.
+
+    Args:
+        state: before.
+        heard: what has come.
+        time: nanoseconds.
+        options: how it behaves.
+    """
+    match heard:
+        case StopHeard(requested):
+            stop = requested or (state.stop and options.latching)
+            after = replace(state, stop=stop, safety_at=time)
+            speaks = options.at_once and stop and not state.stop
+        case CommandHeard(command):
+            after, speaks = replace(state, command=command, command_at=time), True
+        case TimerRang():
+            after, speaks = state, True
+    return after, _passed(after, time, options) if speaks else None
+
+
+def _passed(state: Intercepted, time: int, options: scenario.Interceptor) -> Velocity:
+    """The command, or zero: on a stop, and where commands or the safety function are silent."""
+    silent = _late(state.command_at, time, options.command_timeout)
+    blind = _late(state.safety_at, time, options.safety_timeout)
+    return STANDSTILL if state.stop or silent or blind else state.command
+
+
+def _late(heard: int | None, time: int, timeout: float) -> bool:
+    return timeout > 0 and (heard is None or time - heard > round(timeout * _SECOND))

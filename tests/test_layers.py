@@ -30,6 +30,7 @@ DOORS = {
             "progress",
             "requirements",
             "runs",
+            "simulations",
             "summaries",
             "verify",
         )
@@ -39,7 +40,14 @@ DOORS = {
     "distributed": {"compiler/fleet.py"},
     "dask": {"compiler/fleet.py"},
     "mujoco": {"simulation/robot.py"},
-    "rosbags": {"simulation/recording.py", "monitors/idl.py", "monitors/bags.py"},
+    "matplotlib": {"simulation/picture.py"},
+    "scipy": {"compiler/campaign.py"},
+    "rosbags": {
+        "simulation/messages.py",
+        "simulation/recording.py",
+        "monitors/idl.py",
+        "monitors/bags.py",
+    },
     "mcap": {
         "compiler/annotations.py",
         "monitors/bags.py",
@@ -92,7 +100,8 @@ def test_a_library_comes_in_through_its_door(module: Path) -> None:
 def test_only_the_command_imports_the_simulation() -> None:
     users = {str(m.relative_to(ROOT)) for m in modules() if "simulation" in imported(m)}
     assert {user for user in users if not user.startswith("simulation/")} == {
-        "compiler/cli/runs.py"
+        "compiler/campaign.py",
+        "compiler/cli/simulations.py",
     }
 
 

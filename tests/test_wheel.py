@@ -43,6 +43,8 @@ def test_every_module_grammar_and_template_is_inside(wheel: Path) -> None:
     for path in (ROOT / "templates").rglob("*"):
         if path.is_file():
             assert f"compiler/{path.relative_to(ROOT)}" in packed
+    sentence = zipfile.ZipFile(wheel).read("compiler/requirements/mission/r01.fret")
+    assert sentence == (ROOT / "requirements/r1.fret").read_bytes()
 
 
 def test_it_makes_a_monitor_far_from_the_checkout(wheel: Path, tmp_path: Path) -> None:
@@ -61,3 +63,18 @@ def test_it_makes_a_monitor_far_from_the_checkout(wheel: Path, tmp_path: Path) -
     )
     assert (run.returncode, run.stdout) == (0, "")
     assert (tmp_path / "out" / "r_monitor.py").is_file()
+
+
+def test_it_simulates_far_from_the_checkout(wheel: Path, tmp_path: Path) -> None:
+    installed = tmp_path / "installed"
+    zipfile.ZipFile(wheel).extractall(installed)
+    run = subprocess.run(
+        [sys.executable, "-c", "from compiler.cli import main; main()", "simulate", "walker"]
+        + ["--duration", "1", "--out", "run.mcap"],
+        cwd=tmp_path,
+        env={**os.environ, "PYTHONPATH": str(installed)},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert (run.returncode, run.stderr) == (0, "wrote run.mcap\n")

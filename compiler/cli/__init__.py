@@ -19,7 +19,8 @@ from compiler.cli.bind import bind
 from compiler.cli.group import DEFAULT, Commands
 from compiler.cli.output import BAD, INTERRUPTED, SHOWN, not_written, say, say_line
 from compiler.cli.requirements import compile_, fmt, import_
-from compiler.cli.runs import audit, info, report, simulate
+from compiler.cli.runs import audit, info, report
+from compiler.cli.simulations import simulate
 from compiler.cli.verify import verify
 from fretish.diagnostic import Code, Diagnostic
 

@@ -1,10 +1,8 @@
-"""The commands about runs: record, audit, report."""
+"""The commands about runs: audit, report."""
 
 from __future__ import annotations
 
-import math
 import os
-from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -25,7 +23,6 @@ from compiler.cli.output import (
     say_line,
     stop,
 )
-from compiler.cli.progress import progress
 from compiler.cli.summaries import summarize
 from fretish.diagnostic import Code, Diagnostic, has_errors
 
@@ -322,53 +319,3 @@ def report(
     deliver(forms, (evidence, *files))
     if has_errors([*project.diagnostics, *made.diagnostics]):
         raise SystemExit(BAD)
-
-
-@click.command(short_help="Record a mission of the simulated robot.")
-@click.option("--out", required=True, help="The MCAP file to record.")
-@click.option("--seed", default=1, show_default=True, type=click.IntRange(min=0))
-@click.option(
-    "--duration",
-    default=240.0,
-    show_default=True,
-    type=click.FloatRange(min=0, min_open=True),
-    help="Simulated seconds after which the mission is given up.",
-)
-def simulate(out: str, seed: int, duration: float) -> None:
-    """Let the simulated robot drive its mission and record it.
-
-    Needs the extra `sim`: pip install 'fretc[sim]'.
-    """
-    from simulation import missing
-
-    absent = missing()
-    if absent:
-        stop(_missing_extra(absent))
-    from simulation.mission import record
-
-    path = Path(os.path.realpath(out))
-    if path.exists() and not path.is_file():
-        stop(not_written(out, "it is no regular file"))
-    if out == "-" or not math.isfinite(duration):
-        stop(not_written(out, "a log is a file, and a mission ends"))
-    with progress(int(duration), "simulating") as tell:
-        try:
-            mission = record(path, seed, duration, lambda now: tell(int(now), f"{now:.0f} s"))
-        except OSError as error:
-            stop(not_written(out, error.strerror or str(error)))
-    say_line(f"wrote {out}")
-    click.echo(
-        f"seed {mission.seed}: {mission.duration:.1f} s, "
-        f"{mission.goals_reached} of {mission.goals_total} goals, {mission.stops} stops, "
-        f"least clearance {mission.true_clearance * 100:.1f} cm, {mission.messages} messages"
-    )
-
-
-def _missing_extra(absent: Sequence[str]) -> Diagnostic:
-    names = " and ".join(f"`{name}`" for name in absent)
-    return Diagnostic(
-        Code.MISSING_EXTRA,
-        f"the simulated robot needs {names}",
-        help="install the extra: pip install 'fretc[sim]' "
-        "(in a checkout: .venv/bin/pip install '.[sim]')",
-    )

@@ -46,3 +46,8 @@ def test_only_ranges_within_the_limits_are_points() -> None:
     points = LIDAR.points(ranges)
     np.testing.assert_allclose(points.x, [2.0, 0.0], atol=1e-12)
     np.testing.assert_allclose(points.y, [0.0, 3.0], atol=1e-12)
+
+
+def test_a_lidar_that_loses_what_is_near_reads_plus_infinite() -> None:
+    lidar = Lidar(beams=2, range_min=0.9, loses_near=True)
+    assert lidar.report(np.array([0.5, 1.0]), np.zeros(2)).tolist() == [np.inf, 1.0]

@@ -6,7 +6,7 @@ from simulation.motion import STANDSTILL, Velocity
 from simulation.recovery import Operator, way_out
 from simulation.scene import ROBOT
 
-BACK, AHEAD = Velocity(-0.15, 0.0), Velocity(0.15, 0.0)
+BACK, AHEAD = Velocity(-0.14, 0.0), Velocity(0.14, 0.0)
 MOVING = Velocity(0.2, 0.0)
 
 

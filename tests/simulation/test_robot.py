@@ -144,3 +144,15 @@ def test_the_robot_touches_what_it_is_driven_into() -> None:
     assert robot.touching()
     assert robot.clearance() < 0.001
     assert robot.pose.x < 0.51
+
+
+def test_a_walker_is_seen_where_it_is_and_is_as_hard_as_anything() -> None:
+    robot = Robot(alone(), QUIET, 1, Barrel("walker", 5.0, 0.0, 0.25))
+    assert robot.scan()[180] == pytest.approx(4.75, abs=1e-5)
+    robot.place_walker(1.0, 0.0)
+    robot.drive(STANDSTILL, 1)
+    assert robot.scan()[180] == pytest.approx(0.75, abs=1e-5)
+    assert robot.clearance() == pytest.approx(1.0 - 0.25 - 0.306, abs=1e-4)
+    robot.drive(Velocity(0.4, 0.0), 1500)
+    assert robot.touching()
+    assert robot.pose.x < 0.46

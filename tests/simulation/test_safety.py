@@ -1,4 +1,5 @@
 import math
+from dataclasses import dataclass
 
 import numpy as np
 import pytest
@@ -8,7 +9,17 @@ from numpy.typing import NDArray
 
 from simulation.lidar import Lidar
 from simulation.motion import STANDSTILL, Velocity
-from simulation.safety import Interceptor, SafetyFunction, TooClose, outline_clearance
+from simulation.safety import (
+    CommandHeard,
+    Intercepted,
+    StopHeard,
+    TimerRang,
+    TooClose,
+    intercept,
+    outline_clearance,
+    stop_requested,
+)
+from simulation.scenario import Interceptor
 from simulation.scene import ROBOT
 
 LIDAR = Lidar()
@@ -111,14 +122,9 @@ def to_segment(
     return math.dist(point, (start[0] + share * along[0], start[1] + share * along[1]))
 
 
-@pytest.mark.parametrize(
-    ("clearance", "stop"),
-    [(0.0, True), (0.0499, True), (0.05, False), (1.0, False), (INF, False), (NAN, True)],
-)
-def test_the_decision_is_to_stop_below_five_centimetres_and_where_nothing_is_known(
-    clearance: float, stop: bool
-) -> None:
-    assert TooClose().step(clearance) is stop
+@dataclass
+class Scan:
+    ranges: NDArray[np.float32]
 
 
 @pytest.mark.parametrize(
@@ -133,70 +139,125 @@ def test_the_decision_is_to_stop_below_five_centimetres_and_where_nothing_is_kno
     ],
     ids=["all NaN", "empty", "all free", "one too near", "4.4 cm ahead", "5.4 cm ahead"],
 )
-def test_the_safety_function_answers_a_scan(ranges: NDArray[np.float32], stop: bool) -> None:
-    assert SafetyFunction(TooClose()).step(clearance(ranges)) is stop
+def test_the_decision_is_to_stop_below_five_centimetres_and_where_nothing_is_known(
+    ranges: NDArray[np.float32], stop: bool
+) -> None:
+    decision = TooClose(LIDAR)
+    assert decision.step(0) is True
+    decision.hear("/scan", Scan(ranges), 0)
+    assert decision.step(0) is stop
 
 
-def test_a_stop_holds_until_it_is_released() -> None:
-    safety = SafetyFunction(TooClose())
-    assert [safety.step(value) for value in (1.0, 0.04, 1.0, INF)] == [False, True, True, True]
-    safety.release()
-    assert not safety.stop_requested
-    assert safety.step(1.0) is False
-
-
-def test_after_a_release_the_robot_may_move_until_it_has_room_again() -> None:
-    safety = SafetyFunction(TooClose())
-    safety.step(0.04)
-    safety.release()
-    assert [safety.step(value) for value in (0.03, NAN, 0.07, 0.04)] == [False] * 4
-    assert [safety.step(value) for value in (0.10, 0.05, 0.04)] == [False, False, True]
-
-
-def test_the_end_of_the_manoeuvre_arms_the_safety_function() -> None:
-    safety = SafetyFunction(TooClose())
-    safety.step(0.04)
-    safety.release()
-    safety.rearm()
-    assert safety.step(0.04) is True
-
-
-def test_another_decision_can_take_the_place_of_the_threshold() -> None:
-    class EveryThird:
-        def __init__(self) -> None:
-            self.steps = 0
-
-        def step(self, clearance: float) -> bool:
-            self.steps += 1
-            return self.steps % 3 == 0
-
-    safety = SafetyFunction(EveryThird())
-    assert [safety.step(1.0) for _ in range(4)] == [False, False, True, True]
-
-
-FAST, SLOW = Velocity(0.4, 0.1), Velocity(-0.15, 0.0)
+def test_a_scan_that_is_too_old_is_unknown() -> None:
+    decision = TooClose(LIDAR)
+    decision.hear("/scan", Scan(scan(INF)), 0)
+    assert not decision.step(300_000_000)
+    assert decision.step(300_000_001)
 
 
 @pytest.mark.parametrize(
-    ("stop", "command", "output"),
+    ("before", "demanded", "manual", "after"),
     [
-        (False, STANDSTILL, STANDSTILL),
-        (False, FAST, FAST),
-        (False, SLOW, SLOW),
-        (True, STANDSTILL, STANDSTILL),
-        (True, FAST, STANDSTILL),
-        (True, SLOW, STANDSTILL),
+        (False, False, False, False),
+        (False, True, False, True),
+        (True, False, False, True),
+        (True, True, False, True),
+        (False, False, True, False),
+        (False, True, True, False),
+        (True, False, True, False),
+        (True, True, True, False),
     ],
 )
-def test_the_interceptor_forwards_or_gives_zero_in_whatever_order_it_hears(
-    stop: bool, command: Velocity, output: Velocity
+def test_a_stop_lasts_from_the_demand_until_a_person_takes_over(
+    before: bool, demanded: bool, manual: bool, after: bool
 ) -> None:
-    assert Interceptor().hear_stop(stop).hear_command(command).output() == output
-    assert Interceptor().hear_command(command).hear_stop(stop).output() == output
-    assert Interceptor().hear_stop(not stop).hear_command(command).hear_stop(stop).output() == (
-        output
-    )
+    assert stop_requested(before, demanded=demanded, manual=manual) is after
 
 
-def test_the_interceptor_stands_still_before_it_has_heard_anything() -> None:
-    assert Interceptor().output() == STANDSTILL
+FAST, SLOW = Velocity(0.4, 0.1), Velocity(-0.15, 0.0)
+MS = 1_000_000
+NORMAL = Interceptor()
+PAPER = Interceptor(at_once=False, period=0, command_timeout=0, safety_timeout=0)
+Heard = StopHeard | CommandHeard | TimerRang
+
+
+def said(options: Interceptor, *heard: tuple[int, Heard]) -> list[Velocity | None]:
+    """What is said after each of them; times in milliseconds."""
+    state, out = Intercepted(), []
+    for time, one in heard:
+        state, command = intercept(state, one, time * MS, options)
+        out.append(command)
+    return out
+
+
+GO, STOP, RING = StopHeard(False), StopHeard(True), TimerRang()
+
+
+def test_without_a_stop_the_command_is_forwarded() -> None:
+    heard = ((0, GO), (1, CommandHeard(FAST)), (2, RING), (3, CommandHeard(SLOW)))
+    assert said(NORMAL, *heard) == [None, FAST, FAST, SLOW]
+
+
+def test_a_stop_is_zero_at_once_and_on_the_timer_and_for_each_command_until_the_release() -> None:
+    heard = ((0, GO), (1, CommandHeard(FAST)), (2, STOP), (3, RING), (4, CommandHeard(FAST)))
+    assert said(NORMAL, *heard) == [None, FAST, STANDSTILL, STANDSTILL, STANDSTILL]
+    assert said(NORMAL, *heard, (5, GO), (6, RING))[-2:] == [None, FAST]
+
+
+def test_the_papers_interceptor_says_zero_only_when_a_command_comes() -> None:
+    heard = ((0, CommandHeard(FAST)), (1, STOP), (900, CommandHeard(FAST)))
+    assert said(PAPER, *heard) == [FAST, None, STANDSTILL]
+
+
+def test_a_latching_interceptor_forgets_no_stop() -> None:
+    heard = ((0, STOP), (1, GO), (2, CommandHeard(FAST)))
+    latching = Interceptor(latching=True)
+    assert said(latching, *heard) == [STANDSTILL, None, STANDSTILL]
+    assert said(NORMAL, *heard) == [STANDSTILL, None, FAST]
+
+
+def test_commands_that_stop_coming_are_zero_after_half_a_second() -> None:
+    heard = ((0, GO), (0, CommandHeard(FAST)), (500, RING), (501, RING))
+    assert said(NORMAL, *heard) == [None, FAST, FAST, STANDSTILL]
+
+
+def test_silence_of_the_safety_function_is_zero_after_its_time_and_from_the_beginning() -> None:
+    assert said(NORMAL, (0, CommandHeard(FAST))) == [STANDSTILL]
+    heard = ((0, GO), (1200, CommandHeard(FAST)), (1201, CommandHeard(FAST)))
+    assert said(NORMAL, *heard) == [None, FAST, STANDSTILL]
+    assert said(PAPER, (0, CommandHeard(FAST))) == [FAST]
+
+
+@given(
+    st.lists(
+        st.tuples(
+            st.integers(0, 400),
+            st.one_of(
+                st.builds(StopHeard, st.booleans()),
+                st.builds(CommandHeard, st.sampled_from([FAST, SLOW, STANDSTILL])),
+                st.just(RING),
+            ),
+        ),
+        max_size=30,
+    ),
+    st.builds(
+        Interceptor,
+        at_once=st.booleans(),
+        command_timeout=st.sampled_from([0.0, 0.5]),
+        safety_timeout=st.sampled_from([0.0, 1.2]),
+        latching=st.booleans(),
+    ),
+)
+def test_no_motion_is_ever_said_between_a_stop_and_its_release(
+    steps: list[tuple[int, Heard]], options: Interceptor
+) -> None:
+    time, stop, ever, heard = 0, False, False, []
+    held = []
+    for wait, one in steps:
+        time += wait
+        stop = one.requested if isinstance(one, StopHeard) else stop
+        ever = ever or stop
+        heard.append((time, one))
+        held.append(ever if options.latching else stop)
+    for command, must in zip(said(options, *heard), held, strict=True):
+        assert not must or command in (None, STANDSTILL)

@@ -22,7 +22,8 @@ def test_the_readme_of_the_traces_says_what_is_in_the_log() -> None:
                 control.append((message.log_time, decoded.data))
     changes = [(time, stop) for (_, was), (time, stop) in pairwise(control) if was != stop]
     stops = [(start, end) for (start, stop), (end, _) in pairwise(changes) if stop]
-    assert f"fretc simulate --seed {options['seed']} --out traces/{path.name}\n" in text
+    assert f"`{path.name}`" in text
+    assert f"with seed {options['seed']} by" in text
     assert f"| Duration | {(times[-1] - times[0]) / 1e9:.2f} s |" in text
     assert f"| Stops | {len(stops)} |" in text
     for start, end in stops:

@@ -1,0 +1,40 @@
+from io import BytesIO
+from pathlib import Path
+
+import numpy as np
+from matplotlib.image import imread
+from PIL import Image
+from PIL.GifImagePlugin import GifImageFile
+
+from simulation.mission import record
+from simulation.picture import animate, draw
+from simulation.scenario import load
+
+
+def test_the_picture_shows_what_was_moved_and_where_the_robot_was_stopped(tmp_path: Path) -> None:
+    shares = {}
+    for name in ("nominal", "obstacle-moved"):
+        mission = record(tmp_path / "a.mcap", load(name), max_seconds=20)
+        (tmp_path / f"{name}.png").write_bytes(draw(mission))
+        image = imread(tmp_path / f"{name}.png")[..., :3]
+        assert image.shape[0] > 600
+        shares[name] = {
+            colour: float((np.abs(image - np.array(rgb) / 255).max(axis=2) < 0.02).mean())
+            for colour, rgb in {"moved": (232, 135, 30), "stop": (192, 24, 42)}.items()
+        }
+    assert shares["nominal"] == {"moved": 0.0, "stop": 0.0}
+    assert shares["obstacle-moved"]["moved"] > 0.001
+    assert shares["obstacle-moved"]["stop"] > 0.0001
+
+
+def test_the_film_shows_the_whole_mission(tmp_path: Path) -> None:
+    mission = record(tmp_path / "a.mcap", load("obstacle-moved"), max_seconds=30)
+    film = Image.open(BytesIO(animate(mission)))
+    assert isinstance(film, GifImageFile)
+    assert film.n_frames == 15
+    red = []
+    for frame in (0, 14):
+        film.seek(frame)
+        seen = np.asarray(film.convert("RGB")).astype(int) - (192, 24, 42)
+        red.append(int((np.abs(seen).max(axis=2) < 40).sum()))
+    assert red[0] == 0 < red[1]
