@@ -7,10 +7,14 @@ from collections.abc import Iterator, Sequence
 from fretish.clock import Clock
 from fretish.declarations import Declarations, Signal
 from fretish.diagnostic import Code, Diagnostic, Severity
-from monitors.samples import Recording
+from monitors.samples import Recording, Topic
 
 _JITTER = 1.1
 """A topic of 10 Hz has steps a little above 100 ms too."""
+_FEW = 10
+"""Fewer messages have no rate."""
+_EVENTS = 3
+"""Where one step is so many times the middle one, messages come when something happens."""
 
 
 def slow_topics(
@@ -19,6 +23,8 @@ def slow_topics(
     """F315 for each signal that grows too old between messages, and each topic slower than ticks.
 
     Half of the steps between its messages are longer than `max_age`, or (by a tenth) than a tick.
+    Of a topic that comes only when something happens, and whose samples count until the next one,
+    nothing is told.
 
     Args:
         declarations: clock and signals.
@@ -35,9 +41,19 @@ def slow_topics(
         period = topic.median_period_ns
         if signal.max_age is not None and period > signal.max_age:
             yield _too_old(signal, period, signal.max_age)
-        elif tick is not None and period > tick * _JITTER and topic.name not in told:
+        elif tick is not None and period > tick * _JITTER and _is_regular(signal, topic):
+            if topic.name in told:
+                continue
             told.add(topic.name)
             yield _slow(signal, period, declarations.clock, tick)
+
+
+def _is_regular(signal: Signal, topic: Topic) -> bool:
+    """Whether the topic comes at a rate; a sample that counts until the next may be an event."""
+    if signal.max_age is not None:
+        return True
+    period, longest = topic.median_period_ns or 0, topic.longest_gap_ns or 0
+    return topic.count >= _FEW and longest <= _EVENTS * period
 
 
 def _tick(clock: Clock, recording: Recording) -> int | None:

@@ -56,3 +56,18 @@ def test_what_came_once_or_never_has_no_rate(tmp_path: Path) -> None:
     assert list(slow_topics(declarations, recording, ["x"])) == []
     nothing = replace(recording, topics={})
     assert list(slow_topics(declarations, nothing, ["x"])) == []
+
+
+def test_events_have_no_rate_where_a_sample_counts_until_the_next(tmp_path: Path) -> None:
+    sent = [number(1.0, time * S) for time in (1000, 1001, 1002, 1030, 1031)]
+    recording = recorded(write(tmp_path / "log.mcap", sent), declare(X_TEXT))
+    assert len(list(slow_topics(declare(X_TEXT), recording, ["x"]))) == 1
+    events = declare(X_TEXT.replace('max_age = "250 ms"\n', ""))
+    assert list(slow_topics(events, recording, ["x"])) == []
+    few = [number(1.0, time * S) for time in range(1000, 1009)]
+    assert (
+        list(slow_topics(events, recorded(write(tmp_path / "few.mcap", few), events), ["x"])) == []
+    )
+    regular = [number(1.0, time * S) for time in range(1000, 1010)]
+    steady = recorded(write(tmp_path / "steady.mcap", regular), events)
+    assert len(list(slow_topics(events, steady, ["x"]))) == 1
