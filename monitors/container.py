@@ -144,9 +144,7 @@ def _stored(data: bytes, _: int) -> bytes:
 
 
 def _zstd(data: bytes, most: int) -> bytes:
-    import zstandard
-
-    with zstandard.ZstdDecompressor().stream_reader(data) as stream:
+    with _decompressor().stream_reader(data) as stream:
         return stream.read(most)
 
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import reduce
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -35,6 +36,9 @@ COMPARE: dict[str, Callable[..., NDArray[np.bool_]]] = {
     "!=": np.not_equal,
 }
 """The operators of comparisons; NaN is equal to nothing."""
+Order = Literal["<", "<=", ">", ">="]
+MIRRORED: Mapping[str, Order] = {"<": ">", "<=": ">=", ">": "<", ">=": "<="}
+"""What says the same when both sides are exchanged."""
 
 
 class ExpressionError(ValueError):

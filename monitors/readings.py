@@ -14,7 +14,7 @@ from fretish import expressions as e
 from fretish.declarations import Invalid, Reading, Reduce, Signal
 from monitors.outline import distances, places
 from monitors.payloads import Places
-from monitors.propositions import COMPARE, TRUE, Scope, number, truth
+from monitors.propositions import COMPARE, MIRRORED, TRUE, Scope, number, truth
 from monitors.samples import Numbers
 from monitors.signals import clearance
 
@@ -152,15 +152,12 @@ def _bounds(valid: e.Expression) -> list[tuple[str, e.Expression]] | None:
         case e.And(args):
             parts = [_bounds(arg) for arg in args]
             return None if None in parts else [bound for part in parts if part for bound in part]
-        case e.Comparison(op, left, right) if op in _MIRRORED:
+        case e.Comparison(op, left, right) if op in MIRRORED:
             if _is_x(left) and _without_x(right):
                 return [(op, right)]
             if _is_x(right) and _without_x(left):
-                return [(_MIRRORED[op], left)]
+                return [(MIRRORED[op], left)]
     return None
-
-
-_MIRRORED = {"<": ">", "<=": ">=", ">": "<", ">=": "<="}
 
 
 def _is_x(part: e.Expression) -> bool:

@@ -8,7 +8,6 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from math import isfinite
-from typing import Literal
 
 from fretish import expressions as e
 from fretish.binding import dimension
@@ -17,10 +16,7 @@ from fretish.diagnostic import Diagnostic
 from fretish.printer import expression
 from fretish.source import Source
 from fretish.units import base_name
-from monitors.propositions import Scope, number
-
-Operator = Literal["<", "<=", ">", ">="]
-_MIRRORED: Mapping[str, Operator] = {"<": ">", "<=": ">=", ">": "<", ">=": "<="}
+from monitors.propositions import MIRRORED, Order, Scope, number
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,7 +26,7 @@ class Threshold:
     proposition: str
     term: e.Expression
     """A signal, or what is computed of some: `abs(vx)`."""
-    operator: Operator
+    operator: Order
     bound: float
     unit: str
     """The base unit of both sides; empty for a plain number."""
@@ -68,11 +64,11 @@ def _comparisons(whole: e.Expression) -> Iterator[e.Comparison]:
 def _threshold(
     proposition: Proposition, part: e.Comparison, signals: Mapping[str, Signal]
 ) -> Threshold | None:
-    if part.op not in _MIRRORED:
+    if part.op not in MIRRORED:
         return None
-    mirrored = _MIRRORED[part.op]
+    mirrored = MIRRORED[part.op]
     for term, other, operator in (
-        (part.left, part.right, _MIRRORED[mirrored]),
+        (part.left, part.right, MIRRORED[mirrored]),
         (part.right, part.left, mirrored),
     ):
         if any(e.names(term)) and not any(e.names(other)):
