@@ -1,0 +1,142 @@
+"""What `fretc verify` shows: one line of evidence for each claim, whatever engine made it.
+
+A result never stands alone: beside it are the claim in words, the assumptions it holds under, the
+engine that found it, and the SHA-256 of each text that was looked at.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from enum import StrEnum
+from typing import Any, assert_never
+
+from monitors.kernel.verdicts import Truth
+
+SCHEMA = "fretc-verification-1"
+
+
+class Layer(StrEnum):
+    """What is looked at, from the monitor outwards; the values are those of `--layer`."""
+
+    MONITOR = "monitor"
+    """The text of the monitor means what its sentence means."""
+    INTERCEPTOR = "interceptor"
+    """The text of the interceptor keeps its contracts."""
+    LOOP = "loop"
+    """Monitor, interceptor and any environment under named assumptions keep the requirement."""
+    BOUNDS = "bounds"
+    """So they do at every bound and latency, not only at those that are declared."""
+    AGENT = "agent"
+    """The text of the agent has the properties of its property file, in a model of our own."""
+
+
+@dataclass(frozen=True, slots=True)
+class Trace:
+    """A run as a table: a row for each tick."""
+
+    names: tuple[str, ...]
+    """Propositions and whatever else helps to read it, as heads of the columns."""
+    rows: tuple[tuple[Truth, ...], ...]
+    actions: tuple[str, ...] = ()
+    """What happened at each row, in words; empty, or as many as rows."""
+    cycle: int | None = None
+    """The row to which the last one leads back for ever; None: the run ends."""
+
+    def __post_init__(self) -> None:
+        assert all(len(row) == len(self.names) for row in self.rows)
+        assert len(self.actions) in (0, len(self.rows))
+        assert self.cycle is None or 0 <= self.cycle < len(self.rows)
+
+
+@dataclass(frozen=True, slots=True)
+class Proved:
+    """The claim holds, under the assumptions of its line."""
+
+    detail: str
+    """How much was looked at."""
+
+
+@dataclass(frozen=True, slots=True)
+class Counterexample:
+    """The claim is wrong, and this run shows it."""
+
+    detail: str
+    trace: Trace | None
+    """None where the engine tells no run."""
+
+
+@dataclass(frozen=True, slots=True)
+class Vacuous:
+    """The claim holds and says nothing: what it speaks of cannot occur."""
+
+    detail: str
+
+
+@dataclass(frozen=True, slots=True)
+class NotChecked:
+    """Nothing is known."""
+
+    reason: str
+
+
+Result = Proved | Counterexample | Vacuous | NotChecked
+
+
+@dataclass(frozen=True, slots=True)
+class Evidence:
+    """One claim, and what is known of it."""
+
+    requirement: str
+    layer: Layer
+    claim: str
+    """One sentence without a full stop."""
+    result: Result
+    engine: str
+    """What found it, with its version where it is not fretc itself."""
+    assumptions: tuple[str, ...] = ()
+    """Each in words that name its number and where it is declared."""
+    artefacts: Mapping[str, str] = field(default_factory=dict)
+    """Name of a file → SHA-256 of the text that was looked at."""
+
+
+def status(result: Result) -> str:
+    """One of proved, counterexample, vacuous, not checked."""
+    match result:
+        case Proved():
+            return "proved"
+        case Counterexample():
+            return "counterexample"
+        case Vacuous():
+            return "vacuous"
+        case NotChecked():
+            return "not checked"
+        case _:
+            assert_never(result)
+
+
+def as_record(evidence: Evidence) -> dict[str, Any]:
+    """Plain values, in a fixed order of keys."""
+    result = evidence.result
+    told = result.reason if isinstance(result, NotChecked) else result.detail
+    trace = result.trace if isinstance(result, Counterexample) else None
+    return {
+        "requirement": evidence.requirement,
+        "layer": str(evidence.layer),
+        "claim": evidence.claim,
+        "result": status(result),
+        "detail": told,
+        "assumptions": list(evidence.assumptions),
+        "engine": evidence.engine,
+        "artefacts": dict(evidence.artefacts),
+        **({"trace": _trace(trace)} if trace is not None else {}),
+    }
+
+
+def _trace(trace: Trace) -> dict[str, Any]:
+    return {
+        "names": list(trace.names),
+        "rows": [list(row) for row in trace.rows],
+        "actions": list(trace.actions),
+        "cycle": trace.cycle,
+    }
