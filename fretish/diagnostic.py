@@ -99,6 +99,11 @@ class Code(Enum):
     BAD_EVIDENCE = ("F503", "the evidence cannot be read")
     BAD_EXPORT = ("F505", "the requirements of another tool cannot be read")
     STALE_EVIDENCE = ("F504", "the evidence is about another requirement, binding or log")
+    BAD_LOCK = ("F510", "the lock cannot be read")
+    ORPHANED_REVIEW = ("F511", "a review is of a requirement that is not there")
+    CHANGED_SINCE_REVIEW = ("F512", "something has changed since it was reviewed")
+    BAD_WAIVER = ("F513", "the waivers cannot be read")
+    EXPIRED_WAIVER = ("F514", "a waiver has expired")
 
     NOT_EXPRESSIBLE = ("F601", "the target cannot express the requirement")
     BAD_MONITOR = ("F602", "the file is no generated monitor")

@@ -29,6 +29,7 @@ DOORS = {
             "output",
             "progress",
             "requirements",
+            "reviews",
             "runs",
             "simulations",
             "summaries",

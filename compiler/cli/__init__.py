@@ -19,6 +19,7 @@ from compiler.cli.bind import bind
 from compiler.cli.group import DEFAULT, Commands
 from compiler.cli.output import BAD, INTERRUPTED, SHOWN, not_written, say, say_line
 from compiler.cli.requirements import compile_, fmt, import_
+from compiler.cli.reviews import diff, lock
 from compiler.cli.runs import audit, info, report
 from compiler.cli.simulations import simulate
 from compiler.cli.verify import verify
@@ -35,7 +36,7 @@ def cli() -> None:
     """
 
 
-for _command in (compile_, fmt, import_, info, bind, audit, report, verify, simulate):
+for _command in (compile_, fmt, import_, info, bind, audit, report, lock, diff, verify, simulate):
     cli.add_command(_command)
 
 
