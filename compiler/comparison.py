@@ -29,12 +29,13 @@ class Difference:
 
 def differences(standings: tuple[Standing, ...], baseline: Lock) -> tuple[Difference, ...]:
     """Every requirement of either state, in the order of the project, then those that are gone."""
-    now = tuple(_difference(standing) for standing in standings)
+    now = tuple(difference(standing) for standing in standings)
     known = {standing.chain.requirement for standing in standings}
     return (*now, *(_gone(id, baseline) for id in baseline.reviews if id not in known))
 
 
-def _difference(standing: Standing) -> Difference:
+def difference(standing: Standing) -> Difference:
+    """One requirement, against its review; `new` where it has none."""
     chain, review = standing.chain, standing.review
     if review is None:
         verdicts = _verdicts({}, chain.verdicts)

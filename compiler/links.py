@@ -12,16 +12,16 @@ from __future__ import annotations
 import hashlib
 import json
 import tomllib
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from typing import Any
 
 from compiler import printing
-from compiler.files import sha256
+from compiler.evidence import Evidence, Result
+from compiler.products import Product
+from compiler.products import products as _made
 from compiler.project import Project
-from compiler.report.evidence import Evidence, Result
 from compiler.rule import Rule
-from compiler.targets import TARGETS
 from fretish.documents import Requirement
 
 HAZARD, TEXT, PARAMS, SENTENCE = "hazard", "text", "params", "sentence"
@@ -63,12 +63,15 @@ class Chain:
     """Run → the word of its verdict."""
 
 
-def chains(project: Project, evidence: Evidence | None) -> tuple[Chain, ...]:
+def chains(
+    project: Project, evidence: Evidence | None, made: Mapping[int, Sequence[Product]] | None = None
+) -> tuple[Chain, ...]:
     """The chain of each requirement, in the order of the project.
 
     Args:
         project: with or without errors; a requirement without a rule has a chain that ends early.
         evidence: None where no run has been audited.
+        made: what the targets make of each requirement, by its `id()`; None: it is made here.
     """
     rules = {id(rule.requirement): rule for rule in project.rules}
     results = evidence.results if evidence else ()
@@ -77,6 +80,7 @@ def chains(project: Project, evidence: Evidence | None) -> tuple[Chain, ...]:
         _Chain(project, texts).of(
             requirement,
             rules.get(id(requirement)),
+            _made(rules.get(id(requirement))) if made is None else made.get(id(requirement), ()),
             [result for result in results if result.requirement == requirement.id],
         )
         for requirement in project.requirements
@@ -95,14 +99,20 @@ class _Chain:
             tomllib.loads(declared.source.text) if declared is not None else {}
         )
 
-    def of(self, requirement: Requirement, rule: Rule | None, results: Iterable[Result]) -> Chain:
+    def of(
+        self,
+        requirement: Requirement,
+        rule: Rule | None,
+        made: Iterable[Product],
+        results: Sequence[Result],
+    ) -> Chain:
         verdicts = {result.run: result.verdict for result in results}
         self._above(requirement, {requirement.id})
         sentence = Node(SENTENCE, requirement.id)
         self._add(sentence, rule.fingerprint if rule else _plain(requirement.wording.text))
         self._link(Node(TEXT, requirement.id), sentence)
         if rule is not None:
-            self._below(rule, sentence, results)
+            self._below(rule, sentence, made, results)
         review = Node(REVIEW, requirement.id)
         sources = {link.source for link in self._links}
         ends = [node for node in self._prints if node not in sources]
@@ -124,7 +134,9 @@ class _Chain:
                 self._above(above, seen)
                 self._link(Node(TEXT, parent), text)
 
-    def _below(self, rule: Rule, sentence: Node, results: Iterable[Result]) -> None:
+    def _below(
+        self, rule: Rule, sentence: Node, made: Iterable[Product], results: Iterable[Result]
+    ) -> None:
         formulas = Node(FORMULAS, rule.id)
         self._add(formulas, _formulas(rule))
         self._link(sentence, formulas)
@@ -132,7 +144,7 @@ class _Chain:
         self._add(clock, _fingerprint(self._bindings.get("clock")))
         if rule.ticks is not None:
             self._link(clock, formulas)
-        monitor = self._artefacts(rule, formulas)
+        monitor = self._artefacts(made, formulas)
         bound = Node(BINDINGS, rule.id)
         self._add(bound, _fingerprint(self._bound(rule)))
         sources = [monitor, bound, clock] if monitor else [bound, clock]
@@ -143,17 +155,16 @@ class _Chain:
         for result in results:
             self._judged(result, sources)
 
-    def _artefacts(self, rule: Rule, formulas: Node) -> Node | None:
+    def _artefacts(self, made: Iterable[Product], formulas: Node) -> Node | None:
         """A node for each file that can be made; gives that of the monitor."""
         monitor = None
-        for target in TARGETS.values():
-            if not target.per_rule or target.name in _READINGS or target.refuse(rule) is not None:
+        for product in made:
+            if product.refusal or product.target in _READINGS:
                 continue
-            for artifact in target.emit([rule]):
-                node = Node(ARTEFACT, str(artifact.path))
-                self._add(node, sha256(artifact.text))
-                self._link(formulas, node)
-                monitor = node if target.name == "monitor" else monitor
+            node = Node(ARTEFACT, product.file)
+            self._add(node, product.sha256)
+            self._link(formulas, node)
+            monitor = node if product.target == "monitor" else monitor
         return monitor
 
     def _judged(self, result: Result, sources: Iterable[Node]) -> None:
@@ -253,7 +264,11 @@ def suspects(chain: Chain, locked: Mapping[Node, str]) -> tuple[Suspect, ...]:
         chain: as it is now.
         locked: the fingerprints that were accepted.
     """
-    wrong = set(changed(chain.prints, locked))
+    wrong = {
+        node
+        for node in changed(chain.prints, locked)
+        if node in locked or node.kind not in (LOG, VERDICT)  # a new run changes no old one
+    }
     upstream = _upstream(chain)
     found = []
     for link in chain.links:

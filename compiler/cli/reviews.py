@@ -108,9 +108,9 @@ def diff(baseline: str | None, requirements: str, evidence: str, form: str) -> N
 
 
 def _chains(requirements: str, evidence: str) -> tuple[Project, Sequence[Chain]]:
+    from compiler.evidence import read
     from compiler.links import chains
     from compiler.project import beside, load, requirement_files
-    from compiler.report.evidence import read
 
     files = requirement_files(requirements)
     if isinstance(files, Diagnostic):

@@ -309,7 +309,12 @@ def report(
         bindings or beside(requirements, "bindings.toml"),
         hazards or beside(requirements, "hazards.toml"),
     )
-    made = make(project, evidence)
+    made = make(
+        project,
+        evidence,
+        lock=beside(requirements, "fretc.lock"),
+        waivers=beside(requirements, "waivers.toml"),
+    )
     say([*project.diagnostics, *made.diagnostics])
     if made.html is None or made.json is None:
         raise SystemExit(BAD)

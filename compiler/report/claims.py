@@ -4,13 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from types import MappingProxyType
 
+from compiler.evidence import Evidence, Result
 from compiler.files import sha256
+from compiler.links import chains
+from compiler.lock import Lock, Standing, standings
+from compiler.products import Product, products
 from compiler.project import Project, fingerprint
-from compiler.report.evidence import Evidence, Result
 from compiler.report.views import Mark
 from compiler.rule import Rule
 from compiler.targets import monitor
+from compiler.waivers import Waiver
 from fretish.declarations import Declarations
 from fretish.diagnostic import Diagnostic
 from fretish.documents import Requirement
@@ -20,6 +25,7 @@ SUSPECT = "suspect"
 UNFORMALIZED = "unformalized"
 NOT_EXERCISED = "not exercised"
 RETIRED = "retired"
+WAIVED = "waived"
 
 MARKS: Mapping[str, Mark] = {
     kernel.VIOLATED: Mark(kernel.VIOLATED, "✘", "violated"),
@@ -29,10 +35,19 @@ MARKS: Mapping[str, Mark] = {
     kernel.INCONCLUSIVE: Mark(kernel.INCONCLUSIVE, "◔", "inconclusive"),
     kernel.VACUOUS: Mark(kernel.VACUOUS, "∅", "vacuous"),
     NOT_EXERCISED: Mark(NOT_EXERCISED, "○", "not-exercised"),
+    WAIVED: Mark(WAIVED, "w", "waived"),
     kernel.SATISFIED: Mark(kernel.SATISFIED, "✔", "satisfied"),
     RETIRED: Mark(RETIRED, "\N{EN DASH}", "retired"),
 }
 """Every verdict of the report, the worst first: that of several runs is the worst of theirs."""
+
+UNBOUND, NOT_GENERATED = "unbound", "not generated"
+EXERCISED_PASS, EXERCISED_FAIL = "exercised, pass", "exercised, fail"
+COVERAGE = (
+    UNFORMALIZED, UNBOUND, NOT_GENERATED, NOT_EXERCISED, EXERCISED_PASS, EXERCISED_FAIL,
+    SUSPECT, WAIVED, RETIRED,
+)  # fmt: skip
+"""How far a requirement has come; the last three whatever else is known of it."""
 
 _RANK = {word: rank for rank, word in enumerate(MARKS)}
 
@@ -64,6 +79,11 @@ class Claim:
     rule: Rule | None
     diagnostic: Diagnostic | None
     judged: tuple[Judged, ...]
+    products: tuple[Product, ...]
+    standing: Standing
+    waiver: Waiver | None
+    """One that counts now."""
+    is_bound: bool
 
     @property
     def id(self) -> str:
@@ -72,13 +92,35 @@ class Claim:
 
     @property
     def verdict(self) -> str:
-        """The worst of its runs, or why it has none."""
+        """The worst of its runs, or why it has none; `waived` where a waiver covers that."""
+        found = self.unwaived
+        return WAIVED if self.waiver and found not in (kernel.SATISFIED, RETIRED) else found
+
+    @property
+    def unwaived(self) -> str:
+        """The verdict without regard to a waiver."""
         if self.requirement.status == RETIRED:
             return RETIRED
         if self.rule is None:
             return UNFORMALIZED
-        verdicts = [judged.verdict for judged in self.judged]
-        return min(verdicts, key=_RANK.__getitem__, default=NOT_EXERCISED)
+        verdicts = [judged.verdict for judged in self.judged] or [NOT_EXERCISED]
+        if self.standing.is_suspect:
+            verdicts.append(SUSPECT)
+        return min(verdicts, key=_RANK.__getitem__)
+
+    @property
+    def coverage(self) -> str:
+        """How far along the chain from sentence to passing run it is: one of `COVERAGE`."""
+        verdict = self.verdict
+        if verdict in (RETIRED, WAIVED, UNFORMALIZED, SUSPECT):
+            return verdict
+        if verdict == kernel.VIOLATED:
+            return EXERCISED_FAIL
+        if not self.is_bound:
+            return UNBOUND
+        if all(product.refusal for product in self.products if product.target == "monitor"):
+            return NOT_GENERATED
+        return EXERCISED_PASS if verdict == kernel.SATISFIED else NOT_EXERCISED
 
     @property
     def mark(self) -> Mark:
@@ -86,14 +128,28 @@ class Claim:
         return MARKS[self.verdict]
 
 
-def claims(project: Project, evidence: Evidence | None) -> tuple[Claim, ...]:
-    """Every requirement of the project, in its order."""
+def claims(
+    project: Project,
+    evidence: Evidence | None,
+    lock: Lock | None = None,
+    waivers: Mapping[str, Waiver] = MappingProxyType({}),
+) -> tuple[Claim, ...]:
+    """Every requirement of the project, in its order.
+
+    Args:
+        project: all that was read.
+        evidence: None where no run has been audited.
+        lock: None where nothing has been reviewed.
+        waivers: those that count now, by the requirement.
+    """
     rules = {id(rule.requirement): rule for rule in project.rules}
     failed = {id(each.requirement): each.diagnostic for each in project.failed}
     results = evidence.results if evidence else ()
+    made = {id: products(rule) for id, rule in rules.items()}
+    standing = standings(chains(project, evidence, made), lock)
     anchors: list[str] = []
     found = []
-    for requirement in project.requirements:
+    for requirement, stands in zip(project.requirements, standing, strict=True):
         anchors.append(_anchor(requirement.id, anchors))
         rule = rules.get(id(requirement))
         judge = _Judge(rule, project.declarations)
@@ -105,9 +161,18 @@ def claims(project: Project, evidence: Evidence | None) -> tuple[Claim, ...]:
                 rule,
                 failed.get(id(requirement)),
                 tuple(Judged(result, tuple(judge.suspicions(result))) for result in mine),
+                made.get(id(requirement), ()),
+                stands,
+                waivers.get(requirement.id),
+                rule is not None and _is_bound(rule, project.declarations),
             )
         )
     return tuple(found)
+
+
+def _is_bound(rule: Rule, declarations: Declarations | None) -> bool:
+    known = declarations.propositions if declarations else {}
+    return all(name in known for name in rule.watched)
 
 
 def _anchor(id: str, taken: Sequence[str]) -> str:

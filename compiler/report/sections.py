@@ -10,10 +10,10 @@ from compiler import printing
 from compiler.project import Project
 from compiler.record import wording
 from compiler.report import phrases
-from compiler.report.artefacts import artefacts
 from compiler.report.claims import RETIRED, Claim
 from compiler.report.plans import planned
 from compiler.report.results import reasons, result_views
+from compiler.report.reviews import review, waiver
 from compiler.report.runs import Key, Run
 from compiler.report.views import (
     Formula,
@@ -67,9 +67,12 @@ def section(
         rationale=requirement.rationale,
         params=dict(requirement.params),
         planned=planned(claim),
-        artefacts=artefacts(rule),
+        artefacts=claim.products,
         results=result_views(claim, runs, clock),
         reasons=() if shown else reasons(claim, runs, audited=audited),
+        coverage=claim.coverage,
+        review=review(claim),
+        waiver=waiver(claim),
     )
 
 

@@ -7,9 +7,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from compiler import evidence as reading
 from compiler.links import Chain, Link, Node, chains, suspects
 from compiler.project import Project
-from compiler.report import evidence as reading
 from fretish.diagnostic import Diagnostic
 from tests.compiler.report import cases
 

@@ -13,7 +13,7 @@ from typing import NoReturn
 
 from compiler.files import read as read_text
 from compiler.files import sha256
-from compiler.report.shapes import MisshapenError, Shape
+from compiler.shapes import MisshapenError, Shape
 from fretish.diagnostic import Code, Diagnostic, Severity
 from fretish.source import Source
 from monitors import kernel
