@@ -25,6 +25,7 @@ DOORS = {
         for name in (
             "__init__",
             "bind",
+            "evidence",
             "group",
             "output",
             "progress",

@@ -16,6 +16,7 @@ import click
 
 from compiler import __version__
 from compiler.cli.bind import bind
+from compiler.cli.evidence import verify_evidence
 from compiler.cli.group import DEFAULT, Commands
 from compiler.cli.output import BAD, INTERRUPTED, SHOWN, not_written, say, say_line
 from compiler.cli.requirements import compile_, fmt, import_
@@ -36,7 +37,20 @@ def cli() -> None:
     """
 
 
-for _command in (compile_, fmt, import_, info, bind, audit, report, lock, diff, verify, simulate):
+for _command in (
+    compile_,
+    fmt,
+    import_,
+    info,
+    bind,
+    audit,
+    report,
+    lock,
+    diff,
+    verify,
+    verify_evidence,
+    simulate,
+):
     cli.add_command(_command)
 
 
