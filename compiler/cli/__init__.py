@@ -19,9 +19,10 @@ from compiler.cli.bind import bind
 from compiler.cli.evidence import verify_evidence
 from compiler.cli.group import DEFAULT, Commands
 from compiler.cli.output import BAD, INTERRUPTED, SHOWN, not_written, say, say_line
+from compiler.cli.reports import report
 from compiler.cli.requirements import compile_, fmt, import_
 from compiler.cli.reviews import diff, lock
-from compiler.cli.runs import audit, info, report
+from compiler.cli.runs import audit, info
 from compiler.cli.simulations import simulate
 from compiler.cli.verify import verify
 from fretish.diagnostic import Code, Diagnostic

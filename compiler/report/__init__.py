@@ -10,6 +10,7 @@ from compiler.lock import read as read_lock
 from compiler.project import Project
 from compiler.report.assembly import report
 from compiler.report.html import html
+from compiler.report.views import Report
 from compiler.templating import to_json
 from compiler.waivers import Waiver, today
 from compiler.waivers import read as read_waivers
@@ -18,11 +19,20 @@ from fretish.diagnostic import Diagnostic
 
 @dataclass(frozen=True, slots=True)
 class Made:
-    """The report in both forms (None: the evidence cannot be read), and what there is to say."""
+    """The report (None: the evidence or the lock cannot be read), and what there is to say."""
 
-    html: str | None
-    json: str | None
+    report: Report | None
     diagnostics: tuple[Diagnostic, ...]
+
+    @property
+    def html(self) -> str | None:
+        """The page."""
+        return None if self.report is None else html(self.report)
+
+    @property
+    def json(self) -> str | None:
+        """What it says, for programs."""
+        return None if self.report is None else f"{to_json(asdict(self.report))}\n"
 
 
 def make(
@@ -38,16 +48,15 @@ def make(
     """
     audited = read(evidence)
     if isinstance(audited, Diagnostic) and audited.is_error:
-        return Made(None, None, (audited,))
+        return Made(None, (audited,))
     known = read_lock(lock) if lock is not None else None
     if isinstance(known, Diagnostic):
-        return Made(None, None, (known,))
+        return Made(None, (known,))
     waived, told = _waived(project, waivers)
     found = None if isinstance(audited, Diagnostic) else audited
     whole, said = report(project, found, evidence, known, waived)
     missing = (audited,) if isinstance(audited, Diagnostic) else ()
-    text = f"{to_json(asdict(whole))}\n"
-    return Made(html(whole), text, (*missing, *told, *said))
+    return Made(whole, (*missing, *told, *said))
 
 
 def _waived(
