@@ -24,7 +24,8 @@ from compiler.project import Project
 from compiler.rule import Rule
 from fretish.documents import Requirement
 
-HAZARD, TEXT, PARAMS, SENTENCE = "hazard", "text", "params", "sentence"
+HAZARD, PARENT = "hazard", "parent"
+TEXT, PARAMS, SENTENCE = "text", "params", "sentence"
 CLOCK, BINDINGS, FORMULAS, ARTEFACT = "clock", "bindings", "formulas", "artefact"
 LOG, VERDICT, REVIEW = "log", "verdict", "review"
 _READINGS = ("ltl", "json")
@@ -129,6 +130,11 @@ class _Chain:
             if hazard is not None:
                 self._add(Node(HAZARD, parent), _fingerprint(_normal(asdict(hazard))))
                 self._link(Node(HAZARD, parent), text)
+            elif parent in self._project.parents:
+                outside = self._project.parents[parent]
+                told = _normal([outside.title, outside.text])
+                self._add(Node(PARENT, parent), _fingerprint(told))
+                self._link(Node(PARENT, parent), text)
             elif above is not None and parent not in seen:
                 seen.add(parent)
                 self._above(above, seen)

@@ -104,6 +104,8 @@ class Code(Enum):
     CHANGED_SINCE_REVIEW = ("F512", "something has changed since it was reviewed")
     BAD_WAIVER = ("F513", "the waivers cannot be read")
     EXPIRED_WAIVER = ("F514", "a waiver has expired")
+    BAD_SETTINGS = ("F520", "the settings of the project cannot be read")
+    BAD_PARENTS = ("F521", "a document with parents of requirements cannot be read")
 
     NOT_EXPRESSIBLE = ("F601", "the target cannot express the requirement")
     BAD_MONITOR = ("F602", "the file is no generated monitor")

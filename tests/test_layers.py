@@ -62,7 +62,7 @@ DOORS = {
         "simulation/recording.py",
     },
     "fsspec": {"monitors/inputs.py"},
-    "yaml": {"compiler/report/forms/gsn.py", "monitors/folders.py"},
+    "yaml": {"compiler/parents.py", "compiler/report/forms/gsn.py", "monitors/folders.py"},
     "mcap_protobuf": {"monitors/protobuf.py"},
     "mcap_ros1": {"monitors/decoding.py"},
     "mcap_ros2": {"monitors/decoding.py"},

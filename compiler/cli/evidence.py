@@ -82,7 +82,7 @@ def _plan(requirements: str, bindings: str | None) -> tuple[Project, Plan]:
         bindings or beside(requirements, "bindings.toml"),
         beside(requirements, "hazards.toml"),
     )
-    project = load(files, *names)
+    project = load(files, *names, parents=True)
     say(project.diagnostics)
     if has_errors(project.diagnostics):
         raise SystemExit(BAD)

@@ -73,6 +73,7 @@ def report(
         files,
         bindings or beside(requirements, "bindings.toml"),
         hazards or beside(requirements, "hazards.toml"),
+        parents=True,
     )
     lock = lock or beside(requirements, "fretc.lock")
     waivers = waivers or beside(requirements, "waivers.toml")

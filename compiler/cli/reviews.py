@@ -116,7 +116,7 @@ def _chains(requirements: str, evidence: str) -> tuple[Project, Sequence[Chain]]
     if isinstance(files, Diagnostic):
         stop(files)
     names = [beside(requirements, name) for name in ("bindings.toml", "hazards.toml")]
-    project = load(files, *names)
+    project = load(files, *names, parents=True)
     audited = read(evidence)
     if isinstance(audited, Diagnostic):
         say([*project.diagnostics, audited])

@@ -132,7 +132,7 @@ def _uncovered(project: Project, claims: Sequence[Claim]) -> Iterable[str]:
 
 
 def _undeclared(project: Project, claims: Sequence[Claim]) -> Iterable[str]:
-    known = {*project.hazards, *(claim.id for claim in claims)}
+    known = {*project.hazards, *project.parents, *(claim.id for claim in claims)}
     for claim in claims:
         for parent in claim.requirement.parents:
             if parent not in known:

@@ -116,6 +116,9 @@ def _parent(id: str, project: Project, anchors: Mapping[str, str]) -> Parent:
     hazard = project.hazards.get(id)
     if hazard is not None:
         return Parent(id, hazard.title, "hazards")
+    outside = project.parents.get(id)
+    if outside is not None:
+        return Parent(id, f"{outside.title} ({phrases.place(outside.source)})", "")
     above = next((r for r in project.requirements if r.id == id), None)
     return Parent(id, above.title if above else "not declared", anchors.get(id, ""))
 
