@@ -99,6 +99,7 @@ class Code(Enum):
     BAD_EVIDENCE = ("F503", "the evidence cannot be read")
     BAD_EXPORT = ("F505", "the requirements of another tool cannot be read")
     STALE_EVIDENCE = ("F504", "the evidence is about another requirement, binding or log")
+    NO_SUCH_REQUIREMENT = ("F515", "no requirement and no diagnostic has that name")
 
     NOT_EXPRESSIBLE = ("F601", "the target cannot express the requirement")
     BAD_MONITOR = ("F602", "the file is no generated monitor")

@@ -16,6 +16,7 @@ import click
 
 from compiler import __version__
 from compiler.cli.bind import bind
+from compiler.cli.explain import explain
 from compiler.cli.group import DEFAULT, Commands
 from compiler.cli.output import BAD, INTERRUPTED, SHOWN, not_written, say, say_line
 from compiler.cli.requirements import compile_, fmt, import_
@@ -35,7 +36,7 @@ def cli() -> None:
     """
 
 
-for _command in (compile_, fmt, import_, info, bind, audit, report, verify, simulate):
+for _command in (compile_, fmt, import_, explain, info, bind, audit, report, verify, simulate):
     cli.add_command(_command)
 
 
