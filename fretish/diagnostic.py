@@ -104,6 +104,7 @@ class Code(Enum):
     CHANGED_SINCE_REVIEW = ("F512", "something has changed since it was reviewed")
     BAD_WAIVER = ("F513", "the waivers cannot be read")
     EXPIRED_WAIVER = ("F514", "a waiver has expired")
+    NO_SUCH_REQUIREMENT = ("F515", "no requirement and no diagnostic has that name")
     BAD_SETTINGS = ("F520", "the settings of the project cannot be read")
     BAD_PARENTS = ("F521", "a document with parents of requirements cannot be read")
 

@@ -26,6 +26,7 @@ DOORS = {
             "__init__",
             "bind",
             "evidence",
+            "explain",
             "group",
             "output",
             "progress",
