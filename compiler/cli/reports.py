@@ -19,7 +19,15 @@ if TYPE_CHECKING:
     from compiler.report.views import Report
 
 _HEADINGS = {
-    "Made from": ("requirements", "bindings", "hazards", "evidence", "lock", "waivers"),
+    "Made from": (
+        "requirements",
+        "bindings",
+        "hazards",
+        "evidence",
+        "verification",
+        "lock",
+        "waivers",
+    ),
     "Forms": ("html", "json_", "csv", "junit", "sarif", "markdown", "gsn"),
 }
 
@@ -40,6 +48,12 @@ _HEADINGS = {
 @click.option("--bindings", help="bindings.toml; the one in the requirements' folder if not given.")
 @click.option("--hazards", help="hazards.toml; the one in the requirements' folder if not given.")
 @click.option("--evidence", default="build/evidence.json", show_default=True)
+@click.option(
+    "--verification",
+    default="build/verification.json",
+    show_default=True,
+    help="What `fretc verify` found, if there is such a file.",
+)
 @click.option("--lock", help="fretc.lock; the one in the requirements' folder if not given.")
 @click.option("--waivers", help="waivers.toml; the one in the requirements' folder if not given.")
 @click.option(
@@ -53,6 +67,7 @@ def report(
     bindings: str | None,
     hazards: str | None,
     evidence: str,
+    verification: str,
     lock: str | None,
     waivers: str | None,
     strict: bool,
@@ -77,13 +92,13 @@ def report(
     )
     lock = lock or beside(requirements, "fretc.lock")
     waivers = waivers or beside(requirements, "waivers.toml")
-    made = make(project, evidence, lock=lock, waivers=waivers)
+    made = make(project, evidence, lock=lock, waivers=waivers, verification=verification)
     say([*project.diagnostics, *made.diagnostics])
     if made.report is None:
         raise SystemExit(BAD)
     wanted = {"html": html, **{name: path for name, path in forms.items() if path is not None}}
     texts = _texts(made, project, evidence, strict=strict)
-    _deliver(wanted, texts, [evidence, *files, *filter(None, (lock, waivers))])
+    _deliver(wanted, texts, [evidence, verification, *files, *filter(None, (lock, waivers))])
     if has_errors([*project.diagnostics, *made.diagnostics]):
         raise SystemExit(BAD)
     raise SystemExit(_status(made.report) if strict else SHOWN)
@@ -138,7 +153,9 @@ def _audited(evidence: str, whole: Report) -> Sequence[Mapping[str, Any]]:
 
 
 def _status(whole: Report) -> int:
+    from compiler.report.assembly import is_refuted
+
     words = {view.mark.word for view in whole.requirements}
-    if words & {"violated", "suspect"}:
+    if words & {"violated", "suspect"} or any(map(is_refuted, whole.requirements)):
         return VIOLATION
     return SHOWN if words <= {"satisfied", "waived", "retired"} else NOT_SHOWN

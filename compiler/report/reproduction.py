@@ -9,6 +9,7 @@ from pathlib import PurePath
 from compiler import __version__
 from compiler.evidence import Evidence
 from compiler.project import Project, fingerprint
+from compiler.proven import Proofs
 from compiler.report import phrases
 from compiler.report.runs import Run
 from compiler.report.views import Command, Hash, RequirementView
@@ -101,6 +102,7 @@ def manifest(
     sections: Sequence[RequirementView],
     runs: Sequence[Run],
     evidence: Evidence | None,
+    proofs: Proofs | None,
 ) -> tuple[Hash, ...]:
     """Every hash that the report rests on."""
     bindings = project.declarations
@@ -114,6 +116,8 @@ def manifest(
     )
     if evidence is not None:
         lines.append(Hash("evidence", phrases.place(evidence.file), evidence.sha256))
+    if proofs is not None:
+        lines.append(Hash("verification", phrases.place(proofs.file), proofs.sha256))
     lines.extend(
         Hash("run", phrases.place(run.result.run), run.result.hashes.get("log", "")) for run in runs
     )
