@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterator, Sequence
+from math import floor
 from statistics import median
 
 from compiler.evidence import Result, Threshold
@@ -136,15 +137,20 @@ def _bins(values: Sequence[float], shown: Sequence[float]) -> tuple[Bin, ...]:
     """Bars of a round width, from the least to the greatest of the values and what is shown."""
     low, high = min([*values, *shown]), max([*values, *shown])
     width = step((high - low) / _BINS) if high > low else 1.0
-    first = int(low // width)
-    last = max(first, int(high // width))
+    first = _place(low, width)
+    last = max(first, _place(high, width))
     counts = [0] * (last - first + 1)
     for value in values:
-        counts[min(last, int(value // width + 1e-9)) - first] += 1
+        counts[_place(value, width) - first] += 1
     return tuple(
         Bin(round((first + i) * width, 9), round((first + i + 1) * width, 9), count)
         for i, count in enumerate(counts)
     )
+
+
+def _place(value: float, width: float) -> int:
+    """The bar of a value; one that is at a border, but for rounding, counts above it."""
+    return floor(value / width + 1e-9)
 
 
 def _in_words(bins: Sequence[Bin], unit: str) -> str:
@@ -153,7 +159,7 @@ def _in_words(bins: Sequence[Bin], unit: str) -> str:
     told = sorted(sorted(full, key=lambda each: -each.count)[:_NAMED], key=lambda each: each.low)
     parts = [
         f"{phrases.whole(each.count)} from {phrases.decimal(each.low)} to "
-        f"{phrases.value(each.high, unit)}"
+        f"below {phrases.value(each.high, unit)}"
         for each in told
     ]
     rest = sum(each.count for each in full) - sum(each.count for each in told)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import base64
 import hashlib
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from typing import Any
 
 from compiler.diagram import diagram
@@ -35,7 +35,8 @@ def html(report: Report, rules: Sequence[Rule] = ()) -> str:
     return render(
         "report/report.html.j2",
         report=_visible(asdict(page)),
-        chosen=_visible(asdict(chosen)),
+        chosen=_visible(asdict(replace(chosen, anchors=frozenset()))),
+        anchors=chosen.anchors,
         pictures=_visible(_pictures(chosen)),
         histograms=_visible(_histograms(page)),
         diagrams=_diagrams(page, rules),
@@ -124,7 +125,7 @@ def _visible(value: Any) -> Any:
             return visible(value)
         case dict():
             return {visible(key): _visible(item) for key, item in value.items()}
-        case list() | tuple() | frozenset():
+        case list() | tuple():
             return [_visible(item) for item in value]
         case _:
             return value

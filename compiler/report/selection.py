@@ -16,7 +16,7 @@ from monitors import kernel
 
 COMPACT = 5_000
 """More results than these, and only runs that are not satisfied have a row."""
-DETAILED, PICTURES = 120, 80
+DETAILED, PICTURES = 100, 60
 """Results with all details, and pictures of violations, in one page, shared among requirements."""
 _ROWS = 10
 """Rows of a requirement in a compact page."""
@@ -24,8 +24,10 @@ _RUNS, _TOLD_RUNS = 8, 200
 """More runs than the first are a table; more rows than the second it does not have."""
 _FOLDED = 60
 """Up to so many results in all, also those of satisfied runs are in the page, closed."""
+_VIOLATIONS = 12
+"""Violations that are listed of one result, in a page with more results than that."""
 _WHOLE = 200
-"""More requirements than these, and a compact page tells of satisfied ones only what was run."""
+"""More requirements than these, and a compact page tells of each only what it says and shows."""
 _REASONS = 3
 _RANK = {word: rank for rank, word in enumerate(MARKS)}
 
@@ -59,7 +61,7 @@ class Shown:
     left_out: tuple[str, ...]
     """What is not in the page, and where it is."""
     is_short: bool
-    """Whether formulas, propositions and artefacts are left out."""
+    """Whether formulas, propositions, artefacts and histograms are left out."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,7 +84,7 @@ def selection(report: Report) -> Selection:
     """Choose, from what the report says."""
     total = sum(len(view.results) for view in report.requirements)
     compact = total > COMPACT
-    detailed = _detailed(report.requirements)
+    detailed = _detailed(report.requirements, None if total <= _FOLDED else _VIOLATIONS)
     shown = {
         view.anchor: _shown(view, detailed, compact, total, len(report.requirements))
         for view in report.requirements
@@ -136,8 +138,8 @@ def _notes(total: int, compact: bool, requirements: int) -> Iterator[str]:
     )
     if requirements > _WHOLE:
         yield (
-            "Formulas, propositions and artefacts are left out of the sections of requirements "
-            "that are satisfied."
+            f"With more than {_WHOLE} requirements, their formulas, propositions, artefacts and "
+            "histograms are left out as well."
         )
     yield "`fretc report --json` and `--csv` write all of it; the evidence file has every event."
 
@@ -149,8 +151,13 @@ def _is_good(result: ResultView) -> bool:
     return result.mark.word == kernel.SATISFIED
 
 
-def _detailed(views: Sequence[RequirementView]) -> Mapping[str, ResultView]:
-    """Results that get all details: the worst of each requirement first, then the next of each."""
+def _detailed(views: Sequence[RequirementView], listed: int | None) -> Mapping[str, ResultView]:
+    """Results that get all details: the worst of each requirement first, then the next of each.
+
+    Args:
+        views: the requirements with all their results.
+        listed: violations of one result that have a row; None: all that the report lists.
+    """
     wanted = [
         sorted(
             (r for r in view.results if not _is_good(r) or len(view.results) == 1),
@@ -165,7 +172,8 @@ def _detailed(views: Sequence[RequirementView]) -> Mapping[str, ResultView]:
             break
         kept = result.timelines[:pictures]
         pictures -= len(kept)
-        found[result.anchor] = replace(result, timelines=kept)
+        few = result.violations[:listed]
+        found[result.anchor] = replace(result, timelines=kept, violations=few)
     return found
 
 
@@ -190,7 +198,7 @@ def _shown(
         details=details,
         folded=folded,
         left_out=tuple(_left_out(view, rows, details, folded)),
-        is_short=compact and requirements > _WHOLE and view.mark.word == kernel.SATISFIED,
+        is_short=compact and requirements > _WHOLE,
     )
 
 
@@ -266,7 +274,7 @@ def _slim(view: RequirementView, chosen: Selection) -> RequirementView:
     kept = replace(view, results=(), reasons=reasons)
     if not chosen.by_anchor[view.anchor].is_short:
         return kept
-    return replace(kept, formulas=(), propositions=(), artefacts=(), diagram="")
+    return replace(kept, formulas=(), propositions=(), artefacts=(), histograms=(), diagram="")
 
 
 def _few(reasons: Sequence[str]) -> tuple[str, ...]:
