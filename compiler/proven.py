@@ -9,6 +9,7 @@ from __future__ import annotations
 import json
 from collections.abc import Mapping
 from dataclasses import dataclass
+from pathlib import Path
 
 from compiler.files import read as read_text
 from compiler.files import sha256
@@ -47,11 +48,15 @@ class Proofs:
     proofs: tuple[Proof, ...]
 
 
-def read(path: str) -> Proofs | Diagnostic | None:
-    """Read and check a file of `fretc verify`; None where there is none."""
+DEFAULT = "build/verification.json"
+"""Where `fretc verify` writes."""
+
+
+def read(path: str) -> Proofs | Diagnostic:
+    """Read and check a file of `fretc verify`."""
     source = read_text(path)
     if isinstance(source, Diagnostic):
-        return None if source.code is Code.NO_SUCH_FILE else source
+        return source
     try:
         return _proofs(Shape(json.loads(source.text)), source)
     except json.JSONDecodeError as error:
@@ -60,6 +65,11 @@ def read(path: str) -> Proofs | Diagnostic | None:
         return _wrong(source, f"is not what `fretc verify` writes: {error}")
     except (ValueError, RecursionError):
         return _wrong(source, "is not JSON that fretc can read")
+
+
+def written() -> str | None:
+    """The file of `fretc verify` at its usual place, if there is one."""
+    return DEFAULT if Path(DEFAULT).exists() else None
 
 
 def _wrong(source: Source, what: str) -> Diagnostic:

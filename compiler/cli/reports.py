@@ -50,9 +50,7 @@ _HEADINGS = {
 @click.option("--evidence", default="build/evidence.json", show_default=True)
 @click.option(
     "--verification",
-    default="build/verification.json",
-    show_default=True,
-    help="What `fretc verify` found, if there is such a file.",
+    help="What `fretc verify` found; build/verification.json, if it is there and none is given.",
 )
 @click.option("--lock", help="fretc.lock; the one in the requirements' folder if not given.")
 @click.option("--waivers", help="waivers.toml; the one in the requirements' folder if not given.")
@@ -67,7 +65,7 @@ def report(
     bindings: str | None,
     hazards: str | None,
     evidence: str,
-    verification: str,
+    verification: str | None,
     lock: str | None,
     waivers: str | None,
     strict: bool,
@@ -79,6 +77,7 @@ def report(
     SOURCE_DATE_EPOCH, where that is set.
     """
     from compiler.project import beside, load, requirement_files
+    from compiler.proven import written
     from compiler.report import make
 
     files = requirement_files(requirements)
@@ -92,13 +91,14 @@ def report(
     )
     lock = lock or beside(requirements, "fretc.lock")
     waivers = waivers or beside(requirements, "waivers.toml")
+    verification = verification or written()
     made = make(project, evidence, lock=lock, waivers=waivers, verification=verification)
     say([*project.diagnostics, *made.diagnostics])
     if made.report is None:
         raise SystemExit(BAD)
     wanted = {"html": html, **{name: path for name, path in forms.items() if path is not None}}
     texts = _texts(made, project, evidence, strict=strict)
-    _deliver(wanted, texts, [evidence, verification, *files, *filter(None, (lock, waivers))])
+    _deliver(wanted, texts, [evidence, *files, *filter(None, (verification, lock, waivers))])
     if has_errors([*project.diagnostics, *made.diagnostics]):
         raise SystemExit(BAD)
     raise SystemExit(_status(made.report) if strict else SHOWN)

@@ -54,7 +54,7 @@ def make(
         evidence: path of an evidence file; where there is none, nothing has been exercised.
         lock: path of a lock; None: nothing has been reviewed.
         waivers: path of a file of waivers; None: nothing is waived.
-        verification: path of what `fretc verify` wrote; where there is none, nothing was proved.
+        verification: path of what `fretc verify` wrote; None: nothing was proved.
     """
     audited = read(evidence)
     if isinstance(audited, Diagnostic) and audited.is_error:

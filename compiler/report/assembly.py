@@ -97,7 +97,7 @@ def report(
         waivers=tuple(view.waiver for view in sections if view.waiver),
         requirements=sections,
         assumptions=_assumptions(project, evidence),
-        commands=commands(project, sections, tuple(found.values()), path),
+        commands=commands(project, sections, tuple(found.values()), path, proofs),
         manifest=manifest(project, sections, tuple(found.values()), evidence, proofs),
     ), _stale(claimed, evidence, path)
 

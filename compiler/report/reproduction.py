@@ -17,9 +17,14 @@ from fretish.source import Source
 
 
 def commands(
-    project: Project, sections: Sequence[RequirementView], runs: Sequence[Run], evidence: str
+    project: Project,
+    sections: Sequence[RequirementView],
+    runs: Sequence[Run],
+    evidence: str,
+    proofs: Proofs | None,
 ) -> tuple[Command, ...]:
     """The commands, in the order in which they are to be run."""
+    proved = f" --verification {_quoted(proofs.file)}" if proofs else ""
     from_here = _options(project)
     logs = " ".join(_log(run.result.run) for run in runs) or "LOG..."
     to = _quoted(evidence)
@@ -28,7 +33,7 @@ def commands(
         *_check(runs),
         Command("Audit the runs", f"fretc audit {logs} {from_here} --evidence {to}"),
         *_emissions(sections),
-        Command("Write this report", f"fretc report {from_here} --evidence {to}"),
+        Command("Write this report", f"fretc report {from_here} --evidence {to}{proved}"),
     )
 
 

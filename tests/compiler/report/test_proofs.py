@@ -3,7 +3,9 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from click.testing import CliRunner
 
+from compiler.cli import cli
 from compiler.files import sha256
 from compiler.project import Project
 from compiler.report import Made, make
@@ -108,11 +110,28 @@ def test_a_prover_is_found_by_its_engine(tmp_path: Path) -> None:
     assert said(report)["requirements"][0]["proofs"] == []
 
 
+def test_a_file_that_is_not_there_is_told(tmp_path: Path) -> None:
+    report = make(project(tmp_path), str(tmp_path / "e"), verification=str(tmp_path / "no.json"))
+    assert report.report is None
+    assert [found.code for found in report.diagnostics] == [Code.NO_SUCH_FILE]
+
+
 def test_without_a_file_nothing_was_proved(tmp_path: Path) -> None:
-    known = project(tmp_path)
-    report = make(known, str(tmp_path / "none.json"), verification=str(tmp_path / "no.json"))
-    content = said(report)
+    content = said(make(project(tmp_path), str(tmp_path / "none.json")))
     assert (content["verification"], content["proofs"]) == ("", [])
+
+
+def test_the_command_takes_the_file_at_its_usual_place_and_exits_as_it_says(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    reported(tmp_path, {"found": "counterexample"}, verify=[])
+    (tmp_path / "build").mkdir()
+    command = ["report", "--requirements", str(tmp_path), "--evidence", "evidence.json", "--strict"]
+    assert CliRunner().invoke(cli, command).exit_code == 0
+    (tmp_path / "verification.json").rename("build/verification.json")
+    assert CliRunner().invoke(cli, command).exit_code == 1
+    assert "What was proved" in Path("build/report.html").read_text(encoding="utf-8")
 
 
 @pytest.mark.parametrize(
