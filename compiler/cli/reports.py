@@ -153,7 +153,7 @@ def _audited(evidence: str, whole: Report) -> Sequence[Mapping[str, Any]]:
 
 
 def _status(whole: Report) -> int:
-    from compiler.report.assembly import is_refuted
+    from compiler.report.proofs import is_refuted
 
     words = {view.mark.word for view in whole.requirements}
     if words & {"violated", "suspect"} or any(map(is_refuted, whole.requirements)):

@@ -10,7 +10,7 @@ from compiler import __version__
 from compiler.evidence import Evidence
 from compiler.lock import Lock
 from compiler.project import Project
-from compiler.proven import COUNTEREXAMPLE, Proofs
+from compiler.proven import Proofs
 from compiler.report import phrases, reviews
 from compiler.report.claims import (
     MARKS,
@@ -23,7 +23,7 @@ from compiler.report.claims import (
     claims,
 )
 from compiler.report.matrix import hazard_views, matrix, orphans, strangers
-from compiler.report.proofs import SHARED, proof_views
+from compiler.report.proofs import SHARED, is_refuted, proof_views
 from compiler.report.reproduction import commands, folder_of, manifest
 from compiler.report.runs import Run, run_views, runs, trust
 from compiler.report.sections import remark, section
@@ -170,13 +170,6 @@ def _held(active: Sequence[Claim], good: Sequence[Claim], runs: int) -> str:
     everywhere = all(len(claim.judged) == runs for claim in good)
     where = _where(runs) if everywhere else "each run in which they were audited"
     return f"{len(good)} of {len(active)} requirements held in {where}."
-
-
-def is_refuted(view: RequirementView) -> bool:
-    """Whether verification found a run against it, whatever the audited ones show."""
-    return any(plan.refuted for plan in view.planned) or any(
-        proof.mark.word == COUNTEREXAMPLE for proof in view.proofs
-    )
 
 
 def _refuted(ids: Sequence[str]) -> str:

@@ -9,7 +9,7 @@ from compiler.products import Product
 from compiler.proven import Proof
 from compiler.report import phrases
 from compiler.report.claims import MARKS, SUSPECT
-from compiler.report.views import Mark, ProofView
+from compiler.report.views import Mark, ProofView, RequirementView
 from compiler.verification import Layer
 
 _MARKS: Mapping[str, Mark] = {
@@ -88,3 +88,10 @@ def in_words(proofs: Sequence[ProofView]) -> str:
         return f"{phrases.times(len(proofs), 'claim')} proved"
     why = found.suspicions[0] if found.suspicions else found.detail
     return f"{found.mark.word}: {found.claim} ({why})"
+
+
+def is_refuted(view: RequirementView) -> bool:
+    """Whether verification found a run against it, whatever the audited ones show."""
+    return any(plan.refuted for plan in view.planned) or any(
+        proof.mark.word == proven.COUNTEREXAMPLE for proof in view.proofs
+    )

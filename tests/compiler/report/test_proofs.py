@@ -9,6 +9,7 @@ from compiler.cli import cli
 from compiler.files import sha256
 from compiler.project import Project
 from compiler.report import Made, make
+from compiler.report.argument import Kind, argument
 from compiler.targets import monitor
 from fretish.diagnostic import Code
 from tests.compiler.report.cases import evidence, project, requirement, result, said
@@ -71,6 +72,18 @@ def test_the_worst_claim_decides(tmp_path: Path) -> None:
     assert overall["sentences"][1] == (
         "Verification found a counterexample to R1; part 4 has the claim."
     )
+
+
+def test_the_argument_rests_on_proofs_and_on_nothing_that_is_refuted(tmp_path: Path) -> None:
+    report = reported(tmp_path, {}, {"layer": "loop"}, verify=[]).report
+    assert report is not None
+    assert [each.text for each in argument(report) if each.kind is Kind.SOLUTION] == [
+        "R1 is satisfied in 1 audited run",
+        "2 claims about R1 proved (monitor and loop)",
+    ]
+    refuted = reported(tmp_path, {"found": "counterexample"}, verify=[]).report
+    assert refuted is not None
+    assert [each.text[:8] for each in argument(refuted) if each.undeveloped] == ["R1 holds"]
 
 
 def test_a_counterexample_counts_also_where_no_method_was_planned(tmp_path: Path) -> None:
