@@ -43,6 +43,21 @@ _MOST_LEVELS = 500
 _MONITOR = "check it with `--emit monitor`"
 
 
+_TRIGGERED = "a trigger comes; if it never does, {} demands nothing"
+_COMES = "the mode comes; if it never does, {} demands nothing"
+_ENDS = "the mode comes; if it never does, the scope of {} never ends"
+_LACKS = "the mode is not on all the time; if it is, {} demands nothing"
+_ENTERED = {
+    s.ScopeKind.IN: _COMES,
+    s.ScopeKind.ONLY_BEFORE: _COMES,
+    s.ScopeKind.NOT_IN: _LACKS,
+    s.ScopeKind.ONLY_IN: _LACKS,
+    s.ScopeKind.AFTER: "the mode comes and goes; if it never does, {} demands nothing",
+    s.ScopeKind.BEFORE: _ENDS,
+    s.ScopeKind.ONLY_AFTER: _ENDS,
+}
+
+
 @dataclass(frozen=True, slots=True)
 class Stated:
     """One property of a file: `key: text`, what AJPF is expected to say of it, and why."""
@@ -202,8 +217,9 @@ def _controls(rule: Rule, key: str) -> Iterator[tuple[str, f.Formula, str]]:
     response = boolean(rule.sentence.response, Uninterpreted().alone())
     never = nextfree.never_begins(meant)
     if never is not None:
-        comes = "a trigger comes" if meant.condition else "the mode of the scope comes and goes"
-        yield "reach", never, f"{comes}; if it never does, {key} demands nothing"
+        entered = _TRIGGERED if meant.scope is None else _ENTERED[meant.scope]
+        why = entered if meant.condition is None else _TRIGGERED
+        yield "reach", never, why.format(key)
     timing = rule.sentence.timing
     negates = meant.scope is not None and meant.scope.negates
     if negates or not isinstance(timing, s.Never):
