@@ -15,6 +15,7 @@ from fretish.declarations import (
     Aggregate,
     Declarations,
     Invalid,
+    Modality,
     Path,
     Proposition,
     Reading,
@@ -32,7 +33,7 @@ _CLOCK = ("time", "tick", "end", "rounding")
 _SIGNAL = (
     "path", "type", "reduce", "unit", "valid", "invalid", "max_age", "footprint", "sensor",
 )  # fmt: skip
-_PROPOSITION = ("text", "expr", "role", "agg", "on_unknown", "kind")
+_PROPOSITION = ("text", "expr", "role", "agg", "on_unknown", "kind", "modality")
 _INVALID = {
     "nan": "nan",
     "+inf": "positive_infinity",
@@ -372,6 +373,7 @@ class _Reader:
             kind=self._kind(table, at),
             aggregate=self._choice(table, (*at, "agg"), Aggregate, Aggregate.LAST),
             on_unknown=self._on_unknown(table, at),
+            modality=self._modality(table, at),
             span=self.tables.value(*at, "expr"),
         )
 
@@ -405,7 +407,19 @@ class _Reader:
             for key in ("component", "type", "role", "text")
         }
         kept = self._field(table, (*at, "fret"), dict, "a table of texts") or {}
-        return Variable(name, **texts, fret=kept)
+        return Variable(name, **texts, fret=kept, modality=self._modality(table, at))
+
+    def _modality(self, table: Mapping[str, Any], at: tuple[str, ...]) -> Modality:
+        if table.get("modality") != "P":
+            return self._choice(table, (*at, "modality"), Modality, Modality.BELIEF)
+        self._say(
+            Code.BAD_MODALITY,
+            f"`{at[1]}` cannot be a percept (`P`): AJPF takes a percept for absent once the agent "
+            "has read it",
+            self.tables.value(*at, "modality"),
+            'say what the agent believes: `modality = "B"`',
+        )
+        return Modality.BELIEF
 
     def _kind(self, table: Mapping[str, Any], at: tuple[str, ...]) -> str:
         kind = table.get("kind", "")
@@ -436,7 +450,7 @@ class _Reader:
         return None
 
 
-_VARIABLE = ("component", "type", "role", "text", "fret")
+_VARIABLE = ("component", "type", "role", "text", "fret", "modality")
 
 
 def _is_numbers(value: object, count: int) -> bool:

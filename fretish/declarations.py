@@ -131,6 +131,21 @@ class Aggregate(StrEnum):
     LAST = "last"
 
 
+class Modality(StrEnum):
+    """What an agent has to do with a proposition, in AJPF's words."""
+
+    BELIEF = "B"
+    """The agent believes it."""
+    GOAL = "G"
+    """The agent has it as a goal."""
+    INTENTION = "I"
+    """The agent has an intention for it."""
+    DONE = "D"
+    """It is an action, and the last one that the agent did."""
+    INTENDED = "ItD"
+    """It is an action, and in one of the agent's intentions."""
+
+
 @dataclass(frozen=True, slots=True)
 class Proposition:
     """A truth value over time: an expression over signals.
@@ -146,6 +161,7 @@ class Proposition:
     kind: str = ""
     aggregate: Aggregate = Aggregate.LAST
     on_unknown: bool | None = None
+    modality: Modality = Modality.BELIEF
     span: Span | None = field(default=None, compare=False, repr=False)
 
     @property
@@ -167,6 +183,7 @@ class Variable:
     text: str = ""
     fret: Mapping[str, Any] = field(default_factory=dict)
     """What FRET keeps of it and fretc does not use."""
+    modality: Modality = Modality.BELIEF
 
 
 @dataclass(frozen=True, slots=True)

@@ -73,6 +73,7 @@ class Code(Enum):
     MESSAGE_CLOCK = ("F313", "a clock that ticks by message cannot count seconds")
     NEVER_CHANGED = ("F314", "a proposition never changed in the logs")
     SLOW_TOPIC = ("F315", "a topic comes less often than the bindings need it")
+    BAD_MODALITY = ("F316", "the modality of a proposition cannot be emitted")
 
     UNREADABLE_LOG = ("F401", "the log cannot be read")
     NOT_A_LOG = ("F402", "the file is not an MCAP log")
@@ -102,6 +103,11 @@ class Code(Enum):
 
     NOT_EXPRESSIBLE = ("F601", "the target cannot express the requirement")
     BAD_MONITOR = ("F602", "the file is no generated monitor")
+    BAD_PROPERTY = ("F603", "AJPF would read a property in another way than it is written")
+    NOT_PROVED = ("F604", "the form for AJPF is not proved equal to the requirement")
+    WEAKENED = ("F605", "what is emitted says less than the requirement")
+    NO_TIME_TO_REACT = ("F606", "no agent that takes time to react satisfies the property")
+    STATE_ZERO = ("F607", "the property demands something of the first state")
 
     NO_SUCH_FILE = ("F901", "there is no such file")
     IS_A_DIRECTORY = ("F902", "the file is a directory")

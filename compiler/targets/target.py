@@ -24,6 +24,8 @@ class Options:
     """Whether the monitors of all rules go into one file."""
     free_texts: tuple[Requirement, ...] = ()
     """Requirements without a rule, which only formats for exchange carry."""
+    weaken: bool = False
+    """Whether a target may say less than the requirement, where it then says so."""
 
 
 DEFAULT = Options()
@@ -38,7 +40,10 @@ class Emit(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class Target:
-    """One kind of output. `refuse` is asked first; `emit` then never fails and never weakens."""
+    """One kind of output. `refuse` is asked first; `emit` then never fails and never weakens.
+
+    Except where `Options.weaken` allows it, and the target has a `weak` form of itself.
+    """
 
     name: str
     summary: str
@@ -48,6 +53,8 @@ class Target:
     """What a user of the output should know; it does not keep it from being made."""
     per_rule: bool = True
     """False where all rules go into one file, for exchange with another tool."""
+    weak: Target | None = None
+    """The same target where weakening is allowed: it refuses less, and remarks what is lost."""
 
 
 def stem(rule: Rule) -> str:
