@@ -84,7 +84,9 @@ class _Folding:
         if index == self.chart.start:
             return "start"
         counted = state.counted
-        if self.demanded in COUNTING:
+        if self.registers:
+            counted = 0  # its triggers are told by conditions on edges
+        elif self.demanded in COUNTING:
             counted = (counted > 0) - (counted < 0)
         return state.phase, state.held, counted
 
@@ -105,9 +107,11 @@ class _Folding:
         if index >= len(self.chart.states):
             return None
         counted = self.chart.states[index].counted
+        if self.registers:
+            return counted
         if self.demanded not in COUNTING or counted == 0:
             return None
-        if self.demanded is Kind.NOT_AFTER and not self.registers:
+        if self.demanded is Kind.NOT_AFTER:
             return counted.bit_length()
         return abs(counted)
 
@@ -115,7 +119,7 @@ class _Folding:
         state = self.chart.states[members[0]]
         said = list(words(self.demanded, self.chart.template, state))
         counts = sorted(k for index in members if (k := self._count(index)) is not None)
-        if counts:  # the ticks of one of the states are k of all of them
+        if counts and not self.registers:  # the ticks of one state are k of all of them
             word = 1 if self.scoped else 0
             said[word] = "owed" if self.demanded is Kind.FOR else OPEN[state.counted < 0]
         return Node(
@@ -148,7 +152,8 @@ class _Folding:
         if self.registers:
             due = {k >> self.ticks & 1 for k in some}
             assert len(due) == 1, "the trigger of n + 1 ticks ago decides"
-            return f"{'a' if due == {1} else 'no'} trigger {self.ticks + 1} ticks ago"
+            word = "an" if due == {1} else "no"
+            return f"{word} unanswered trigger {_ago(self.ticks + 1)}"
         assert some in (every[: len(some)], every[-len(some) :]), "one end of the count decides"
         if len(some) == 1:
             return f"k = {some[0]}"
@@ -167,6 +172,10 @@ class _Folding:
         assert len(steps) == 1, "all counters go the same way"
         step = steps.pop()
         return "" if step == 0 else f"k := k {'+' if step > 0 else '-'} {abs(step)}"
+
+
+def _ago(ticks: int) -> str:
+    return "1 tick ago" if ticks == 1 else f"{ticks} ticks ago"
 
 
 def _without_twin(whole: Folded) -> Folded:

@@ -2,8 +2,8 @@
 
 Two files: `<id>.props`, the property in PRISM's syntax over labels, and `<id>.prism`, a frame of a
 model that can be run at once and that the user replaces. What PRISM's language lacks is said by
-what it has, and means the same: `P=p` as two bounds, and a bound of ticks within an LTL formula,
-which PRISM allows around states only, as a chain of `X`.
+what it has, and means the same: `P=p` as two bounds, `G<=n a` by its complement, and a bound of
+ticks within an LTL formula, which PRISM allows around states only, as a chain of `X`.
 Sources: the PRISM manual, Property Specification and The PRISM Language; FRET's shape of
 probabilistic requirements is that of `compiler.future.probabilistic`.
 """
@@ -12,6 +12,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
+from decimal import Decimal, localcontext
 from functools import reduce
 from pathlib import PurePosixPath
 
@@ -47,7 +48,7 @@ def refuse(rule: Rule) -> Diagnostic | None:
         return not_expressible(
             "PRISM",
             rule,
-            "a requirement without a probability, such as that",
+            "a certainty such as that",
             "add `with probability >= 0.99` before the timing, or use `--emit smv` or `hoa`",
         )
     predicate = _looks_back(rule)
@@ -62,8 +63,8 @@ def refuse(rule: Rule) -> Diagnostic | None:
         return not_expressible(
             "PRISM",
             rule,
-            f"`{printing_of(rule.sentence.timing)}` within the scope, and more than "
-            f"{_MOST_STEPS} ticks in all,",
+            f"more than {_MOST_STEPS} ticks of `{printing_of(rule.sentence.timing)}` "
+            "in one path formula",
             "state the requirement without a scope, or use a clock with longer ticks",
         )
     return None
@@ -126,6 +127,8 @@ class _Property:
         return self._read(formula, self._odds)
 
     def _odds(self, odds: f.Odds) -> str:
+        if isinstance(odds.arg, f.Globally) and odds.arg.ahead != f.EVER and _is_simple(odds.arg):
+            return self._odds(complement(odds))
         path = f"[ {self._path(odds.arg)} ]"
         if odds.op == "=":
             return f"(P>={odds.bound} {path} & P<={odds.bound} {path})"
@@ -155,6 +158,15 @@ class _Property:
             self._dialect, atom=lambda name: found[name] if name in found else atom(name)
         )
         return printing.text(printing.for_prism(hide(formula)), dialect)
+
+
+def complement(odds: f.Odds) -> f.Odds:
+    """`P<=0.1 [ F<=n !a ]` for `P>=0.9 [ G<=n a ]`, which Storm does not read."""
+    assert isinstance(odds.arg, f.Globally)
+    with localcontext(prec=len(odds.bound) + 2):
+        bound = format(1 - Decimal(odds.bound), "f")
+    flipped = odds.op.translate(str.maketrans("<>", "><"))
+    return f.Odds(flipped, bound, f.eventually(f.not_(odds.arg.arg), odds.arg.ahead))
 
 
 def _is_simple(formula: f.Formula) -> bool:

@@ -16,6 +16,7 @@ from pathlib import PurePosixPath
 from compiler import printing
 from compiler.artifact import Artifact
 from compiler.demand import Kind, Obligation, obligation
+from compiler.letters import atoms_of
 from compiler.naming import legal_names
 from compiler.record import wording
 from compiler.rule import Rule
@@ -60,7 +61,9 @@ def _text(rule: Rule) -> str:
     plain = re.sub(r"\W", "_", stem(rule))
     monitor_name = f"monitor_{plain}"
     instance = f"the_{monitor_name}"
-    names = legal_names(rule.propositions, _RESERVED | {instance, monitor_name})
+    # The formulas may lack some: `only after m` says nothing of m where nothing is demanded.
+    propositions = tuple(dict.fromkeys((*rule.propositions, *atoms_of(rule.sentence))))
+    names = legal_names(propositions, _RESERVED | {instance, monitor_name})
     module = monitor(demanded)
     dialect = replace(printing.NUSMV, atom=names.__getitem__, full=True)
     actual = {
@@ -73,7 +76,7 @@ def _text(rule: Rule) -> str:
         "smv/monitor.smv.j2",
         id=rule.id,
         sentence=wording(rule.requirement),
-        variables=[(names[name], name) for name in rule.propositions],
+        variables=[(names[name], name) for name in propositions],
         instance=instance,
         module_name=monitor_name,
         module=module,
