@@ -176,7 +176,7 @@ def _counted(demanded: Kind, count: int) -> str:
         case Kind.NEXT:
             return "due at the next tick"
         case Kind.FINALLY:
-            return "due at the end, and there" if count < 0 else "due at the end, and missing"
+            return f"due at the end, {'held' if count < 0 else 'missing'} at this tick"
         case Kind.ALWAYS:
             return "owed for ever"
         case Kind.UNTIL:

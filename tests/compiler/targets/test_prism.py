@@ -251,3 +251,13 @@ def test_what_its_formulas_cannot_say_is_refused(sentence: str, told: str) -> No
 def test_a_long_bound_around_states_is_one_operator() -> None:
     sentence = PROBABLE.replace("2 ticks", "100000 ticks").replace("p the", f"{MANY} the")
     assert "F<=100000" in property_of(sentence)
+
+
+def test_equivalences_that_would_double_again_and_again_are_refused() -> None:
+    chain = "p0"
+    for i in range(1, 30):
+        chain = f"(p{i} <-> {chain})"
+    sentence = f"whenever {chain} the sw shall with probability > 0.9 eventually satisfy q"
+    assert refused("prism", sentence).startswith(
+        "F670 the property of R1 has more than 100000 operators"
+    )
