@@ -108,6 +108,7 @@ class Code(Enum):
     WEAKENED = ("F605", "what is emitted says less than the requirement")
     NO_TIME_TO_REACT = ("F606", "no agent that takes time to react satisfies the property")
     STATE_ZERO = ("F607", "the property demands something of the first state")
+    TOO_LARGE = ("F670", "what would be made is too large")
 
     NO_SUCH_FILE = ("F901", "there is no such file")
     IS_A_DIRECTORY = ("F902", "the file is a directory")

@@ -31,7 +31,7 @@ def cli() -> None:
     """From FRETish requirements to monitors, audited logs and a traceability report.
 
     `fretc FILE...` parses and formalizes requirements; with `--emit` it makes files of them:
-    ltl, monitor, ajpf, json, fret-json. `fretc FILE --help` says more.
+    ltl, monitor, ajpf, smv, hoa, dot, prism, json, fret-json. `fretc FILE --help` says more.
     """
 
 
