@@ -13,7 +13,7 @@ from compiler.odds import INCONCLUSIVE, REFUTED, SUPPORTED, Bounds
 from compiler.plan import Claim
 from fretish.diagnostic import Code, Diagnostic, Severity
 from fretish.expressions import ComparisonOperator
-from monitors.trials import Trials
+from monitors.trials import NO_TRIALS, Trials
 
 GLYPHS: Mapping[str, tuple[str, str]] = {
     SUPPORTED: ("✔", "green"),
@@ -98,10 +98,10 @@ class Estimated:
         told = f"{self.answered} of {count} triggers answered, {self.failed} failed"
         yield f"{told}, {self.open} open, in {_times(self.logs, 'log')}{self._others}"
         known = "not known" if self.estimate is None else f"{self.estimate:.4f}"
-        drawn = "too few logs" if self.resampled is None else _shown(self.resampled)
+        drawn = "too few logs" if self.resampled is None else shown(self.resampled)
         each = odds.both_sides(self.operator, self.confidence)
         yield (
-            f"estimate {known}; bounds, at {_percent(each)} each: {_shown(self.exact)} "
+            f"estimate {known}; bounds, at {_percent(each)} each: {shown(self.exact)} "
             f"(Clopper-Pearson), {drawn} (logs resampled)"
         )
         if self.needed is not None:
@@ -177,7 +177,7 @@ def _estimated(claim: Claim, results: Sequence[Mapping[str, Any]], level: float)
         estimate=None if found.share is None else round(found.share, 9),
         exact=found.exact,
         resampled=None if found.runs < 2 else found.resampled,
-        needed=odds.needed(found, op, bound),
+        needed=odds.needed(found, op, bound) if answer == INCONCLUSIVE else None,
     )
 
 
@@ -197,7 +197,7 @@ def _distinct(results: Sequence[Mapping[str, Any]]) -> list[Mapping[str, Any]]:
 
 def _trials(result: Mapping[str, Any]) -> Trials:
     told = result.get("trials")
-    return Trials(**told) if told else Trials(0, 0, 0)
+    return Trials(**told) if told else NO_TRIALS
 
 
 # In words --------------------------------------------------------------------------------------
@@ -223,7 +223,8 @@ def _interval(bounds: Bounds | None) -> dict[str, float] | None:
     return None if bounds is None else {"low": bounds.low, "high": bounds.high}
 
 
-def _shown(bounds: Bounds) -> str:
+def shown(bounds: Bounds) -> str:
+    """`0.9900 to 1.0000`, rounded outwards."""
     return f"{_low(bounds.low)} to {_high(bounds.high)}"
 
 

@@ -48,5 +48,7 @@ class Trials:
         return ", ".join(parts)
 
 
+NO_TRIALS = Trials(0, 0, 0)
+
 Count = Callable[[Mapping[str, Column], int], Trials]
 """The truth of each proposition, and the number of ticks → the trials."""

@@ -199,11 +199,11 @@ def _printed(result: Audit, project: Project, form: str) -> str:
         case "json":
             return result.as_json
         case "junit":
-            return junit(result.results)
+            return junit(result.results, result.estimates)
         case "github":
-            return github(result.results, project.rules)
+            return github(result.results, project.rules, result.estimates)
         case "sarif":
-            return sarif(result.results, project.rules, result.diagnostics)
+            return sarif(result.results, project.rules, result.diagnostics, result.estimates)
         case _:
             return coloured(result.text)
 
