@@ -6,7 +6,7 @@ import hashlib
 import json
 import pickle
 from collections.abc import Sequence
-from dataclasses import astuple, dataclass, field
+from dataclasses import astuple, dataclass, field, replace
 from functools import lru_cache, partial
 
 from compiler import odds
@@ -18,7 +18,7 @@ from compiler.project import Project, fingerprint
 from compiler.record import wording
 from compiler.rule import Rule
 from compiler.targets import monitor as monitors
-from compiler.trials import Chance, chance, plain, trials
+from compiler.trials import Chance, chance, trials
 from fretish.declarations import Declarations
 from fretish.depth import deep
 from fretish.diagnostic import Code, Diagnostic
@@ -162,7 +162,7 @@ def _not_auditable(rules: Sequence[Rule], declarations: Declarations | None) -> 
                 help='add `[clock]` with `tick = "100 ms"`',
             )
         ]
-    refused = [monitors.refuse(plain(rule)) for rule in rules]
+    refused = [monitors.refuse(replace(rule, pctl=None)) for rule in rules]
     if any(rule.sentence.probability for rule in rules):
         refused.append(odds.missing())
     missing = [diagnostic for rule in rules for diagnostic in unbound(rule, declarations)]

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 
 from compiler import __version__
 from compiler.estimates import AVERAGE
-from compiler.odds import REFUTED, SUPPORTED
+from compiler.odds import CONFIDENCE, REFUTED, SUPPORTED
 from compiler.project import Project
 from compiler.report import phrases
 from compiler.report.claims import (
@@ -77,9 +77,14 @@ def report(
         orphans=orphans(project, claimed, evidence),
         requirements=sections,
         assumptions=_assumptions(project, evidence),
-        commands=commands(project, sections, tuple(found.values()), path),
+        commands=commands(project, sections, tuple(found.values()), path, _confidence(evidence)),
         manifest=manifest(project, sections, tuple(found.values()), evidence),
     ), _stale(claimed, evidence, path)
+
+
+def _confidence(evidence: Evidence | None) -> float:
+    told = evidence.probabilities if evidence else ()
+    return next((one.confidence for one in told), CONFIDENCE)
 
 
 def _not_shown(view: RequirementView) -> NotShown:

@@ -233,6 +233,7 @@ def test_the_stated_confidence_is_used(fretc: Fretc) -> None:
     logs(30, "1000", "0100")
     assert fretc("audit", "runs", "--confidence", "0.99").status == 3
     assert told()["confidence"] == 0.99
+    assert " --confidence 0.99 --evidence " in json.dumps(reported(fretc)["commands"])
     assert fretc("audit", "runs", "--confidence", "0.9").status == 0
     for wrong in ("0.5", "1", "95", "x"):
         assert fretc("audit", "runs", "--confidence", wrong).status == 2
@@ -267,6 +268,13 @@ def test_a_missing_scipy_is_told_before_anything_is_read(
         2,
         "F908 a requirement with a probability needs `scipy`",
     )
+
+
+def test_what_no_monitor_can_say_is_told_at_its_place(fretc: Fretc) -> None:
+    require(f"whenever  c robot shall with probability > 0.5 satisfy {'!(' * 80}r{')' * 80}")
+    run = fretc("audit", log("a.mcap", "1000", "0100"))
+    assert run.status == 2
+    assert "  --> requirements/R7.fret:5:1\n   | whenever  c robot shall with prob" in run.err
 
 
 def test_the_monitor_of_one_run_is_refused_still(fretc: Fretc) -> None:
