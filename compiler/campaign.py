@@ -12,6 +12,7 @@ from pathlib import Path
 from compiler import __version__
 from compiler.auditing import audited
 from compiler.experiment import plan, safety_function
+from compiler.odds import highest, lowest
 from compiler.plan import watched
 from compiler.workers import Killed, each
 from monitors import kernel
@@ -59,17 +60,9 @@ class Share:
 
 
 def share(count: int, runs: int) -> Share:
-    """The exact interval of a binomial proportion; the only use of SciPy.
-
-    Source: Clopper, Pearson, The use of confidence or fiducial limits illustrated in the case of
-    the binomial, Biometrika 26 (1934).
-    """
-    from scipy.special import betaincinv
-
-    tail = (1 - CONFIDENCE) / 2
-    low = float(betaincinv(count, runs - count + 1, tail)) if count else 0.0
-    high = float(betaincinv(count + 1, runs - count, 1 - tail)) if count < runs else 1.0
-    return Share(count, runs, low, high)
+    """The exact interval of a binomial proportion: both of its bounds."""
+    each = (1 + CONFIDENCE) / 2
+    return Share(count, runs, lowest(count, runs, each), highest(count, runs, each))
 
 
 def simulated(scenario: Scenario, seed: int, out: Path) -> Run:

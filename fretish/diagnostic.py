@@ -100,6 +100,7 @@ class Code(Enum):
     BAD_EVIDENCE = ("F503", "the evidence cannot be read")
     BAD_EXPORT = ("F505", "the requirements of another tool cannot be read")
     STALE_EVIDENCE = ("F504", "the evidence is about another requirement, binding or log")
+    FEW_RUNS = ("F506", "a probability is estimated from few runs")
 
     NOT_EXPRESSIBLE = ("F601", "the target cannot express the requirement")
     BAD_MONITOR = ("F602", "the file is no generated monitor")

@@ -41,7 +41,7 @@ DOORS = {
     "dask": {"compiler/fleet.py"},
     "mujoco": {"simulation/robot.py"},
     "matplotlib": {"simulation/picture.py"},
-    "scipy": {"compiler/campaign.py"},
+    "scipy": {"compiler/odds.py"},
     "rosbags": {
         "simulation/messages.py",
         "simulation/recording.py",

@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
 from compiler import __version__
+from compiler.estimates import AVERAGE
+from compiler.odds import CONFIDENCE, REFUTED, SUPPORTED
 from compiler.project import Project
 from compiler.report import phrases
 from compiler.report.claims import (
     MARKS,
     NOT_EXERCISED,
     RETIRED,
+    SHOWN,
     SUSPECT,
     UNFORMALIZED,
     Claim,
@@ -74,9 +77,14 @@ def report(
         orphans=orphans(project, claimed, evidence),
         requirements=sections,
         assumptions=_assumptions(project, evidence),
-        commands=commands(project, sections, tuple(found.values()), path),
+        commands=commands(project, sections, tuple(found.values()), path, _confidence(evidence)),
         manifest=manifest(project, sections, tuple(found.values()), evidence),
     ), _stale(claimed, evidence, path)
+
+
+def _confidence(evidence: Evidence | None) -> float:
+    told = evidence.probabilities if evidence else ()
+    return next((one.confidence for one in told), CONFIDENCE)
 
 
 def _not_shown(view: RequirementView) -> NotShown:
@@ -100,14 +108,14 @@ def _overall(
 ) -> Overall:
     active = [claim for claim in claimed if claim.verdict != RETIRED]
     missing = [plan for plan in plans if not plan.has_result]
-    broken = [claim for claim in active if claim.verdict == kernel.VIOLATED]
-    good = [claim for claim in active if claim.verdict == kernel.SATISFIED]
+    broken = [claim for claim in active if claim.verdict in (kernel.VIOLATED, REFUTED)]
+    good = [claim for claim in active if claim.verdict in SHOWN]
     flawed = has_errors(project.diagnostics)
     said = tuple(
         filter(
             None,
             (
-                _held(active, good, len(runs)),
+                *_held(active, good, len(runs)),
                 *_few(reservations),
                 _unplanned(missing),
                 _uncovered(project, claimed),
@@ -119,7 +127,7 @@ def _overall(
     if broken:
         verb = "is" if len(broken) == 1 else "are"
         names = phrases.some([claim.id for claim in broken])
-        return Overall(_BROKEN, f"{names} {verb} violated.", said)
+        return Overall(_BROKEN, f"{names} {verb} {_how(broken)}.", said)
     if not good:
         return Overall(_NONE, "Nothing that was claimed is shown.", said)
     if len(good) < len(active) or flawed:
@@ -129,7 +137,27 @@ def _overall(
     return Overall(_ALL, "Everything that was claimed is shown.", said)
 
 
-def _held(active: Sequence[Claim], good: Sequence[Claim], runs: int) -> str:
+def _how(broken: Sequence[Claim]) -> str:
+    words = dict.fromkeys(str(claim.verdict) for claim in broken)
+    return " or ".join(words)
+
+
+def _held(active: Sequence[Claim], good: Sequence[Claim], runs: int) -> Iterator[str]:
+    """Of requirements that each run is judged by, and of those that all runs are."""
+    alone = [claim for claim in active if claim.together is None]
+    chances = [claim for claim in active if claim.together is not None]
+    if alone or not chances:
+        yield _held_alone(alone, [claim for claim in good if claim.together is None], runs)
+    if chances:
+        count = sum(claim.verdict == SUPPORTED for claim in chances)
+        yield (
+            f"{count} of {phrases.times(len(chances), 'probability', 'probabilities')} "
+            f"{'is' if len(chances) == 1 else 'are'} supported, on the average over the triggers "
+            f"of {phrases.times(runs, 'run')}."
+        )
+
+
+def _held_alone(active: Sequence[Claim], good: Sequence[Claim], runs: int) -> str:
     if not active:
         return "There is no requirement to show."
     if not runs:
@@ -172,8 +200,9 @@ def _few(reservations: Sequence[str]) -> Sequence[str]:
 
 def _reservations(view: RequirementView) -> Sequence[str]:
     """What a reader has to know of a requirement that is shown."""
-    if view.mark.word != kernel.SATISFIED:
+    if view.mark.word not in SHOWN:
         return ()
+    average = [f"{view.id} is supported: {AVERAGE}."] if view.mark.word == SUPPORTED else []
     late = [
         f"{view.id} sets no bound on its response; in {result.run_label} the longest took "
         f"{result.latency.longest}."
@@ -182,7 +211,7 @@ def _reservations(view: RequirementView) -> Sequence[str]:
         if result.latency.at_once < result.latency.answered
     ]
     draft = [f"{view.id} is a draft."] if view.status == "draft" else []
-    return (*late, *draft)
+    return (*average, *late, *draft)
 
 
 def _claims(claimed: Sequence[Claim], runs: int) -> str:
@@ -205,10 +234,11 @@ def _counts(claimed: Sequence[Claim]) -> tuple[Count, ...]:
     best_first = (kernel.SATISFIED, *(word for word in MARKS if word != kernel.SATISFIED))
     always = (kernel.SATISFIED, kernel.VIOLATED, kernel.INCONCLUSIVE, kernel.VACUOUS)
     shown = (*always, kernel.NO_DATA, SUSPECT, NOT_EXERCISED)
+    rare = (UNFORMALIZED, RETIRED, SUPPORTED, REFUTED)
     return tuple(
         Count(MARKS[word], of_claims[word], of_results[word])
         for word in best_first
-        if word in shown or (word in (UNFORMALIZED, RETIRED) and of_claims[word])
+        if word in shown or (word in rare and of_claims[word])
     )
 
 

@@ -5,9 +5,12 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
+from compiler.estimates import Estimated
 from compiler.files import sha256
+from compiler.odds import REFUTED, SUPPORTED
 from compiler.project import Project, fingerprint
 from compiler.report.evidence import Evidence, Result
+from compiler.report.probabilities import ANSWERS, contradictions
 from compiler.report.views import Mark
 from compiler.rule import Rule
 from compiler.targets import monitor
@@ -15,6 +18,7 @@ from fretish.declarations import Declarations
 from fretish.diagnostic import Diagnostic
 from fretish.documents import Requirement
 from monitors import kernel
+from monitors.trials import NO_TRIALS
 
 SUSPECT = "suspect"
 UNFORMALIZED = "unformalized"
@@ -23,16 +27,21 @@ RETIRED = "retired"
 
 MARKS: Mapping[str, Mark] = {
     kernel.VIOLATED: Mark(kernel.VIOLATED, "✘", "violated"),
+    REFUTED: ANSWERS[REFUTED],
     UNFORMALIZED: Mark(UNFORMALIZED, "!", "unformalized"),
     SUSPECT: Mark(SUSPECT, "⚠", "suspect"),
     kernel.NO_DATA: Mark(kernel.NO_DATA, "?", "no-data"),
     kernel.INCONCLUSIVE: Mark(kernel.INCONCLUSIVE, "◔", "inconclusive"),
     kernel.VACUOUS: Mark(kernel.VACUOUS, "∅", "vacuous"),
     NOT_EXERCISED: Mark(NOT_EXERCISED, "○", "not-exercised"),
+    SUPPORTED: ANSWERS[SUPPORTED],
     kernel.SATISFIED: Mark(kernel.SATISFIED, "✔", "satisfied"),
     RETIRED: Mark(RETIRED, "\N{EN DASH}", "retired"),
 }
 """Every verdict of the report, the worst first: that of several runs is the worst of theirs."""
+
+SHOWN = (kernel.SATISFIED, SUPPORTED)
+"""The verdicts that show a requirement."""
 
 _RANK = {word: rank for rank, word in enumerate(MARKS)}
 
@@ -56,6 +65,14 @@ class Judged:
 
 
 @dataclass(frozen=True, slots=True)
+class Together:
+    """What all runs say of a probability, and why it does not count, if it does not."""
+
+    told: Estimated
+    suspicions: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
 class Claim:
     """A requirement: formalized (`rule`) or not (`diagnostic`), and its audits."""
 
@@ -64,6 +81,8 @@ class Claim:
     rule: Rule | None
     diagnostic: Diagnostic | None
     judged: tuple[Judged, ...]
+    together: Together | None = None
+    """With a probability: what all runs say, in place of the verdicts of each."""
 
     @property
     def id(self) -> str:
@@ -72,11 +91,13 @@ class Claim:
 
     @property
     def verdict(self) -> str:
-        """The worst of its runs, or why it has none."""
+        """The worst of its runs, what they say together, or why it has none."""
         if self.requirement.status == RETIRED:
             return RETIRED
         if self.rule is None:
             return UNFORMALIZED
+        if self.together is not None:
+            return SUSPECT if self.together.suspicions else self.together.told.answer
         verdicts = [judged.verdict for judged in self.judged]
         return min(verdicts, key=_RANK.__getitem__, default=NOT_EXERCISED)
 
@@ -98,16 +119,33 @@ def claims(project: Project, evidence: Evidence | None) -> tuple[Claim, ...]:
         rule = rules.get(id(requirement))
         judge = _Judge(rule, project.declarations)
         mine = [result for result in results if result.requirement == requirement.id]
+        judged = tuple(Judged(result, tuple(judge.suspicions(result))) for result in mine)
         found.append(
             Claim(
                 requirement,
                 anchors[-1],
                 rule,
                 failed.get(id(requirement)),
-                tuple(Judged(result, tuple(judge.suspicions(result))) for result in mine),
+                judged,
+                _together(rule, evidence, judged),
             )
         )
     return tuple(found)
+
+
+def _together(
+    rule: Rule | None, evidence: Evidence | None, judged: Sequence[Judged]
+) -> Together | None:
+    if rule is None or evidence is None or rule.sentence.probability is None:
+        return None
+    told = next((one for one in evidence.probabilities if one.requirement == rule.id), None)
+    if told is None:
+        return None
+    runs = [(j.result.content, j.result.health.intact, j.result.trials) for j in judged]
+    known = [(content, intact, trials or NO_TRIALS) for content, intact, trials in runs]
+    stale = [reason for each in judged for reason in each.suspicions]
+    wrong = contradictions(told, rule.sentence.probability, known)
+    return Together(told, tuple(dict.fromkeys((*stale, *wrong))))
 
 
 def _anchor(id: str, taken: Sequence[str]) -> str:

@@ -6,6 +6,7 @@ from dataclasses import asdict, dataclass
 from typing import Any
 
 from compiler.report.phrases import decimal, visible
+from compiler.report.scales import scale
 from compiler.report.views import Lane, Report, Timeline
 from compiler.templating import render
 
@@ -62,8 +63,16 @@ def html(report: Report) -> str:
         for section in report.requirements
         for result in section.results
     }
+    scales = {
+        section.anchor: asdict(scale(section.probability, f"picture-{section.anchor}"))
+        for section in report.requirements
+        if section.probability is not None
+    }
     return render(
-        "report/report.html.j2", report=_visible(asdict(report)), drawings=_visible(drawings)
+        "report/report.html.j2",
+        report=_visible(asdict(report)),
+        drawings=_visible(drawings),
+        scales=_visible(scales),
     )
 
 

@@ -7,6 +7,7 @@ from collections.abc import Iterable, Sequence
 from pathlib import PurePath
 
 from compiler import __version__
+from compiler.odds import CONFIDENCE
 from compiler.project import Project, fingerprint
 from compiler.report import phrases
 from compiler.report.evidence import Evidence
@@ -16,16 +17,22 @@ from fretish.source import Source
 
 
 def commands(
-    project: Project, sections: Sequence[RequirementView], runs: Sequence[Run], evidence: str
+    project: Project,
+    sections: Sequence[RequirementView],
+    runs: Sequence[Run],
+    evidence: str,
+    confidence: float = CONFIDENCE,
 ) -> tuple[Command, ...]:
     """The commands, in the order in which they are to be run."""
     from_here = _options(project)
     logs = " ".join(_log(run.result.run) for run in runs) or "LOG..."
     to = _quoted(evidence)
+    level = "" if confidence == CONFIDENCE else f" --confidence {confidence}"
+    audit = f"fretc audit {logs} {from_here}{level} --evidence {to}"
     return (
         Command("Check the version of the tool", f"fretc --version   # fretc {__version__}"),
         *_check(runs),
-        Command("Audit the runs", f"fretc audit {logs} {from_here} --evidence {to}"),
+        Command("Audit the runs", audit),
         *_emissions(sections),
         Command("Write this report", f"fretc report {from_here} --evidence {to}"),
     )

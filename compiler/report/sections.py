@@ -11,13 +11,15 @@ from compiler.project import Project
 from compiler.record import wording
 from compiler.report import phrases
 from compiler.report.artefacts import artefacts
-from compiler.report.claims import RETIRED, Claim
+from compiler.report.claims import RETIRED, SHOWN, Claim
 from compiler.report.plans import planned
+from compiler.report.probabilities import probability_view
 from compiler.report.results import reasons, result_views
 from compiler.report.runs import Key, Run
 from compiler.report.views import (
     Formula,
     Parent,
+    ProbabilityView,
     PropositionView,
     Remark,
     RequirementView,
@@ -29,7 +31,6 @@ from fretish.declarations import Declarations, Proposition, Signal
 from fretish.diagnostic import Diagnostic
 from fretish.meaning import meaning
 from fretish.printer import sentence
-from monitors import kernel
 
 
 def section(
@@ -46,7 +47,7 @@ def section(
     """
     requirement, rule = claim.requirement, claim.rule
     clock = project.declarations.clock if project.declarations else None
-    shown = claim.verdict in (kernel.SATISFIED, RETIRED)
+    shown = claim.verdict in (*SHOWN, RETIRED)
     return RequirementView(
         id=claim.id,
         anchor=claim.anchor,
@@ -68,9 +69,16 @@ def section(
         params=dict(requirement.params),
         planned=planned(claim),
         artefacts=artefacts(rule),
+        probability=_probability(claim),
         results=result_views(claim, runs, clock),
         reasons=() if shown else reasons(claim, runs, audited=audited),
     )
+
+
+def _probability(claim: Claim) -> ProbabilityView | None:
+    if claim.together is None:
+        return None
+    return probability_view(claim.together.told, claim.together.suspicions)
 
 
 def remark(diagnostic: Diagnostic) -> Remark:
