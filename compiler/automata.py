@@ -169,6 +169,11 @@ def _valuations(graph: Any, names: dict[str, str]) -> Callable[[frozenset[str]],
     return valuation
 
 
+def version() -> str:
+    """Of Spot."""
+    return str(_spot().version())
+
+
 def _spot() -> Any:
     with warnings.catch_warnings():
         # SWIG's deprecations are not ours; as errors they would end the process.

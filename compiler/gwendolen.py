@@ -112,6 +112,10 @@ class _Reader:
             return self.source.span(part.start_pos or 0, part.end_pos)
         return self.source.span(part.meta.start_pos, part.meta.end_pos)
 
+    def end(self) -> Span:
+        length = len(self.source.text.rstrip())
+        return self.source.span(length, length)
+
     def agent(self, start: Tree[Token]) -> Agent:
         first = start.children[0]
         if not (isinstance(first, Token) and first.type == "GWENDOLEN"):
@@ -158,7 +162,7 @@ class _Reader:
                     f"the sections are {', '.join(f'`{h}`' for h in HEADINGS)}, in this order",
                 )
         if expected:
-            end = self.source.span(len(self.source.text.rstrip()))
+            end = self.end()
             raise misread(
                 f"the section `{expected[0]}` is missing", end, "it may be empty, but not left out"
             )

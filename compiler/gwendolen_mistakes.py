@@ -49,7 +49,8 @@ def unexpected(error: UnexpectedInput, source: Source) -> Diagnostic:
     """F610 or F611 for what does not fit into the grammar at all."""
     token = error.token if isinstance(error, UnexpectedToken) else None
     if token is not None and token.type == "$END":
-        end = source.span(len(source.text.rstrip()))
+        length = len(source.text.rstrip())
+        end = source.span(length, length)
         return Diagnostic(Code.BAD_AGENT, "the file ends too early", end, _wanted(error))
     at = error.pos_in_stream or 0
     place = source.span(at, at + (len(token) if token is not None else 1))

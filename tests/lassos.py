@@ -70,7 +70,7 @@ def keeps(formula: f.Formula, kripke: Kripke, lasso: Lasso) -> bool:
 
 def lassos(kripke: Kripke, longest: int) -> Iterator[Lasso]:
     """Every run that repeats itself after that many states or fewer."""
-    ways = [(kripke.initial,)]
+    ways: list[tuple[int, ...]] = [(kripke.initial,)]
     for _ in range(longest):
         for way in ways:
             for back, state in enumerate(way):
