@@ -40,7 +40,7 @@ STATES = 200_000
 CONTROLS = ("reach", "resp", "stop")
 """`<key>_reach` is a control of `<key>`: it is to be violated."""
 _ATOM = re.compile(r"(?P<modality>[A-Za-z]+)\((?P<agent>\w+),(?P<literal>.*)\)", re.DOTALL)
-_PERCEPT = re.compile(r"[a-z][A-Za-z0-9_]*(?:\([a-z0-9_,.-]+\))?", re.ASCII)
+_PERCEPT = re.compile(r"[a-z][A-Za-z0-9_]*(?:\([A-Za-z0-9_,. -]+\))?", re.ASCII)
 
 
 @deep
@@ -95,10 +95,12 @@ def _checked(
     said = psl.read(properties)
     if isinstance(said, Diagnostic):
         return said
-    drawn = tuple(dict.fromkeys(percepts))
-    wrong = next((_no_percept(p) for p in drawn if not _PERCEPT.fullmatch(p)), None)
-    if wrong is not None:
-        return wrong
+    drawn: dict[str, None] = {}
+    for name in percepts:
+        percept = _percept(name)
+        if isinstance(percept, Diagnostic):
+            return percept
+        drawn[percept] = None
     read = gwendolen.read(agent)
     broken = None if mutant is None else gwendolen.read(mutant)
     artefacts = {s.name: sha256(s.text) for s in (agent, properties, mutant) if s is not None}
@@ -114,14 +116,20 @@ def _checked(
         if other is not None:
             return other
     try:
-        explored = _Explored.of(Model(read, drawn), limit)
+        explored = _Explored.of(Model(read, tuple(drawn)), limit)
         spoilt = broken if isinstance(broken, Agent) else None
         return tuple(_Lines(said, explored, spoilt, artefacts, limit).all())
     except TooManyStatesError as error:
         return _unknown(said, f"the agent has {error}", artefacts)
 
 
-def _no_percept(name: str) -> Diagnostic:
+def _percept(name: str) -> str | Diagnostic:
+    """Spelt as the agent's beliefs are; F613 for what is none."""
+    if _PERCEPT.fullmatch(name):
+        text = f"GWENDOLEN :name: a :Initial Beliefs: {name} :Initial Goals: :Plans: +a : {{True}};"
+        found = gwendolen.read(Source("percept", text))
+        if isinstance(found, Agent):
+            return found.beliefs[0]
     return Diagnostic(
         Code.BAD_PERCEPT,
         f"`{name}` cannot be a percept",

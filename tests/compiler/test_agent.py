@@ -1,12 +1,13 @@
 """The model of agents: what AJPF itself says of the same agents, and the steps one by one."""
 
+from dataclasses import replace
 from itertools import pairwise
 
 import pytest
 
 from compiler import formula as f
-from compiler.agent import Model, Stage, State, told
-from compiler.gwendolen import Agent, read
+from compiler.agent import Intention, Model, Stage, State, told
+from compiler.gwendolen import Agent, Change, read
 from compiler.kripke import Explored, TooManyStatesError, check
 from fretish.diagnostic import Diagnostic
 from fretish.source import Source
@@ -173,19 +174,48 @@ def test_intentions_take_turns() -> None:
     assert holds(start, plans, "a", "b")
 
 
-def test_percepts_that_come_at_once_are_handled_in_any_order() -> None:
-    plans = "+a : {True} <- +x; +b : {True} <- +y;"
-    x_first = f.release(belief("x"), f.not_(belief("y")))
-    y_first = f.release(belief("y"), f.not_(belief("x")))
-    assert not holds(x_first, plans, "a", "b")
-    assert not holds(y_first, plans, "a", "b")
+def events(state: State) -> list[str]:
+    return [str(intention.event) for intention in state.waiting]
+
+
+def test_percepts_that_change_at_once_raise_their_events_in_any_order() -> None:
+    model = Model(agent("+a : {True} <- +x;"), ("a", "b"))
+    shown = first("the environment shows a, b", list(model.steps(model.initial)))
+    both = [state for _, state in model.steps(shown)]
+    assert sorted(map(events, both)) == [["+a", "+b"], ["+b", "+a"]]
+    gone = replace(both[0], percepts=frozenset(), told=False, stage=Stage.PERCEIVE, waiting=())
+    assert sorted(events(s) for _, s in model.steps(gone)) == [["-a", "-b"], ["-b", "-a"]]
+
+
+def test_what_went_comes_before_what_came() -> None:
+    model = Model(agent(ONCE), ("a", "b"))
+    state = replace(model.initial, percepts=frozenset("a"), perceived=frozenset("b"))
+    ((_, after),) = model.steps(replace(state, stage=Stage.PERCEIVE))
+    assert (events(after), after.beliefs) == (["-b", "+a"], frozenset("a"))
+
+
+def outcomes(model: Model, state: State) -> set[tuple[frozenset[str], tuple[str, ...]]]:
+    return {(after.beliefs, tuple(events(after))) for _, after in model.steps(state)}
 
 
 def test_a_belief_of_two_sources_may_outlive_one_of_them_or_not() -> None:
-    plans = "+near : {True} <- +near;"
-    _, found = explored(plans, "near", beliefs=" near")
-    gone = [s for s in found.states if s.told and not s.percepts and s.stage is Stage.SELECT]
-    assert {state.beliefs for state in gone} == {frozenset(), frozenset({"near"})}
+    model = Model(agent("+go : {True} <- -near;", " near"), ("near",))
+    near = frozenset({"near"})
+    both = replace(model.initial, perceived=near, stage=Stage.PERCEIVE)
+    assert outcomes(model, both) == {
+        (near, ()),
+        (near, ("-near",)),
+        (frozenset(), ("-near",)),
+    }
+    removing = Intention(Change("+", "go"), (Change("-", "near"),))
+    executing = replace(both, stage=Stage.EXECUTE, current=removing)
+    assert outcomes(model, executing) == {
+        (near, ("-near",)),
+        (frozenset(), ("-near",)),
+        (frozenset(), ("-near", "-near")),
+    }
+    owned = replace(model.initial, percepts=near, stage=Stage.PERCEIVE)
+    assert outcomes(model, owned) == {(near, ()), (near, ("+near",))}
 
 
 def test_an_agent_with_too_much_to_do_has_too_many_states() -> None:

@@ -176,6 +176,8 @@ def test_beyond_the_model_or_its_limit_nothing_is_known() -> None:
         (f"1a: {R1.replace('agilex', 'other')}", ["too_close"], PAPER, Code.OTHER_AGENT),
         (f"1a: {R1}", ["TooClose"], PAPER, Code.BAD_PERCEPT),
         (f"1a: {R1}", ["too close"], PAPER, Code.BAD_PERCEPT),
+        (f"1a: {R1}", ["near(X)"], PAPER, Code.BAD_PERCEPT),
+        (f"1a: {R1}", ["near(1,)"], PAPER, Code.BAD_PERCEPT),
         (f"1a: {R1}", [""], PAPER, Code.BAD_PERCEPT),
     ],
 )
@@ -185,6 +187,13 @@ def test_a_users_mistake_is_a_diagnostic(
     told = refused(properties, percepts, agent)
     assert told.code is code
     assert told.help
+
+
+def test_a_percept_is_spelt_as_the_agent_spells_it() -> None:
+    near = PAPER.replace("too_close", "near(1, lidar)")
+    (main, _) = lines("x: [] (B(agilex_agent,near(1,lidar)) -> <> B(agilex_agent,stopped))",
+                      ["near(1.0, lidar)"], near)  # fmt: skip
+    assert isinstance(main.result, Proved)
 
 
 def test_a_file_without_properties_has_no_evidence() -> None:

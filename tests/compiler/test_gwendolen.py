@@ -1,6 +1,8 @@
 """Agents in Gwendolen: read to the letter, and every trap a mistake with its place."""
 
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from compiler.gwendolen import Action, Agent, Change, Guard, read
 from fretish.diagnostic import Code, Diagnostic
@@ -174,3 +176,29 @@ def test_gwendolen_that_the_model_does_not_have_is_told_apart(
 def test_a_very_deep_term_is_no_crash() -> None:
     deep = f"a{'(a' * 20_000}{')' * 20_000}"
     assert refused("release_base(1, fast)", deep).code is Code.BEYOND_MODEL
+
+
+PIECES = st.sampled_from(
+    [
+        *'+-~!*:;,{}()[]<_#%."BGX1a/',
+        "<-",
+        "/*",
+        "//",
+        "achieve",
+        "True",
+        "\n",
+        ":Plans:",
+        "GWENDOLEN",
+    ]
+)
+
+
+@given(st.integers(0, len(AGENT)), st.integers(0, 12), st.lists(PIECES, max_size=3))
+def test_any_text_is_read_or_told(at: int, length: int, put: list[str]) -> None:
+    source = Source("a.gwen", AGENT[:at] + "".join(put) + AGENT[at + length :])
+    found = read(source)
+    if isinstance(found, Diagnostic):
+        assert found.code in (Code.BAD_AGENT, Code.BEYOND_MODEL)
+        assert render(found)
+    else:
+        assert found.plans

@@ -67,6 +67,7 @@ def test_a_counterexample_is_a_run_as_short_as_may_be() -> None:
 def test_a_state_without_edges_is_repeated_for_ever() -> None:
     assert check(Kripke((P,), ((),)), f.globally(p)) is None
     assert check(Kripke((P,), ((),)), f.eventually(q)) == Lasso((), (0,))
+    assert check(Kripke((NONE, P), ((1,), ())), f.eventually(f.globally(p))) is None
 
 
 def test_an_atom_may_have_any_name_and_one_that_no_state_has_is_false() -> None:
