@@ -171,7 +171,8 @@ class Model:
         after = replace(state, current=left, stage=Stage.PERCEIVE)
         match deed:
             case Action(name) if name.partition("(")[0] in SILENT:
-                yield f"does {name}", after
+                printing = name.partition("(")[0] == "print"
+                yield f"does {name}", after if printing else replace(after, last=name)
             case Action(name):
                 for shown in self._draws():
                     said = f"does {name}; the environment shows {_set(shown)}"

@@ -146,6 +146,8 @@ def test_the_last_action_stays_done_and_printing_is_none() -> None:
     plans = '+near : {True} <- halt, print("hello");'
     done = f.Atom("D(ag,halt)")
     assert holds(f.globally(f.implies(done, f.globally(done))), plans, "near")
+    shared = "+near : {True} <- halt, assert_shared;"
+    assert not holds(f.globally(f.implies(done, f.globally(done))), shared, "near")
 
 
 def test_an_action_is_intended_from_its_plan_until_it_is_done() -> None:
