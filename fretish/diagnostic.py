@@ -75,6 +75,11 @@ class Code(Enum):
     SLOW_TOPIC = ("F315", "a topic comes less often than the bindings need it")
     BAD_MODALITY = ("F316", "the modality of a proposition cannot be emitted")
 
+    SAME_TOPIC = ("F320", "two ends of the interceptor are one topic")
+    BELOW_PERIOD = ("F321", "a duration is shorter than a tick of the interceptor's timer")
+    NO_TIMER = ("F322", "an interceptor without a timer is asked to measure time")
+    NO_INTERCEPTOR = ("F323", "the bindings declare no interceptor")
+
     UNREADABLE_LOG = ("F401", "the log cannot be read")
     NOT_A_LOG = ("F402", "the file is not an MCAP log")
     TRUNCATED_LOG = ("F403", "the log ends in the middle")
