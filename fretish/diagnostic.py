@@ -157,6 +157,8 @@ class Diagnostic:
     span: Span | None = None
     help: str | None = None
     severity: Severity = Severity.ERROR
+    paste: str = ""
+    """Lines to put into a file as they are, which `help` speaks of."""
 
     @property
     def is_error(self) -> bool:

@@ -39,7 +39,8 @@ def refuse(options: Options) -> Diagnostic | None:
         Code.NO_INTERCEPTOR,
         f"{what} no interceptor",
         source.span().part(0, 0),
-        help=f"add this table to {source.name}, with the topics of your robot:\n\n{TABLE}",
+        help=f"add this table to {source.name}, with the topics of your robot:",
+        paste=TABLE,
     )
 
 
