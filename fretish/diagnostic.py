@@ -119,7 +119,6 @@ class Code(Enum):
     SHORT_HOLD = ("F630", "the interceptor holds zero no longer than messages may be lost")
     UNWATCHED = ("F631", "the interceptor does not notice that a channel is silent")
     EVENT_DRIVEN = ("F632", "the interceptor speaks only when a command comes")
-    BAD_INTERCEPTOR = ("F633", "the file is no generated interceptor")
 
     NO_SUCH_FILE = ("F901", "there is no such file")
     IS_A_DIRECTORY = ("F902", "the file is a directory")

@@ -6,7 +6,8 @@ from typing import Any
 
 import pytest
 
-from compiler.contracts import COMMAND, RELEASE, RING, SCAN, STOP, contracts
+from compiler.contracts import contracts
+from compiler.heard import COMMAND, RELEASE, RING, SCAN, STOP
 from compiler.interception import options as counted
 from compiler.purity import Core, core
 from compiler.targets.interceptor import text
