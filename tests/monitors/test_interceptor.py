@@ -160,6 +160,8 @@ def test_each_function_states_what_it_promises(name: str) -> None:
 
 
 @given(options, st.lists(heard, max_size=20))
+@example(LATCHING, [STOP, GO])
+@example(Options(2, 0, 0, 0), [CommandHeard(FAST), STOP, GO, RING, RING, RING])
 def test_each_line_of_the_contracts_holds_wherever_it_is_called(
     options: Options, messages: list[Heard]
 ) -> None:
