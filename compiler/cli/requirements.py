@@ -16,7 +16,18 @@ if TYPE_CHECKING:
     from compiler.project import Project
     from compiler.targets.target import Options
 
-_EMITS = ("ltl", "monitor", "ajpf", "smv", "hoa", "dot", "prism", "json", "fret-json", "interceptor")
+_EMITS = (
+    "ltl",
+    "monitor",
+    "ajpf",
+    "smv",
+    "hoa",
+    "dot",
+    "prism",
+    "json",
+    "fret-json",
+    "interceptor",
+)
 _NOTATIONS = ("plain", "fret", "spot", "nusmv", "latex")
 
 
@@ -86,9 +97,7 @@ def compile_(
     from compiler.targets.target import Options
 
     free_texts = tuple(f.requirement for f in project.failed)
-    options = Options(
-        notation, simplify, one_file, free_texts, weaken, project.declarations
-    )
+    options = Options(notation, simplify, one_file, free_texts, weaken, project.declarations)
     if kinds:
         _emit(project, dict.fromkeys(kinds), output, options)
     else:
