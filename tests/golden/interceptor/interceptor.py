@@ -325,7 +325,6 @@ def run(arguments: list[str]) -> None:
     import rclpy
     from geometry_msgs.msg import Twist
     from rclpy.clock import Clock, ClockType
-    from rclpy.qos import qos_profile_sensor_data
     from rclpy.signals import SignalHandlerOptions
     from std_msgs.msg import Bool
 
