@@ -199,6 +199,8 @@ def _kept(case: Case, parts: Parts, reached: Reached, runs: Runs) -> Result:
 def _released(parts: Parts, runs: Runs) -> Result:
     lasso = _lasso(parts, runs, RELEASE)
     if lasso is None:
+        if not any(_HALT.name in label for label in runs.explored.kripke.labels):
+            return Vacuous("no stop is ever in force")
         return Proved("Spot finds no endless run that violates it")
     return Counterexample("the stop stays: the last ticks are repeated for ever", lasso)
 

@@ -408,6 +408,13 @@ def test_what_is_no_loop_is_not_checked(
     assert [line.endswith(f"; {reason}") for line in run.out.splitlines()] == [True, True]
 
 
+def test_without_bindings_there_is_no_loop(fretc: Fretc, r1: str) -> None:
+    run = fretc("verify", "--layer", "loop", "--layer", "bounds", r1)
+    assert run.status == 3
+    reason = "the bindings declare no interceptor (`[interceptor]`)"
+    assert [line.endswith(f"; {reason}") for line in run.out.splitlines()] == [True] * 4
+
+
 def test_an_interceptor_of_other_bindings_is_not_checked(
     fretc: Fretc, loop: Callable[..., str]
 ) -> None:

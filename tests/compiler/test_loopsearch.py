@@ -197,6 +197,12 @@ def test_a_robot_that_never_moves_is_vacuous() -> None:
     assert found.kept.detail.startswith("the robot never moves")
 
 
+def test_a_stop_that_is_never_in_force_is_vacuous() -> None:
+    deaf = edited(CORE, "stop=requested or", "stop=False and requested or")
+    found = search(case(WITHIN.format(2), core=deaf))
+    assert found.released == Vacuous("no stop is ever in force")
+
+
 def test_too_many_states_are_not_checked() -> None:
     known = replace(case(WITHIN.format(2), TIMER, Channel(1, lost=2)), limit=3)
     assert search(known).kept == NotChecked("more than 3 states")
