@@ -57,6 +57,7 @@ class Code(Enum):
     FIRST_RUN_ONLY = ("F207", "`after` looks at the first stretch of its mode only")
     BEFORE_NOTHING = ("F208", "`before` requires nothing when its mode holds at the start")
     NEVER_DECIDED = ("F203", "no run can ever decide the requirement")
+    OWN_TRIGGER = ("F209", "a requirement is triggered by what its component commands")
 
     BAD_BINDINGS = ("F301", "the bindings are not TOML")
     UNKNOWN_BINDING_FIELD = ("F302", "the bindings have a field that fretc does not know")
@@ -106,6 +107,9 @@ class Code(Enum):
     EXPIRED_WAIVER = ("F514", "a waiver has expired")
     BAD_SETTINGS = ("F520", "the settings of the project cannot be read")
     BAD_PARENTS = ("F521", "a document with parents of requirements cannot be read")
+    UNCOVERED_HAZARD = ("F522", "no requirement is there for a hazard")
+    NO_PARENT = ("F523", "a requirement is there for no reason that is named")
+    UNREACHABLE_PLAN = ("F525", "a planned method can give no result")
 
     NOT_EXPRESSIBLE = ("F601", "the target cannot express the requirement")
     BAD_MONITOR = ("F602", "the file is no generated monitor")

@@ -25,6 +25,7 @@ DOORS = {
         for name in (
             "__init__",
             "bind",
+            "check",
             "evidence",
             "group",
             "output",

@@ -16,6 +16,7 @@ import click
 
 from compiler import __version__
 from compiler.cli.bind import bind
+from compiler.cli.check import check
 from compiler.cli.evidence import verify_evidence
 from compiler.cli.group import DEFAULT, Commands
 from compiler.cli.output import BAD, INTERRUPTED, SHOWN, not_written, say, say_line
@@ -44,6 +45,7 @@ for _command in (
     import_,
     info,
     bind,
+    check,
     audit,
     report,
     lock,
