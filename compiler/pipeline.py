@@ -93,6 +93,7 @@ def _rule(
         watch=anticipated(sentence, back, watch(back)),
         pctl=probabilistic(ahead, odds.op, odds.digits) if odds else None,
         glossary=_glossary(declarations),
+        declarations=declarations,
     )
 
 

@@ -120,6 +120,11 @@ class Code(Enum):
     WEAKENED = ("F605", "what is emitted says less than the requirement")
     NO_TIME_TO_REACT = ("F606", "no agent that takes time to react satisfies the property")
     STATE_ZERO = ("F607", "the property demands something of the first state")
+    BAD_AGENT = ("F610", "MCAPL would read an agent in another way than it is written")
+    BEYOND_MODEL = ("F611", "the agent uses what the model of agents does not have")
+    OTHER_AGENT = ("F612", "a property speaks of another agent than the one that is given")
+    BAD_PERCEPT = ("F613", "a percept cannot be drawn by the environment")
+    NOT_KEPT = ("F614", "the agent that would be generated does not keep the requirement")
     TOO_LARGE = ("F670", "what would be made is too large")
 
     NO_SUCH_FILE = ("F901", "there is no such file")

@@ -16,7 +16,12 @@ MAY_IMPORT = {
     "simulation": {"simulation"},
 }
 DOORS = {
-    "lark": {"fretish/parser.py", "fretish/binding.py"},
+    "lark": {
+        "fretish/parser.py",
+        "fretish/binding.py",
+        "compiler/gwendolen.py",
+        "compiler/gwendolen_mistakes.py",
+    },
     "spot": {"compiler/automata.py"},
     "buddy": {"compiler/automata.py"},
     "jinja2": {"compiler/templating.py"},

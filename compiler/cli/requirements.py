@@ -16,7 +16,9 @@ if TYPE_CHECKING:
     from compiler.project import Project
     from compiler.targets.target import Options
 
-_EMITS = ("ltl", "monitor", "ajpf", "smv", "hoa", "dot", "prism", "json", "fret-json")
+_EMITS = (
+    "ltl", "monitor", "ajpf", "ajpf-bundle", "smv", "hoa", "dot", "prism", "json", "fret-json",
+)  # fmt: skip
 _NOTATIONS = ("plain", "fret", "spot", "nusmv", "latex")
 
 

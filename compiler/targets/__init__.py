@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from types import MappingProxyType
 
-from compiler.targets import ajpf, dot, fret, hoa, ltl, monitor, prism, records, smv
+from compiler.targets import ajpf, bundle, dot, fret, hoa, ltl, monitor, prism, records, smv
 from compiler.targets.target import Target
 
 TARGETS: Mapping[str, Target] = MappingProxyType(
@@ -15,6 +15,7 @@ TARGETS: Mapping[str, Target] = MappingProxyType(
             ltl.TARGET,
             monitor.TARGET,
             ajpf.TARGET,
+            bundle.TARGET,
             smv.TARGET,
             hoa.TARGET,
             dot.TARGET,

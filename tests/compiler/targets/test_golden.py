@@ -21,6 +21,8 @@ def test_the_papers_requirement(
     assert project.diagnostics == ()
     if target == "prism":  # it is for requirements with a probability
         return
+    if target == "ajpf-bundle":  # compared in test_bundle.py: `run.py` is no golden file
+        return
     for artifact in TARGETS[target].emit(project.rules):
         golden(f"{target}/{artifact.path}", artifact.text)
 
