@@ -182,8 +182,13 @@ def _declarations(
 
 
 def fingerprint(declarations: Declarations) -> str:
-    """SHA-256 of what the bindings say: comments, order and white space do not count."""
+    """SHA-256 of what the bindings say: comments, order and white space do not count.
+
+    Nor do the tables about the interceptor and the closed loop: what a log shows does not depend
+    on them, and evidence must not grow stale where only they change.
+    """
     data = tomllib.loads(declarations.source.text)
+    data = {name: table for name, table in data.items() if name not in ("interceptor", "assume")}
     return hashlib.sha256(json.dumps(data, sort_keys=True).encode()).hexdigest()
 
 

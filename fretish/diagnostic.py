@@ -76,6 +76,11 @@ class Code(Enum):
     SLOW_TOPIC = ("F315", "a topic comes less often than the bindings need it")
     BAD_MODALITY = ("F316", "the modality of a proposition cannot be emitted")
 
+    SAME_TOPIC = ("F320", "two ends of the interceptor are one topic")
+    BELOW_PERIOD = ("F321", "a duration is shorter than a tick of the interceptor's timer")
+    NO_TIMER = ("F322", "an interceptor without a timer is asked to measure time")
+    NO_INTERCEPTOR = ("F323", "the bindings declare no interceptor")
+
     UNREADABLE_LOG = ("F401", "the log cannot be read")
     NOT_A_LOG = ("F402", "the file is not an MCAP log")
     TRUNCATED_LOG = ("F403", "the log ends in the middle")
@@ -127,6 +132,10 @@ class Code(Enum):
     NOT_KEPT = ("F614", "the agent that would be generated does not keep the requirement")
     TOO_LARGE = ("F670", "what would be made is too large")
 
+    SHORT_HOLD = ("F630", "the interceptor holds zero no longer than messages may be lost")
+    UNWATCHED = ("F631", "the interceptor does not notice that a channel is silent")
+    EVENT_DRIVEN = ("F632", "the interceptor speaks only when a command comes")
+
     NO_SUCH_FILE = ("F901", "there is no such file")
     IS_A_DIRECTORY = ("F902", "the file is a directory")
     UNREADABLE = ("F903", "the file cannot be read")
@@ -163,6 +172,8 @@ class Diagnostic:
     span: Span | None = None
     help: str | None = None
     severity: Severity = Severity.ERROR
+    paste: str = ""
+    """Lines to put into a file as they are, which `help` speaks of."""
 
     @property
     def is_error(self) -> bool:

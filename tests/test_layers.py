@@ -121,3 +121,8 @@ def test_the_kernel_needs_the_standard_library_only() -> None:
         assert set(re.findall(r"from (monitors\S*) import", module.read_text())) <= {
             f"monitors.kernel.{path.stem}" for path in module.parent.glob("*.py")
         }
+
+
+def test_the_interceptor_needs_the_standard_library_only() -> None:
+    """Its text is copied into every emitted one."""
+    assert imported(ROOT / "monitors/interceptor.py") <= {*sys.stdlib_module_names}

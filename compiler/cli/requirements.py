@@ -17,7 +17,8 @@ if TYPE_CHECKING:
     from compiler.targets.target import Options
 
 _EMITS = (
-    "ltl", "monitor", "ajpf", "ajpf-bundle", "smv", "hoa", "dot", "prism", "json", "fret-json",
+    "ltl", "monitor", "ajpf", "ajpf-bundle", "interceptor", "smv", "hoa", "dot", "prism", "json",
+    "fret-json",
 )  # fmt: skip
 _NOTATIONS = ("plain", "fret", "spot", "nusmv", "latex")
 
@@ -88,7 +89,7 @@ def compile_(
     from compiler.targets.target import Options
 
     free_texts = tuple(f.requirement for f in project.failed)
-    options = Options(notation, simplify, one_file, free_texts, weaken)
+    options = Options(notation, simplify, one_file, free_texts, weaken, project.declarations)
     if kinds:
         _emit(project, dict.fromkeys(kinds), output, options)
     else:
@@ -142,11 +143,13 @@ def _emit(project: Project, kinds: dict[str, None], output: str, options: Option
         for rule in project.rules
         if (diagnostic := target.refuse(rule)) is not None
     ]
+    refused += [d for target in targets if (d := target.refuse_project(options))]
     if options.one_file:
         refused.extend(clashes(project.rules))
     if refused:
         stop(*refused)
     say([d for target in targets for rule in project.rules if (d := target.remark(rule))])
+    say([diagnostic for target in targets for diagnostic in target.remarks(options)])
     files = [artifact for target in targets for artifact in target.emit(project.rules, options)]
     _deliver_all({str(artifact.path): artifact.text for artifact in files}, output)
 

@@ -8,6 +8,7 @@ from typing import Protocol
 
 from compiler.artifact import Artifact
 from compiler.rule import Rule
+from fretish.declarations import Declarations
 from fretish.diagnostic import Code, Diagnostic
 from fretish.documents import Requirement
 
@@ -26,6 +27,8 @@ class Options:
     """Requirements without a rule, which only formats for exchange carry."""
     weaken: bool = False
     """Whether a target may say less than the requirement, where it then says so."""
+    declarations: Declarations | None = None
+    """What the bindings declare, for files about the robot and not about one rule."""
 
 
 DEFAULT = Options()
@@ -51,6 +54,10 @@ class Target:
     refuse: Callable[[Rule], Diagnostic | None] = lambda rule: None
     remark: Callable[[Rule], Diagnostic | None] = lambda rule: None
     """What a user of the output should know; it does not keep it from being made."""
+    refuse_project: Callable[[Options], Diagnostic | None] = lambda options: None
+    """Asked once: what keeps the target from being made, whatever the rules are."""
+    remarks: Callable[[Options], tuple[Diagnostic, ...]] = lambda options: ()
+    """What to say once, beside what `remark` says of each rule."""
     per_rule: bool = True
     """False where all rules go into one file, for exchange with another tool."""
     weak: Target | None = None

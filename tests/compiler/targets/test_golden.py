@@ -7,6 +7,7 @@ import pytest
 
 from compiler.project import load
 from compiler.targets import TARGETS
+from compiler.targets.target import Options
 from tests.emitting import emitted
 
 R1 = Path(__file__).parent.parent.parent.parent / "requirements"
@@ -23,7 +24,7 @@ def test_the_papers_requirement(
         return
     if target == "ajpf-bundle":  # compared in test_bundle.py: `run.py` is no golden file
         return
-    for artifact in TARGETS[target].emit(project.rules):
+    for artifact in TARGETS[target].emit(project.rules, Options(declarations=project.declarations)):
         golden(f"{target}/{artifact.path}", artifact.text)
 
 
