@@ -23,27 +23,24 @@ obligations; for the counters see `compiler.counters`.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import PurePosixPath
 
 from compiler import formula as f
 from compiler.artifact import Artifact
+from compiler.deduction import CHANNELS, delay, loopless
 from compiler.demand import Uninterpreted, boolean
 from compiler.interception import options as core
-from compiler.interception import ticks
 from compiler.letters import atoms_of, temporal_predicate
-from compiler.printing import identifier
 from compiler.rule import Rule
 from compiler.targets.target import DEFAULT, Options, Target, not_expressible, stem
 from compiler.templating import render
-from compiler.verification import Layer
 from fretish import expressions as e
 from fretish import syntax as s
-from fretish.declarations import Declarations, Form, Requests
+from fretish.declarations import Declarations
 from fretish.depth import deep
 from fretish.diagnostic import Diagnostic
-from fretish.printer import timing as printed
 from fretish.syntax import ConditionKind, ScopeKind
 
 _ELSEWHERE = "check its monitor with `fretc verify`"
@@ -281,156 +278,30 @@ def _text(formula: f.Formula, fields: Mapping[str, str]) -> str:
 
 # Interceptor ----------------------------------------------------------------------------------
 
-_CHANNELS = (
-    ("Stop", "stop", "StopHeard"),
-    ("Scan", "scan", "ScanHeard"),
-    ("Command", "command", "CommandHeard"),
-)
-
 
 def _interceptor(declarations: Declarations | None) -> str:
     if declarations is None or declarations.interceptor is None:
         return render("dafny/latch.dfy.j2")
     options = core(declarations.interceptor)
-    watched = [channel for channel in _CHANNELS if getattr(options, f"{channel[1]}_timeout")]
+    watched = [channel for channel in CHANNELS if getattr(options, f"{channel[1]}_timeout")]
     return render("dafny/interceptor.dfy.j2", options=options, watched=watched)
 
 
 # Closed loop ----------------------------------------------------------------------------------
 
 
-@dataclass(frozen=True, slots=True)
-class Delay:
-    """From a trigger to the response, in ticks of the requirement's clock, rounded up."""
-
-    reach: int
-    """Latency of a request, and as many ticks as messages may be lost in a row."""
-    braking: int
-
-    @property
-    def total(self) -> int:
-        """What the bound of the requirement must not be below."""
-        return self.reach + self.braking
-
-
 def _loop(rule: Rule, declarations: Declarations | None) -> str:
-    reason = _loopless(rule, declarations)
+    reason = loopless(rule, declarations)
     if reason is not None:
         return render("dafny/loopless.dfy.j2", reason=reason)
-    delay = _delay(rule, declarations)
-    fits = delay is not None and rule.ticks is not None and delay.total <= rule.ticks
+    known = delay(rule, declarations)
+    fits = known is not None and rule.ticks is not None and known.total <= rule.ticks
     return render(
         "dafny/loop.dfy.j2",
         trigger=_trigger(rule),
-        declared=delay if fits else None,
+        declared=known if fits else None,
         **_bound(rule),
     )
-
-
-def _loopless(rule: Rule, declarations: Declarations | None) -> str | None:
-    """Why nothing is said of the closed loop; None where something is."""
-    if declarations is None or declarations.interceptor is None:
-        return "the bindings have no [interceptor], and the plain form waits for a command to stop"
-    if declarations.interceptor.form is Form.EVENT:
-        return "the event form waits for a command to stop, so no delay bounds its answer"
-    timing = rule.sentence.timing
-    if not isinstance(timing, s.Within | s.Eventually):
-        return f"it is about answers, and `{printed(timing)}` asks for something else"
-    assumed = declarations.assumed
-    response = boolean(rule.sentence.response, Uninterpreted().alone())
-    if assumed is not None and response != f.Atom(identifier(assumed.stands)):
-        return f"what a stop brings about is `{assumed.stands}`, and the response is something else"
-    return None
-
-
-def _delay(rule: Rule, declarations: Declarations | None) -> Delay | None:
-    """What [assume] amounts to; None where it does not say, or where no number of ticks does."""
-    assumed = declarations.assumed if declarations else None
-    period = rule.clock.period if rule.clock else None
-    if assumed is None or period is None or (assumed.requests is Requests.EDGE and assumed.lost):
-        return None
-    reach = ticks(assumed.latency, period) + assumed.lost
-    return Delay(reach, max(ticks(assumed.braking, period), 1))
-
-
-# Claims ---------------------------------------------------------------------------------------
-
-
-@dataclass(frozen=True, slots=True)
-class Claim:
-    """What is known once every lemma and method of the file is verified."""
-
-    layer: Layer
-    sentence: str
-    assumptions: tuple[str, ...] = ()
-    unshown: str | None = None
-    """Why the file does not show it."""
-
-
-def claims(rule: Rule, declarations: Declarations | None) -> tuple[Claim, ...]:
-    """The claims of a rule's file, in its order; none for a part that it leaves out."""
-    return (
-        _monitor_claim(rule),
-        _interceptor_claim(declarations),
-        *_loop_claims(rule, declarations),
-    )
-
-
-def _monitor_claim(rule: Rule) -> Claim:
-    timing = rule.sentence.timing
-    every = ", for every bound" if s.duration(timing) else ""
-    if isinstance(timing, s.Eventually | s.Finally):
-        says = "has an open demand exactly where the definition leaves one unanswered"
-    else:
-        says = "is violated exactly where the definition is"
-    sentence = f"the counter of `{printed(timing)}` {says}, on every sequence of ticks{every}"
-    return Claim(Layer.MONITOR, sentence)
-
-
-def _interceptor_claim(declarations: Declarations | None) -> Claim:
-    if declarations is None or declarations.interceptor is None:
-        sentence = "the plain interceptor latches the stop, publishes only zero then, and else "
-        return Claim(Layer.INTERCEPTOR, f"{sentence}forwards commands unchanged")
-    options = core(declarations.interceptor)
-    kept = ["a model of the interceptor publishes only zero while it is halted, and else commands"]
-    if not options.event_driven:
-        kept.append(f"a request gives {options.hold} ticks of zero")
-    kept += [
-        f"{timeout} ticks without a {channel} halt"
-        for _, channel, _ in _CHANNELS
-        if (timeout := getattr(options, f"{channel}_timeout"))
-    ]
-    if options.latching:
-        kept.append("a stop is for ever")
-    return Claim(Layer.INTERCEPTOR, "; ".join(kept))
-
-
-_ASSUMED = (
-    "the safety function requests a stop at every tick while a demand is open, "
-    "and its messages keep their order",
-    "a request of an open demand is heard no later than `reach` ticks after the trigger",
-    "the response holds once the wheels have had zero for `braking` ticks, at least 1",
-)
-
-
-def _loop_claims(rule: Rule, declarations: Declarations | None) -> Iterator[Claim]:
-    if _loopless(rule, declarations) is not None:
-        return
-    delay, bound = _delay(rule, declarations), rule.ticks
-    if bound is None:
-        sentence = "every trigger is answered within reach + braking ticks, for every reach and "
-        yield Claim(Layer.BOUNDS, f"{sentence}braking", _ASSUMED)
-        return
-    sentence = "never violated, for every bound n and every delay reach + braking of at most n"
-    yield Claim(Layer.BOUNDS, sentence, _ASSUMED)
-    if delay is None:
-        return
-    sentence = f"never violated at the bound of {bound} ticks and the declared delay"
-    late = f"the declared delay is {delay.total} ticks, more than the bound of {bound}"
-    numbers = f"reach = {delay.reach} ticks ([assume] latency and lost)"
-    braking = f"braking = {delay.braking} ticks ([assume] braking)"
-    unshown = late if delay.total > bound else None
-    yield Claim(Layer.BOUNDS, sentence, (*_ASSUMED, numbers, braking), unshown)
 
 
 TARGET = Target(
