@@ -26,11 +26,14 @@ CHANNELS = (
 
 @dataclass(frozen=True, slots=True)
 class Delay:
-    """From a trigger to the response, in ticks of the requirement's clock, rounded up."""
+    """From a trigger to the response, in ticks of the requirement's clock."""
 
     reach: int
-    """Latency of a request, and as many ticks as messages may be lost in a row."""
+    """A request is heard before the end of the tick so many ticks after the trigger: latency
+    rounded up, less the tick itself, and a tick for each message that may be lost in a row."""
     braking: int
+    """At so many ends of ticks in a row the wheels have zero: braking rounded up, and the tick in
+    which it began."""
 
     @property
     def total(self) -> int:
@@ -54,14 +57,18 @@ def loopless(rule: Rule, declarations: Declarations | None) -> str | None:
     return None
 
 
-def delay(rule: Rule, declarations: Declarations | None) -> Delay | None:
-    """What [assume] amounts to; None where it does not say, or where no number of ticks does."""
+def delay(rule: Rule, declarations: Declarations | None) -> Delay | str | None:
+    """What [assume] amounts to, or why it is no number of ticks; None where there is none."""
     assumed = declarations.assumed if declarations else None
-    period = rule.clock.period if rule.clock else None
-    if assumed is None or period is None or (assumed.requests is Requests.EDGE and assumed.lost):
+    if assumed is None:
         return None
-    reach = ticks(assumed.latency, period) + assumed.lost
-    return Delay(reach, max(ticks(assumed.braking, period), 1))
+    if assumed.requests is Requests.EDGE and assumed.lost:
+        return "a request that is sent once may be lost ([assume] requests and lost)"
+    period = rule.clock.period if rule.clock else None
+    if period is None:
+        return "the clock ticks by message, so a latency is no number of ticks"
+    reach = max(ticks(assumed.latency, period) - 1, 0) + assumed.lost
+    return Delay(reach, ticks(assumed.braking, period) + 1)
 
 
 @dataclass(frozen=True, slots=True)
@@ -114,10 +121,9 @@ def _interceptor_claim(declarations: Declarations | None) -> Claim:
 
 
 _ASSUMED = (
-    "the safety function requests a stop at every tick while a demand is open, "
-    "and its messages keep their order",
-    "a request of an open demand is heard no later than `reach` ticks after the trigger",
-    "the response holds once the wheels have had zero for `braking` ticks, at least 1",
+    "the safety function requests a stop while a demand is open, and its messages keep their order",
+    "of an open demand a request is heard in the tick `reach` ticks after the trigger, or before",
+    "the response holds once the wheels had only zero at the ends of `braking` ticks in a row",
 )
 
 
@@ -125,17 +131,29 @@ def _loop_claims(rule: Rule, declarations: Declarations | None) -> Iterator[Clai
     if loopless(rule, declarations) is not None:
         return
     known, bound = delay(rule, declarations), rule.ticks
+    every = "for every bound n and every delay reach + braking of at most n"
+    sentence = f"never violated, {every}"
     if bound is None:
-        sentence = "every trigger is answered within reach + braking ticks, for every reach and "
-        yield Claim(Layer.BOUNDS, f"{sentence}braking", _ASSUMED)
-        return
-    sentence = "never violated, for every bound n and every delay reach + braking of at most n"
+        sentence = "every trigger is answered within reach + braking ticks, whatever they are"
     yield Claim(Layer.BOUNDS, sentence, _ASSUMED)
-    if known is None:
-        return
-    sentence = f"never violated at the bound of {bound} ticks and the declared delay"
-    late = f"the declared delay is {known.total} ticks, more than the bound of {bound}"
-    numbers = f"reach = {known.reach} ticks ([assume] latency and lost)"
-    braking = f"braking = {known.braking} ticks ([assume] braking)"
-    unshown = late if known.total > bound else None
-    yield Claim(Layer.BOUNDS, sentence, (*_ASSUMED, numbers, braking), unshown)
+    if known is not None:
+        yield _declared_claim(known, bound)
+
+
+def _declared_claim(known: Delay | str, bound: int | None) -> Claim:
+    """The same for the numbers of [assume]."""
+    at = "the declared delay" if bound is None else f"the bound of {bound} ticks"
+    if isinstance(known, str):
+        return Claim(Layer.BOUNDS, f"never late at {at}", _ASSUMED, known)
+    numbers = (
+        f"reach = {known.reach} ticks ([assume] latency and lost)",
+        f"braking = {known.braking} ticks ([assume] braking)",
+    )
+    if bound is None:
+        sentence = f"every trigger is answered within {known.total} ticks, the declared delay"
+        return Claim(Layer.BOUNDS, sentence, (*_ASSUMED, *numbers))
+    late = f"the declared delay of {known.total} ticks is more than the bound of {bound}"
+    sentence = f"never violated at {at} and the declared delay of {known.total}"
+    return Claim(
+        Layer.BOUNDS, sentence, (*_ASSUMED, *numbers), late if known.total > bound else None
+    )

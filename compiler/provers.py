@@ -30,6 +30,10 @@ _MEMORY = 4 * 2**30
 """Bytes for each process of a prover."""
 
 
+_STARTED = 30.0
+"""Seconds in which a prover tells its version."""
+
+
 def _sha256(text: str) -> str:
     return hashlib.sha256(text.encode()).hexdigest()
 
@@ -113,7 +117,7 @@ def verified(text: str, *, seconds: float = DAFNY_SECONDS) -> tuple[Result, str]
 def _version(program: str, folder: Path) -> str | None:
     """As 2.x tells it above a complaint, and 4.x alone."""
     for question in ("--version", "/version"):
-        ran = run([program, question], folder, seconds=60, memory=_MEMORY)
+        ran = run([program, question], folder, seconds=_STARTED, memory=_MEMORY)
         for line in ran.text.splitlines():
             found = _VERSION.search(line)
             if found and (line.startswith("Dafny ") or found.start() == 0):
@@ -126,7 +130,7 @@ def _options(program: str, known: str, folder: Path, seconds: float) -> list[str
     limit = max(int(seconds) - 1, 1)
     if int(known.partition(".")[0]) < 4:
         return ["/compile:0", f"/timeLimit:{limit}"]
-    told = run([program, "verify", "--help"], folder, seconds=60, memory=_MEMORY).text
+    told = run([program, "verify", "--help"], folder, seconds=_STARTED, memory=_MEMORY).text
     allowed = [option for option in ("--allow-warnings",) if option in told]
     return ["verify", f"--verification-time-limit={limit}", *allowed]
 

@@ -27,6 +27,7 @@ _EMITS = (
     "json",
     "fret-json",
     "interceptor",
+    "dafny",
 )
 _NOTATIONS = ("plain", "fret", "spot", "nusmv", "latex")
 

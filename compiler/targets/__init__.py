@@ -5,7 +5,19 @@ from __future__ import annotations
 from collections.abc import Mapping
 from types import MappingProxyType
 
-from compiler.targets import ajpf, dot, fret, hoa, interceptor, ltl, monitor, prism, records, smv
+from compiler.targets import (
+    ajpf,
+    dafny,
+    dot,
+    fret,
+    hoa,
+    interceptor,
+    ltl,
+    monitor,
+    prism,
+    records,
+    smv,
+)
 from compiler.targets.target import Target
 
 TARGETS: Mapping[str, Target] = MappingProxyType(
@@ -22,6 +34,7 @@ TARGETS: Mapping[str, Target] = MappingProxyType(
             records.TARGET,
             fret.TARGET,
             interceptor.TARGET,
+            dafny.TARGET,
         )
     }
 )

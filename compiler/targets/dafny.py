@@ -29,7 +29,7 @@ from pathlib import PurePosixPath
 
 from compiler import formula as f
 from compiler.artifact import Artifact
-from compiler.deduction import CHANNELS, delay, loopless
+from compiler.deduction import CHANNELS, Delay, delay, loopless
 from compiler.demand import Uninterpreted, boolean
 from compiler.interception import options as core
 from compiler.letters import atoms_of, temporal_predicate
@@ -295,7 +295,7 @@ def _loop(rule: Rule, declarations: Declarations | None) -> str:
     if reason is not None:
         return render("dafny/loopless.dfy.j2", reason=reason)
     known = delay(rule, declarations)
-    fits = known is not None and rule.ticks is not None and known.total <= rule.ticks
+    fits = isinstance(known, Delay) and rule.ticks is not None and known.total <= rule.ticks
     return render(
         "dafny/loop.dfy.j2",
         trigger=_trigger(rule),
