@@ -2,6 +2,7 @@
 
 import importlib.util
 import shutil
+from importlib.metadata import PackageNotFoundError
 from itertools import cycle
 from pathlib import Path
 
@@ -308,7 +309,7 @@ def test_a_core_that_is_no_module_is_not_checked() -> None:
 
 def test_without_crosshair_each_contract_is_not_checked(monkeypatch: pytest.MonkeyPatch) -> None:
     def absent(name: str) -> str:
-        raise provers.PackageNotFoundError(name)
+        raise PackageNotFoundError(name)
 
     monkeypatch.setattr(provers, "version", absent)
     found = with_crosshair(CORE)
