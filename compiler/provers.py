@@ -172,6 +172,8 @@ def _member(text: str, line: int) -> str:
 CROSSHAIR_SECONDS = 20.0
 _CROSSHAIR_ABSENT = "CrossHair is not installed: pip install 'fretc[crosshair]'"
 _MODULE = "interceptor_core"
+_WHOLE = "the numbers of a velocity are whole; no function names one of them"
+_APART = (ast.Subscript, ast.For, ast.Starred, ast.comprehension, ast.MatchSequence)
 _TOLD = re.compile(rf"^.*{_MODULE}\.py:(\d+): (info|error|warning): (.*)$")
 _POST = re.compile(r"^\s*post\s*(?:\[[^\]]*\])?\s*:\s*(.*?)\s*$")
 
@@ -188,6 +190,9 @@ def with_crosshair(
 ) -> tuple[Evidence, ...]:
     """Let CrossHair look for inputs that break the contracts of an interceptor's core.
 
+    Numbers of a velocity are whole ones for CrossHair where no function names any of them: it knows
+    several kinds of floats, and six of them are hundreds of cases of which none matters.
+
     Args:
         text: the core, with `post:` lines in its docstrings (PEP 316). It is executed.
         requirement: what the lines of evidence are filed under.
@@ -202,23 +207,61 @@ def with_crosshair(
     except PackageNotFoundError:
         engine = ""
     contracts = _contracts(text)
-    functions = dict.fromkeys(contract.function for contract in contracts)
-    found = (
-        [
-            pair
-            for name in functions
-            for pair in _explored(text, name, [c for c in contracts if c.function == name], seconds)
-        ]
-        if engine
-        else [(_claim(c), NotChecked(_CROSSHAIR_ABSENT)) for c in contracts]
-    )
-    artefacts = {"interceptor core": _sha256(text)}
+    whole = _with_whole_velocities(text)
+    found: list[tuple[str, Result]] = []
+    for name in dict.fromkeys(contract.function for contract in contracts):
+        own = [contract for contract in contracts if contract.function == name]
+        if engine:
+            found += _explored(whole or text, name, own, seconds)
+        else:
+            found += [(_claim(contract), NotChecked(_CROSSHAIR_ABSENT)) for contract in own]
     return tuple(
         Evidence(
-            requirement, Layer.INTERCEPTOR, claim, result, engine or "CrossHair", (), artefacts
+            requirement,
+            Layer.INTERCEPTOR,
+            claim,
+            result,
+            engine or "CrossHair",
+            (_WHOLE,) if whole else (),
+            {"interceptor core": _sha256(text)},
         )
         for claim, result in found
     )
+
+
+def _with_whole_velocities(text: str) -> str | None:
+    """The text with whole numbers in `Velocity`, on the same lines; None where that may matter.
+
+    It cannot where no function names a field of it or takes anything apart: by an index, a loop, a
+    pattern, or in arguments.
+    """
+    tree = ast.parse(text)
+    found = [n for n in tree.body if isinstance(n, ast.ClassDef) and n.name == "Velocity"]
+    fields = [f for one in found for f in one.body if isinstance(f, ast.AnnAssign)]
+    if not fields or not all(ast.unparse(f.annotation) == "float" for f in fields):
+        return None
+    names = {ast.unparse(field.target) for field in fields}
+    others = [node for one in tree.body if one not in found for node in ast.walk(one)]
+    bodies = [s for node in others if isinstance(node, ast.FunctionDef) for s in node.body]
+    if any(_takes_apart(node) for body in bodies for node in ast.walk(body)):
+        return None
+    if any(isinstance(node, ast.Attribute) and node.attr in names for node in others):
+        return None
+    lines = text.splitlines(keepends=True)
+    for field in fields:
+        target = ast.unparse(field.target)
+        zero = " = 0" if field.value is not None else ""
+        lines[field.lineno - 1] = f"    {target}: int{zero}\n"
+    return "".join(lines)
+
+
+def _takes_apart(node: ast.AST) -> bool:
+    """Whether it could look into a tuple without naming a field."""
+    match node:
+        case ast.Tuple(ctx=ast.Store()) | ast.MatchClass(cls=ast.Name("Velocity")):
+            return True
+        case _:
+            return isinstance(node, _APART)
 
 
 def _claim(contract: _Contract) -> str:

@@ -197,12 +197,13 @@ def say(text: str) -> Result:
 
 
 @needs_dafny
-def test_dafny_verifies_the_monitor_of_every_timing_at_any_bound() -> None:
+def test_dafny_verifies_monitors_at_any_bound() -> None:
     """All in one text, each in a module of its own; conditions and bounds take turns."""
-    turns = zip(TIMINGS, cycle(CONDITIONS), cycle((0, 1, 20, 10000)), strict=False)
+    timings = ("within {n} ticks", *TIMINGS[-5:], "eventually")
+    turns = zip(timings, cycle(CONDITIONS), cycle((0, 1, 20, 10000)), strict=False)
     sentences = [f"{c}robot shall {timing.format(n=n)} satisfy q" for timing, c, n in turns]
     monitors = [emitted(one, None).partition("// Interceptor -")[0] for one in sentences]
-    assert len(set(monitors)) == 11
+    assert len(set(monitors)) == 7
     modules = [f"module M{i} {{\n{one}}}\n" for i, one in enumerate(monitors)]
     assert isinstance(say("\n".join(modules)), Proved)
 
@@ -320,3 +321,63 @@ def test_without_crosshair_each_contract_is_not_checked(monkeypatch: pytest.Monk
     ]
     reason = "CrossHair is not installed: pip install 'fretc[crosshair]'"
     assert {one.result for one in found} == {NotChecked(reason)}
+
+
+KEEPING = '''\
+from typing import NamedTuple
+
+
+class Velocity(NamedTuple):
+    vx: float = 0.0
+    vy: float = 0.0
+    vz: float = 0.0
+    wx: float = 0.0
+    wy: float = 0.0
+    wz: float = 0.0
+
+
+def kept(command: Velocity) -> Velocity:
+    """Hand it on.
+
+    post: __return__ is command
+    """
+    return command
+'''
+
+
+@needs_crosshair
+def test_velocities_that_nobody_looks_into_are_whole_numbers_for_crosshair() -> None:
+    (found,) = with_crosshair(KEEPING, seconds=10)
+    assert found.result == Proved("confirmed over all paths")
+    assert found.assumptions == (
+        "the numbers of a velocity are whole; no function names one of them",
+    )
+
+
+@pytest.mark.parametrize(
+    "body",
+    [
+        "return command if command.vx < 1 else Velocity()",
+        "return Velocity(command[0])",
+        "vx, *rest = command\n    return Velocity(vx)",
+        "return Velocity(*command)",
+        "match command:\n        case Velocity(vx):\n            return Velocity(vx)",
+    ],
+)
+def test_velocities_that_somebody_looks_into_stay_floats(body: str) -> None:
+    looking = KEEPING.replace("return command", body)
+    compile(looking, "core.py", "exec")
+    assert provers._with_whole_velocities(looking) is None
+    assert provers._with_whole_velocities(KEEPING) == KEEPING.replace("float = 0.0", "int = 0")
+
+
+@needs_crosshair
+def test_crosshair_confirms_a_step_of_the_interceptor() -> None:
+    """The others take their time; all of them are looked at by the command."""
+    core = (Path(provers.__file__).parent.parent / "monitors/interceptor.py").read_text()
+    alone = core.replace("    post:", "    told:").replace(
+        "told: __return__ == (0", "post: __return__ == (0"
+    )
+    (found,) = with_crosshair(alone, seconds=20)
+    assert found.result == Proved("confirmed over all paths")
+    assert found.claim == "`expired` keeps `__return__ == (0 < timeout <= age)`"
