@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterator
 from dataclasses import dataclass, replace
-from importlib import import_module
-from importlib.util import find_spec
 from pathlib import PurePath
 
 from compiler import bounds, closedloop, proofs
@@ -17,8 +15,9 @@ from compiler.contracts import contracts
 from compiler.files import sha256
 from compiler.interception import options
 from compiler.project import Project
+from compiler.provers import with_crosshair, with_dafny
 from compiler.rule import Rule
-from compiler.targets import interceptor, monitor
+from compiler.targets import dafny, interceptor, monitor
 from compiler.targets.target import stem
 from compiler.verification import Evidence, Layer, NotChecked
 from fretish.diagnostic import Diagnostic
@@ -26,7 +25,6 @@ from fretish.source import Source
 from monitors.interceptor import Options
 
 DAFNY, CROSSHAIR = "dafny", "crosshair"
-_NO_PROVERS = "this version of fretc asks no other provers"
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,7 +51,7 @@ def evidence(project: Project, asked: Request) -> tuple[Evidence, ...] | Diagnos
     for rule in project.rules:
         found.extend(_of_rule(rule, _setup(rule, project, asked), asked))
         if DAFNY in asked.provers:
-            found.extend(_dafny(rule, project))
+            found.extend(_dafny(rule, project, asked.limits))
     found.extend(_interceptor(project, asked))
     if Layer.AGENT not in asked.layers:
         return tuple(found)
@@ -110,7 +108,7 @@ def _interceptor(project: Project, asked: Request) -> Iterator[Evidence]:
         else:
             yield from _contracts(gate, options(declared), asked.limits)
     if CROSSHAIR in asked.provers and gate is not None:
-        yield from _crosshair(gate)
+        yield from with_crosshair(gate.text)
 
 
 def _contracts(gate: Named, declared: Options, limits: Limits) -> Iterator[Evidence]:
@@ -122,21 +120,14 @@ def _contracts(gate: Named, declared: Options, limits: Limits) -> Iterator[Evide
         yield from (replace(one, artefacts={gate.name: sha256(gate.text)}) for one in found)
 
 
-def _dafny(rule: Rule, project: Project) -> Iterator[Evidence]:
-    if find_spec("compiler.provers") is None:
-        yield _unknown(rule.id, Layer.INTERCEPTOR, "Dafny verifies the loop", _NO_PROVERS)
+def _dafny(rule: Rule, project: Project, limits: Limits) -> Iterator[Evidence]:
+    refused = dafny.TARGET.refuse(rule)
+    if refused is not None:
+        claim = "Dafny verifies the file of the requirement"
+        yield _unknown(rule.id, Layer.LOOP, claim, refused.message)
         return
-    provers, target = import_module("compiler.provers"), import_module("compiler.targets.dafny")
-    text = target.text(rule, project.declarations)
-    yield from provers.with_dafny(rule, text, project.declarations)
-
-
-def _crosshair(gate: Named) -> Iterator[Evidence]:
-    if find_spec("compiler.provers") is None:
-        claim = "CrossHair confirms the contracts"
-        yield _unknown("interceptor", Layer.INTERCEPTOR, claim, _NO_PROVERS, gate)
-        return
-    yield from import_module("compiler.provers").with_crosshair(gate.text)
+    text = dafny.text(rule, project.declarations)
+    yield from with_dafny(rule, text, project.declarations, seconds=float(limits.seconds))
 
 
 def _agent(project: Project, asked: Request) -> tuple[Evidence, ...] | Diagnostic:

@@ -41,33 +41,39 @@ def junit(results: Sequence[Mapping[str, Any]], together: Sequence[Estimated] = 
     root = ElementTree.Element("testsuites", name="fretc audit")
     for run, found in groupby(results, key=lambda result: str(result["run"])):
         cases = list(found)
-        counts = _counts([_KINDS.get(case["verdict"]) for case in cases])
-        suite = ElementTree.SubElement(root, "testsuite", {"name": _xml(run), **counts})
+        counts = counted([_KINDS.get(case["verdict"]) for case in cases])
+        suite = ElementTree.SubElement(root, "testsuite", {"name": valid(run), **counts})
         for case in cases:
             _case(suite, run, case)
     if together:
         _suite_of_all(root, together)
+    return as_text(root)
+
+
+def as_text(root: ElementTree.Element) -> str:
+    """The whole file, indented."""
     ElementTree.indent(root)
     text = ElementTree.tostring(root, encoding="unicode")
     return f'<?xml version="1.0" encoding="UTF-8"?>\n{text}\n'
 
 
-def _counts(kinds: Sequence[str | None]) -> dict[str, str]:
-    counted = {"failures": "failure", "errors": "error", "skipped": "skipped"}
-    return {"tests": str(len(kinds))} | {n: str(kinds.count(k)) for n, k in counted.items()}
+def counted(kinds: Sequence[str | None]) -> dict[str, str]:
+    """The attributes of a test suite with cases of these kinds; None: passed."""
+    names = {"failures": "failure", "errors": "error", "skipped": "skipped"}
+    return {"tests": str(len(kinds))} | {n: str(kinds.count(k)) for n, k in names.items()}
 
 
 def _suite_of_all(root: ElementTree.Element, together: Sequence[Estimated]) -> None:
     kinds = {REFUTED: "failure", INCONCLUSIVE: "skipped"}
-    counts = _counts([kinds.get(one.answer) for one in together])
+    counts = counted([kinds.get(one.answer) for one in together])
     suite = ElementTree.SubElement(root, "testsuite", {"name": "all runs", **counts})
     for one in together:
-        names = {"name": _xml(one.requirement), "classname": "all runs", "time": "0.000"}
+        names = {"name": valid(one.requirement), "classname": "all runs", "time": "0.000"}
         node = ElementTree.SubElement(suite, "testcase", names)
         if one.answer in kinds:
-            message = _xml(f"{one.answer}: {one.reason}")
+            message = valid(f"{one.answer}: {one.reason}")
             told = ElementTree.SubElement(node, kinds[one.answer], message=message)
-            told.text = _xml("\n".join(one.lines))
+            told.text = valid("\n".join(one.lines))
 
 
 def _case(suite: ElementTree.Element, run: str, case: Mapping[str, Any]) -> None:
@@ -75,15 +81,15 @@ def _case(suite: ElementTree.Element, run: str, case: Mapping[str, Any]) -> None
     node = ElementTree.SubElement(
         suite,
         "testcase",
-        name=_xml(case["requirement"]),
-        classname=_xml(run),
+        name=valid(case["requirement"]),
+        classname=valid(run),
         time=f"{length / 1e9:.3f}",
     )
     kind = _KINDS.get(case["verdict"])
     if kind is not None:
-        message = _xml(f"{case['verdict']}: {case['reason']}")
+        message = valid(f"{case['verdict']}: {case['reason']}")
         told = ElementTree.SubElement(node, kind, message=message)
-        told.text = _xml("\n".join(_lines(case)))
+        told.text = valid("\n".join(_lines(case)))
 
 
 def _lines(case: Mapping[str, Any]) -> Iterator[str]:
@@ -94,7 +100,7 @@ def _lines(case: Mapping[str, Any]) -> Iterator[str]:
         yield f"{stretch}: {values}" if values else stretch
 
 
-def _xml(text: str) -> str:
+def valid(text: str) -> str:
     """The text without what XML cannot hold."""
     return _NOT_XML.sub("\ufffd", text)
 

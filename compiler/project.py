@@ -6,14 +6,17 @@ import hashlib
 import json
 import os
 import tomllib
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 from compiler.files import read, unreadable
+from compiler.parents import Parent
+from compiler.parents import parents as read_parents
 from compiler.pipeline import duplicates, formalize
 from compiler.rule import Rule
+from compiler.settings import settings
 from fretish.bindings import read_bindings
 from fretish.declarations import Declarations
 from fretish.diagnostic import Code, Diagnostic, Severity, has_errors, suggestion
@@ -57,15 +60,24 @@ class Project:
     declarations: Declarations | None
     hazards: Mapping[str, Hazard]
     diagnostics: tuple[Diagnostic, ...]
+    parents: Mapping[str, Parent] = field(default_factory=dict)
+    """What other tools have, by its id; read where hazards are."""
 
 
-def load(paths: Sequence[str], bindings: str | None = None, hazards: str | None = None) -> Project:
+def load(
+    paths: Sequence[str],
+    bindings: str | None = None,
+    hazards: str | None = None,
+    *,
+    parents: bool = False,
+) -> Project:
     """Read requirements, and what stands beside them.
 
     Args:
         paths: `.fret` files; `-` is standard input.
         bindings: their `bindings.toml`; None: the one in the folder of the first file, if any.
         hazards: their `hazards.toml`; None: no hazards are read.
+        parents: whether parents in other tools are read, as the settings name them.
     """
     declarations, said = _declarations(bindings or _beside(paths, BINDINGS))
     known, told = _hazards(hazards) if hazards else ({}, ())
@@ -86,11 +98,22 @@ def load(paths: Sequence[str], bindings: str | None = None, hazards: str | None 
             rules.append(rule)
         else:
             failed.append(Failed(requirement, _reason(remarks)))
-    if hazards:
-        diagnostics.extend(_unknown_parents(written, known))
+    above, unread = _above(paths) if parents else ({}, ())
+    diagnostics.extend(unread)
+    if hazards or above:
+        diagnostics.extend(_unknown_parents(written, {*known, *above}))
     return Project(
-        tuple(written), tuple(rules), tuple(failed), declarations, known, tuple(diagnostics)
+        tuple(written), tuple(rules), tuple(failed), declarations, known, tuple(diagnostics), above
     )
+
+
+def _above(paths: Sequence[str]) -> tuple[Mapping[str, Parent], tuple[Diagnostic, ...]]:
+    """The parents that live in other tools, by the settings of the project."""
+    first = next((path for path in paths if path != "-"), None)
+    told = settings(str(Path(first).parent)) if first else None
+    if isinstance(told, Diagnostic):
+        return {}, (told,)
+    return read_parents(told) if told is not None else ({}, ())
 
 
 def _reason(remarks: Sequence[Diagnostic]) -> Diagnostic:
@@ -201,11 +224,9 @@ def _hazard_mistakes(tables: Tables, id: str, fields: Any) -> list[Diagnostic]:
     return found
 
 
-def _unknown_parents(
-    written: Sequence[Requirement], hazards: Mapping[str, Hazard]
-) -> list[Diagnostic]:
-    """F501: a parent is neither a hazard nor a requirement."""
-    known = [*hazards, *(requirement.id for requirement in written)]
+def _unknown_parents(written: Sequence[Requirement], above: Collection[str]) -> list[Diagnostic]:
+    """F501: a parent is neither a hazard, nor a requirement, here or in another tool."""
+    known = [*sorted(above), *(requirement.id for requirement in written)]
     found = []
     for requirement in written:
         for parent in requirement.parents:

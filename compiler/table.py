@@ -12,8 +12,8 @@ from pathlib import Path
 from statistics import median
 from typing import TYPE_CHECKING, Any
 
+from compiler.evidence import read as read_evidence
 from compiler.files import unreadable
-from compiler.report.evidence import read as read_evidence
 from fretish.diagnostic import Code, Diagnostic
 from fretish.source import Source
 

@@ -16,10 +16,14 @@ import click
 
 from compiler import __version__
 from compiler.cli.bind import bind
+from compiler.cli.check import check
+from compiler.cli.evidence import verify_evidence
 from compiler.cli.group import DEFAULT, Commands
 from compiler.cli.output import BAD, INTERRUPTED, SHOWN, not_written, say, say_line
+from compiler.cli.reports import report
 from compiler.cli.requirements import compile_, fmt, import_
-from compiler.cli.runs import audit, info, report
+from compiler.cli.reviews import diff, lock
+from compiler.cli.runs import audit, info
 from compiler.cli.simulations import simulate
 from compiler.cli.verify import verify
 from fretish.diagnostic import Code, Diagnostic
@@ -35,7 +39,21 @@ def cli() -> None:
     """
 
 
-for _command in (compile_, fmt, import_, info, bind, audit, report, verify, simulate):
+for _command in (
+    compile_,
+    fmt,
+    import_,
+    info,
+    bind,
+    check,
+    audit,
+    report,
+    lock,
+    diff,
+    verify,
+    verify_evidence,
+    simulate,
+):
     cli.add_command(_command)
 
 

@@ -17,8 +17,8 @@ if TYPE_CHECKING:
     from compiler.targets.target import Options
 
 _EMITS = (
-    "ltl", "monitor", "ajpf", "ajpf-bundle", "smv", "hoa", "dot", "prism", "json", "fret-json",
-    "interceptor",
+    "ltl", "monitor", "ajpf", "ajpf-bundle", "interceptor", "dafny", "smv", "hoa", "dot", "prism",
+    "json", "fret-json",
 )  # fmt: skip
 _NOTATIONS = ("plain", "fret", "spot", "nusmv", "latex")
 

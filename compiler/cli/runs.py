@@ -1,4 +1,4 @@
-"""The commands about runs: audit, report."""
+"""The commands about runs: audit, info."""
 
 from __future__ import annotations
 
@@ -287,44 +287,3 @@ def info(paths: tuple[str, ...], whole: bool, form: str) -> None:
         click.echo("\n".join(text(one, whole=whole) for one in read), nl=False)
     intact = all(one.recording.intact for one in read)
     raise SystemExit(BAD if wrong else SHOWN if intact else NOT_SHOWN)
-
-
-@click.command(short_help="Trace hazard to verdict in one HTML file.")
-@click.option("--html", "html", default="build/report.html", show_default=True, help="The report.")
-@click.option("--json", "json_", help="Also write what the report says as JSON.")
-@click.option(
-    "--requirements", default="requirements", show_default=True, help="Folder, or one file."
-)
-@click.option("--bindings", help="bindings.toml; the one in the requirements' folder if not given.")
-@click.option("--hazards", help="hazards.toml; the one in the requirements' folder if not given.")
-@click.option("--evidence", default="build/evidence.json", show_default=True)
-def report(
-    html: str,
-    json_: str | None,
-    requirements: str,
-    bindings: str | None,
-    hazards: str | None,
-    evidence: str,
-) -> None:
-    """Trace hazard, requirement, formula, artefact, run and verdict in one HTML file."""
-    from compiler.project import beside, load, requirement_files
-    from compiler.report import make
-
-    files = requirement_files(requirements)
-    if isinstance(files, Diagnostic):
-        stop(files)
-    project = load(
-        files,
-        bindings or beside(requirements, "bindings.toml"),
-        hazards or beside(requirements, "hazards.toml"),
-    )
-    made = make(project, evidence)
-    say([*project.diagnostics, *made.diagnostics])
-    if made.html is None or made.json is None:
-        raise SystemExit(BAD)
-    if json_ is not None and os.path.realpath(json_) == os.path.realpath(html):
-        stop(not_written(json_, "two outputs would go there"))
-    forms = {Path(html): made.html} | ({Path(json_): made.json} if json_ is not None else {})
-    deliver(forms, (evidence, *files))
-    if has_errors([*project.diagnostics, *made.diagnostics]):
-        raise SystemExit(BAD)

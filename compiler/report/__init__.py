@@ -2,38 +2,69 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 
+from compiler.evidence import read
+from compiler.lock import read as read_lock
 from compiler.project import Project
 from compiler.report.assembly import report
-from compiler.report.evidence import read
 from compiler.report.html import html
+from compiler.report.views import Report
 from compiler.templating import to_json
+from compiler.waivers import Waiver, today
+from compiler.waivers import read as read_waivers
 from fretish.diagnostic import Diagnostic
 
 
 @dataclass(frozen=True, slots=True)
 class Made:
-    """The report in both forms (None: the evidence cannot be read), and what there is to say."""
+    """The report (None: the evidence or the lock cannot be read), and what there is to say."""
 
-    html: str | None
-    json: str | None
+    report: Report | None
     diagnostics: tuple[Diagnostic, ...]
 
+    @property
+    def html(self) -> str | None:
+        """The page."""
+        return None if self.report is None else html(self.report)
 
-def make(project: Project, evidence: str) -> Made:
+    @property
+    def json(self) -> str | None:
+        """What it says, for programs."""
+        return None if self.report is None else f"{to_json(asdict(self.report))}\n"
+
+
+def make(
+    project: Project, evidence: str, *, lock: str | None = None, waivers: str | None = None
+) -> Made:
     """Make the report.
 
     Args:
         project: with or without errors; what could not be formalized is reported as such.
         evidence: path of an evidence file; where there is none, nothing has been exercised.
+        lock: path of a lock; None: nothing has been reviewed.
+        waivers: path of a file of waivers; None: nothing is waived.
     """
     audited = read(evidence)
-    if not isinstance(audited, Diagnostic):
-        whole, said = report(project, audited, evidence)
-    elif audited.is_error:
-        return Made(None, None, (audited,))
-    else:
-        whole, said = report(project, None, evidence)
-        said = (audited, *said)
-    return Made(html(whole), f"{to_json(asdict(whole))}\n", said)
+    if isinstance(audited, Diagnostic) and audited.is_error:
+        return Made(None, (audited,))
+    known = read_lock(lock) if lock is not None else None
+    if isinstance(known, Diagnostic):
+        return Made(None, (known,))
+    waived, told = _waived(project, waivers)
+    found = None if isinstance(audited, Diagnostic) else audited
+    whole, said = report(project, found, evidence, known, waived)
+    missing = (audited,) if isinstance(audited, Diagnostic) else ()
+    return Made(whole, (*missing, *told, *said))
+
+
+def _waived(
+    project: Project, path: str | None
+) -> tuple[Mapping[str, Waiver], tuple[Diagnostic, ...]]:
+    """The waivers that count today, and what there is to say of all."""
+    if path is None:
+        return {}, ()
+    day = today()
+    found, said = read_waivers(path, [r.id for r in project.requirements], day)
+    return {id: waiver for id, waiver in found.items() if waiver.covers(day)}, said

@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from types import MappingProxyType
 
 from compiler import __version__
 from compiler.estimates import AVERAGE
+from compiler.evidence import Evidence
+from compiler.lock import Lock
 from compiler.odds import CONFIDENCE, REFUTED, SUPPORTED
 from compiler.project import Project
-from compiler.report import phrases
+from compiler.report import phrases, reviews
 from compiler.report.claims import (
     MARKS,
     NOT_EXERCISED,
@@ -17,10 +20,10 @@ from compiler.report.claims import (
     SHOWN,
     SUSPECT,
     UNFORMALIZED,
+    WAIVED,
     Claim,
     claims,
 )
-from compiler.report.evidence import Evidence
 from compiler.report.matrix import hazard_views, matrix, orphans, strangers
 from compiler.report.reproduction import commands, folder_of, manifest
 from compiler.report.runs import Run, run_views, runs, trust
@@ -35,13 +38,18 @@ from compiler.report.views import (
     Report,
     RequirementView,
 )
+from compiler.waivers import Waiver
 from fretish.diagnostic import Code, Diagnostic, Severity, has_errors
 from fretish.source import Source
 from monitors import kernel
 
 
 def report(
-    project: Project, evidence: Evidence | None, path: str
+    project: Project,
+    evidence: Evidence | None,
+    path: str,
+    lock: Lock | None = None,
+    waivers: Mapping[str, Waiver] = MappingProxyType({}),
 ) -> tuple[Report, tuple[Diagnostic, ...]]:
     """The report, and what there is to say of the evidence.
 
@@ -49,14 +57,19 @@ def report(
         project: with or without errors; what could not be formalized is shown as such.
         evidence: None where no run has been audited.
         path: where the evidence is, or is to be.
+        lock: None where nothing has been reviewed.
+        waivers: those that count now, by the requirement.
     """
     found = runs(evidence)
-    claimed = claims(project, evidence)
+    claimed = claims(project, evidence, lock, waivers)
     anchors = {claim.id: claim.anchor for claim in reversed(claimed)}
     audited = evidence is not None
     sections = tuple(section(claim, project, found, anchors, audited) for claim in claimed)
     plans = tuple(plan for view in sections for plan in view.planned if view.status != RETIRED)
-    reservations = tuple(line for view in sections for line in _reservations(view))
+    reservations = (
+        *(line for view in sections for line in _reservations(view)),
+        *(line for claim in claimed for line in reviews.reservations(claim)),
+    )
     return Report(
         schema=SCHEMA,
         fretc=__version__,
@@ -75,6 +88,9 @@ def report(
         hazards=hazard_views(project),
         matrix=matrix(project, claimed, sections, found),
         orphans=orphans(project, claimed, evidence),
+        reviewed=reviews.reviewed(claimed),
+        changes=reviews.changes(claimed),
+        waivers=tuple(view.waiver for view in sections if view.waiver),
         requirements=sections,
         assumptions=_assumptions(project, evidence),
         commands=commands(project, sections, tuple(found.values()), path, _confidence(evidence)),
@@ -117,6 +133,7 @@ def _overall(
             (
                 *_held(active, good, len(runs)),
                 *_few(reservations),
+                _waived(active),
                 _unplanned(missing),
                 _uncovered(project, claimed),
                 trust(runs),
@@ -169,6 +186,14 @@ def _held_alone(active: Sequence[Claim], good: Sequence[Claim], runs: int) -> st
     everywhere = all(len(claim.judged) == runs for claim in good)
     where = _where(runs) if everywhere else "each run in which they were audited"
     return f"{len(good)} of {len(active)} requirements held in {where}."
+
+
+def _waived(active: Sequence[Claim]) -> str:
+    found = [claim for claim in active if claim.verdict == WAIVED]
+    if not found:
+        return ""
+    verb = "is" if len(found) == 1 else "are"
+    return f"{phrases.some([claim.id for claim in found])} {verb} waived, and not shown."
 
 
 def _where(runs: int) -> str:
@@ -234,7 +259,7 @@ def _counts(claimed: Sequence[Claim]) -> tuple[Count, ...]:
     best_first = (kernel.SATISFIED, *(word for word in MARKS if word != kernel.SATISFIED))
     always = (kernel.SATISFIED, kernel.VIOLATED, kernel.INCONCLUSIVE, kernel.VACUOUS)
     shown = (*always, kernel.NO_DATA, SUSPECT, NOT_EXERCISED)
-    rare = (UNFORMALIZED, RETIRED, SUPPORTED, REFUTED)
+    rare = (UNFORMALIZED, WAIVED, RETIRED, SUPPORTED, REFUTED)
     return tuple(
         Count(MARKS[word], of_claims[word], of_results[word])
         for word in best_first

@@ -4,16 +4,22 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from types import MappingProxyType
 
 from compiler.estimates import Estimated
+from compiler.evidence import Evidence, Result
 from compiler.files import sha256
+from compiler.links import chains
+from compiler.lock import Lock, Standing, standings
 from compiler.odds import REFUTED, SUPPORTED
+from compiler.products import Product, products
 from compiler.project import Project, fingerprint
-from compiler.report.evidence import Evidence, Result
 from compiler.report.probabilities import ANSWERS, contradictions
 from compiler.report.views import Mark
 from compiler.rule import Rule
 from compiler.targets import monitor
+from compiler.trials import plain
+from compiler.waivers import Waiver
 from fretish.declarations import Declarations
 from fretish.diagnostic import Diagnostic
 from fretish.documents import Requirement
@@ -24,6 +30,7 @@ SUSPECT = "suspect"
 UNFORMALIZED = "unformalized"
 NOT_EXERCISED = "not exercised"
 RETIRED = "retired"
+WAIVED = "waived"
 
 MARKS: Mapping[str, Mark] = {
     kernel.VIOLATED: Mark(kernel.VIOLATED, "✘", "violated"),
@@ -34,6 +41,7 @@ MARKS: Mapping[str, Mark] = {
     kernel.INCONCLUSIVE: Mark(kernel.INCONCLUSIVE, "◔", "inconclusive"),
     kernel.VACUOUS: Mark(kernel.VACUOUS, "∅", "vacuous"),
     NOT_EXERCISED: Mark(NOT_EXERCISED, "○", "not-exercised"),
+    WAIVED: Mark(WAIVED, "w", "waived"),
     SUPPORTED: ANSWERS[SUPPORTED],
     kernel.SATISFIED: Mark(kernel.SATISFIED, "✔", "satisfied"),
     RETIRED: Mark(RETIRED, "\N{EN DASH}", "retired"),
@@ -42,6 +50,13 @@ MARKS: Mapping[str, Mark] = {
 
 SHOWN = (kernel.SATISFIED, SUPPORTED)
 """The verdicts that show a requirement."""
+UNBOUND, NOT_GENERATED = "unbound", "not generated"
+EXERCISED_PASS, EXERCISED_FAIL = "exercised, pass", "exercised, fail"
+COVERAGE = (
+    UNFORMALIZED, UNBOUND, NOT_GENERATED, NOT_EXERCISED, EXERCISED_PASS, EXERCISED_FAIL,
+    SUSPECT, WAIVED, RETIRED,
+)  # fmt: skip
+"""How far a requirement has come; the last three whatever else is known of it."""
 
 _RANK = {word: rank for rank, word in enumerate(MARKS)}
 
@@ -81,6 +96,11 @@ class Claim:
     rule: Rule | None
     diagnostic: Diagnostic | None
     judged: tuple[Judged, ...]
+    products: tuple[Product, ...]
+    standing: Standing
+    waiver: Waiver | None
+    """One that counts now."""
+    is_bound: bool
     together: Together | None = None
     """With a probability: what all runs say, in place of the verdicts of each."""
 
@@ -91,15 +111,45 @@ class Claim:
 
     @property
     def verdict(self) -> str:
-        """The worst of its runs, what they say together, or why it has none."""
+        """The worst of its runs, or what they say together, or why it has none.
+
+        `waived` where a waiver covers that.
+        """
+        found = self.unwaived
+        return WAIVED if self.waiver and found not in (*SHOWN, RETIRED) else found
+
+    @property
+    def unwaived(self) -> str:
+        """The verdict without regard to a waiver."""
         if self.requirement.status == RETIRED:
             return RETIRED
         if self.rule is None:
             return UNFORMALIZED
+        verdicts = self._of_runs
+        if self.standing.is_suspect:
+            verdicts.append(SUSPECT)
+        return min(verdicts, key=_RANK.__getitem__)
+
+    @property
+    def _of_runs(self) -> list[str]:
+        """The verdicts of all runs; with a probability, the one of all together."""
         if self.together is not None:
-            return SUSPECT if self.together.suspicions else self.together.told.answer
-        verdicts = [judged.verdict for judged in self.judged]
-        return min(verdicts, key=_RANK.__getitem__, default=NOT_EXERCISED)
+            return [SUSPECT if self.together.suspicions else self.together.told.answer]
+        return [judged.verdict for judged in self.judged] or [NOT_EXERCISED]
+
+    @property
+    def coverage(self) -> str:
+        """How far along the chain from sentence to passing run it is: one of `COVERAGE`."""
+        verdict = self.verdict
+        if verdict in (RETIRED, WAIVED, UNFORMALIZED, SUSPECT):
+            return verdict
+        if verdict in (kernel.VIOLATED, REFUTED):
+            return EXERCISED_FAIL
+        if not self.is_bound:
+            return UNBOUND
+        if self.rule is None or monitor.refuse(plain(self.rule)) is not None:
+            return NOT_GENERATED
+        return EXERCISED_PASS if verdict in SHOWN else NOT_EXERCISED
 
     @property
     def mark(self) -> Mark:
@@ -107,14 +157,28 @@ class Claim:
         return MARKS[self.verdict]
 
 
-def claims(project: Project, evidence: Evidence | None) -> tuple[Claim, ...]:
-    """Every requirement of the project, in its order."""
+def claims(
+    project: Project,
+    evidence: Evidence | None,
+    lock: Lock | None = None,
+    waivers: Mapping[str, Waiver] = MappingProxyType({}),
+) -> tuple[Claim, ...]:
+    """Every requirement of the project, in its order.
+
+    Args:
+        project: all that was read.
+        evidence: None where no run has been audited.
+        lock: None where nothing has been reviewed.
+        waivers: those that count now, by the requirement.
+    """
     rules = {id(rule.requirement): rule for rule in project.rules}
     failed = {id(each.requirement): each.diagnostic for each in project.failed}
     results = evidence.results if evidence else ()
+    made = {id: products(rule) for id, rule in rules.items()}
+    standing = standings(chains(project, evidence, made), lock)
     anchors: list[str] = []
     found = []
-    for requirement in project.requirements:
+    for requirement, stands in zip(project.requirements, standing, strict=True):
         anchors.append(_anchor(requirement.id, anchors))
         rule = rules.get(id(requirement))
         judge = _Judge(rule, project.declarations)
@@ -127,6 +191,10 @@ def claims(project: Project, evidence: Evidence | None) -> tuple[Claim, ...]:
                 rule,
                 failed.get(id(requirement)),
                 judged,
+                made.get(id(requirement), ()),
+                stands,
+                waivers.get(requirement.id),
+                rule is not None and _is_bound(rule, project.declarations),
                 _together(rule, evidence, judged),
             )
         )
@@ -146,6 +214,11 @@ def _together(
     stale = [reason for each in judged for reason in each.suspicions]
     wrong = contradictions(told, rule.sentence.probability, known)
     return Together(told, tuple(dict.fromkeys((*stale, *wrong))))
+
+
+def _is_bound(rule: Rule, declarations: Declarations | None) -> bool:
+    known = declarations.propositions if declarations else {}
+    return all(name in known for name in rule.watched)
 
 
 def _anchor(id: str, taken: Sequence[str]) -> str:

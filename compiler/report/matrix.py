@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
+from compiler.evidence import Evidence
 from compiler.project import Project
 from compiler.report import phrases
 from compiler.report.claims import MARKS, RETIRED, Claim
-from compiler.report.evidence import Evidence
 from compiler.report.results import result_anchor
 from compiler.report.runs import Key, Run, key
 from compiler.report.views import Cell, HazardView, Orphans, RequirementView, Row
@@ -132,7 +132,7 @@ def _uncovered(project: Project, claims: Sequence[Claim]) -> Iterable[str]:
 
 
 def _undeclared(project: Project, claims: Sequence[Claim]) -> Iterable[str]:
-    known = {*project.hazards, *(claim.id for claim in claims)}
+    known = {*project.hazards, *project.parents, *(claim.id for claim in claims)}
     for claim in claims:
         for parent in claim.requirement.parents:
             if parent not in known:

@@ -7,10 +7,10 @@ from collections.abc import Iterable, Sequence
 from pathlib import PurePath
 
 from compiler import __version__
+from compiler.evidence import Evidence
 from compiler.odds import CONFIDENCE
 from compiler.project import Project, fingerprint
 from compiler.report import phrases
-from compiler.report.evidence import Evidence
 from compiler.report.runs import Run
 from compiler.report.views import Command, Hash, RequirementView
 from fretish.source import Source

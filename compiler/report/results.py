@@ -6,9 +6,9 @@ from collections.abc import Iterable, Sequence
 from itertools import groupby
 from statistics import median
 
+from compiler.evidence import Moment, Result, Threshold, Violation
 from compiler.report import phrases
 from compiler.report.claims import MARKS, Claim, Judged
-from compiler.report.evidence import Moment, Result, Threshold, Violation
 from compiler.report.runs import Key, Run, key
 from compiler.report.timeline import answered, timelines
 from compiler.report.views import Latency, Listing, ResultView, ThresholdView, ViolationView

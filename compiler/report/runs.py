@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
+from compiler.evidence import Checked, Evidence, Finding, Result, Topic
 from compiler.project import Project
 from compiler.report import phrases
-from compiler.report.evidence import Checked, Evidence, Finding, Result, Topic
 from compiler.report.views import Mark, Remark, RunView, TopicView
 
 _NONE = "\N{EN DASH}"

@@ -10,11 +10,11 @@ from compiler import printing
 from compiler.project import Project
 from compiler.record import wording
 from compiler.report import phrases
-from compiler.report.artefacts import artefacts
 from compiler.report.claims import RETIRED, SHOWN, Claim
 from compiler.report.plans import planned
 from compiler.report.probabilities import probability_view
 from compiler.report.results import reasons, result_views
+from compiler.report.reviews import review, waiver
 from compiler.report.runs import Key, Run
 from compiler.report.views import (
     Formula,
@@ -68,10 +68,13 @@ def section(
         rationale=requirement.rationale,
         params=dict(requirement.params),
         planned=planned(claim),
-        artefacts=artefacts(rule),
+        artefacts=claim.products,
         probability=_probability(claim),
         results=result_views(claim, runs, clock),
         reasons=() if shown else reasons(claim, runs, audited=audited),
+        coverage=claim.coverage,
+        review=review(claim),
+        waiver=waiver(claim),
     )
 
 
@@ -121,6 +124,9 @@ def _parent(id: str, project: Project, anchors: Mapping[str, str]) -> Parent:
     hazard = project.hazards.get(id)
     if hazard is not None:
         return Parent(id, hazard.title, "hazards")
+    outside = project.parents.get(id)
+    if outside is not None:
+        return Parent(id, f"{outside.title} ({phrases.place(outside.source)})", "")
     above = next((r for r in project.requirements if r.id == id), None)
     return Parent(id, above.title if above else "not declared", anchors.get(id, ""))
 

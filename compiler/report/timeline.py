@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
-from compiler.report.evidence import Moment, Result, Violation
+from compiler.evidence import Moment, Result, Violation
 from compiler.report.phrases import joined, seconds, times
 from compiler.report.views import Lane, SpanMark, Timeline
 

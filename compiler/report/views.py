@@ -9,6 +9,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+from compiler.products import Product
+
 SCHEMA = "fretc-report-1"
 
 
@@ -116,16 +118,6 @@ class Planned:
 
 
 @dataclass(frozen=True, slots=True)
-class ArtefactView:
-    """What a target makes of a requirement; `sha256` is empty where it refuses."""
-
-    target: str
-    file: str
-    sha256: str
-    refusal: str
-
-
-@dataclass(frozen=True, slots=True)
 class Cell:
     """A verdict in the matrix, or a number of runs with the same one; `anchor` is its section."""
 
@@ -146,7 +138,7 @@ class Row:
     status: str
     anchor: str
     mark: Mark
-    artefacts: tuple[ArtefactView, ...]
+    artefacts: tuple[Product, ...]
     cells: tuple[Cell, ...]
 
 
@@ -169,6 +161,41 @@ class Orphans:
     requirements: tuple[str, ...]
     parents: tuple[str, ...]
     evidence: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Change:
+    """What is not as it was reviewed, in words; `verdicts` are run, then and now."""
+
+    requirement: str
+    anchor: str
+    state: str
+    lines: tuple[str, ...]
+    links: Listing
+    """The links that are suspect for that."""
+    verdicts: tuple[tuple[str, str, str], ...]
+
+
+@dataclass(frozen=True, slots=True)
+class ReviewView:
+    """Who has accepted a requirement, and whether that still stands."""
+
+    mark: Mark
+    by: str
+    comment: str
+    changes: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class WaiverView:
+    """Why a requirement need not be shown for a while; `covers` is the verdict behind it."""
+
+    requirement: str
+    anchor: str
+    reason: str
+    by: str
+    until: str
+    covers: Mark
 
 
 # 4: the requirements ---------------------------------------------------------------------------
@@ -360,12 +387,16 @@ class RequirementView:
     rationale: str
     params: Mapping[str, str]
     planned: tuple[Planned, ...]
-    artefacts: tuple[ArtefactView, ...]
+    artefacts: tuple[Product, ...]
     probability: ProbabilityView | None
     """None: the sentence gives none, or no evidence tells of it."""
     results: tuple[ResultView, ...]
     reasons: tuple[str, ...]
     """Why it is not shown; empty where it is."""
+    coverage: str
+    """How far along the chain it is; one of `compiler.report.claims.COVERAGE`."""
+    review: ReviewView
+    waiver: WaiverView | None
 
 
 # 5: the means ----------------------------------------------------------------------------------
@@ -409,6 +440,10 @@ class Report:
     hazards: tuple[HazardView, ...]
     matrix: tuple[Row, ...]
     orphans: Orphans
+    reviewed: str
+    """How many requirements have been reviewed, and whether that stands."""
+    changes: tuple[Change, ...]
+    waivers: tuple[WaiverView, ...]
     requirements: tuple[RequirementView, ...]
     assumptions: tuple[str, ...]
     commands: tuple[Command, ...]

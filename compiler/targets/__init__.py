@@ -8,6 +8,7 @@ from types import MappingProxyType
 from compiler.targets import (
     ajpf,
     bundle,
+    dafny,
     dot,
     fret,
     hoa,
@@ -35,6 +36,7 @@ TARGETS: Mapping[str, Target] = MappingProxyType(
             records.TARGET,
             fret.TARGET,
             interceptor.TARGET,
+            dafny.TARGET,
         )
     }
 )

@@ -121,7 +121,7 @@ def test_the_parts_stand_in_their_order(tmp_path: Path) -> None:
         ("2", "What was claimed, and what was not shown"),
         ("3", "From hazard to verdict"),
         ("4", "The requirements"),
-        ("5", "Assumptions, reproduction, hashes"),
+        ("5", "Assumptions, reviews, reproduction, hashes"),
     ]
 
 

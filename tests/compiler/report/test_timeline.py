@@ -1,7 +1,7 @@
 import re
 from dataclasses import replace
 
-from compiler.report.evidence import Health, Moment, Result, Violation
+from compiler.evidence import Health, Moment, Result, Violation
 from compiler.report.timeline import DETAIL, answered, timelines
 from compiler.report.views import SpanMark
 

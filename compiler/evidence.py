@@ -11,11 +11,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import NoReturn
 
+from compiler.counted import probability, trials
 from compiler.estimates import Estimated
 from compiler.files import read as read_text
 from compiler.files import sha256
-from compiler.report.probabilities import probability, trials
-from compiler.report.shapes import MisshapenError, Shape
+from compiler.shapes import MisshapenError, Shape
 from fretish.diagnostic import Code, Diagnostic, Severity
 from fretish.source import Source
 from monitors import kernel

@@ -8,8 +8,8 @@ import pytest
 from hypothesis import HealthCheck, example, given, settings
 from hypothesis import strategies as st
 
+from compiler.evidence import Evidence, Moment, read
 from compiler.report import make
-from compiler.report.evidence import Evidence, Moment, read
 from fretish.diagnostic import Code, Diagnostic, Severity
 from tests.compiler.report.cases import evidence, moment, project, result, said, violation
 

@@ -1,6 +1,6 @@
 import pytest
 
-from compiler.report.shapes import MisshapenError, Shape
+from compiler.shapes import MisshapenError, Shape
 
 
 def test_a_path_grows_with_every_look() -> None:

@@ -1,6 +1,6 @@
 """A value of a JSON file together with its path: every look into it is checked.
 
-What is not as it must be raises `MisshapenError` with the path; `compiler/report/evidence.py`
+What is not as it must be raises `MisshapenError` with the path; `compiler/evidence.py`
 turns that into a diagnostic.
 """
 

@@ -1,0 +1,150 @@
+"""The command about evidence: whether it still stands."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from compiler.cli.output import BAD, NOT_SHOWN, SHOWN, VIOLATION, coloured, say, stop
+from fretish.diagnostic import Code, Diagnostic, Severity, has_errors
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from compiler.plan import Plan
+    from compiler.project import Project
+    from compiler.rechecking import Rechecked
+
+
+@click.command("verify-evidence", short_help="Make evidence again, and say whether it stands.")
+@click.argument("file", default="build/evidence.json", metavar="[FILE]")
+@click.option(
+    "--requirements", default="requirements", show_default=True, help="Folder, or one file."
+)
+@click.option("--bindings", help="bindings.toml; the one in the requirements' folder if not given.")
+@click.option("--logs", "folder", help="Look for the logs below this folder, by their names.")
+@click.option("--report", help="An HTML report: it is made again from FILE, and compared.")
+@click.option("--jobs", type=click.IntRange(min=1), default=os.cpu_count() or 1)
+@click.option(
+    "--format", "form", type=click.Choice(("text", "json")), default="text", show_default=True
+)
+def verify_evidence(
+    file: str,
+    requirements: str,
+    bindings: str | None,
+    folder: str | None,
+    report: str | None,
+    jobs: int,
+    form: str,
+) -> None:
+    """Make evidence again, and say whether it stands.
+
+    Of every log in FILE the SHA-256 is taken again, and every requirement is audited again; what
+    comes out is compared with what FILE says. Exit status: 0 it stands, 1 something differs, 3 a
+    log is not found, 2 bad use or bad input.
+    """
+    from compiler.evidence import read
+    from compiler.files import read as read_text
+
+    source = read_text(file)
+    audited = read(file)
+    if isinstance(source, Diagnostic) or isinstance(audited, Diagnostic):
+        stop(_error(source if isinstance(source, Diagnostic) else audited))
+    project, plan = _plan(requirements, bindings)
+    found = _rechecked(source.text, plan, [result.run for result in audited.results], folder, jobs)
+    same = _report(project, file, report, requirements) if report is not None else None
+    if form == "json":
+        _print_json(found, same)
+    else:
+        _print(found, same)
+    kinds = {str(one.finding) for one in found}
+    if "differs" in kinds or same is False:
+        raise SystemExit(VIOLATION)
+    raise SystemExit(NOT_SHOWN if "not checked" in kinds else SHOWN)
+
+
+def _error(found: object) -> Diagnostic:
+    assert isinstance(found, Diagnostic)
+    return Diagnostic(found.code, found.message, found.span, found.help, Severity.ERROR)
+
+
+def _plan(requirements: str, bindings: str | None) -> tuple[Project, Plan]:
+    from compiler.plan import Plan, planned
+    from compiler.project import beside, load, requirement_files
+
+    files = requirement_files(requirements)
+    if isinstance(files, Diagnostic):
+        stop(files)
+    names = (
+        bindings or beside(requirements, "bindings.toml"),
+        beside(requirements, "hazards.toml"),
+    )
+    project = load(files, *names, parents=True)
+    say(project.diagnostics)
+    if has_errors(project.diagnostics):
+        raise SystemExit(BAD)
+    plan = planned(project)
+    if not isinstance(plan, Plan):
+        stop(*plan)
+    return project, plan
+
+
+def _rechecked(
+    text: str, plan: Plan, runs: Sequence[str], folder: str | None, jobs: int
+) -> tuple[Rechecked, ...]:
+    from compiler.auditing import locally
+    from compiler.rechecking import located, rechecked
+
+    if folder is not None and not Path(folder).is_dir():
+        mend = "name the folder that the logs are in"
+        stop(Diagnostic(Code.NO_SUCH_FILE, f"there is no folder `{folder}`", help=mend))
+    found = rechecked(text, plan, located(list(dict.fromkeys(runs)), folder), locally(jobs))
+    if isinstance(found, Diagnostic):
+        stop(found)
+    return found
+
+
+def _report(project: Project, evidence: str, path: str, requirements: str) -> bool:
+    """Whether the report that is made now is the one in the file, byte for byte."""
+    from compiler.files import read
+    from compiler.project import beside
+    from compiler.report import make
+
+    there = read(path)
+    if isinstance(there, Diagnostic):
+        stop(there)
+    names = [beside(requirements, name) for name in ("fretc.lock", "waivers.toml")]
+    return make(project, evidence, lock=names[0], waivers=names[1]).html == there.text
+
+
+_GLYPHS = {"stands": ("✔", "green"), "differs": ("✘", "red"), "not checked": ("?", "magenta")}
+
+
+def _print(found: Sequence[Rechecked], same: bool | None) -> None:
+    lines: list[tuple[str, str | None]] = []
+    width = max((len(one.requirement) for one in found), default=0)
+    run = None
+    for one in found:
+        if one.run != run:
+            run = one.run
+            lines.append((run, None))
+        glyph, colour = _GLYPHS[str(one.finding)]
+        told = f"{one.finding}: {'; '.join(one.reasons)}" if one.reasons else str(one.finding)
+        lines.append((f"  {glyph} {one.requirement:<{width}}  {told}", colour))
+    if same is not None:
+        glyph, colour = _GLYPHS["stands" if same else "differs"]
+        told = "the same, byte for byte" if same else "another one is made now"
+        lines.append((f"{glyph} report  {told}", colour))
+    click.echo(coloured(lines), nl=False)
+
+
+def _print_json(found: Sequence[Rechecked], same: bool | None) -> None:
+    from dataclasses import asdict
+
+    from compiler.templating import to_json
+
+    told = {"results": [asdict(one) for one in found], "report_is_the_same": same}
+    click.echo(to_json(told))

@@ -1,0 +1,144 @@
+"""The command about everything: the traceability report, in each of its forms."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from compiler.cli.group import Grouped
+from compiler.cli.output import BAD, NOT_SHOWN, SHOWN, VIOLATION, deliver, say, stop
+from fretish.diagnostic import Diagnostic, has_errors
+
+if TYPE_CHECKING:
+    from compiler.project import Project
+    from compiler.report import Made
+    from compiler.report.views import Report
+
+_HEADINGS = {
+    "Made from": ("requirements", "bindings", "hazards", "evidence", "lock", "waivers"),
+    "Forms": ("html", "json_", "csv", "junit", "sarif", "markdown", "gsn"),
+}
+
+
+@click.command(
+    cls=Grouped, headings=_HEADINGS, short_help="Trace hazard to verdict in one HTML file."
+)
+@click.option("--html", default="build/report.html", show_default=True, help="One file, offline.")
+@click.option("--json", "json_", help="What the report says, for programs.")
+@click.option("--csv", help="A row for each requirement and run, for a spreadsheet.")
+@click.option("--junit", help="A test case for each requirement, for a CI server.")
+@click.option("--sarif", help="What the runs show, for code scanning.")
+@click.option("--markdown", help="A comment for a pull request.")
+@click.option("--gsn", help="The assurance argument, as YAML that gsn2x reads.")
+@click.option(
+    "--requirements", default="requirements", show_default=True, help="Folder, or one file."
+)
+@click.option("--bindings", help="bindings.toml; the one in the requirements' folder if not given.")
+@click.option("--hazards", help="hazards.toml; the one in the requirements' folder if not given.")
+@click.option("--evidence", default="build/evidence.json", show_default=True)
+@click.option("--lock", help="fretc.lock; the one in the requirements' folder if not given.")
+@click.option("--waivers", help="waivers.toml; the one in the requirements' folder if not given.")
+@click.option(
+    "--strict",
+    is_flag=True,
+    help="Exit as the report says: 1 violated or suspect, 3 something is not shown.",
+)
+def report(
+    html: str,
+    requirements: str,
+    bindings: str | None,
+    hazards: str | None,
+    evidence: str,
+    lock: str | None,
+    waivers: str | None,
+    strict: bool,
+    **forms: str | None,
+) -> None:
+    """Trace hazard, requirement, formula, artefact, run and verdict in one HTML file.
+
+    All forms say the same. The same inputs give the same bytes; waivers count by the day of
+    SOURCE_DATE_EPOCH, where that is set.
+    """
+    from compiler.project import beside, load, requirement_files
+    from compiler.report import make
+
+    files = requirement_files(requirements)
+    if isinstance(files, Diagnostic):
+        stop(files)
+    project = load(
+        files,
+        bindings or beside(requirements, "bindings.toml"),
+        hazards or beside(requirements, "hazards.toml"),
+        parents=True,
+    )
+    lock = lock or beside(requirements, "fretc.lock")
+    waivers = waivers or beside(requirements, "waivers.toml")
+    made = make(project, evidence, lock=lock, waivers=waivers)
+    say([*project.diagnostics, *made.diagnostics])
+    if made.report is None:
+        raise SystemExit(BAD)
+    wanted = {"html": html, **{name: path for name, path in forms.items() if path is not None}}
+    texts = _texts(made, project, evidence, strict=strict)
+    _deliver(wanted, texts, [evidence, *files, *filter(None, (lock, waivers))])
+    if has_errors([*project.diagnostics, *made.diagnostics]):
+        raise SystemExit(BAD)
+    raise SystemExit(_status(made.report) if strict else SHOWN)
+
+
+def _deliver(
+    wanted: Mapping[str, str], texts: Mapping[str, Callable[[], str]], read: Sequence[str]
+) -> None:
+    """Each form to its own place."""
+    from compiler.cli.output import not_written
+
+    paths: dict[Path, str] = {}
+    for form, path in wanted.items():
+        if Path(path) in paths:
+            stop(not_written(path, "two outputs would go there"))
+        paths[Path(path)] = texts[form]()
+    deliver(paths, read)
+
+
+def _texts(
+    made: Made, project: Project, evidence: str, *, strict: bool
+) -> dict[str, Callable[[], str]]:
+    """How each form is made; none before it is wanted."""
+    from compiler.report.forms.gsn import gsn
+    from compiler.report.forms.junit import junit
+    from compiler.report.forms.markdown import markdown
+    from compiler.report.forms.rows import csv_text
+    from compiler.report.forms.sarif import sarif
+
+    whole = made.report
+    assert whole is not None
+    said = [*project.diagnostics, *made.diagnostics]
+    return {
+        "html": lambda: made.html or "",
+        "json_": lambda: made.json or "",
+        "csv": lambda: csv_text(whole),
+        "junit": lambda: junit(whole, strict=strict),
+        "sarif": lambda: sarif(whole, _audited(evidence, whole), project.rules, said),
+        "markdown": lambda: markdown(whole),
+        "gsn": lambda: gsn(whole),
+    }
+
+
+def _audited(evidence: str, whole: Report) -> Sequence[Mapping[str, Any]]:
+    """The results as the evidence has them: `make` has read it, so it is in shape."""
+    if not whole.evidence:
+        return ()
+    found: Sequence[Mapping[str, Any]] = json.loads(Path(evidence).read_text("utf-8-sig"))[
+        "results"
+    ]
+    return found
+
+
+def _status(whole: Report) -> int:
+    words = {view.mark.word for view in whole.requirements}
+    if words & {"violated", "suspect"}:
+        return VIOLATION
+    return SHOWN if words <= {"satisfied", "waived", "retired"} else NOT_SHOWN

@@ -1,0 +1,156 @@
+"""The commands about reviews: accept the present state, and say what has changed since."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from compiler.cli.output import BAD, NOT_SHOWN, SHOWN, deliver, say, say_line, stop
+from fretish.diagnostic import Code, Diagnostic, Severity, has_errors, suggestion
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from compiler.links import Chain
+    from compiler.lock import Lock
+    from compiler.project import Project
+
+_REQUIREMENTS = click.option(
+    "--requirements", default="requirements", show_default=True, help="Folder, or one file."
+)
+_EVIDENCE = click.option("--evidence", default="build/evidence.json", show_default=True)
+
+
+@click.command(short_help="Accept the present state of requirements, as their reviewer.")
+@click.argument("ids", nargs=-1, metavar="[ID]...")
+@click.option("--reviewer", required=True, help="Who has reviewed.")
+@click.option("--role", required=True, help="As what: `safety engineer`.")
+@click.option("--comment", required=True, help="What was looked at, and why it is accepted.")
+@click.option("--date", "day", help="As 2026-11-22; today, or the day of SOURCE_DATE_EPOCH.")
+@_REQUIREMENTS
+@_EVIDENCE
+@click.option("--lock", "path", help="The lock; `fretc.lock` in the requirements' folder.")
+def lock(
+    ids: tuple[str, ...],
+    reviewer: str,
+    role: str,
+    comment: str,
+    day: str | None,
+    requirements: str,
+    evidence: str,
+    path: str | None,
+) -> None:
+    """Accept the present state of requirements, as their reviewer.
+
+    Fingerprints of the sentence, its parents, parameters, bindings and artefacts, and of each
+    audited run with its verdict, go into `fretc.lock`. Any later change makes the links downstream
+    of it suspect. Without an ID all requirements are accepted; of the others the reviews stay.
+    """
+    from compiler.lock import Lock, accepted, is_date, text
+    from compiler.waivers import today
+
+    for name, said in (("--reviewer", reviewer), ("--role", role), ("--comment", comment)):
+        if not said.strip():
+            stop(Diagnostic(Code.BAD_USAGE, f"`{name}` says nothing", help="fill it in"))
+    day = day or today()
+    if not is_date(day):
+        stop(Diagnostic(Code.BAD_USAGE, f"`{day}` is no date", help="write it as `2026-11-22`"))
+    project, chains = _chains(requirements, evidence)
+    if has_errors(project.diagnostics):
+        raise SystemExit(BAD)
+    chosen = _chosen(chains, ids)
+    where = path or _beside(requirements)
+    before = _read(where, must=False)
+    kept = before.reviews if before is not None else {}
+    known = {chain.requirement for chain in chains}
+    reviews = {id: review for id, review in kept.items() if id in known}
+    reviews |= {c.requirement: accepted(c, reviewer, role, day, comment) for c in chosen}
+    deliver({Path(where): text(Lock(reviews))})
+    say_line(f"accepted {', '.join(chain.requirement for chain in chosen)}")
+    for id in sorted(kept.keys() - known):
+        say_line(f"left out {id}: it is not among the requirements")
+
+
+@click.command(short_help="Say what has changed since a review, verdicts included.")
+@click.argument("baseline", required=False, metavar="[BASELINE]")
+@_REQUIREMENTS
+@_EVIDENCE
+@click.option(
+    "--format", "form", type=click.Choice(("text", "json")), default="text", show_default=True
+)
+def diff(baseline: str | None, requirements: str, evidence: str, form: str) -> None:
+    """Say what has changed since a review, verdicts included.
+
+    BASELINE is a lock; `fretc.lock` in the requirements' folder if not given. Exit status: 0
+    nothing has changed, 3 something has.
+    """
+    from compiler.comparison import as_record, differences, text
+    from compiler.lock import standings
+    from compiler.templating import to_json
+    from fretish.rendering import visible
+
+    project, chains = _chains(requirements, evidence)
+    if has_errors(project.diagnostics):
+        raise SystemExit(BAD)
+    known = _read(baseline or _beside(requirements), must=True)
+    assert known is not None
+    found = differences(standings(chains, known), known)
+    if form == "json":
+        click.echo(to_json([as_record(difference) for difference in found]))
+    else:
+        for difference in found:
+            for line in text(difference):
+                click.echo(visible(line))
+    raise SystemExit(SHOWN if all(d.state == "same" for d in found) else NOT_SHOWN)
+
+
+def _chains(requirements: str, evidence: str) -> tuple[Project, Sequence[Chain]]:
+    from compiler.evidence import read
+    from compiler.links import chains
+    from compiler.project import beside, load, requirement_files
+
+    files = requirement_files(requirements)
+    if isinstance(files, Diagnostic):
+        stop(files)
+    names = [beside(requirements, name) for name in ("bindings.toml", "hazards.toml")]
+    project = load(files, *names, parents=True)
+    audited = read(evidence)
+    if isinstance(audited, Diagnostic):
+        say([*project.diagnostics, audited])
+        if audited.is_error:
+            raise SystemExit(BAD)
+        return project, chains(project, None)
+    say(project.diagnostics)
+    return project, chains(project, audited)
+
+
+def _chosen(chains: Sequence[Chain], ids: tuple[str, ...]) -> Sequence[Chain]:
+    known = [chain.requirement for chain in chains]
+    for id in ids:
+        if id not in known:
+            near = suggestion(id, known)
+            mend = f"did you mean `{near}`?" if near else f"there are {', '.join(known)}"
+            stop(Diagnostic(Code.BAD_USAGE, f"there is no requirement `{id}`", help=mend))
+    return [chain for chain in chains if not ids or chain.requirement in ids]
+
+
+def _beside(requirements: str) -> str:
+    from compiler.lock import NAME
+
+    folder = Path(requirements)
+    return str((folder.parent if folder.is_file() else folder) / NAME)
+
+
+def _read(path: str, *, must: bool) -> Lock | None:
+    """The lock; where there is none yet, None, unless there must be one."""
+    from compiler.lock import read
+
+    found = read(path)
+    if not isinstance(found, Diagnostic):
+        return found
+    if must or found.is_error:
+        stop(replace(found, severity=Severity.ERROR))
+    return None

@@ -1,0 +1,31 @@
+"""`--gsn`: the assurance argument as YAML that gsn2x reads.
+
+Source: gsn2x, Syntax in YAML.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import yaml
+
+from compiler.report.argument import Element, argument
+from compiler.report.views import Report
+
+
+def gsn(report: Report) -> str:
+    """The whole file."""
+    head = f"# The argument of the report by fretc {report.fretc}; for gsn2x.\n"
+    elements = {element.id: _attributes(element) for element in argument(report)}
+    return head + yaml.safe_dump(elements, sort_keys=False, allow_unicode=True, width=100)
+
+
+def _attributes(element: Element) -> dict[str, Any]:
+    found: dict[str, Any] = {"text": " ".join(element.text.split())}
+    if element.supported_by:
+        found["supportedBy"] = list(element.supported_by)
+    if element.in_context_of:
+        found["inContextOf"] = list(element.in_context_of)
+    if element.undeveloped:
+        found["undeveloped"] = True
+    return found

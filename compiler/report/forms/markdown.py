@@ -1,0 +1,70 @@
+"""`--markdown`: what a reviewer of a pull request wants to see first.
+
+Source: GitHub Flavored Markdown Spec 0.29, tables (extension).
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+
+from compiler.report.phrases import visible
+from compiler.report.views import Report, RequirementView
+
+_MARKUP = re.compile(r"([\\`*_{}\[\]()<>#+!|~&:@-])")
+_LISTED = 50
+
+
+def markdown(report: Report) -> str:
+    """The whole comment."""
+    return "".join(f"{line}\n" for line in _lines(report))
+
+
+def _lines(report: Report) -> Iterator[str]:
+    overall = report.overall
+    yield f"## {overall.mark.glyph} {_plain(overall.headline)}"
+    yield ""
+    for sentence in overall.sentences:
+        yield f"{_plain(sentence)}  "
+    yield ""
+    yield "| requirement | verdict | coverage | review | why |"
+    yield "|---|---|---|---|---|"
+    worst_first = sorted(report.requirements, key=lambda view: view.mark.word == "satisfied")
+    for view in worst_first[:_LISTED]:
+        yield _row(view)
+    if len(worst_first) > _LISTED:
+        yield ""
+        yield f"… and {len(worst_first) - _LISTED} more requirements."
+    yield from _changes(report)
+    yield ""
+    yield f"<sub>fretc {_plain(report.fretc)}</sub>"
+
+
+def _row(view: RequirementView) -> str:
+    why = view.reasons[0] if view.reasons else view.results[0].reason if view.results else ""
+    more = f" (and {len(view.reasons) - 1} more)" if len(view.reasons) > 1 else ""
+    cells = (
+        f"**{_plain(view.id)}** {_plain(view.title)}",
+        f"{view.mark.glyph} {view.mark.word}",
+        view.coverage,
+        view.review.mark.word,
+        f"{_plain(why)}{more}",
+    )
+    return f"| {' | '.join(cells)} |"
+
+
+def _changes(report: Report) -> Iterator[str]:
+    if not report.changes:
+        return
+    yield ""
+    yield "### Changed since the review"
+    yield ""
+    for change in report.changes:
+        yield f"- **{_plain(change.requirement)}**: {_plain('; '.join(change.lines))}"
+        for run, then, now in change.verdicts:
+            yield f"  - {_plain(run)}: {then} → {now}"
+
+
+def _plain(text: str) -> str:
+    """Text as text, on one line: no markup, no mention, no link."""
+    return _MARKUP.sub(r"\\\1", visible(" ".join(text.split())))

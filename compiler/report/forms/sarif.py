@@ -1,0 +1,42 @@
+"""`--sarif`: what the runs show, for code scanning; suspect evidence is told as such."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
+
+from compiler import sarif as results
+from compiler.report.claims import SUSPECT
+from compiler.report.views import Report
+from compiler.rule import Rule
+from fretish.diagnostic import Diagnostic
+
+
+def sarif(
+    report: Report,
+    audited: Sequence[Mapping[str, Any]],
+    rules: Sequence[Rule],
+    diagnostics: Sequence[Diagnostic],
+) -> str:
+    """One SARIF run.
+
+    Args:
+        report: what it says.
+        audited: the results of the evidence that the report was made of, in its order.
+        rules: all requirements of the project.
+        diagnostics: what there is to say of requirements and evidence.
+    """
+    return results.sarif(list(_judged(report, audited)), rules, diagnostics)
+
+
+def _judged(report: Report, audited: Sequence[Mapping[str, Any]]) -> Iterator[Mapping[str, Any]]:
+    views = {view.id: iter(view.results) for view in report.requirements}
+    for result in audited:
+        view = next(views.get(result["requirement"], iter(())), None)
+        if view is None:
+            continue  # evidence of what is not among the requirements is a diagnostic
+        if view.suspicions:
+            reason = f"{'; '.join(view.suspicions)}; it said {result['verdict']}"
+            yield {**result, "verdict": SUSPECT, "reason": reason}
+        else:
+            yield result

@@ -1,0 +1,81 @@
+"""Who has accepted what, what has changed since, and what is waived, as it is shown."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from compiler.comparison import Difference, difference
+from compiler.links import Node, Suspect
+from compiler.report import phrases
+from compiler.report.claims import MARKS, SUSPECT, Claim
+from compiler.report.views import Change, Listing, Mark, ReviewView, WaiverView
+
+_LISTED = 40
+_ACCEPTED = Mark("reviewed", "✔", "satisfied")
+_OPEN = Mark("not reviewed", "○", "not-exercised")
+
+
+def review(claim: Claim) -> ReviewView:
+    """The review of a requirement."""
+    found = claim.standing.review
+    if found is None:
+        return ReviewView(_OPEN, "", "", ())
+    by = f"{found.reviewer}, {found.role}, {found.date}"
+    if not claim.standing.is_suspect:
+        return ReviewView(_ACCEPTED, by, found.comment, ())
+    causes = dict.fromkeys(cause for s in claim.standing.suspects for cause in s.causes)
+    return ReviewView(MARKS[SUSPECT], by, found.comment, tuple(_thing(c) for c in causes))
+
+
+def waiver(claim: Claim) -> WaiverView | None:
+    """The waiver that counts now."""
+    found = claim.waiver
+    if found is None:
+        return None
+    by = f"{found.by}, {found.role}, {found.granted}"
+    mark = MARKS[claim.unwaived]
+    return WaiverView(claim.id, claim.anchor, found.reason, by, found.expires, mark)
+
+
+def reviewed(claims: Sequence[Claim]) -> str:
+    """How many have been reviewed, in a sentence."""
+    known = [claim.standing for claim in claims if claim.standing.review is not None]
+    if not known:
+        return "No requirement has been reviewed."
+    suspect = sum(standing.is_suspect for standing in known)
+    stands = f"; {suspect} of these reviews no longer stand" if suspect else ", and all stand"
+    return f"{len(known)} of {phrases.times(len(claims), 'requirement')} reviewed{stands}."
+
+
+def changes(claims: Sequence[Claim]) -> tuple[Change, ...]:
+    """What is not as it was reviewed; requirements that are as they were are left out."""
+    pairs = [(claim, difference(claim.standing)) for claim in claims if claim.standing.review]
+    return tuple(_change(claim, found) for claim, found in pairs if found.state != "same")
+
+
+def _change(claim: Claim, found: Difference) -> Change:
+    lines = tuple(f"{how}: {_thing(node)}" for node, how in found.changes)
+    links = tuple(_link(suspect) for suspect in found.suspects[:_LISTED])
+    verdicts = tuple((run, then or "none", now or "none") for run, then, now in found.verdicts)
+    listing = Listing(links, len(found.suspects))
+    return Change(claim.id, claim.anchor, found.state, lines, listing, verdicts)
+
+
+def _link(suspect: Suspect) -> str:
+    causes = phrases.joined([_thing(cause) for cause in suspect.causes])
+    source, target = _thing(suspect.link.source), _thing(suspect.link.target)
+    return f"{source} → {target}, because of {causes}"
+
+
+def _thing(node: Node) -> str:
+    return "the clock" if node.kind == "clock" else f"{node.kind} {phrases.place(node.name)}"
+
+
+def reservations(claim: Claim) -> Iterator[str]:
+    """What a reader has to know of a review."""
+    if claim.standing.review is None:
+        return
+    new = [how for node, how in difference(claim.standing).changes if node.kind == "log"]
+    if "new" in new and not claim.standing.is_suspect:
+        count = phrases.times(new.count("new"), "run")
+        yield f"{claim.id} was audited against {count} after its review."

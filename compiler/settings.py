@@ -1,0 +1,82 @@
+"""`[tool.fretc]` of `pyproject.toml`: what holds for a whole project, wherever a command runs."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from compiler.files import read as read_text
+from fretish.diagnostic import Code, Diagnostic
+from fretish.tables import Tables, unknown_key
+from fretish.tables import read as read_tables
+
+NAME = "pyproject.toml"
+_FIELDS = ("parents",)
+
+
+@dataclass(frozen=True, slots=True)
+class Settings:
+    """What the project says of itself."""
+
+    folder: Path
+    """Where `pyproject.toml` is; paths in it start there."""
+    parents: tuple[str, ...] = ()
+    """Documents of other tools in which parents of requirements live."""
+    tables: Tables | None = None
+
+
+def settings(folder: str) -> Settings | Diagnostic:
+    """The settings that hold for a folder of requirements: the nearest upwards that there are.
+
+    Returns:
+        Empty settings where no `pyproject.toml` speaks of fretc; or what is wrong with them.
+    """
+    start = Path(folder).resolve()
+    for place in (start, *start.parents):
+        path = place / NAME
+        if path.is_file():
+            found = _read(path, start)
+            if found is not None:
+                return found
+    return Settings(start)
+
+
+def _read(path: Path, start: Path) -> Settings | Diagnostic | None:
+    """None where the file says nothing about fretc."""
+    source = read_text(_shown(path))
+    if isinstance(source, Diagnostic):
+        return source
+    if "tool.fretc" not in source.text:
+        return None
+    tables = read_tables(source.span(), Code.BAD_SETTINGS, NAME)
+    if isinstance(tables, Diagnostic):
+        return tables
+    told = tables.data.get("tool", {}).get("fretc")
+    return None if told is None else _settings(path.parent, tables, told)
+
+
+def _shown(path: Path) -> str:
+    """The path as a user would write it."""
+    try:
+        return str(path.relative_to(Path.cwd()))
+    except ValueError:
+        return str(path)
+
+
+def _settings(folder: Path, tables: Tables, told: Any) -> Settings | Diagnostic:
+    if not isinstance(told, dict):
+        return _wrong(tables, "`fretc` must be a table", "write `[tool.fretc]`", "tool", "fretc")
+    for key in told:
+        if key not in _FIELDS:
+            span = tables.place("tool", "fretc", key)
+            return unknown_key(Code.BAD_SETTINGS, key, _FIELDS, span, "[tool.fretc]")
+    parents = told.get("parents", [])
+    if not isinstance(parents, list) or not all(isinstance(path, str) for path in parents):
+        mend = 'write `parents = ["docs/hazards.sdoc"]`'
+        return _wrong(tables, "`parents` must be a list of paths", mend, "tool", "fretc", "parents")
+    return Settings(folder, tuple(parents), tables)
+
+
+def _wrong(tables: Tables, what: str, mend: str, *path: str) -> Diagnostic:
+    return Diagnostic(Code.BAD_SETTINGS, what, tables.place(*path), help=mend)

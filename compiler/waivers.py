@@ -1,0 +1,110 @@
+"""`waivers.toml`: why a requirement may stand without being shown, who says so, and until when.
+
+A waiver hides nothing: the verdict that it covers is shown beside it. It ends by itself.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from datetime import UTC, date, datetime
+from typing import Any
+
+from compiler.files import read as read_text
+from compiler.lock import is_date
+from fretish.diagnostic import Code, Diagnostic, Severity, suggestion
+from fretish.tables import Tables, unknown_key
+from fretish.tables import read as read_tables
+
+NAME = "waivers.toml"
+_FIELDS = ("reason", "by", "role", "granted", "expires")
+
+
+@dataclass(frozen=True, slots=True)
+class Waiver:
+    """One requirement, and why it need not be shown up to a day."""
+
+    requirement: str
+    reason: str
+    by: str
+    role: str
+    granted: str
+    expires: str
+    """The last day on which it counts; both dates as `2026-11-22`."""
+
+    def covers(self, day: str) -> bool:
+        """Whether it counts on that day."""
+        return self.granted <= day <= self.expires
+
+
+def today() -> str:
+    """The day of `SOURCE_DATE_EPOCH` where that is set, so that a report can be made again; UTC.
+
+    Source: reproducible-builds.org, SOURCE_DATE_EPOCH specification 1.1.
+    """
+    epoch = os.environ.get("SOURCE_DATE_EPOCH", "")
+    if epoch.isdecimal() and int(epoch) < 10**11:
+        return datetime.fromtimestamp(int(epoch), UTC).date().isoformat()
+    return datetime.now(UTC).date().isoformat()
+
+
+def read(
+    path: str, known: Sequence[str], day: str
+) -> tuple[Mapping[str, Waiver], tuple[Diagnostic, ...]]:
+    """The waivers of a file, and all that there is to say of them.
+
+    Args:
+        path: the file.
+        known: the ids of the requirements.
+        day: on which they are to count; one that does not is told as a warning.
+    """
+    source = read_text(path)
+    if isinstance(source, Diagnostic):
+        return {}, (source,)
+    tables = read_tables(source.span(), Code.BAD_WAIVER, "the waivers file")
+    if isinstance(tables, Diagnostic):
+        return {}, (tables,)
+    wrong = tuple(d for id, told in tables.data.items() for d in _mistakes(tables, id, told, known))
+    if wrong:
+        return {}, wrong
+    waivers = {id: Waiver(id, **told) for id, told in tables.data.items()}
+    return waivers, tuple(
+        _ended(tables, waiver) for waiver in waivers.values() if not waiver.covers(day)
+    )
+
+
+def _mistakes(tables: Tables, id: str, told: Any, known: Sequence[str]) -> Iterator[Diagnostic]:
+    if not isinstance(told, dict):
+        yield _wrong(tables, f"`{id}` is no waiver", f"write `[{id}]`, then its fields", id)
+        return
+    if id not in known:
+        near = suggestion(id, known)
+        mend = f"did you mean `{near}`?" if near else "name a requirement of the project"
+        yield _wrong(tables, f"{id} is waived, and is not among the requirements", mend, id)
+    for key in told:
+        if key not in _FIELDS:
+            yield unknown_key(Code.BAD_WAIVER, key, _FIELDS, tables.place(id, key), f"[{id}]")
+    for name in _FIELDS:
+        value = told.get(name)
+        if not isinstance(value, str) or not value.strip():
+            yield _wrong(
+                tables, f"the waiver of {id} needs `{name}`", f'add `{name} = "..."`', id, name
+            )
+        elif name in ("granted", "expires") and not is_date(value):
+            mend = f'write it as `"{date(2026, 11, 22).isoformat()}"`'
+            yield _wrong(tables, f"`{value}` is no date", mend, id, name)
+
+
+def _wrong(tables: Tables, what: str, mend: str, *path: str) -> Diagnostic:
+    return Diagnostic(Code.BAD_WAIVER, what, tables.value(*path), help=mend)
+
+
+def _ended(tables: Tables, waiver: Waiver) -> Diagnostic:
+    return Diagnostic(
+        Code.EXPIRED_WAIVER,
+        f"the waiver of {waiver.requirement} counts from {waiver.granted} to {waiver.expires} only",
+        tables.value(waiver.requirement, "expires"),
+        help="show the requirement, or have the waiver granted anew",
+        severity=Severity.WARNING,
+    )

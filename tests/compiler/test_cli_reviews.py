@@ -1,0 +1,129 @@
+"""`fretc lock` and `fretc diff`: what they print, write, and exit with."""
+
+import json
+from pathlib import Path
+
+import pytest
+
+from tests.command import Fretc, write
+from tests.compiler.report import cases
+
+BY = ("--reviewer", "A. Meier", "--role", "safety engineer", "--comment", "first review")
+ON = ("--date", "2026-11-22")
+
+
+@pytest.fixture
+def folder(fretc: Fretc) -> Path:
+    """A requirement that was audited, in `requirements`."""
+    project = cases.project(Path("requirements"))
+    found = cases.evidence(project, cases.result(project, "satisfied"))
+    write("build/evidence.json", json.dumps(found))
+    return Path("requirements")
+
+
+def test_nothing_has_changed_right_after_a_review(fretc: Fretc, folder: Path) -> None:
+    run = fretc("lock", *BY, *ON)
+    assert (run.status, run.out) == (0, "")
+    assert run.err == "wrote requirements/fretc.lock\naccepted R1\n"
+    run = fretc("diff")
+    assert (run.status, run.out, run.err) == (0, "R1  as it was reviewed\n", "")
+
+
+def test_two_reviews_of_one_state_give_the_same_bytes(fretc: Fretc, folder: Path) -> None:
+    lock = folder / "fretc.lock"
+    assert fretc("lock", *BY, *ON).status == 0
+    first = lock.read_bytes()
+    assert fretc("lock", *BY, *ON).status == 0
+    assert lock.read_bytes() == first
+
+
+def test_a_changed_threshold_is_told_with_the_links_below_it(fretc: Fretc, folder: Path) -> None:
+    assert fretc("lock", *BY, *ON).status == 0
+    bindings = folder / "bindings.toml"
+    bindings.write_text(bindings.read_text().replace("< 5 cm", "< 90 cm"))
+    run = fretc("diff")
+    assert run.status == 3
+    assert run.out == (
+        "R1  changed\n"
+        "  changed  bindings R1\n"
+        "  suspect  bindings R1 → verdict R1 logs/a.mcap (bindings R1)\n"
+        "  suspect  verdict R1 logs/a.mcap → review R1 (bindings R1)\n"
+    )
+
+
+def test_another_verdict_is_told(fretc: Fretc, folder: Path) -> None:
+    assert fretc("lock", *BY, *ON).status == 0
+    project = cases.project(folder)
+    broken = cases.result(project, "violated", violations=[cases.violation(40, 42)])
+    write("build/evidence.json", json.dumps(cases.evidence(project, broken)))
+    run = fretc("diff", "--format", "json")
+    assert run.status == 3
+    (told,) = json.loads(run.out)
+    assert told["verdicts"] == [{"run": "logs/a.mcap", "before": "satisfied", "now": "violated"}]
+    assert told["changes"] == [{"thing": "verdict:R1 logs/a.mcap", "how": "changed"}]
+    assert told["suspect_links"] == [
+        {
+            "from": "verdict:R1 logs/a.mcap",
+            "to": "review:R1",
+            "because_of": ["verdict:R1 logs/a.mcap"],
+        }
+    ]
+
+
+def test_one_requirement_is_accepted_and_the_review_of_the_other_stays(
+    fretc: Fretc, folder: Path
+) -> None:
+    write("requirements/b.fret", cases.requirement("B", "the robot shall always satisfy stopped"))
+    assert fretc("lock", *BY, *ON).status == 0
+    other = ("--reviewer", "B. Okoye", "--role", "assessor", "--comment", "again")
+    assert fretc("lock", "B", *other, "--date", "2026-12-01").status == 0
+    text = (folder / "fretc.lock").read_text()
+    assert text.count("A. Meier") == 1
+    assert text.count("B. Okoye") == 1
+    assert fretc("diff").status == 0
+
+
+def test_a_requirement_that_was_deleted_and_one_that_is_new_are_told(
+    fretc: Fretc, folder: Path
+) -> None:
+    assert fretc("lock", *BY, *ON).status == 0
+    write("requirements/r1.fret", cases.requirement("R2", "the robot shall always satisfy stopped"))
+    run = fretc("diff")
+    assert run.status == 3
+    assert "R2  not reviewed\n" in run.out
+    assert "R1  not there any more\n" in run.out
+
+
+@pytest.mark.parametrize(
+    ("arguments", "told"),
+    [
+        (("lock", *BY, "--date", "22.11.2026"), "F907 `22.11.2026` is no date"),
+        (("lock", *BY, "r1"), "F907 there is no requirement `r1`\nhelp: did you mean `R1`?"),
+        (("lock", "--reviewer", " ", *BY[2:]), "F907 `--reviewer` says nothing"),
+        (("lock", "--reviewer", "A"), "F907 missing option '--role'"),
+        (("diff",), "F901 nothing has been reviewed: there is no `requirements/fretc.lock`"),
+        (("diff", "other.lock"), "F901 nothing has been reviewed: there is no `other.lock`"),
+        (("lock", *BY, "--requirements", "no"), "F901 there is no folder `no`"),
+    ],
+)
+def test_wrong_use_is_told_and_nothing_is_written(
+    fretc: Fretc, folder: Path, arguments: tuple[str, ...], told: str
+) -> None:
+    run = fretc(*arguments)
+    assert run.status == 2
+    assert told in run.err
+    assert not (folder / "fretc.lock").exists()
+
+
+def test_a_lock_that_cannot_be_read_is_not_written_over(fretc: Fretc, folder: Path) -> None:
+    path = write("requirements/fretc.lock", "<<<<<<< ours\n")
+    run = fretc("lock", *BY, *ON)
+    assert run.status == 2
+    assert run.err.startswith("F510 the lock is not TOML")
+    assert Path(path).read_text() == "<<<<<<< ours\n"
+
+
+def test_requirements_with_mistakes_are_not_accepted(fretc: Fretc, folder: Path) -> None:
+    write("requirements/b.fret", "the robot shal always satisfy stopped")
+    assert fretc("lock", *BY, *ON).status == 2
+    assert not (folder / "fretc.lock").exists()
