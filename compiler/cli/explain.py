@@ -60,12 +60,12 @@ def _code(what: str) -> Code | None:
 
 def _explain_code(code: Code, form: str) -> None:
     from compiler.templating import to_json
-    from fretish import codes
+    from fretish import explanations
 
     if form == "json":
-        click.echo(to_json(codes.as_record(code)))
+        click.echo(to_json(explanations.as_record(code)))
     else:
-        click.echo(codes.text(code), nl=False)
+        click.echo(explanations.text(code), nl=False)
 
 
 def _explain_rules(rules: Sequence[Rule], form: str, picture: str | None) -> None:
