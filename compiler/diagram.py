@@ -187,7 +187,8 @@ def _lanes(
     if scope is not None:
         yield Lane(Kind.MODE, expression(scope.mode), "true", _true(trace.m))
     enforced = tuple(
-        Stretch(left, right, goes_on=right >= end) for left, right in intervals(drawn.scope, trace.m)
+        Stretch(left, right, goes_on=right >= end)
+        for left, right in intervals(drawn.scope, trace.m)
     )
     yield Lane(Kind.SCOPE, "", "enforced", enforced)
     if condition is not None:

@@ -38,14 +38,18 @@ def slots(drawn: Diagram) -> tuple[Slot, ...]:
         if drawn.ticks <= _PLAIN or after - first <= _ALIKE:
             found.extend(Slot(t, t) for t in range(first, after))
         else:
-            found.extend((Slot(first, first), Slot(first + 1, after - 2), Slot(after - 1, after - 1)))
+            found.extend(
+                (Slot(first, first), Slot(first + 1, after - 2), Slot(after - 1, after - 1))
+            )
     return tuple(found)
 
 
 def _places(columns: Sequence[Slot], stretch: Stretch) -> tuple[int, int] | None:
     """The first and the last column of a stretch; None where it has no tick."""
     inside = [
-        i for i, slot in enumerate(columns) if stretch.first <= slot.first and slot.last <= stretch.last
+        i
+        for i, slot in enumerate(columns)
+        if stretch.first <= slot.first and slot.last <= stretch.last
     ]
     return (inside[0], inside[-1]) if inside else None
 

@@ -218,6 +218,7 @@ class _Search:
         ways: tuple[tuple[_Waypoint, ...], ...] = (
             (unanswered,),
             (_answered, unanswered),
+            (_waiting, unanswered),
             (lambda move: not move.triggered, unanswered),
         )
         for way in ways:
@@ -290,7 +291,7 @@ class _Search:
     def _followed(self, found: _Run, *, accepted: bool) -> _Run:
         """With a round that can come again and again, all of whose states have the same verdict."""
         start = found.moves[-1].target
-        if self._decided(found, accepted) is not None:
+        if not self.endless or self._decided(found, accepted) is not None:
             return found
         for first in self._moves(start):
             second = self._after(first)

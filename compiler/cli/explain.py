@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -36,11 +37,11 @@ if TYPE_CHECKING:
 def explain(what: str, folder: str, bindings: str | None, form: str, picture: str | None) -> None:
     """Explain a requirement, or what a diagnostic means.
 
-    WHAT is the id of a requirement, a `.fret` file, or the code of a diagnostic (`F203`). Of a
-    requirement: its meaning, its formulas, a picture of when its response matters, and short
-    traces that satisfy and violate it, each with the reason and the tick that decides.
+    WHAT is the id of a requirement, a `.fret` file or folder, or the code of a diagnostic
+    (`F203`). Of a requirement: its meaning, its formulas, a picture of when its response matters,
+    and short traces that satisfy and violate it, each with the reason and the tick that decides.
     """
-    is_file = what == "-" or what.endswith(".fret") or Path(what).is_file()
+    is_file = what == "-" or what.endswith(".fret") or _is_path(what)
     code = None if is_file else _code(what)
     if code is not None:
         if picture is not None:
@@ -49,9 +50,14 @@ def explain(what: str, folder: str, bindings: str | None, form: str, picture: st
         return
     rules = _rules(what, folder, bindings, is_file=is_file)
     if picture is not None and len(rules) > 1:
-        help = f"name one of them: `fretc explain {rules[0].id}`"
-        stop(Diagnostic(Code.BAD_USAGE, f"`{what}` holds several requirements", help=help))
+        mend = f"name one of them: `fretc explain {rules[0].id}`"
+        stop(Diagnostic(Code.BAD_USAGE, f"`{what}` holds several requirements", help=mend))
     _explain_rules(rules, form, picture)
+
+
+def _is_path(what: str) -> bool:
+    """A folder is one only where it is written like a path: an id may be the name of a folder."""
+    return Path(what).is_file() or (os.sep in what and Path(what).is_dir())
 
 
 def _code(what: str) -> Code | None:
@@ -140,16 +146,17 @@ def _unknown(what: str, ids: Sequence[str], folder: str, *, is_file: bool) -> Di
             f"`{what}` holds no requirement",
             help="write one: `whenever p the robot shall within 3 ticks satisfy q`",
         )
-    numbers = [code.number for code in Code]
     if re.fullmatch(r"[Ff]\d+", what):
-        near = suggestion(what, [*ids, *numbers], cutoff=0.5)
-        named = f"no diagnostic has the code `{what.upper()}`, and no requirement that id"
-    else:
-        near = suggestion(what, ids)
-        named = f"no requirement in `{folder}` has the id `{what}`"
+        area = [code.number for code in Code if code.number[1] == what[1]]
+        return Diagnostic(
+            Code.NO_SUCH_REQUIREMENT,
+            f"no diagnostic has the code `{what.upper()}`, and no requirement that id",
+            help=f"there are {', '.join(sorted(area))}" if area else "codes begin with F1 to F9",
+        )
+    near = suggestion(what, ids)
     known = f"there are {', '.join(ids[:8])}{', ...' if len(ids) > 8 else ''}"
     return Diagnostic(
         Code.NO_SUCH_REQUIREMENT,
-        named,
+        f"no requirement in `{folder}` has the id `{what}`",
         help=f"did you mean `{near}`?" if near else known if ids else "name a `.fret` file",
     )
