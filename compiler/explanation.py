@@ -1,4 +1,4 @@
-"""A requirement explained: its meaning, its formulas, its picture, and traces with their reasons."""
+"""A requirement explained: meaning, formulas, picture, and traces with their reasons."""
 
 from __future__ import annotations
 
@@ -74,9 +74,9 @@ def _notes(rule: Rule, reason: str, satisfied: int, violated: int) -> Iterator[s
         yield f"no traces are shown: {reason}"
         return
     if not satisfied:
-        yield "no trace satisfies the sentence"
+        yield "no run that goes on satisfies the sentence"
     if not violated:
-        yield "no trace violates the sentence"
+        yield "no run violates the sentence"
     if satisfied == 1:
         yield "there is one way to satisfy the sentence that is shown; no other was found"
     if violated == 1:

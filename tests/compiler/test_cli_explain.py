@@ -49,22 +49,22 @@ def test_a_requirement_is_explained_by_its_id(fretc: Fretc) -> None:
         "R1  Stop in time\n"
         "  whenever too_close the robot shall within 200 milliseconds satisfy stopped\n"
         "\n"
-        "  meaning      Over the whole run: at every tick at which `too_close` is true, `stopped` must "
-        "be true at that tick or within the next 2 ticks (200 ms) (nothing is required if the run "
-        "ends before that).\n"
+        "  meaning      Over the whole run: at every tick at which `too_close` is true, `stopped` "
+        "must be true at that tick or within the next 2 ticks (200 ms) (nothing is required if the "
+        "run ends before that).\n"
         "  FT           G(too_close -> F[0,2] stopped)\n"
         "  FT, finite   LAST R (too_close -> F[0,2] stopped | F[0,1] LAST)\n"
         "  PT           H(O[2,2](too_close & !stopped) -> O[0,1]((Z FALSE) | stopped))\n"
         "\n"
         "  one run, drawn\n"
-        "    tick                                    0 1 2 3 4 5 …\n"
-        "    enforced                                ━━━━━━━━━━━━→\n"
-        "    too_close: true                         · ─── · · ·\n"
-        "    triggers                                · ▲ ▲ · · ·\n"
-        "    2 ticks (200 ms) from tick 1            · ├╌╌╌┤ · ·\n"
-        "    stopped: true at least once, trigger 1  · ▒▒▒▒▒ · ·\n"
-        "    2 ticks (200 ms) from tick 2            · · ├╌╌╌┤ ·\n"
-        "    stopped: true at least once, trigger 2  · · ▒▒▒▒▒ ·\n"
+        "    tick                                            0 1 2 3 4 5 …\n"
+        "    enforced                                        ━━━━━━━━━━━━→\n"
+        "    too_close: true                                 · ─── · · ·\n"
+        "    triggers                                        · ▲ ▲ · · ·\n"
+        "    2 ticks (200 ms) from tick 1                    · ├╌╌╌┤ · ·\n"
+        "    stopped: must be true at least once, trigger 1  · ▒▒▒▒▒ · ·\n"
+        "    2 ticks (200 ms) from tick 2                    · · ├╌╌╌┤ ·\n"
+        "    stopped: must be true at least once, trigger 2  · · ▒▒▒▒▒ ·\n"
         "\n"
         "  ✔ satisfied: triggered at tick 0, `stopped` is true at tick 0, at once; the bound is 2 "
         "ticks (200 ms)\n"
@@ -189,11 +189,13 @@ def test_a_long_bound_is_folded(fretc: Fretc) -> None:
 
 def test_what_has_no_trace_says_so(fretc: Fretc) -> None:
     write("a.fret", "the robot shall always satisfy q | !q")
-    assert "note: no trace violates the sentence\n" in fretc("explain", "a.fret").out
+    assert "note: no run violates the sentence\n" in fretc("explain", "a.fret").out
     write("b.fret", "whenever persisted(2, p) robot shall always satisfy q")
     run = fretc("explain", "b.fret")
     assert run.status == 0
-    assert "note: " in run.out
+    assert "note: no traces are shown: `persisted` speaks of other ticks" in run.out
+    write("c.fret", "the robot shall always satisfy q & !q")
+    assert "note: no run that goes on satisfies the sentence\n" in fretc("explain", "c.fret").out
 
 
 def test_a_name_that_is_none_gets_a_suggestion(fretc: Fretc) -> None:

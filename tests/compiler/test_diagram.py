@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 from dataclasses import asdict
-from itertools import product
+from itertools import pairwise, product
 from xml.etree import ElementTree
 
 import pytest
@@ -133,7 +133,7 @@ def test_any_bound_gives_a_picture_of_few_columns(n: int) -> None:
         assert (columns[0].first, columns[-1].last) == (0, picture.ticks - 1)
         laid = drawing(picture)
         places = sorted((x - 3.5 * len(label), x + 3.5 * len(label)) for x, label in laid.labels)
-        assert all(left[1] <= right[0] for left, right in zip(places, places[1:], strict=False))
+        assert all(left[1] <= right[0] for left, right in pairwise(places))
         assert max(map(len, text(picture).splitlines())) <= 160
 
 
@@ -141,18 +141,18 @@ def test_a_picture_in_characters() -> None:
     sentence = "in m mode, when near robot shall within 200 milliseconds satisfy stopped"
     picture = diagram(rule(sentence, clock=Clock(100_000_000)))
     assert text(picture) == (
-        "tick                          0 1 2 3 4 5 6 7 8 9 …\n"
-        "m: true                       · · ─────────── · ·\n"
-        "enforced                      · · ━━━━━━━━━━━ · ·\n"
-        "near: true                    · · · ─── · · · · ·\n"
-        "triggers                      · · · ▲ · · · · · ·\n"
-        "2 ticks (200 ms) from tick 3  · · · ├╌╌╌┤ · · · ·\n"
-        "stopped: true at least once   · · · ▒▒▒▒▒ · · · ·"
+        "tick                                 0 1 2 3 4 5 6 7 8 9 …\n"
+        "m: true                              · · ─────────── · ·\n"
+        "enforced                             · · ━━━━━━━━━━━ · ·\n"
+        "near: true                           · · · ─── · · · · ·\n"
+        "triggers                             · · · ▲ · · · · · ·\n"
+        "2 ticks (200 ms) from tick 3         · · · ├╌╌╌┤ · · · ·\n"
+        "stopped: must be true at least once  · · · ▒▒▒▒▒ · · · ·"
     )
     assert words(picture) == (
-        "A run of ticks 0 to 9. `m` is true at ticks 2 to 7. The sentence is enforced at ticks 2 to "
-        "7. `near` is true at ticks 3 to 4. It is triggered at tick 3. `stopped` must be true at "
-        "least once, at ticks 3 to 5. The run goes on."
+        "A run of ticks 0 to 9. `m` is true at ticks 2 to 7. The sentence is enforced at ticks 2 "
+        "to 7. `near` is true at ticks 3 to 4. It is triggered at tick 3. `stopped` must be true "
+        "at least once, at ticks 3 to 5. The run goes on."
     )
 
 

@@ -1,4 +1,4 @@
-"""Traces that explain a sentence: right, shortest, different, and decided when a monitor says so."""
+"""Traces that explain a sentence: right, short, different, and decided when a monitor says so."""
 
 from functools import cache
 from itertools import product
@@ -82,7 +82,7 @@ def is_doomed(drawn: Template, rows: dict[str, list[bool]]) -> bool:
 @pytest.mark.parametrize("scope", meaning.SCOPES)
 def test_a_monitor_decides_at_the_same_tick(scope: str) -> None:
     for drawn in every(scope, (2,)):
-        made, told = found(drawn.sentence)
+        _, told = found(drawn.sentence)
         machine = monitor(drawn.sentence)
         for example in (*told.satisfied, *told.violated):
             rows = columns(told.atoms, example, 1)
@@ -112,9 +112,7 @@ def test_spot_judges_endless_traces_alike(scope: str) -> None:
             assert said is example.satisfied, (drawn, example)
 
 
-def test_within_is_answered_at_once_and_at_the_deadline_and_broken_by_silence_and_lateness() -> (
-    None
-):
+def test_within_is_answered_at_once_or_at_the_deadline_and_broken_by_silence_or_late() -> None:
     _, told = found("whenever p the sw shall within 2 ticks satisfy q")
     yes, no = True, False
     assert told.atoms == ("p", "q")
