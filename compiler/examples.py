@@ -208,7 +208,7 @@ class _Search:
         end = run.moves[-1]
         satisfied = end.target != BROKEN and self.words.final[end.target]
         decided = self.words.decided(run, satisfied=satisfied)
-        loop = run.loop if decided is None and self.words.endless else ()
+        loop = run.loop if decided is None else ()
         return Example(
             satisfied,
             tuple(self.letters[move.letter] for move in run.moves),
@@ -225,7 +225,7 @@ def _different(search: _Search, runs: Iterator[Run], wanted: int) -> Iterator[Ex
         if len(seen) == wanted:
             return
         found = search.example(run)
-        left_open = run.is_open and search.words.endless and found.decided is None
+        left_open = run.is_open and not search.words.needs_end and found.decided is None
         if left_open:
             spare = spare or found
         elif run.behaviour not in seen:

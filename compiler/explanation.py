@@ -78,9 +78,9 @@ def _notes(rule: Rule, reason: str, satisfied: int, violated: int) -> Iterator[s
     if not violated:
         yield "no run violates the sentence"
     if satisfied == 1:
-        yield "there is one way to satisfy the sentence that is shown; no other was found"
+        yield "no other way to satisfy the sentence was found"
     if violated == 1:
-        yield "there is one way to violate the sentence that is shown; no other was found"
+        yield "no other way to violate the sentence was found"
     if rule.sentence.probability is not None:
         yield "a run counts as one that satisfies or violates; the probability is over many runs"
     if isinstance(rule.sentence.timing, s.Finally) and _ends_with_run(rule):
@@ -125,7 +125,7 @@ def _shown(rule: Rule, letters: Mapping[Valuation, Any], example: Example) -> Sh
         example.satisfied,
         tuple(_rows(example)),
         example.decided,
-        why(rule, prefix, loop, ends=ends),
+        why(rule, prefix, loop, ends=ends, satisfied=example.satisfied),
     )
 
 

@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import groupby
-from typing import NamedTuple, TypeVar
+from typing import NamedTuple
 
 from compiler import counters
 from compiler.counters import BROKEN, Automaton, Letter, State, accepts
@@ -29,6 +30,8 @@ class Move(NamedTuple):
         return self.after is not None and self.after.counted != 0
 
 
+_Place = tuple[int, int]
+"""A state, and how many waypoints lie behind."""
 Waypoint = Callable[[Move], bool]
 """An event that a run comes by."""
 
@@ -73,11 +76,11 @@ class Words:
     ) -> Run | None:
         """The first shortest run that comes by all waypoints in their order, one tick for each.
 
-        A waypoint may be the tick of the one before it. The run ends with the last waypoint, at a
-        tick that `ending` holds of; without waypoints, with the first such tick.
+        Two different waypoints may be one tick. The run ends with the first tick from the last
+        waypoint on that `ending` holds of.
         """
         start = (0, 0)
-        origins: dict[tuple[int, int], tuple[tuple[int, int], Move] | None] = {start: None}
+        origins: dict[_Place, tuple[_Place, Move] | None] = {start: None}
         waiting = deque([start])
         while waiting:
             here = waiting.popleft()
@@ -108,15 +111,17 @@ class Words:
             yield Move(state, letter, after, target, happens.enforced, happens.triggered)
 
     def followed(self, found: Run, *, accepted: bool) -> Run:
-        """With a round that can come again and again, all of whose states have the same verdict."""
+        """With a tick that can come again and again, without a change of the verdict."""
         start = found.moves[-1].target
-        if not self.endless or self.decided(found, satisfied=accepted) is not None:
+        if self.decided(found, satisfied=accepted) is not None:
             return found
+        if self.needs_end and not accepted:
+            return found  # an interval that never ends has no last tick
         for first in self._moves(start):
             second = self._after(first)
             if second is not None and self._stays(first, second, accepted=accepted):
                 return Run(found.moves, (first,))
-        return Run(found.moves, self._round(start, accepted=accepted))
+        return found
 
     def _after(self, move: Move) -> Move | None:
         """The same letter once more."""
@@ -128,46 +133,45 @@ class Words:
         """Whether the letter leads into a loop of its own with that verdict."""
         return first.target == second.target and self.final[first.target] is accepted
 
-    def _round(self, start: int, *, accepted: bool) -> tuple[Move, ...]:
-        """A shortest way back to a state; empty where there is none."""
-        origins: dict[int, tuple[int, Move] | None] = {start: None}
-        waiting = deque([start])
-        while waiting:
-            here = waiting.popleft()
-            for move in self._moves(here):
-                if move.target == BROKEN or self.final[move.target] is not accepted:
-                    continue
-                if move.target == start:
-                    return (*_path(origins, here), move)
-                if move.target not in origins:
-                    origins[move.target] = (here, move)
-                    waiting.append(move.target)
-        return ()
-
     @property
-    def endless(self) -> bool:
-        """Whether the end of a run counts like its going on; `finally` needs an end."""
-        return self.template.timing is not s.Finally or self.template.scope not in _OPEN
+    def needs_end(self) -> bool:
+        """Whether only the end of an interval can violate the sentence."""
+        return self.template.timing is s.Finally
 
     def decided(self, run: Run, *, satisfied: bool) -> int | None:
-        """The first tick after which no continuation changes the verdict; None: there is none."""
-        if not self.endless:
-            return None
-        verdict = "satisfied" if satisfied else "violated"
+        """The first tick after which no continuation changes the verdict; None: there is none.
+
+        Of a satisfied run no end may change it either: `finally` needs nothing of endless runs.
+        """
         for tick, move in enumerate(run.moves):
-            if move.target == BROKEN or self.automaton.verdicts[move.target] == verdict:
+            if move.target == BROKEN:
+                return tick
+            verdict = self.automaton.verdicts[move.target]
+            if satisfied and verdict == "satisfied" and move.target not in self._may_fail:
+                return tick
+            if not satisfied and verdict == "violated":
                 return tick
         return None
 
+    @cached_property
+    def _may_fail(self) -> set[int]:
+        """The states from which a run can come to an end that FRET judges as violated."""
+        before: list[list[int]] = [[] for _ in self.automaton.moves]
+        for state, row in enumerate(self.automaton.moves):
+            for after in set(row) - {BROKEN}:
+                before[after].append(state)
+        rows = enumerate(self.automaton.moves)
+        waiting = [state for state, row in rows if BROKEN in row or not self.final[state]]
+        found = set(waiting)
+        while waiting:
+            for state in before[waiting.pop()]:
+                if state not in found:
+                    found.add(state)
+                    waiting.append(state)
+        return found
 
-_OPEN = (None, s.ScopeKind.AFTER, s.ScopeKind.ONLY_BEFORE)
-"""Scopes whose interval ends with the run."""
 
-
-_Node = TypeVar("_Node")
-
-
-def _path(origins: Mapping[_Node, tuple[_Node, Move] | None], place: _Node) -> list[Move]:
+def _path(origins: Mapping[_Place, tuple[_Place, Move] | None], place: _Place) -> list[Move]:
     """The moves that led to a place."""
     moves: list[Move] = []
     origin = origins[place]
