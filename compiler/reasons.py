@@ -184,11 +184,11 @@ class _Teller:
             return f"{self._name} is {value} at tick {hit}, {later}, and {self._stop} not before"
         if timing is s.Next:
             return "the last tick of the scope: nothing is required"
-        value = timing is not s.For
-        hit = self._hit(window.trigger, value=value)
+        wanted = timing is not s.For
+        hit = self._hit(window.trigger, value=wanted)
         if hit is not None and hit <= window.right:
             later = _later(hit - window.trigger)
-            return f"{self._name} is {str(value).lower()} at tick {hit}, {later}"
+            return f"{self._name} is {str(wanted).lower()} at tick {hit}, {later}"
         deadline = window.trigger + self.counted.ticks + (timing is s.After)
         return (
             f"and the scope ends at tick {window.right}, before the deadline at tick {deadline}: "
