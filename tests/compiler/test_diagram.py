@@ -9,6 +9,7 @@ import pytest
 
 from compiler.diagram import Diagram, Kind, Stretch, diagram, words
 from compiler.drawing import drawing, shortened, slots, svg, text
+from compiler.templating import render
 from compiler.windows import Window
 from fretish.clock import Clock
 from tests import meaning
@@ -183,3 +184,11 @@ def test_two_pictures_in_a_page_share_no_name() -> None:
 def test_a_text_is_shortened_in_its_middle() -> None:
     assert shortened("abcdefgh", 8) == "abcdefgh"
     assert shortened("abcdefghi", 8) == "abc…fghi"
+
+
+def test_a_page_can_hold_the_drawing_and_escapes_a_name_once() -> None:
+    picture = diagram(rule("whenever a & b sw shall immediately satisfy x < 3"))
+    told = render("diagram/diagram.svg.j2", drawing=asdict(drawing(picture, "in-report")))
+    assert told.count("a &amp; b") >= 1
+    assert "amp;amp" not in told
+    assert 'id="in-report-title"' in told
