@@ -71,7 +71,7 @@ class Lane:
     def told(self) -> str:
         """All that is written beside the lane but its name."""
         link = "or else " if self.otherwise else ""
-        whose = "" if self.trigger is None else f", trigger {self.trigger}"
+        whose = "" if self.trigger is None else f", trigger at tick {self.trigger}"
         return f"{link}{self.note}{whose}"
 
 
