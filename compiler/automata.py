@@ -7,7 +7,7 @@ to its files may depend on this room.
 from __future__ import annotations
 
 import warnings
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 from compiler import printing
@@ -40,6 +40,34 @@ def same_language(left: str, right: str) -> bool:
     """
     spot = _spot()
     return bool(spot.are_equivalent(spot.formula(left), spot.formula(right)))
+
+
+def holds_on(
+    formula: Formula, prefix: Sequence[Mapping[str, bool]], loop: Sequence[Mapping[str, bool]]
+) -> bool:
+    """Whether an endless trace satisfies a future-time formula, as Spot's automaton tells it.
+
+    Args:
+        formula: its bounds are small, for Spot expands them; it has no `LAST`.
+        prefix: the values of its atoms at the first ticks.
+        loop: at least one tick, which come again and again.
+
+    Source: Duret-Lutz et al., CAV 2022 (`twa_word`).
+    """
+    spot = _spot()
+    parts = [*map(_letter, prefix), f"cycle{{{'; '.join(map(_letter, loop))}}}"]
+    word = spot.parse_word("; ".join(parts), spot.make_bdd_dict())
+    automaton = spot.formula(printing.future(formula)).translate(dict=word.get_dict())
+    return bool(word.as_automaton().intersects(automaton))
+
+
+def _letter(values: Mapping[str, bool]) -> str:
+    """A conjunction of literals, in Spot's syntax."""
+    literals = [
+        f"{'' if value else '!'}{printing.text(Atom(name), printing.SPOT)}"
+        for name, value in values.items()
+    ]
+    return " & ".join(literals) or "1"
 
 
 _PROVABLE_BOUND = 12

@@ -289,6 +289,23 @@ def _triggers(condition: ConditionKind | None, p: bool, *, first: bool, held: bo
             assert_never(condition)
 
 
+class Happening(NamedTuple):
+    """What one tick is, to the sentence."""
+
+    enforced: bool
+    """The tick lies in an interval."""
+    triggered: bool
+    """A demand begins at it."""
+
+
+def happening(template: Template, state: State, m: bool, p: bool) -> Happening:
+    """What a tick with mode `m` and condition `p` is, after `state`."""
+    if _entered(template.scope, state.phase, m) not in _ENFORCED:
+        return Happening(enforced=False, triggered=False)
+    first = state.phase not in _ENFORCED
+    return Happening(True, _triggers(template.condition, p, first=first, held=state.held))
+
+
 def accepts(template: Template, state: State) -> bool:
     """FRET's verdict on a finite trace that ends here: an open interval ends with it."""
     return state.counted <= 0 or _demand(template)[0] not in _OWED_AT_THE_END

@@ -11,7 +11,6 @@ from __future__ import annotations
 
 import hashlib
 import json
-import tomllib
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from typing import Any
@@ -20,7 +19,7 @@ from compiler import printing
 from compiler.evidence import Evidence, Result
 from compiler.products import Product
 from compiler.products import products as _made
-from compiler.project import Project
+from compiler.project import Project, bound_to_logs
 from compiler.rule import Rule
 from fretish.documents import Requirement
 
@@ -96,9 +95,7 @@ class _Chain:
         self._prints: dict[Node, str] = {}
         self._links: dict[Link, None] = {}
         declared = project.declarations
-        self._bindings: Mapping[str, Any] = (
-            tomllib.loads(declared.source.text) if declared is not None else {}
-        )
+        self._bindings: Mapping[str, Any] = bound_to_logs(declared) if declared is not None else {}
 
     def of(
         self,

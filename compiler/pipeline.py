@@ -105,16 +105,27 @@ def _glossary(declarations: Declarations | None) -> Mapping[str, Variable]:
     if declarations is None:
         return {}
     bound = {
-        name: Variable(name, type="boolean", role=str(p.role), text=p.text, modality=p.modality)
+        name: Variable(
+            name,
+            type="boolean",
+            role=str(p.role),
+            text=p.text,
+            modality=p.modality,
+            action=p.action,
+        )
         for name, p in declarations.propositions.items()
     }
     named = {
-        name: replace(variable, modality=bound[name].modality)
-        if name in bound and variable.modality is Modality.BELIEF
-        else variable
+        name: _with_bound(variable, bound[name]) if name in bound else variable
         for name, variable in declarations.variables.items()
     }
     return {**bound, **named}
+
+
+def _with_bound(variable: Variable, bound: Variable) -> Variable:
+    """What FRET's glossary says of a name, and what only its binding says."""
+    modality = bound.modality if variable.modality is Modality.BELIEF else variable.modality
+    return replace(variable, modality=modality, action=variable.action or bound.action)
 
 
 def _free_text(requirement: Requirement) -> Diagnostic:

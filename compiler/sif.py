@@ -76,7 +76,7 @@ def sif(rule: Rule) -> Sif | Diagnostic:
     believed = [name for name in responses if _is_belief(rule, name)]
     released = len(terms) == len(terms[0]) == len(responses) == len(believed) == 1
     answer = tuple(deed for name in responses for deed in _answer(rule, name))
-    spoilt = tuple(Action(f"do_{name}") for name in believed)
+    spoilt = tuple(Action(_action(rule, name)) for name in believed)
     last = Guard(False, believed[-1]) if believed and not released else None
     plans, mutant = (
         (*_reactions(terms, deeds, last), *(_releases(terms, responses) if released else ()))
@@ -148,9 +148,10 @@ def _wrong_name(
         if _modality(rule, name) not in (Modality.BELIEF, Modality.DONE):
             mend = 'an agent brings about a belief ("B") or does an action ("D")'
             return not_expressible(_TARGET, rule, f"the response `{name}`, neither,", mend)
-        if _modality(rule, name) is Modality.DONE and name in _BUILT_IN:
-            mend = "MCAPL has an action of that name: use another"
-            return not_expressible(_TARGET, rule, f"the action `{name}`", mend)
+        action = name if _modality(rule, name) is Modality.DONE else _action(rule, name)
+        if action in _BUILT_IN or action in RESERVED:
+            mend = "MCAPL has an action or a word of that name: use another"
+            return not_expressible(_TARGET, rule, f"the action `{action}`", mend)
     reserved = next((n for n in (*percepts, *responses) if n in RESERVED), None)
     if reserved is None:
         return None
@@ -171,7 +172,13 @@ def _answer(rule: Rule, name: str) -> tuple[Deed, ...]:
     """An action, and the belief that it was done; the action itself where that is what is meant."""
     if not _is_belief(rule, name):
         return (Action(name),)
-    return Action(f"do_{name}"), Change("+", name)
+    return Action(_action(rule, name)), Change("+", name)
+
+
+def _action(rule: Rule, name: str) -> str:
+    """What the agent does to make it true, as the bindings call it."""
+    declared = rule.glossary.get(name)
+    return (declared.action if declared else "") or f"do_{name}"
 
 
 def _reactions(

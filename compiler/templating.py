@@ -26,7 +26,7 @@ def render(name: str, **values: Any) -> str:
     """Render one template; a name that it uses and does not get is a mistake, never an empty text.
 
     Args:
-        name: its path below the templates; `.html.j2` is autoescaped.
+        name: its path below the templates; `.html.j2` and `.svg.j2` are autoescaped.
         values: what it places.
     """
     return _environment().get_template(name).render(**values)
@@ -37,7 +37,7 @@ def _environment() -> Environment:
     environment = Environment(
         loader=FileSystemLoader(template_root()),
         undefined=StrictUndefined,
-        autoescape=select_autoescape(enabled_extensions=("html.j2",), default=False),
+        autoescape=select_autoescape(enabled_extensions=("html.j2", "svg.j2"), default=False),
         trim_blocks=True,
         lstrip_blocks=True,
         keep_trailing_newline=True,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from math import isfinite
 from typing import Any
@@ -35,7 +36,7 @@ _CLOCK = ("time", "tick", "end", "rounding")
 _SIGNAL = (
     "path", "type", "reduce", "unit", "valid", "invalid", "max_age", "footprint", "sensor",
 )  # fmt: skip
-_PROPOSITION = ("text", "expr", "role", "agg", "on_unknown", "kind", "modality")
+_PROPOSITION = ("text", "expr", "role", "agg", "on_unknown", "kind", "modality", "action")
 _INVALID = {
     "nan": "nan",
     "+inf": "positive_infinity",
@@ -336,6 +337,7 @@ class _Reader(Fields):
             aggregate=self._choice(table, (*at, "agg"), Aggregate, Aggregate.LAST),
             on_unknown=self._on_unknown(table, at),
             modality=self._modality(table, at),
+            action=self._action(table, at),
             span=self.tables.value(*at, "expr"),
         )
 
@@ -369,7 +371,13 @@ class _Reader(Fields):
             for key in ("component", "type", "role", "text")
         }
         kept = self._field(table, (*at, "fret"), dict, "a table of texts") or {}
-        return Variable(name, **texts, fret=kept, modality=self._modality(table, at))
+        return Variable(
+            name,
+            **texts,
+            fret=kept,
+            modality=self._modality(table, at),
+            action=self._action(table, at),
+        )
 
     def _modality(self, table: Mapping[str, Any], at: tuple[str, ...]) -> Modality:
         if table.get("modality") != "P":
@@ -382,6 +390,18 @@ class _Reader(Fields):
             'say what the agent believes: `modality = "B"`',
         )
         return Modality.BELIEF
+
+    def _action(self, table: Mapping[str, Any], at: tuple[str, ...]) -> str:
+        action = table.get("action", "")
+        if action == "" or (isinstance(action, str) and _ACTION.fullmatch(action)):
+            return str(action)
+        self._say(
+            Code.BAD_BINDING_FIELD,
+            "`action` must be a name of Gwendolen: a small letter, then letters, digits and `_`",
+            self.tables.value(*at, "action"),
+            'write `action = "stop_moving"`',
+        )
+        return ""
 
     def _kind(self, table: Mapping[str, Any], at: tuple[str, ...]) -> str:
         kind = table.get("kind", "")
@@ -412,7 +432,8 @@ class _Reader(Fields):
         return None
 
 
-_VARIABLE = ("component", "type", "role", "text", "fret", "modality")
+_VARIABLE = ("component", "type", "role", "text", "fret", "modality", "action")
+_ACTION = re.compile(r"[a-z][A-Za-z0-9_]*")
 
 
 def _is_numbers(value: object, count: int) -> bool:

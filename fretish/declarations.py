@@ -162,6 +162,8 @@ class Proposition:
     aggregate: Aggregate = Aggregate.LAST
     on_unknown: bool | None = None
     modality: Modality = Modality.BELIEF
+    action: str = ""
+    """What an agent does to make it true; empty: `do_` and its name."""
     span: Span | None = field(default=None, compare=False, repr=False)
 
     @property
@@ -184,6 +186,8 @@ class Variable:
     fret: Mapping[str, Any] = field(default_factory=dict)
     """What FRET keeps of it and fretc does not use."""
     modality: Modality = Modality.BELIEF
+    action: str = ""
+    """What an agent does to make it true; empty: `do_` and its name."""
 
 
 class Form(StrEnum):

@@ -117,6 +117,7 @@ class Code(Enum):
     UNCOVERED_HAZARD = ("F522", "no requirement is there for a hazard")
     NO_PARENT = ("F523", "a requirement is there for no reason that is named")
     UNREACHABLE_PLAN = ("F525", "a planned method can give no result")
+    NO_SUCH_REQUIREMENT = ("F515", "no requirement and no diagnostic has that name")
 
     NOT_EXPRESSIBLE = ("F601", "the target cannot express the requirement")
     BAD_MONITOR = ("F602", "the file is no generated monitor")

@@ -29,7 +29,8 @@ def outline_clearance(ranges: NDArray[np.floating], lidar: Lidar, outline: Box) 
     Returns:
         0 for a return inside the outline and for one too near to measure (-inf, or a positive
         range below `range_min`); +inf if the scan saw nothing although it looked; NaN if
-        nothing is known, because no beam gave an answer. Single NaN beams are passed over.
+        nothing is known, because no beam gave an answer. Single NaN beams are passed over, and so
+        are finite ranges beyond `range_max`.
 
     Source: REP 117, Informational Distance Measurements.
     """
@@ -38,7 +39,7 @@ def outline_clearance(ranges: NDArray[np.floating], lidar: Lidar, outline: Box) 
     points = lidar.points(ranges)
     if len(points.x):
         return float(outline.distance(points.x, points.y).min())
-    return float("inf") if np.any(ranges > np.float32(lidar.range_max)) else float("nan")
+    return float("inf") if np.any(np.isposinf(ranges)) else float("nan")
 
 
 class Decision(Protocol):

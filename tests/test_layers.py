@@ -32,6 +32,7 @@ DOORS = {
             "bind",
             "check",
             "evidence",
+            "explain",
             "group",
             "output",
             "progress",

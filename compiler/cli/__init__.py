@@ -18,6 +18,7 @@ from compiler import __version__
 from compiler.cli.bind import bind
 from compiler.cli.check import check
 from compiler.cli.evidence import verify_evidence
+from compiler.cli.explain import explain
 from compiler.cli.group import DEFAULT, Commands
 from compiler.cli.output import BAD, INTERRUPTED, SHOWN, not_written, say, say_line
 from compiler.cli.reports import report
@@ -43,6 +44,7 @@ for _command in (
     compile_,
     fmt,
     import_,
+    explain,
     info,
     bind,
     check,

@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
@@ -140,6 +140,7 @@ ranges = st.lists(
 
 
 @given(ranges)
+@example([NAN] * 7 + [13.0])  # beyond the range of the sensor, and no +inf
 def test_while_nothing_is_open_it_decides_as_the_threshold_by_hand(values: list[float]) -> None:
     compiled, by_hand = safety_function(), TooClose(LIDAR)
     for decision in (compiled, by_hand):

@@ -52,11 +52,11 @@ def test_too_near_to_measure_leaves_no_clearance() -> None:
 
 def test_nothing_in_reach_is_known_to_be_free() -> None:
     assert clearance(scan(INF)) == INF
-    assert clearance(scan(12.5)) == INF
+    assert clearance(scan(12.5, b10=INF)) == INF
 
 
 @pytest.mark.parametrize(
-    "ranges", [scan(NAN), scan(0.0), scan(-1.0), np.zeros(0, np.float32)], ids=str
+    "ranges", [scan(NAN), scan(12.5), scan(0.0), scan(-1.0), np.zeros(0, np.float32)], ids=str
 )
 def test_no_answer_from_any_beam_is_unknown(ranges: NDArray[np.float32]) -> None:
     assert math.isnan(clearance(ranges))

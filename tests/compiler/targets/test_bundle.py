@@ -296,3 +296,27 @@ def test_the_command_writes_a_folder_for_each_requirement(fretc: Fretc, tmp_path
     (tmp_path / "A-1.fret").write_text("whenever a the ag shall always satisfy r")
     assert fretc("A-1.fret", "--emit", "ajpf-bundle", "-o", "other").status == 2
     assert not (tmp_path / "other").exists()
+
+
+# Actions ----------------------------------------------------------------------------------------
+
+NAMED = '[variable.too_close]\n[variable.stopped]\naction = "{}"\n'
+
+
+def test_the_bindings_name_the_action_of_agent_and_mutant() -> None:
+    files = bundle(rule(R1, bindings=NAMED.format("stop_moving")))
+    released = "-too_close : {True} <- undo_stopped, -stopped;"
+    assert plans(files) == ["+too_close : {True} <- stop_moving, +stopped;", released]
+    assert plans(files, "SIF_mutant.gwen") == ["+too_close : {True} <- stop_moving;", released]
+
+
+@pytest.mark.parametrize("name", ["print", "achieve"])
+def test_an_action_that_means_something_else_is_refused(name: str) -> None:
+    told = refused(R1, NAMED.format(name))
+    assert f"the action `{name}`" in told.message
+
+
+def test_an_action_is_a_name_of_gwendolen() -> None:
+    found, (said,) = read_bindings(Source("bindings.toml", NAMED.format("Stop-it")))
+    assert found is None
+    assert said.message.startswith("`action` must be a name of Gwendolen")

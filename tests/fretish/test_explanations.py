@@ -1,0 +1,80 @@
+"""Every code is explained, and the examples do what they say."""
+
+import pytest
+
+from compiler.pipeline import duplicates, formalize
+from compiler.targets import monitor
+from fretish.bindings import read_bindings
+from fretish.declarations import Declarations
+from fretish.diagnostic import Code
+from fretish.documents import requirements
+from fretish.explanations import Explained, as_record, explanations, text
+from fretish.source import Source
+
+EXAMPLES = {number: each for number, each in explanations().items() if each.wrong}
+
+
+def given(kind: str, declared: str, example: str) -> set[str]:
+    """The codes of all that is said of an example."""
+    if kind == "bindings":
+        return {d.code.number for d in read_bindings(Source("bindings.toml", example))[1]}
+    beside: Declarations | None = None
+    if declared:
+        beside, wrong = read_bindings(Source("bindings.toml", declared))
+        assert beside is not None, wrong
+    written, said = requirements(Source("r.fret", example.strip("\n")))
+    found = [*said, *duplicates(written)]
+    for requirement in written:
+        rule, remarks = formalize(requirement, beside)
+        found.extend(remarks)
+        remark = monitor.remark(rule) if rule else None
+        found.extend([remark] if remark else [])
+    return {diagnostic.code.number for diagnostic in found}
+
+
+def test_every_code_is_explained_and_nothing_else() -> None:
+    assert set(explanations()) == {code.number for code in Code}
+
+
+@pytest.mark.parametrize("number", EXAMPLES)
+def test_an_example_gives_its_code_and_the_mended_one_gives_none(number: str) -> None:
+    example = EXAMPLES[number]
+    assert number in given(example.kind, example.declared, example.wrong)
+    assert not given(example.kind, example.declared, example.mended)
+
+
+@pytest.mark.parametrize("code", Code, ids=lambda code: code.number)
+def test_an_explanation_is_short_and_made_of_sentences(code: Code) -> None:
+    explained = explanations()[code.number]
+    for part in (explained.cause, explained.mend):
+        assert part == " ".join(part.split())
+        assert part[-1] in ".?"
+    assert all(len(line) <= 100 for line in text(code).splitlines())
+    assert as_record(code)["cause"] == explained.cause
+
+
+def test_the_text_of_a_code() -> None:
+    assert text(Code.NEVER_DECIDED) == (
+        "F203  no run can ever decide the requirement\n"
+        "\n"
+        "  Whatever has happened, the response may still come: no run, however long, violates the\n"
+        "  requirement, and none confirms it. A monitor of it can never say more than `pending`, "
+        "so it\n"
+        "  protects nobody while the system runs.\n"
+        "\n"
+        "  To mend it: State a bound.\n"
+        "\n"
+        "  wrong:\n"
+        "    whenever too_close the robot shall eventually satisfy stopped\n"
+        "\n"
+        "  mended:\n"
+        "    whenever too_close the robot shall within 2 ticks satisfy stopped\n"
+    )
+
+
+def test_a_code_without_an_example_has_none_in_its_record() -> None:
+    assert as_record(Code.INTERNAL)["example"] is None
+    assert explanations()["F999"] == Explained(
+        "fretc met a state that it does not expect. No verdict was given.",
+        "Report it with the input; `FRETC_TRACEBACK=1` shows where it comes from.",
+    )
