@@ -69,6 +69,7 @@ DOORS = {
         "simulation/recording.py",
     },
     "fsspec": {"monitors/inputs.py"},
+    "z3": {"compiler/bounds.py"},
     "yaml": {"compiler/parents.py", "compiler/report/forms/gsn.py", "monitors/folders.py"},
     "mcap_protobuf": {"monitors/protobuf.py"},
     "mcap_ros1": {"monitors/decoding.py"},
