@@ -8,7 +8,7 @@ from pathlib import PurePath
 
 from compiler import bounds, closedloop, proofs
 from compiler import confined as processes
-from compiler.agent_layer import checked
+from compiler.agent_layer import agent_evidence, checked
 from compiler.closedloop import Named, Setup
 from compiler.confined import Limits, Stopped
 from compiler.contracts import contracts
@@ -17,7 +17,8 @@ from compiler.interception import options
 from compiler.project import Project
 from compiler.provers import with_crosshair, with_dafny
 from compiler.rule import Rule
-from compiler.targets import dafny, interceptor, monitor
+from compiler.sif import sif
+from compiler.targets import ajpf, bundle, dafny, interceptor, monitor
 from compiler.targets.target import stem
 from compiler.verification import Evidence, Layer, NotChecked
 from fretish.diagnostic import Diagnostic
@@ -131,14 +132,26 @@ def _dafny(rule: Rule, project: Project, limits: Limits) -> Iterator[Evidence]:
 
 
 def _agent(project: Project, asked: Request) -> tuple[Evidence, ...] | Diagnostic:
+    """The agent that is named; else of each requirement the one that its bundle has."""
     claim = "the agent has its properties"
     if asked.agent is None or asked.properties is None:
-        reason = "no agent is named (`--agent FILE.gwen --properties FILE.psl`)"
-        return (_unknown("agent", Layer.AGENT, claim, reason),)
+        return tuple(line for rule in project.rules for line in _bundle(rule, claim, asked.limits))
     found = processes.confined(asked.limits, checked, asked.agent, asked.properties, asked.percepts)
     if isinstance(found, Stopped):
         named = _named(asked.agent)
         return (_unknown("agent", Layer.AGENT, claim, found.reason, named),)
+    return found
+
+
+def _bundle(rule: Rule, claim: str, limits: Limits) -> tuple[Evidence, ...]:
+    refused = ajpf.refusal(rule)
+    made = sif(rule) if refused is None else refused
+    if isinstance(made, Diagnostic):
+        return (_unknown(rule.id, Layer.AGENT, claim, f"there is none: {made.message}"),)
+    texts = bundle.texts(rule, made)
+    found = processes.confined(limits, agent_evidence, rule, texts, made.percepts)
+    if isinstance(found, Stopped):
+        return (_unknown(rule.id, Layer.AGENT, claim, found.reason),)
     return found
 
 

@@ -49,7 +49,7 @@ def refusal(rule: Rule, options: Options = DEFAULT) -> Diagnostic | None:
 def _not_kept(rule: Rule, made: Sif, options: Options) -> Diagnostic | None:
     from compiler.agent_layer import agent_evidence
 
-    for line in agent_evidence(rule, _texts(rule, made, options), made.percepts):
+    for line in agent_evidence(rule, texts(rule, made, options), made.percepts):
         if isinstance(line.result, Proved):
             continue
         result = line.result
@@ -73,14 +73,14 @@ def emit(rules: Sequence[Rule], options: Options = DEFAULT) -> tuple[Artifact, .
 def _bundle(rule: Rule, options: Options) -> Iterator[Artifact]:
     made = sif(rule)
     assert isinstance(made, Sif), f"{rule.id} was to be refused"
-    texts = {
-        **_texts(rule, made, options),
+    made_of = {
+        **texts(rule, made, options),
         **_configuration(rule, made, options),
         "run.py": files("compiler").joinpath("ajpf_run.py").read_text(encoding="utf-8"),
         "README.md": render("ajpf-bundle/README.md.j2", id=rule.id),
     }
-    manifest = f"{to_json(_manifest(rule, made, options, texts))}\n"
-    for name, text in {**texts, "manifest.json": manifest}.items():
+    manifest = f"{to_json(_manifest(rule, made, options, made_of))}\n"
+    for name, text in {**made_of, "manifest.json": manifest}.items():
         yield Artifact(PurePosixPath(package(rule)) / name, text)
 
 
@@ -90,8 +90,8 @@ def package(rule: Rule) -> str:
     return f"{name if name[:1].isalpha() else f'r{name}'}_ajpf"
 
 
-def _texts(rule: Rule, made: Sif, options: Options) -> dict[str, str]:
-    """What the model looks at."""
+def texts(rule: Rule, made: Sif, options: Options = DEFAULT) -> dict[str, str]:
+    """What the model looks at, and what is emitted: by the names of the files."""
     return {
         "SIF.gwen": _agent(rule, made, made.plans, "the agent of"),
         "SIF_mutant.gwen": _agent(
