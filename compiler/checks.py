@@ -13,6 +13,7 @@ from compiler.lock import Standing
 from compiler.project import Project
 from compiler.rule import Rule
 from compiler.targets import TARGETS
+from compiler.targets.target import Options
 from fretish.declarations import Role
 from fretish.diagnostic import Code, Diagnostic, Severity
 from fretish.expressions import names
@@ -30,7 +31,9 @@ def checks(project: Project, standings: Sequence[Standing]) -> tuple[Diagnostic,
     """
     rules = [rule for rule in project.rules if rule.requirement.status != "retired"]
     found = [d for rule in rules for d in (*_own_triggers(rule, project), *_planned(rule))]
-    return (*found, *_links(project), *_changes(project, standings))
+    options = Options(declarations=project.declarations)
+    told = TARGETS["interceptor"].remarks(options)
+    return (*found, *told, *_links(project), *_changes(project, standings))
 
 
 # Vacuity ---------------------------------------------------------------------------------------

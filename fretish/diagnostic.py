@@ -136,6 +136,7 @@ class Code(Enum):
     SHORT_HOLD = ("F630", "the interceptor holds zero no longer than messages may be lost")
     UNWATCHED = ("F631", "the interceptor does not notice that a channel is silent")
     EVENT_DRIVEN = ("F632", "the interceptor speaks only when a command comes")
+    LATCHING = ("F633", "the interceptor's first stop is for ever")
 
     NO_SUCH_FILE = ("F901", "there is no such file")
     IS_A_DIRECTORY = ("F902", "the file is a directory")

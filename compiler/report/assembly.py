@@ -7,6 +7,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from types import MappingProxyType
 
 from compiler import __version__
+from compiler.checks import checks
 from compiler.estimates import AVERAGE
 from compiler.evidence import Evidence
 from compiler.lock import Lock
@@ -84,7 +85,7 @@ def report(
         not_shown=tuple(_not_shown(view) for view in sections if view.reasons),
         reservations=reservations,
         planned=plans,
-        remarks=tuple(remark(diagnostic) for diagnostic in project.diagnostics),
+        remarks=tuple(remark(diagnostic) for diagnostic in _remarks(project, claimed)),
         hazards=hazard_views(project),
         matrix=matrix(project, claimed, sections, found),
         orphans=orphans(project, claimed, evidence),
@@ -101,6 +102,15 @@ def report(
 def _confidence(evidence: Evidence | None) -> float:
     told = evidence.probabilities if evidence else ()
     return next((one.confidence for one in told), CONFIDENCE)
+
+
+def _remarks(project: Project, claimed: Sequence[Claim]) -> Sequence[Diagnostic]:
+    """What reading it has told, and what `fretc check` finds; changes have a part of their own."""
+    said = project.diagnostics
+    if has_errors(said):
+        return said
+    found = checks(project, [claim.standing for claim in claimed])
+    return [*said, *(d for d in found if d.code is not Code.CHANGED_SINCE_REVIEW)]
 
 
 def _not_shown(view: RequirementView) -> NotShown:

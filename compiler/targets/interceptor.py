@@ -48,18 +48,29 @@ def refuse(options: Options) -> Diagnostic | None:
 
 
 def remarks(options: Options) -> tuple[Diagnostic, ...]:
-    """F630 to F632: what can go wrong although the node does what it is told to."""
+    """F630 to F633: what can go wrong although the node does what it is told to."""
     declared = options.declarations
     if declared is None or declared.interceptor is None:
         return ()
     node = declared.interceptor
+    latched = (_latching(node),) if node.latching else ()
     if node.form is Form.EVENT:
-        return (_event_driven(node),)
-    return (*_unwatched(node), *_short_hold(declared, node))
+        return (*latched, _event_driven(node))
+    return (*latched, *_unwatched(node), *_short_hold(declared, node))
 
 
 def _warning(code: Code, message: str, node: Interception, mend: str) -> Diagnostic:
     return Diagnostic(code, message, node.span, mend, Severity.WARNING)
+
+
+def _latching(node: Interception) -> Diagnostic:
+    return _warning(
+        Code.LATCHING,
+        "the interceptor latches: after the first stop nothing but a new start moves the robot, "
+        "whatever the safety function says",
+        node,
+        "write `latching = false`, or state in a requirement that a stop is final",
+    )
 
 
 def _event_driven(node: Interception) -> Diagnostic:
