@@ -7,8 +7,7 @@ no endless trace satisfies (or none violates) the sentence are written as a past
 
 A long duration is shortened first: only the ticks at its beginning and at its end matter, for in
 between a trace can do what it likes. Source of the verdicts: Bauer, Leucker, Schallhart, TOSEM 20
-(2011); of the way to a small formula: Brayton et al., Logic Minimization Algorithms for VLSI
-Synthesis, 1984, section 4.2 (expansion of implicants against the off-set).
+(2011).
 """
 
 from __future__ import annotations
@@ -27,6 +26,7 @@ from compiler.counters import (
     template,
 )
 from compiler.demand import Demand, Kind, Obligation
+from compiler.implicants import Vector, cover
 from compiler.letters import MOST_ATOMS, meanings, temporal_predicate
 from compiler.past import Stage, Watch, staged
 from fretish import syntax as s
@@ -171,13 +171,10 @@ def _ages(n: int, short: int, older: Callable[[int], f.Formula]) -> Iterable[_Ob
         yield _Observable(older(real), above)
 
 
-_Vector = tuple[bool, ...]
-
-
 def _formula(automaton: Automaton, observables: Sequence[_Observable], verdict: str) -> f.Formula:
     """What holds at the states with the verdict, and at no state without it."""
-    with_it: dict[_Vector, None] = {}
-    others: set[_Vector] = set()
+    with_it: dict[Vector, None] = {}
+    others: set[Vector] = set()
     for number in {after for row in automaton.moves for after in row if after != BROKEN}:
         state = automaton.states[number]
         vector = tuple(observable.holds(state) for observable in observables)
@@ -186,28 +183,9 @@ def _formula(automaton: Automaton, observables: Sequence[_Observable], verdict: 
         else:
             others.add(vector)
     certain = [vector for vector in sorted(with_it) if vector not in others]
-    return f.or_(*(_term(term, observables) for term in _cover(certain, others)))
+    return f.or_(*(_term(term, observables) for term in cover(certain, others)))
 
 
 def _term(term: Mapping[int, bool], observables: Sequence[_Observable]) -> f.Formula:
     parts = ((observables[i].formula, value) for i, value in term.items())
     return f.and_(*(part if value else f.not_(part) for part, value in parts))
-
-
-def _cover(certain: Sequence[_Vector], others: Iterable[_Vector]) -> list[Mapping[int, bool]]:
-    """Few conjunctions of few literals that hold at all of the first and at none of the others."""
-    terms: list[Mapping[int, bool]] = []
-    for vector in certain:
-        if any(_matches(term, vector) for term in terms):
-            continue
-        term = dict(enumerate(vector))
-        for place in reversed(range(len(vector))):
-            shorter = {i: value for i, value in term.items() if i != place}
-            if not any(_matches(shorter, other) for other in others):
-                term = shorter
-        terms.append(term)
-    return terms
-
-
-def _matches(term: Mapping[int, bool], vector: _Vector) -> bool:
-    return all(vector[i] is value for i, value in term.items())

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Generator, Mapping, Sequence
+from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
 from contextlib import closing
 from dataclasses import dataclass, replace
 from functools import partial
@@ -11,7 +11,10 @@ from typing import Any
 
 from compiler import __version__
 from compiler.constancy import never_changed, tallies_of
+from compiler.estimates import GLYPHS as ANSWERS
+from compiler.estimates import Estimated, estimates, warnings
 from compiler.files import Stamp, file_sha256, stamp
+from compiler.odds import REFUTED, SUPPORTED
 from compiler.plan import Plan, watched
 from compiler.templating import to_json
 from compiler.workers import Killed, each, was_killed
@@ -45,21 +48,33 @@ class Audit:
     diagnostics: tuple[Diagnostic, ...]
     read: int = 0
     """How many of the logs could be read."""
+    estimates: tuple[Estimated, ...] = ()
+    """What all runs say of each requirement with a probability."""
 
     @property
     def violated(self) -> bool:
-        """Whether any requirement is violated in any run."""
-        return any(result["verdict"] == kernel.VIOLATED for result in self.results)
+        """Whether any requirement is violated in any run, or refuted by all of them."""
+        return any(one.answer == REFUTED for one in self.estimates) or any(
+            result["verdict"] == kernel.VIOLATED for result in self.results
+        )
 
     @property
     def shown(self) -> bool:
-        """Whether every requirement is satisfied in every run."""
-        return all(result["verdict"] == kernel.SATISFIED for result in self.results)
+        """Whether every requirement is satisfied in every run, or supported by all of them."""
+        together = {one.requirement for one in self.estimates}
+        return all(one.answer == SUPPORTED for one in self.estimates) and all(
+            result["verdict"] == kernel.SATISFIED
+            for result in self.results
+            if result["requirement"] not in together
+        )
 
     @property
     def as_json(self) -> str:
-        """One JSON array, an object per run and requirement."""
-        return f"{to_json(list(self.results))}\n"
+        """One JSON array, an object per run and requirement; with probabilities, both by name."""
+        if not self.estimates:
+            return f"{to_json(list(self.results))}\n"
+        told = [one.as_record for one in self.estimates]
+        return f"{to_json({'results': list(self.results), 'probabilities': told})}\n"
 
     @property
     def text(self) -> tuple[tuple[str, str | None], ...]:
@@ -74,7 +89,18 @@ class Audit:
             glyph, colour = GLYPHS[result["verdict"]]
             name = f"{result['requirement']:<{width}}"
             lines.append((f"  {glyph} {name}  {result['verdict']:<12}  {result['reason']}", colour))
+        for one in self.estimates:
+            lines.extend(_block(one))
         return tuple((visible(line), colour) for line, colour in lines)
+
+
+def _block(one: Estimated) -> Iterator[tuple[str, str | None]]:
+    """What all runs say of one requirement, the answer in its colour."""
+    first, *rest = one.lines
+    glyph, colour = ANSWERS[one.answer]
+    yield f"{one.requirement} over all runs, {one.text}", None
+    yield f"  {glyph} {first}", colour
+    yield from ((f"    {line}", None) for line in rest)
 
 
 EVALUATIONS: Mapping[str, Evaluation] = {"columns": kernel.evaluate, "online": kernel.stepped}
@@ -157,11 +183,14 @@ def gathered(plan: Plan, found: Sequence[Audited]) -> Audit:
     """What was shown of all logs, in their order, as one."""
     results = [result for shown in found for result in shown.results]
     told = _told(found)
+    together = estimates(plan.claims, results, plan.confidence)
+    constant = never_changed(tallies_of(results), plan.declarations, told)
     return Audit(
         tuple(results),
-        _evidence(plan, results),
-        (*told, *never_changed(tallies_of(results), plan.declarations, told)),
+        _evidence(plan, results, together),
+        (*told, *constant, *warnings(together)),
         sum(shown.read for shown in found),
+        together,
     )
 
 
@@ -225,9 +254,11 @@ def _hash_of(log: str) -> dict[str, str]:
     return {} if digest is None else {"log": digest}
 
 
-def _evidence(plan: Plan, results: Sequence[Mapping[str, Any]]) -> str:
+def _evidence(
+    plan: Plan, results: Sequence[Mapping[str, Any]], together: Sequence[Estimated]
+) -> str:
     """The evidence file: the same inputs give the same bytes."""
-    content = {
+    content: dict[str, Any] = {
         "schema": SCHEMA,
         "fretc": __version__,
         "bindings": {"file": plan.declarations.source.name, "sha256": plan.bindings},
@@ -237,4 +268,6 @@ def _evidence(plan: Plan, results: Sequence[Mapping[str, Any]]) -> str:
         ],
         "results": list(results),
     }
+    if together:
+        content["probabilities"] = [one.as_record for one in together]
     return f"{to_json(content)}\n"

@@ -7,7 +7,7 @@ to its files may depend on this room.
 from __future__ import annotations
 
 import warnings
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 from compiler import printing
@@ -17,6 +17,7 @@ from compiler.formula import (
     Formula,
     Globally,
     Interval,
+    atoms,
     children,
     longest_bound,
     rebuild,
@@ -116,6 +117,89 @@ def _hide(formula: Formula, opaque: dict[str, Formula]) -> Formula:
             return Atom(name)
         case _:
             return rebuild(formula, lambda part: _hide(part, opaque))
+
+
+@deep
+def violation(
+    labels: Sequence[frozenset[str]],
+    edges: Sequence[Sequence[int]],
+    initial: int,
+    formula: Formula,
+) -> tuple[tuple[int, ...], tuple[int, ...]] | None:
+    """A run of a graph that does not keep the formula; None where every run keeps it.
+
+    Args:
+        labels: shape (states,), the atoms that are true in each.
+        edges: shape (states,), at least one state that comes next.
+        initial: where runs begin.
+        formula: future-time, on infinite runs.
+
+    Returns:
+        The states of a prefix, which may be empty, and those of a cycle, which is not.
+
+    Source: Duret-Lutz et al., CAV 2022: product with the automaton of the negation on the fly.
+    """
+    spot = _spot()
+    names = {name: f"p{i}" for i, name in enumerate(dict.fromkeys(atoms(formula)))}
+    renamed = spot.formula(printing.future(_renamed(formula, names)))
+    dictionary = spot.make_bdd_dict()
+    graph = _graph(spot.make_kripke_graph(dictionary), labels, edges, names)
+    graph.set_init_state(initial)
+    negation = spot.translate(spot.formula.Not(renamed), dict=dictionary)
+    run = spot.otf_product(graph, negation).accepting_run()
+    if run is None:
+        return None
+    run = run.reduce().project(graph)
+    prefix, cycle = (
+        tuple(graph.state_number(step.s) for step in part) for part in (run.prefix, run.cycle)
+    )
+    return prefix, cycle
+
+
+def _renamed(formula: Formula, names: dict[str, str]) -> Formula:
+    """An atom's name may be any text: Spot sees plain ones only."""
+    if isinstance(formula, Atom):
+        return Atom(names[formula.name])
+    return rebuild(formula, lambda part: _renamed(part, names))
+
+
+def _graph(
+    graph: Any,
+    labels: Sequence[frozenset[str]],
+    edges: Sequence[Sequence[int]],
+    names: dict[str, str],
+) -> Any:
+    """Spot's Kripke graph, with the numbers of its states as they are here."""
+    valuation = _valuations(graph, names)
+    for number, label in enumerate(labels):
+        state = graph.new_state(valuation(label))
+        assert state == number
+    for state, following in enumerate(edges):
+        for other in following:
+            graph.new_edge(state, other)
+    return graph
+
+
+def _valuations(graph: Any, names: dict[str, str]) -> Callable[[frozenset[str]], Any]:
+    import buddy
+
+    variables = {name: buddy.bdd_ithvar(graph.register_ap(p)) for name, p in names.items()}
+    known: dict[frozenset[str], Any] = {}
+
+    def valuation(label: frozenset[str]) -> Any:
+        true = label.intersection(variables)
+        if true not in known:
+            known[true] = buddy.bddtrue
+            for name, variable in variables.items():
+                known[true] &= variable if name in true else buddy.bdd_not(variable)
+        return known[true]
+
+    return valuation
+
+
+def version() -> str:
+    """Of Spot."""
+    return str(_spot().version())
 
 
 def _spot() -> Any:

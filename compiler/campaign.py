@@ -11,12 +11,16 @@ from pathlib import Path
 
 from compiler import __version__
 from compiler.auditing import audited
-from compiler.experiment import plan, safety_function
+from compiler.experiment import interceptor, plan, safety_function
+from compiler.interception import ticks
+from compiler.odds import highest, lowest
 from compiler.plan import watched
 from compiler.workers import Killed, each
 from monitors import kernel
+from monitors.interceptor import Options
 from simulation.mission import Mission, record
-from simulation.scenario import Scenario
+from simulation.safety import Interceptor as MakeInterceptor
+from simulation.scenario import Interceptor, Scenario
 
 CONFIDENCE = 0.95
 """Of the intervals."""
@@ -59,25 +63,38 @@ class Share:
 
 
 def share(count: int, runs: int) -> Share:
-    """The exact interval of a binomial proportion; the only use of SciPy.
-
-    Source: Clopper, Pearson, The use of confidence or fiducial limits illustrated in the case of
-    the binomial, Biometrika 26 (1934).
-    """
-    from scipy.special import betaincinv
-
-    tail = (1 - CONFIDENCE) / 2
-    low = float(betaincinv(count, runs - count + 1, tail)) if count else 0.0
-    high = float(betaincinv(count + 1, runs - count, 1 - tail)) if count < runs else 1.0
-    return Share(count, runs, low, high)
+    """The exact interval of a binomial proportion: both of its bounds."""
+    each = (1 + CONFIDENCE) / 2
+    return Share(count, runs, lowest(count, runs, each), highest(count, runs, each))
 
 
 def simulated(scenario: Scenario, seed: int, out: Path) -> Run:
     """Record one mission with the compiled safety function, and audit its log."""
     decision = safety_function(scenario.safety.threshold)
-    mission = record(out, scenario, seed, decision, versions={"fretc": __version__})
+    node = intercepted(scenario.interceptor)
+    mission = record(out, scenario, node, seed, decision, versions={"fretc": __version__})
     shown = audited(plan(), str(out))
     return _run(mission, {str(r["requirement"]): str(r["verdict"]) for r in shown.results})
+
+
+def intercepted(options: Interceptor) -> MakeInterceptor:
+    """The emitted interceptor with the options of a scenario."""
+    if not options.period:
+        return partial(
+            interceptor, Options(0, 0, 0, 0, event_driven=True, latching=options.latching)
+        )
+
+    def counted(seconds: float) -> int:
+        return ticks(round(seconds * 10**9), round(options.period * 10**9))
+
+    made = Options(
+        hold=counted(options.hold),
+        stop_timeout=counted(options.safety_timeout),
+        scan_timeout=0,
+        command_timeout=counted(options.command_timeout),
+        latching=options.latching,
+    )
+    return partial(interceptor, made)
 
 
 def _run(mission: Mission, verdicts: Mapping[str, str]) -> Run:

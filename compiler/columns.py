@@ -31,12 +31,34 @@ def evaluate(formula: f.Formula, columns: Mapping[str, int], ticks: int) -> int:
     return _Evaluation(columns, ticks, (1 << ticks) - 1).at_each_tick(formula)
 
 
+@deep
+def evaluate_unknown(formula: f.Formula, columns: Mapping[str, c.Column], ticks: int) -> c.Column:
+    """The same where atoms may be unknown: at each tick true, false or unknown.
+
+    True and false hold whatever the unknown values were; unknown may be said too often (a formula
+    can be true by two parts that are unknown). Source: Kleene, Introduction to Metamathematics,
+    1952, section 64.
+    """
+    every = (1 << ticks) - 1
+    sure = _Evaluation({name: column.true for name, column in columns.items()}, ticks, every)
+    open_ = {name: column.true | column.unknown for name, column in columns.items()}
+    may = _Evaluation(open_, ticks, every)
+    sure.dual, may.dual = may, sure
+    true = sure.at_each_tick(formula)
+    return c.Column(true, may.at_each_tick(formula) & ~true)
+
+
 class _Evaluation:
-    """Of formulas on one trace; a part that comes twice is computed once."""
+    """Of formulas on one trace; a part that comes twice is computed once.
+
+    What it tells is what holds for certain, or what may hold: every operator but the negation is
+    monotone, and the negation of the one is that of the other (`dual`).
+    """
 
     def __init__(self, columns: Mapping[str, int], ticks: int, every: int) -> None:
         self._columns, self._ticks, self._every = columns, ticks, every
         self._known: dict[f.Formula, int] = {}
+        self.dual = self
 
     def at_each_tick(self, formula: f.Formula) -> int:
         """Its column."""
@@ -45,7 +67,7 @@ class _Evaluation:
         return self._known[formula]
 
     def _computed(self, formula: f.Formula) -> int:
-        read, every = self.at_each_tick, self._every
+        read, negated, every = self.at_each_tick, self._negated, self._every
         match formula:
             case f.Const(value):
                 return every if value else 0
@@ -54,7 +76,7 @@ class _Evaluation:
             case f.Last():
                 return every ^ every >> 1
             case f.Not(arg):
-                return every ^ read(arg)
+                return negated(arg)
             case f.And(args):
                 column = every
                 for arg in args:
@@ -66,17 +88,20 @@ class _Evaluation:
                     column |= read(arg)
                 return column
             case f.Xor(left, right):
-                return read(left) ^ read(right)
+                return read(left) & negated(right) | negated(left) & read(right)
             case f.Implies(left, right):
-                return every ^ read(left) | read(right)
+                return negated(left) | read(right)
             case f.Iff(left, right):
-                return every ^ read(left) ^ read(right)
+                return read(left) & read(right) | negated(left) & negated(right)
             case f.Odds():
                 raise ValueError("one trace does not tell a probability")
             case f.Next() | f.Eventually() | f.Globally() | f.Until() | f.Release():
                 return self._future(formula)
             case _:
                 return self._past(formula)
+
+    def _negated(self, formula: f.Formula) -> int:
+        return self._every ^ self.dual.at_each_tick(formula)
 
     def _past(
         self, formula: f.Previous | f.WeakPrevious | f.Once | f.Historically | f.Since

@@ -1,4 +1,4 @@
-"""The picture of a sentence's meaning, as values: where it is enforced, what triggers, what is owed.
+"""The picture of a sentence's meaning, as values: where it holds, what triggers, what is owed.
 
 A sentence is drawn on one trace that shows all of it: the scope begins and ends, the condition is
 true for two ticks, the stop condition comes. What stands in the lanes is not drawn by hand for each
@@ -71,7 +71,7 @@ class Lane:
     def told(self) -> str:
         """All that is written beside the lane but its name."""
         link = "or else " if self.otherwise else ""
-        whose = "" if self.trigger is None else f", trigger {self.trigger}"
+        whose = "" if self.trigger is None else f", trigger at tick {self.trigger}"
         return f"{link}{self.note}{whose}"
 
 
@@ -187,7 +187,8 @@ def _lanes(
     if scope is not None:
         yield Lane(Kind.MODE, expression(scope.mode), "true", _true(trace.m))
     enforced = tuple(
-        Stretch(left, right, goes_on=right >= end) for left, right in intervals(drawn.scope, trace.m)
+        Stretch(left, right, goes_on=right >= end)
+        for left, right in intervals(drawn.scope, trace.m)
     )
     yield Lane(Kind.SCOPE, "", "enforced", enforced)
     if condition is not None:
@@ -222,12 +223,12 @@ def _goes_on(drawn: Template, last: int, end: int) -> bool:
 
 def _need(single: bool, need: Need) -> str:
     if single:
-        return "true" if need in (Need.ALL, Need.SOME) else "false"
+        return "must be true" if need in (Need.ALL, Need.SOME) else "must be false"
     return {
-        Need.ALL: "true throughout",
-        Need.SOME: "true at least once",
-        Need.NONE: "false throughout",
-        Need.MISS: "false at least once",
+        Need.ALL: "must be true throughout",
+        Need.SOME: "must be true at least once",
+        Need.NONE: "must be false throughout",
+        Need.MISS: "must be false at least once",
     }[need]
 
 
@@ -256,7 +257,7 @@ def _in_words(lane: Lane) -> str:
         case Kind.NEED:
             whose = "" if lane.trigger is None else f"For the trigger at tick {lane.trigger}, "
             link = "or else " if lane.otherwise else ""
-            return f"{whose}{link}`{lane.name}` must be {lane.note}, at {at}."
+            return f"{whose}{link}`{lane.name}` {lane.note}, at {at}."
         case _:
             return f"`{lane.name}` is true at {at}."
 

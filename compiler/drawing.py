@@ -1,9 +1,10 @@
-"""A diagram laid out: as SVG, and in characters for a terminal. Both fold what is long and equal."""
+"""A diagram laid out, as SVG and in characters for a terminal; long equal stretches are folded."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import asdict, dataclass
+from itertools import pairwise
 
 from compiler.diagram import Diagram, Kind, Lane, Stretch, words
 from compiler.templating import render
@@ -34,18 +35,22 @@ def slots(drawn: Diagram) -> tuple[Slot, ...]:
             cuts.update((stretch.first, stretch.last + 1))
     edges = sorted(cut for cut in cuts if 0 <= cut <= drawn.ticks)
     found: list[Slot] = []
-    for first, after in zip(edges, edges[1:], strict=False):
+    for first, after in pairwise(edges):
         if drawn.ticks <= _PLAIN or after - first <= _ALIKE:
             found.extend(Slot(t, t) for t in range(first, after))
         else:
-            found.extend((Slot(first, first), Slot(first + 1, after - 2), Slot(after - 1, after - 1)))
+            found.extend(
+                (Slot(first, first), Slot(first + 1, after - 2), Slot(after - 1, after - 1))
+            )
     return tuple(found)
 
 
 def _places(columns: Sequence[Slot], stretch: Stretch) -> tuple[int, int] | None:
     """The first and the last column of a stretch; None where it has no tick."""
     inside = [
-        i for i, slot in enumerate(columns) if stretch.first <= slot.first and slot.last <= stretch.last
+        i
+        for i, slot in enumerate(columns)
+        if stretch.first <= slot.first and slot.last <= stretch.last
     ]
     return (inside[0], inside[-1]) if inside else None
 
@@ -61,7 +66,7 @@ def shortened(text: str, most: int) -> str:
 # Characters -------------------------------------------------------------------------------------
 
 _FILLS = {Kind.MODE: "─", Kind.SCOPE: "━", Kind.CONDITION: "─", Kind.STOP: "─", Kind.BOUND: "╌"}
-_NEEDS = {Need.ALL: "█", Need.SOME: "▒", Need.NONE: "×", Need.MISS: "░"}
+_NEEDS = {Need.ALL: "█", Need.SOME: "▒", Need.NONE: "/", Need.MISS: "░"}
 _NAMES = 26
 _EMPTY = "·"
 

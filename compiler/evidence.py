@@ -11,6 +11,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import NoReturn
 
+from compiler.counted import probability, trials
+from compiler.estimates import Estimated
 from compiler.files import read as read_text
 from compiler.files import sha256
 from compiler.shapes import MisshapenError, Shape
@@ -19,6 +21,7 @@ from fretish.diagnostic import Code, Diagnostic, Severity
 from fretish.source import Source
 from monitors import kernel
 from monitors.evidence import SCHEMA
+from monitors.trials import Trials
 
 VERDICTS = (
     kernel.VIOLATED,
@@ -144,6 +147,13 @@ class Result:
     """SHA-256 of `log` (absent where it could not be read), `sentence`, `bindings`, `monitor`."""
     health: Health
     assumptions: tuple[str, ...]
+    trials: Trials | None = None
+    """Of a requirement with a probability, where the log could be read."""
+
+    @property
+    def content(self) -> str:
+        """What tells its log from another one: copies have the same."""
+        return self.hashes.get("log") or self.hashes.get("log_summary") or self.run
 
 
 @dataclass(frozen=True, slots=True)
@@ -155,6 +165,8 @@ class Evidence:
     fretc: str
     """Version of the tool that audited."""
     results: tuple[Result, ...]
+    probabilities: tuple[Estimated, ...]
+    """What all runs say of each requirement with a probability."""
 
 
 def read(path: str) -> Evidence | Diagnostic:
@@ -223,7 +235,12 @@ def _evidence(file: Shape, source: Source) -> Evidence:
         sha256=sha256(source.text),
         fretc=file.field("fretc").text(),
         results=tuple(_result(result) for result in file.field("results").items()),
+        probabilities=tuple(probability(each) for each in _listed(file, "probabilities")),
     )
+
+
+def _listed(at: Shape, key: str) -> tuple[Shape, ...]:
+    return at.field(key).items() if at.has(key) else ()
 
 
 def _result(at: Shape) -> Result:
@@ -247,6 +264,7 @@ def _result(at: Shape) -> Result:
         hashes=_hashes(at.field("hashes")),
         health=_health(at.field("health")),
         assumptions=tuple(text.text() for text in at.field("assumptions").items()),
+        trials=trials(at.field("trials")) if at.has("trials") else None,
     )
 
 

@@ -1,8 +1,10 @@
-"""The simulated experiment's requirements, and the safety function that is compiled from one."""
+"""The simulated experiment's requirements, with the safety function and the interceptor of them."""
 
 from __future__ import annotations
 
 from collections import deque
+from collections.abc import Callable, Sequence
+from dataclasses import asdict
 from functools import lru_cache
 from importlib.resources import files
 from pathlib import Path
@@ -12,11 +14,15 @@ import numpy as np
 
 from compiler.plan import Plan, planned
 from compiler.project import Project, load, requirement_files
+from compiler.targets import interceptor as interceptors
 from compiler.targets import monitor as monitors
+from compiler.targets.target import Options as TargetOptions
 from fretish.bindings import read_bindings
 from fretish.declarations import Aggregate, Declarations, Proposition
 from fretish.diagnostic import Diagnostic, has_errors
 from fretish.source import Source
+from monitors.interceptor import Options
+from monitors.loading import executed
 from monitors.loading import load as loaded
 from monitors.propositions import TRUE, evaluate
 from monitors.samples import Recording, Samples
@@ -65,6 +71,27 @@ def safety_function(threshold: float = 0.05) -> SafetyFunction:
         threshold: metres, in place of the 5 cm of the bindings.
     """
     return SafetyFunction(_text(), _declarations(threshold))
+
+
+def interceptor(options: Options, publish: Callable[[Sequence[float]], None]) -> Any:
+    """The `Gate` of the emitted interceptor, before its first message.
+
+    Args:
+        options: in place of those of the bindings.
+        publish: takes what is said to the wheels: m/s along x, y, z, and rad/s around them.
+    """
+    text, source = _interceptor()
+    module = executed(text, source)
+    module.OPTIONS = module.Options(**asdict(options))
+    return module.Gate(publish)
+
+
+@lru_cache(maxsize=1)
+def _interceptor() -> tuple[str, str]:
+    """What `--emit interceptor` writes for the mission, and its name."""
+    declared = project().declarations
+    (file,) = interceptors.emit((), TargetOptions(declarations=declared))
+    return file.text, str(file.path)
 
 
 @lru_cache(maxsize=1)

@@ -1,4 +1,4 @@
-"""A requirement explained: its meaning, its formulas, its picture, and traces with their reasons."""
+"""A requirement explained: meaning, formulas, picture, and traces with their reasons."""
 
 from __future__ import annotations
 
@@ -74,13 +74,13 @@ def _notes(rule: Rule, reason: str, satisfied: int, violated: int) -> Iterator[s
         yield f"no traces are shown: {reason}"
         return
     if not satisfied:
-        yield "no trace satisfies the sentence"
+        yield "no run that goes on satisfies the sentence"
     if not violated:
-        yield "no trace violates the sentence"
+        yield "no run violates the sentence"
     if satisfied == 1:
-        yield "there is one way to satisfy the sentence that is shown; no other was found"
+        yield "no other way to satisfy the sentence was found"
     if violated == 1:
-        yield "there is one way to violate the sentence that is shown; no other was found"
+        yield "no other way to violate the sentence was found"
     if rule.sentence.probability is not None:
         yield "a run counts as one that satisfies or violates; the probability is over many runs"
     if isinstance(rule.sentence.timing, s.Finally) and _ends_with_run(rule):
@@ -125,7 +125,7 @@ def _shown(rule: Rule, letters: Mapping[Valuation, Any], example: Example) -> Sh
         example.satisfied,
         tuple(_rows(example)),
         example.decided,
-        why(rule, prefix, loop, ends=ends),
+        why(rule, prefix, loop, ends=ends, satisfied=example.satisfied),
     )
 
 

@@ -116,25 +116,25 @@ def _given(inside: Formula, said: Formula) -> Formula:
 
 def _enforced(obligation: Obligation, end: Formula, told: Callable[[Formula], Formula]) -> Formula:
     """At the first tick of an interval: the demand, as told, at every trigger of the interval."""
-    demanded = told(_demanded(obligation.demand, end))
+    met = told(demanded_at(obligation.demand, end))
     p = obligation.trigger
     match obligation.condition:
         case None:
-            return demanded
+            return met
         case ConditionKind.HOLDING:
-            return release(end, implies(p, demanded))
+            return release(end, implies(p, met))
         case ConditionKind.TRIGGER:
             rises = and_(not_(p), not_(end), next_(p))
             return and_(
-                release(end, implies(rises, next_(demanded))),
-                implies(p, demanded),
+                release(end, implies(rises, next_(met))),
+                implies(p, met),
             )
         case _:
             assert_never(obligation.condition)
 
 
-def _demanded(demand: Demand, end: Formula) -> Formula:
-    """The demand at a trigger, here and now."""
+def demanded_at(demand: Demand, end: Formula) -> Formula:
+    """The demand at a trigger, here and now; `end` is true at the last tick of the interval."""
     q, s, n = demand.response, demand.stop, demand.ticks
     match demand.kind:
         case Kind.IMMEDIATELY:

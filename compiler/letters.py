@@ -47,8 +47,7 @@ def meanings(sentence: s.Sentence, atoms: Sequence[str]) -> Mapping[Valuation, L
         for i, name in enumerate(atoms)
     }
     m, p, q, stop = [
-        0 if expression is None else evaluate(_formula(expression), columns, len(valuations))
-        for expression in _parts(sentence)
+        0 if part is None else evaluate(part, columns, len(valuations)) for part in parts(sentence)
     ]
     return {
         valuation: (bool(m >> k & 1), bool(p >> k & 1), bool(q >> k & 1), bool(stop >> k & 1))
@@ -58,18 +57,44 @@ def meanings(sentence: s.Sentence, atoms: Sequence[str]) -> Mapping[Valuation, L
 
 def atoms_of(sentence: s.Sentence) -> tuple[str, ...]:
     """The atoms of the sentence, by the names that formulas have for them."""
-    formulas = [_formula(expression) for expression in _parts(sentence) if expression is not None]
+    formulas = [part for part in parts(sentence) if part is not None]
     return tuple(dict.fromkeys(name for formula in formulas for name in f.atoms(formula)))
 
 
-def _parts(sentence: s.Sentence) -> tuple[e.Expression | None, ...]:
+@deep
+def occurring(sentence: s.Sentence) -> tuple[Letter, ...]:
+    """The letters that can occur; with more than `MOST_ATOMS` atoms, those that might.
+
+    A letter too many changes no language: no valuation of the atoms has it.
+    """
+    atoms = atoms_of(sentence)
+    if len(atoms) <= MOST_ATOMS:
+        return tuple(sorted(set(meanings(sentence, atoms).values())))
+    m, p, q, stop = (_values(part) for part in parts(sentence))
+    return tuple(product(m, p, q, stop))
+
+
+def _values(part: f.Formula | None) -> tuple[bool, ...]:
+    match part:
+        case None:
+            return (False,)
+        case f.Const(value):
+            return (value,)
+        case _:
+            return (False, True)
+
+
+Parts = tuple[f.Formula | None, f.Formula | None, f.Formula | None, f.Formula | None]
+
+
+def parts(sentence: s.Sentence) -> Parts:
     """Mode, condition, response and stop condition; None where it has none."""
     scope, condition, timing = sentence.scope, sentence.condition, sentence.timing
     return (
-        scope.mode if scope else None,
-        condition.expression if condition else None,
-        sentence.response,
-        timing.stop if isinstance(timing, s.Until | s.Before) else None,
+        _formula(scope.mode) if scope else None,
+        _formula(condition.expression) if condition else None,
+        _formula(sentence.response),
+        _formula(timing.stop) if isinstance(timing, s.Until | s.Before) else None,
     )
 
 

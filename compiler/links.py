@@ -11,7 +11,6 @@ from __future__ import annotations
 
 import hashlib
 import json
-import tomllib
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from typing import Any
@@ -20,7 +19,7 @@ from compiler import printing
 from compiler.evidence import Evidence, Result
 from compiler.products import Product
 from compiler.products import products as _made
-from compiler.project import Project
+from compiler.project import Project, bound_to_logs
 from compiler.rule import Rule
 from fretish.documents import Requirement
 
@@ -96,9 +95,7 @@ class _Chain:
         self._prints: dict[Node, str] = {}
         self._links: dict[Link, None] = {}
         declared = project.declarations
-        self._bindings: Mapping[str, Any] = (
-            tomllib.loads(declared.source.text) if declared is not None else {}
-        )
+        self._bindings: Mapping[str, Any] = bound_to_logs(declared) if declared is not None else {}
 
     def of(
         self,
@@ -264,7 +261,7 @@ def changed(prints: Mapping[Node, str], locked: Mapping[Node, str]) -> tuple[Nod
 
 
 def suspects(chain: Chain, locked: Mapping[Node, str]) -> tuple[Suspect, ...]:
-    """The links downstream of what has changed since the lock.
+    """The links downstream of what has changed since the lock, those nearest to it first.
 
     Args:
         chain: as it is now.
@@ -277,7 +274,7 @@ def suspects(chain: Chain, locked: Mapping[Node, str]) -> tuple[Suspect, ...]:
     }
     upstream = _upstream(chain)
     found = []
-    for link in chain.links:
+    for link in sorted(chain.links, key=lambda link: (len(upstream[link.source]), link)):
         causes = wrong & {link.source, *upstream[link.source]}
         if causes:
             found.append(Suspect(link, tuple(sorted(_first(causes, upstream)))))

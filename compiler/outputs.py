@@ -12,7 +12,10 @@ from itertools import groupby
 from typing import Any
 from xml.etree import ElementTree
 
+from compiler.estimates import AVERAGE, Estimated
+from compiler.odds import INCONCLUSIVE, REFUTED, SUPPORTED
 from compiler.rule import Rule
+from fretish.source import Span
 from monitors import kernel
 
 _NOT_XML = re.compile("[^\t\n\r\u0020-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
@@ -25,10 +28,16 @@ _KINDS: Mapping[str, str] = {
 """What JUnit has for a verdict; nothing for one that is satisfied."""
 _LEVELS: Mapping[str, str] = {kernel.VIOLATED: "error", kernel.SATISFIED: "notice"}
 """What GitHub has for it; a warning for what is not shown."""
+_OVER_ALL = {SUPPORTED: "notice", REFUTED: "error"}
 
 
-def junit(results: Sequence[Mapping[str, Any]]) -> str:
-    """One test suite for each run, one test case for each requirement."""
+def junit(results: Sequence[Mapping[str, Any]], together: Sequence[Estimated] = ()) -> str:
+    """One test suite for each run, one test case for each requirement.
+
+    Args:
+        results: each of a run and a requirement, as in the evidence.
+        together: those that are judged over all runs, which is a suite of its own.
+    """
     root = ElementTree.Element("testsuites", name="fretc audit")
     for run, found in groupby(results, key=lambda result: str(result["run"])):
         cases = list(found)
@@ -36,6 +45,8 @@ def junit(results: Sequence[Mapping[str, Any]]) -> str:
         suite = ElementTree.SubElement(root, "testsuite", {"name": valid(run), **counts})
         for case in cases:
             _case(suite, run, case)
+    if together:
+        _suite_of_all(root, together)
     return as_text(root)
 
 
@@ -50,6 +61,19 @@ def counted(kinds: Sequence[str | None]) -> dict[str, str]:
     """The attributes of a test suite with cases of these kinds; None: passed."""
     names = {"failures": "failure", "errors": "error", "skipped": "skipped"}
     return {"tests": str(len(kinds))} | {n: str(kinds.count(k)) for n, k in names.items()}
+
+
+def _suite_of_all(root: ElementTree.Element, together: Sequence[Estimated]) -> None:
+    kinds = {REFUTED: "failure", INCONCLUSIVE: "skipped"}
+    counts = counted([kinds.get(one.answer) for one in together])
+    suite = ElementTree.SubElement(root, "testsuite", {"name": "all runs", **counts})
+    for one in together:
+        names = {"name": valid(one.requirement), "classname": "all runs", "time": "0.000"}
+        node = ElementTree.SubElement(suite, "testcase", names)
+        if one.answer in kinds:
+            message = valid(f"{one.answer}: {one.reason}")
+            told = ElementTree.SubElement(node, kinds[one.answer], message=message)
+            told.text = valid("\n".join(one.lines))
 
 
 def _case(suite: ElementTree.Element, run: str, case: Mapping[str, Any]) -> None:
@@ -81,17 +105,32 @@ def valid(text: str) -> str:
     return _NOT_XML.sub("\ufffd", text)
 
 
-def github(results: Sequence[Mapping[str, Any]], rules: Sequence[Rule]) -> str:
-    """A line for each result, shown at the sentence of its requirement."""
+def github(
+    results: Sequence[Mapping[str, Any]],
+    rules: Sequence[Rule],
+    together: Sequence[Estimated] = (),
+) -> str:
+    """A line for each result, shown at the sentence of its requirement.
+
+    Of a run that only counts (`trials`) it is a notice: what all runs say follows.
+    """
     places = {rule.id: rule.requirement.wording for rule in rules}
     lines = []
     for result in results:
-        place = places[result["requirement"]]
-        level = _LEVELS.get(result["verdict"], "warning")
-        file, title = _property(place.source.name), _property(f"{result['requirement']}")
-        where = f"file={file},line={place.line},title={title} {_property(result['verdict'])}"
-        lines.append(f"::{level} {where}::{_data(result['run'])}: {_data(result['reason'])}\n")
+        level = "notice" if "trials" in result else _LEVELS.get(result["verdict"], "warning")
+        title = f"{result['requirement']} {result['verdict']}"
+        said = f"{result['run']}: {result['reason']}"
+        lines.append(_annotation(level, places[result["requirement"]], title, said))
+    for one in together:
+        level, title = _OVER_ALL.get(one.answer, "warning"), f"{one.requirement} {one.answer}"
+        said = f"all runs: {one.reason}; {one.lines[1]}; {AVERAGE}"
+        lines.append(_annotation(level, places[one.requirement], title, said))
     return "".join(lines)
+
+
+def _annotation(level: str, place: Span, title: str, said: str) -> str:
+    where = f"file={_property(place.source.name)},line={place.line},title={_property(title)}"
+    return f"::{level} {where}::{_data(said)}\n"
 
 
 def _data(text: str) -> str:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 from fractions import Fraction
 
 from compiler import predicates
@@ -18,7 +19,7 @@ from fretish import expressions as e
 from fretish import units
 from fretish.checking import conditions, temporal_predicates, too_deep
 from fretish.clock import Clock, assumed_ticks, in_ticks
-from fretish.declarations import Declarations, Variable
+from fretish.declarations import Declarations, Modality, Variable
 from fretish.depth import deep
 from fretish.diagnostic import Code, Diagnostic, Severity, suggestion
 from fretish.documents import Requirement
@@ -92,18 +93,39 @@ def _rule(
         watch=anticipated(sentence, back, watch(back)),
         pctl=probabilistic(ahead, odds.op, odds.digits) if odds else None,
         glossary=_glossary(declarations),
+        declarations=declarations,
     )
 
 
 def _glossary(declarations: Declarations | None) -> Mapping[str, Variable]:
-    """What is declared of each variable; a bound proposition tells its role and its text."""
+    """What is declared of each variable; a bound proposition tells its role and its text.
+
+    A modality other than belief counts wherever it is declared.
+    """
     if declarations is None:
         return {}
     bound = {
-        name: Variable(name, type="boolean", role=str(p.role), text=p.text)
+        name: Variable(
+            name,
+            type="boolean",
+            role=str(p.role),
+            text=p.text,
+            modality=p.modality,
+            action=p.action,
+        )
         for name, p in declarations.propositions.items()
     }
-    return {**bound, **declarations.variables}
+    named = {
+        name: _with_bound(variable, bound[name]) if name in bound else variable
+        for name, variable in declarations.variables.items()
+    }
+    return {**bound, **named}
+
+
+def _with_bound(variable: Variable, bound: Variable) -> Variable:
+    """What FRET's glossary says of a name, and what only its binding says."""
+    modality = bound.modality if variable.modality is Modality.BELIEF else variable.modality
+    return replace(variable, modality=modality, action=variable.action or bound.action)
 
 
 def _free_text(requirement: Requirement) -> Diagnostic:

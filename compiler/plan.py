@@ -6,9 +6,10 @@ import hashlib
 import json
 import pickle
 from collections.abc import Sequence
-from dataclasses import astuple, dataclass, field
-from functools import lru_cache
+from dataclasses import astuple, dataclass, field, replace
+from functools import lru_cache, partial
 
+from compiler import odds
 from compiler.edition import edition
 from compiler.files import sha256
 from compiler.missing import demand
@@ -17,6 +18,7 @@ from compiler.project import Project, fingerprint
 from compiler.record import wording
 from compiler.rule import Rule
 from compiler.targets import monitor as monitors
+from compiler.trials import Chance, chance, trials
 from fretish.declarations import Declarations
 from fretish.depth import deep
 from fretish.diagnostic import Code, Diagnostic
@@ -38,6 +40,8 @@ class Claim:
     monitor: str
     demand: Demand
     """What is missing where it is violated."""
+    chance: Chance | None = None
+    """With a probability: all runs together are judged, and no run alone."""
 
     def hashes(self, bindings: str) -> dict[str, str]:
         """SHA-256 of all that a verdict on it is made from, but for the log."""
@@ -57,11 +61,16 @@ class Plan:
     integrity: Integrity
     """What is looked at of a log."""
     key: str
-    """SHA-256 of all of it to the letter, and of the fretc that carries it out."""
+    """SHA-256 of all of it to the letter that one log is judged by, and of the fretc that does."""
+    confidence: float = odds.CONFIDENCE
+    """Of what all logs together say of a probability."""
 
 
 def planned(
-    project: Project, evaluation: str = "columns", integrity: Integrity = Integrity.HASH
+    project: Project,
+    evaluation: str = "columns",
+    integrity: Integrity = Integrity.HASH,
+    confidence: float = odds.CONFIDENCE,
 ) -> Plan | tuple[Diagnostic, ...]:
     """The plan to audit every requirement that is not retired, or why there can be none.
 
@@ -69,6 +78,7 @@ def planned(
         project: read without errors.
         evaluation: how the monitors are run: `columns` or `online`; what they show is the same.
         integrity: what is looked at of a log beyond the messages in question.
+        confidence: of what is said of a probability, between 0.5 and 1.
     """
     rules = [rule for rule in project.rules if rule.requirement.status != "retired"]
     declarations = project.declarations
@@ -77,12 +87,18 @@ def planned(
         return tuple(wrong)
     claims = tuple(_claim(rule) for rule in rules)
     key = _key(claims, declarations, evaluation, integrity)
-    return Plan(claims, declarations, fingerprint(declarations), evaluation, integrity, key)
+    bindings = fingerprint(declarations)
+    return Plan(claims, declarations, bindings, evaluation, integrity, key, confidence)
 
 
 def _claim(rule: Rule) -> Claim:
     return Claim(
-        rule.id, wording(rule.requirement), rule.fingerprint, monitors.text(rule), demand(rule)
+        rule.id,
+        wording(rule.requirement),
+        rule.fingerprint,
+        monitors.text(rule),
+        demand(rule),
+        chance(rule),
     )
 
 
@@ -116,7 +132,10 @@ def watched(plan: Plan) -> tuple[Watched, ...]:
     """The monitors of the claims, in their order: loaded once in each process."""
     return tuple(
         Watched(
-            load(f"{claim.id}_monitor", claim.monitor), claim.hashes(plan.bindings), claim.demand
+            load(f"{claim.id}_monitor", claim.monitor),
+            claim.hashes(plan.bindings),
+            claim.demand,
+            partial(trials, claim.chance.obligation) if claim.chance else None,
         )
         for claim in plan.claims
     )
@@ -143,6 +162,8 @@ def _not_auditable(rules: Sequence[Rule], declarations: Declarations | None) -> 
                 help='add `[clock]` with `tick = "100 ms"`',
             )
         ]
-    refused = [monitors.refuse(rule) for rule in rules]
+    refused = [monitors.refuse(replace(rule, pctl=None)) for rule in rules]
+    if any(rule.sentence.probability for rule in rules):
+        refused.append(odds.missing())
     missing = [diagnostic for rule in rules for diagnostic in unbound(rule, declarations)]
     return [*(diagnostic for diagnostic in refused if diagnostic), *missing]

@@ -143,7 +143,7 @@ _FULL_FUTURE = Dialect(
     atom=_quoted_atom,
     full=True,
 )
-_PCTL = Dialect("pctl", constants=("false", "true"), full=True)
+PCTL = Dialect("pctl", constants=("false", "true"), full=True)
 _FULL_PAST = Dialect("full past", not_="! ", full=True, has_bounded_since=False)
 
 
@@ -173,11 +173,12 @@ def pctl(formula: f.Formula) -> str:
     They have neither implication nor release there: `a -> b` is `!a | b`, and `a R b` is
     `!(!a U !b)`.
     """
-    return text(_for_prism(formula), _PCTL)
+    return text(for_prism(formula), PCTL)
 
 
-def _for_prism(formula: f.Formula) -> f.Formula:
-    rebuilt = f.rebuild(formula, _for_prism)
+def for_prism(formula: f.Formula) -> f.Formula:
+    """The formula by operators that PRISM and Storm read within a path."""
+    rebuilt = f.rebuild(formula, for_prism)
     match rebuilt:
         case f.Implies(left, right):
             return f.or_(f.not_(left), right)

@@ -1,13 +1,15 @@
-"""What every target makes of a requirement, by name and hash."""
+"""What targets make of a requirement, by name and hash."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from pathlib import PurePath
 
 from compiler.files import sha256
 from compiler.rule import Rule
-from compiler.targets import TARGETS
+from compiler.targets import TARGETS, interceptor
 from compiler.targets.target import Target
+from fretish.declarations import Declarations
 
 
 @dataclass(frozen=True, slots=True)
@@ -20,16 +22,19 @@ class Product:
     refusal: str
 
 
-_ORDER = ("monitor", "ltl", "ajpf", "json")
+_ALWAYS = ("monitor", "ltl", "ajpf", "json")
 
 
 def products(rule: Rule | None) -> tuple[Product, ...]:
-    """A product for each file that the targets make; for a target that refuses, why."""
+    """A product for each file that is made of the requirement; where a target refuses, why.
+
+    Some targets are always asked, the others where the requirement plans them in its `verify`:
+    to make all of them may take far longer than all the rest of a report.
+    """
     if rule is None:
         return ()
-    known = [name for name in _ORDER if name in TARGETS]
-    others = [name for name, target in TARGETS.items() if target.per_rule and name not in known]
-    names = [*known, *others]
+    planned = [name for name in rule.requirement.verify if name in TARGETS]
+    names = [name for name in dict.fromkeys((*_ALWAYS, *planned)) if TARGETS[name].per_rule]
     return tuple(product for name in names for product in _of_target(TARGETS[name], rule))
 
 
@@ -43,3 +48,12 @@ def _of_target(target: Target, rule: Rule) -> tuple[Product, ...]:
         Product(target.name, str(artifact.path), sha256(artifact.text), "")
         for artifact in target.emit([rule])
     )
+
+
+def shared_products(declarations: Declarations | None) -> tuple[Product, ...]:
+    """What is made of the bindings alone, and looked at together with every requirement."""
+    declared = declarations.interceptor if declarations else None
+    if declarations is None or declared is None:
+        return ()
+    text = interceptor.text(declared, PurePath(declarations.source.name).name)
+    return (Product(interceptor.TARGET.name, interceptor.NAME, sha256(text), ""),)

@@ -77,7 +77,7 @@ def _wrong(source: Source, what: str) -> Diagnostic:
         Code.BAD_EVIDENCE,
         f"`{source.name}` {what}",
         Source(source.name, "").span(),
-        help="verify again: `fretc verify`",
+        help="verify again: `fretc verify FILE...`",
     )
 
 

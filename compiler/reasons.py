@@ -17,7 +17,12 @@ _MOST = 2
 
 
 def why(
-    rule: Rule, prefix: Sequence[Letter], loop: Sequence[Letter] = (), *, ends: bool = False
+    rule: Rule,
+    prefix: Sequence[Letter],
+    loop: Sequence[Letter] = (),
+    *,
+    ends: bool = False,
+    satisfied: bool | None = None,
 ) -> str:
     """One line.
 
@@ -27,13 +32,17 @@ def why(
         loop: what comes again and again after it.
         ends: whether the run ends with the prefix. If it does not, and nothing loops, then what
             follows does not change the verdict: the last tick is taken to last.
+        satisfied: the verdict, where it is known; it is a mistake of ours if the reason differs.
     """
     counted = template(rule.sentence, rule.ticks or 0)
     more = () if ends else tuple(loop or prefix[-1:]) * (counted.ticks + 3)
     m, p, q, stop = (tuple(column) for column in zip(*prefix, *more, strict=True))
-    found = [w for w in windows(counted, m, p, stop) if w.trigger < len(prefix)]
+    shown = len(prefix) + len(loop)
+    every = [w for w in windows(counted, m, p, stop) if w.trigger < shown]
+    found = [w for w in every if w.trigger < len(prefix)] or every
     teller = _Teller(rule, counted, q, len(prefix) - 1, endless=bool(loop))
-    broken = [window for window in found if not window.kept(q)]
+    broken = [window for window in every if not window.kept(q)]
+    assert satisfied is None or satisfied is not bool(broken), (counted, prefix, loop)
     if broken:
         return f"{teller.told(broken[0], kept=False)}{teller.bound()}"
     if not found:
@@ -175,6 +184,11 @@ class _Teller:
             return f"{self._name} is {value} at tick {hit}, {later}, and {self._stop} not before"
         if timing is s.Next:
             return "the last tick of the scope: nothing is required"
+        wanted = timing is not s.For
+        hit = self._hit(window.trigger, value=wanted)
+        if hit is not None and hit <= window.right:
+            later = _later(hit - window.trigger)
+            return f"{self._name} is {str(wanted).lower()} at tick {hit}, {later}"
         deadline = window.trigger + self.counted.ticks + (timing is s.After)
         return (
             f"and the scope ends at tick {window.right}, before the deadline at tick {deadline}: "

@@ -10,7 +10,7 @@ from compiler.formula import Formula, atoms
 from compiler.past import Watch
 from fretish.checking import conditions
 from fretish.clock import Clock
-from fretish.declarations import Variable
+from fretish.declarations import Declarations, Variable
 from fretish.documents import Requirement
 from fretish.expressions import Name, names
 from fretish.printer import canonical
@@ -38,6 +38,8 @@ class Rule:
     """PCTL*; None where the sentence gives no probability."""
     glossary: Mapping[str, Variable]
     """Every variable that the bindings declare, bound or not."""
+    declarations: Declarations | None = None
+    """The bindings as a whole; None where none are at hand."""
 
     @property
     def id(self) -> str:

@@ -1,8 +1,9 @@
-"""The text of the run time, as it is copied into every generated monitor."""
+"""The text of the run time, as it is copied into generated monitors and interceptors."""
 
 from __future__ import annotations
 
 import ast
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
 from importlib.resources import files
@@ -13,7 +14,7 @@ _MODULES = ("verdicts", "columns", "stepping", "outcomes", "tables", "command")
 
 @dataclass(frozen=True, slots=True)
 class Runtime:
-    """The modules of the kernel as one."""
+    """Modules as one."""
 
     imports: str
     """Of the standard library only."""
@@ -23,10 +24,20 @@ class Runtime:
 @cache
 def kernel() -> Runtime:
     """All modules of the kernel, one after the other, below one head of imports."""
+    return _joined("monitors.kernel", _MODULES)
+
+
+@cache
+def interceptor() -> Runtime:
+    """The core of every interceptor, `monitors/interceptor.py`."""
+    return _joined("monitors", ("interceptor",))
+
+
+def _joined(package: str, modules: Sequence[str]) -> Runtime:
     imports: dict[str, set[str]] = {}
     texts: list[str] = []
-    for module in _MODULES:
-        source = files("monitors.kernel").joinpath(f"{module}.py").read_text(encoding="utf-8")
+    for module in modules:
+        source = files(package).joinpath(f"{module}.py").read_text(encoding="utf-8")
         tree = ast.parse(source)
         last = _collect(tree, imports)
         texts.append("\n".join(source.splitlines()[last:]).strip())

@@ -15,6 +15,8 @@ from typing import Any
 from urllib.parse import quote
 
 from compiler import __version__
+from compiler.estimates import Estimated
+from compiler.odds import REFUTED, SUPPORTED
 from compiler.record import wording
 from compiler.rule import Rule
 from compiler.templating import to_json
@@ -37,12 +39,16 @@ _LEVELS: Mapping[str, Mapping[str, str]] = {
 }
 _NOT_SHOWN = {"kind": "fail", "level": "warning"}
 """Not `open`, which has no level and which services do not show: it was to be shown, and is not."""
+_COUNTED = {"kind": "informational", "level": "none"}
+"""A run that alone decides nothing: its triggers are counted with those of all others."""
+_OVER_ALL = {SUPPORTED: _SHOWN, REFUTED: _LEVELS[kernel.VIOLATED]}
 
 
 def sarif(
     results: Sequence[Mapping[str, Any]],
     rules: Sequence[Rule],
     diagnostics: Sequence[Diagnostic] = (),
+    together: Sequence[Estimated] = (),
 ) -> str:
     """One SARIF run; the same inputs give the same bytes.
 
@@ -50,6 +56,7 @@ def sarif(
         results: each of a run and a requirement, as in the evidence.
         rules: all requirements of the results; others are left out.
         diagnostics: what there is to say of the logs.
+        together: requirements that are judged over all runs: each gives one more result.
     """
     meant = dict.fromkeys(result["requirement"] for result in results)
     used = [rule for rule in rules if rule.id in meant]
@@ -59,7 +66,10 @@ def sarif(
         "invocations": [_invocation(diagnostics)],
         "artifacts": list(files.values()),
         "columnKind": "unicodeCodePoints",
-        "results": [_result(result, used, list(files)) for result in results],
+        "results": [
+            *(_result(result, used, list(files)) for result in results),
+            *(_result_of_all(one, used, list(files)) for one in together),
+        ],
     }
     return f"{to_json({'$schema': _SCHEMA, 'version': '2.1.0', 'runs': [content]})}\n"
 
@@ -112,23 +122,41 @@ def _files(
 def _result(
     result: Mapping[str, Any], rules: Sequence[Rule], files: Sequence[str]
 ) -> dict[str, Any]:
-    (number,) = (i for i, rule in enumerate(rules) if rule.id == result["requirement"])
-    run, span = result["run"], rules[number].requirement.wording
-    where = _place(span.source.name) | {"index": files.index(span.source.name)}
-    same = hashlib.sha256(f"{result['requirement']}\n{run}".encode()).hexdigest()
-    return {
-        "ruleId": result["requirement"],
-        "ruleIndex": number,
-        **_LEVELS.get(result["verdict"], _NOT_SHOWN),
-        "message": {"text": f"{run}: {result['verdict']}: {result['reason']}"},
+    run = result["run"]
+    level = _COUNTED if "trials" in result else _LEVELS.get(result["verdict"], _NOT_SHOWN)
+    said = f"{run}: {result['verdict']}: {result['reason']}"
+    return _at_sentence(result["requirement"], run, rules, files) | {
+        **level,
+        "message": {"text": said},
         "analysisTarget": _place(run) | {"index": files.index(run)},
+        "properties": {"verdict": result["verdict"], "sha256": dict(result["hashes"])},
+    }
+
+
+def _result_of_all(one: Estimated, rules: Sequence[Rule], files: Sequence[str]) -> dict[str, Any]:
+    said = "; ".join((one.reason, *one.lines[1:]))
+    return _at_sentence(one.requirement, "", rules, files) | {
+        **_OVER_ALL.get(one.answer, _NOT_SHOWN),
+        "message": {"text": f"all runs: {one.answer}: {said}"},
+        "properties": {"answer": one.answer},
+    }
+
+
+def _at_sentence(id: str, run: str, rules: Sequence[Rule], files: Sequence[str]) -> dict[str, Any]:
+    """What every result of a requirement has; `run` is empty for all of them together."""
+    (number,) = (i for i, rule in enumerate(rules) if rule.id == id)
+    span = rules[number].requirement.wording
+    where = _place(span.source.name) | {"index": files.index(span.source.name)}
+    same = hashlib.sha256(f"{id}\n{run}".encode()).hexdigest()
+    return {
+        "ruleId": id,
+        "ruleIndex": number,
         "locations": [{"physicalLocation": {"artifactLocation": where, "region": _region(span)}}],
         # GitHub takes two results with the same first one for the same alert.
         "partialFingerprints": {
             "primaryLocationLineHash": f"{same[:16]}:1",
             "requirementAndRun/v1": same,
         },
-        "properties": {"verdict": result["verdict"], "sha256": dict(result["hashes"])},
     }
 
 

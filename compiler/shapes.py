@@ -41,6 +41,10 @@ class Shape:
             raise MisshapenError(f"{self.name} has no `{key}`")
         return Shape(fields[key], f"{self.path}.{key}".removeprefix("."))
 
+    def has(self, key: str) -> bool:
+        """Whether an object has a key."""
+        return key in self._object()
+
     def fields(self) -> dict[str, Shape]:
         """All values of an object, in the order of their keys."""
         fields = self._object()

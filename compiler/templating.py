@@ -47,6 +47,8 @@ def _environment() -> Environment:
     environment.filters["json"] = to_json
     environment.filters["toml"] = toml
     environment.filters["key"] = key
+    environment.filters["hoa"] = quoted
+    environment.filters["dot"] = quoted
     return environment
 
 
@@ -64,6 +66,12 @@ def comment(text: str, mark: str = "#") -> str:
         c if c.isascii() and c.isprintable() else c.encode("unicode_escape").decode() for c in flat
     )
     return f"{mark} {safe}"
+
+
+def quoted(text: str) -> str:
+    """The text in double quotes, on one line: a string of HOA, and of DOT where it is no label."""
+    escaped = " ".join(text.split()).replace("\\", "\\\\").replace('"', '\\"')
+    return f'"{escaped}"'
 
 
 def toml(text: str) -> str:

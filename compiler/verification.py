@@ -6,7 +6,7 @@ engine that found it, and the SHA-256 of each text that was looked at.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import StrEnum
 from typing import Any, assert_never
@@ -113,6 +113,16 @@ def status(result: Result) -> str:
             return "not checked"
         case _:
             assert_never(result)
+
+
+def document(fretc: str, evidence: Sequence[Evidence]) -> dict[str, Any]:
+    """What `build/verification.json` holds; the same for the same texts, whenever it is made.
+
+    Args:
+        fretc: the version of the tool.
+        evidence: in its order.
+    """
+    return {"schema": SCHEMA, "fretc": fretc, "evidence": [as_record(one) for one in evidence]}
 
 
 def as_record(evidence: Evidence) -> dict[str, Any]:

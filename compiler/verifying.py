@@ -11,14 +11,14 @@ from __future__ import annotations
 
 import ast
 import random
-from collections.abc import Hashable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 from compiler.layout import strange
-from compiler.letters import Valuation, atoms_of
-from compiler.proving import Judgement, NotChecked, Proved, Refuted, prove
+from compiler.letters import atoms_of
+from compiler.proving import NotChecked, Proved, Refuted, prove
 from compiler.rule import Rule
+from compiler.stepped import Stepped
 from monitors.kernel import Column, Monitor
 from monitors.kernel.columns import column, truths
 from monitors.kernel.stepping import literals_of
@@ -75,7 +75,7 @@ def verified(rule: Rule, text: str, limit: int = 10**6) -> Verified:
     if not places:
         return Verified(rule.id, (), NotChecked("the monitor is of other requirements"))
     atoms = tuple(dict.fromkeys((*atoms_of(rule.sentence), *monitor.PROPOSITIONS)))
-    machine = _Machine(monitor, places[0], atoms)
+    machine = Stepped(monitor, places[0], atoms)
     result = prove(machine, rule.sentence, rule.ticks or 0, atoms, limit)
     if not isinstance(result, Proved):
         return Verified(rule.id, atoms, result)
@@ -97,49 +97,6 @@ def _demand_monitor(text: str) -> None:
     named = (node.target for node in tree.body if isinstance(node, ast.AnnAssign))
     if not any(isinstance(target, ast.Name) and target.id == "MONITOR" for target in named):
         raise NotAMonitorError("it names no `MONITOR`")
-
-
-# Steps ----------------------------------------------------------------------------------------
-
-
-class _Machine:
-    """A monitor whose propositions are all known, as `prove` steps it."""
-
-    def __init__(self, monitor: Monitor, place: int, atoms: Sequence[str]) -> None:
-        monitor.reset()
-        rail: Any = monitor.must
-        self._rail, self._place = rail, place
-        self._alone = len(monitor.REQUIREMENTS) == 1
-        self._step: Any = monitor.step  # type: ignore[attr-defined]
-        self._parameters = [(p, atoms.index(name)) for name, p in monitor.PROPOSITIONS.items()]
-        # The text has a class of its own for windows.
-        self._windows = [n for n in rail.CELLS if hasattr(getattr(rail, n), "restore")]
-        self._cells = [name for name in rail.CELLS if name not in self._windows]
-        self._fates = [n for n in rail.__slots__ if n.endswith(("_broken", "_doomed"))]
-
-    def save(self) -> Hashable:
-        """All cells: a step reads nothing else."""
-        rail = self._rail
-        cells = tuple([getattr(rail, name) for name in self._cells])
-        return cells, tuple([getattr(rail, name).state() for name in self._windows])
-
-    def load(self, state: Any) -> None:
-        """Go back to a state; nothing was violated there."""
-        rail, (cells, windows) = self._rail, state
-        for name, value in zip(self._cells, cells, strict=True):
-            setattr(rail, name, value)
-        for name, value in zip(self._windows, windows, strict=True):
-            getattr(rail, name).restore(value)
-        for name in self._fates:
-            setattr(rail, name, -1)
-
-    def step(self, letter: Valuation) -> Judgement:
-        """The verdict as the text's own step tells it, and FRET's finite verdict."""
-        told = self._step(**{p: letter[i] for p, i in self._parameters})
-        rail = self._rail
-        signals, marks = rail.signals()[self._place], rail.marks()[self._place]
-        verdict = told if self._alone else told[self._place]
-        return str(verdict), marks.broken < 0 and not signals.fails
 
 
 # Columns --------------------------------------------------------------------------------------

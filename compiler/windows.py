@@ -79,8 +79,9 @@ def windows(template: Template, m: Column, p: Column, s: Column) -> tuple[Window
 
     Args:
         template: what the sentence is.
-        m, p, s: mode, condition and stop condition, shape (ticks,); any values where the template
-            has none.
+        m: the mode, shape (ticks,); any values where the template has none, as for p and s.
+        p: the condition.
+        s: the stop condition.
     """
     return tuple(
         window(template, trigger, right, s)

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
-from enum import StrEnum
 from math import isfinite
-from typing import Any, TypeVar
+from typing import Any
 
 from fretish import binding, units
 from fretish import expressions as e
@@ -15,6 +15,7 @@ from fretish.declarations import (
     Aggregate,
     Declarations,
     Invalid,
+    Modality,
     Path,
     Proposition,
     Reading,
@@ -25,14 +26,17 @@ from fretish.declarations import (
     path,
 )
 from fretish.diagnostic import Code, Diagnostic
+from fretish.fields import Fields
+from fretish.interception import Loop
 from fretish.source import Source, Span
-from fretish.tables import Tables, read, unknown_key
+from fretish.tables import Tables, read
 
+_TABLES = ("clock", "signal", "proposition", "variable", "interceptor", "assume")
 _CLOCK = ("time", "tick", "end", "rounding")
 _SIGNAL = (
     "path", "type", "reduce", "unit", "valid", "invalid", "max_age", "footprint", "sensor",
 )  # fmt: skip
-_PROPOSITION = ("text", "expr", "role", "agg", "on_unknown", "kind")
+_PROPOSITION = ("text", "expr", "role", "agg", "on_unknown", "kind", "modality", "action")
 _INVALID = {
     "nan": "nan",
     "+inf": "positive_infinity",
@@ -40,9 +44,6 @@ _INVALID = {
     "other": "other",
 }
 _KINDS = ("belief", "command", "physical")
-
-T = TypeVar("T")
-Choice = TypeVar("Choice", bound=StrEnum)
 
 
 def read_bindings(source: Source) -> tuple[Declarations | None, tuple[Diagnostic, ...]]:
@@ -59,18 +60,17 @@ def read_bindings(source: Source) -> tuple[Declarations | None, tuple[Diagnostic
     return (None if reader.wrong else declarations), tuple(reader.wrong)
 
 
-class _Reader:
+class _Reader(Fields):
     """Walks the tables once and keeps every mistake it meets."""
 
     def __init__(self, tables: Tables) -> None:
-        self.tables = tables
-        self.wrong: list[Diagnostic] = []
+        super().__init__(tables)
         self.assumptions: list[str] = []
         self.told: set[str] = set()
 
     def declarations(self) -> Declarations:
         data = self.tables.data
-        self._known(data, ("clock", "signal", "proposition", "variable"), "the bindings")
+        self._known(data, _TABLES, "the bindings")
         signals = {
             name: self._signal(name, fields) for name, fields in self._tables("signal").items()
         }
@@ -79,6 +79,7 @@ class _Reader:
             name: self._proposition(name, fields, read)
             for name, fields in self._tables("proposition").items()
         }
+        loop = Loop(self.tables, self.wrong)
         return Declarations(
             self.tables.text.source,
             self._clock(),
@@ -86,20 +87,11 @@ class _Reader:
             {name: value for name, value in propositions.items() if value is not None},
             {name: self._variable(name, f) for name, f in self._tables("variable").items()},
             tuple(self.assumptions),
+            loop.interceptor(),
+            loop.assumed(tuple(self._tables("proposition"))),
         )
 
     # Fields
-
-    def _say(self, code: Code, message: str, span: Span, mend: str | None = None) -> None:
-        self.wrong.append(Diagnostic(code, message, span, mend))
-
-    def _known(
-        self, table: Mapping[str, Any], known: tuple[str, ...], where: str, *at: str
-    ) -> None:
-        for key in table:
-            if key not in known:
-                span = self.tables.place(*at, key)
-                self.wrong.append(unknown_key(Code.UNKNOWN_BINDING_FIELD, key, known, span, where))
 
     def _tables(self, kind: str) -> dict[str, Mapping[str, Any]]:
         tables = self.tables.data.get(kind, {})
@@ -115,34 +107,6 @@ class _Reader:
             )
             return {}
         return tables
-
-    def _field(
-        self, table: Mapping[str, Any], at: tuple[str, ...], kind: type[T], what: str
-    ) -> T | None:
-        """The field at the path, if it is there and of that type."""
-        value = table.get(at[-1])
-        if value is None or (isinstance(value, kind) and not (kind is int and value is True)):
-            return value
-        place = self.tables.value(*at)
-        self._say(Code.BAD_BINDING_FIELD, f"`{at[-1]}` must be {what}", place, f"write {what}")
-        return None
-
-    def _choice(
-        self, table: Mapping[str, Any], at: tuple[str, ...], kind: type[Choice], default: Choice
-    ) -> Choice:
-        value = table.get(at[-1])
-        if value is None:
-            return default
-        values = [str(choice) for choice in kind]
-        if value in values:
-            return kind(value)
-        self._say(
-            Code.BAD_BINDING_FIELD,
-            f"`{at[-1]}` cannot be `{value}`",
-            self.tables.value(*at),
-            f"it may be {', '.join(values)}",
-        )
-        return default
 
     def _expression(self, table: Mapping[str, Any], at: tuple[str, ...]) -> e.Expression | None:
         text = self._field(table, at, str, 'an expression in quotes: `"min_range < 5 cm"`')
@@ -372,6 +336,8 @@ class _Reader:
             kind=self._kind(table, at),
             aggregate=self._choice(table, (*at, "agg"), Aggregate, Aggregate.LAST),
             on_unknown=self._on_unknown(table, at),
+            modality=self._modality(table, at),
+            action=self._action(table, at),
             span=self.tables.value(*at, "expr"),
         )
 
@@ -405,7 +371,37 @@ class _Reader:
             for key in ("component", "type", "role", "text")
         }
         kept = self._field(table, (*at, "fret"), dict, "a table of texts") or {}
-        return Variable(name, **texts, fret=kept)
+        return Variable(
+            name,
+            **texts,
+            fret=kept,
+            modality=self._modality(table, at),
+            action=self._action(table, at),
+        )
+
+    def _modality(self, table: Mapping[str, Any], at: tuple[str, ...]) -> Modality:
+        if table.get("modality") != "P":
+            return self._choice(table, (*at, "modality"), Modality, Modality.BELIEF)
+        self._say(
+            Code.BAD_MODALITY,
+            f"`{at[1]}` cannot be a percept (`P`): AJPF takes a percept for absent once the agent "
+            "has read it",
+            self.tables.value(*at, "modality"),
+            'say what the agent believes: `modality = "B"`',
+        )
+        return Modality.BELIEF
+
+    def _action(self, table: Mapping[str, Any], at: tuple[str, ...]) -> str:
+        action = table.get("action", "")
+        if action == "" or (isinstance(action, str) and _ACTION.fullmatch(action)):
+            return str(action)
+        self._say(
+            Code.BAD_BINDING_FIELD,
+            "`action` must be a name of Gwendolen: a small letter, then letters, digits and `_`",
+            self.tables.value(*at, "action"),
+            'write `action = "stop_moving"`',
+        )
+        return ""
 
     def _kind(self, table: Mapping[str, Any], at: tuple[str, ...]) -> str:
         kind = table.get("kind", "")
@@ -436,7 +432,8 @@ class _Reader:
         return None
 
 
-_VARIABLE = ("component", "type", "role", "text", "fret")
+_VARIABLE = ("component", "type", "role", "text", "fret", "modality", "action")
+_ACTION = re.compile(r"[a-z][A-Za-z0-9_]*")
 
 
 def _is_numbers(value: object, count: int) -> bool:

@@ -131,6 +131,21 @@ class Aggregate(StrEnum):
     LAST = "last"
 
 
+class Modality(StrEnum):
+    """What an agent has to do with a proposition, in AJPF's words."""
+
+    BELIEF = "B"
+    """The agent believes it."""
+    GOAL = "G"
+    """The agent has it as a goal."""
+    INTENTION = "I"
+    """The agent has an intention for it."""
+    DONE = "D"
+    """It is an action, and the last one that the agent did."""
+    INTENDED = "ItD"
+    """It is an action, and in one of the agent's intentions."""
+
+
 @dataclass(frozen=True, slots=True)
 class Proposition:
     """A truth value over time: an expression over signals.
@@ -146,6 +161,9 @@ class Proposition:
     kind: str = ""
     aggregate: Aggregate = Aggregate.LAST
     on_unknown: bool | None = None
+    modality: Modality = Modality.BELIEF
+    action: str = ""
+    """What an agent does to make it true; empty: `do_` and its name."""
     span: Span | None = field(default=None, compare=False, repr=False)
 
     @property
@@ -167,6 +185,79 @@ class Variable:
     text: str = ""
     fret: Mapping[str, Any] = field(default_factory=dict)
     """What FRET keeps of it and fretc does not use."""
+    modality: Modality = Modality.BELIEF
+    action: str = ""
+    """What an agent does to make it true; empty: `do_` and its name."""
+
+
+class Form(StrEnum):
+    """When an interceptor speaks."""
+
+    TIMER = "timer"
+    """With each tick of its own timer, at once on a request, and when a command comes."""
+    EVENT = "event"
+    """Only when a command comes: the node of the Safe-ROS paper."""
+
+
+@dataclass(frozen=True, slots=True)
+class Interception:
+    """`[interceptor]`: the node between the planner and the wheels.
+
+    Durations in nanoseconds. `hold` 0: a stop ends with its release; a timeout of 0: the channel
+    is not watched; `period` 0: no timer, in the event form only.
+    """
+
+    stop: str
+    """The topic of stop requests, std_msgs/Bool."""
+    command: str
+    """The planner's, geometry_msgs/Twist."""
+    output: str
+    """The wheels', geometry_msgs/Twist."""
+    scan: str | None = None
+    """The topic of the sensor, sensor_msgs/LaserScan."""
+    period: int = 0
+    hold: int = 0
+    stop_timeout: int = 0
+    scan_timeout: int = 0
+    command_timeout: int = 0
+    form: Form = Form.TIMER
+    latching: bool = False
+    ros: int = 2
+    """1 or 2: which ROS the emitted node runs on."""
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+class Requests(StrEnum):
+    """When the safety function sends what it wants."""
+
+    LEVEL = "level"
+    """At every tick."""
+    EDGE = "edge"
+    """Only where it changes."""
+
+
+class Planner(StrEnum):
+    """When commands come."""
+
+    ANY = "any"
+    """Now and then, or never."""
+    EVERY_TICK = "every tick"
+
+
+@dataclass(frozen=True, slots=True)
+class Assumed:
+    """`[assume]`: what a proof about the closed loop takes for granted. Times in nanoseconds."""
+
+    stands: str
+    """The proposition that is true once the wheels have had zero for `braking`."""
+    latency: int
+    """A stop request takes no longer from the safety function to the interceptor."""
+    braking: int
+    lost: int = 0
+    """At most so many messages of the safety function are lost in a row."""
+    requests: Requests = Requests.LEVEL
+    planner: Planner = Planner.ANY
+    span: Span | None = field(default=None, compare=False, repr=False)
 
 
 @dataclass(frozen=True, slots=True)
@@ -180,3 +271,5 @@ class Declarations:
     variables: Mapping[str, Variable] = field(default_factory=dict)
     assumptions: tuple[str, ...] = ()
     """Defaults that were taken, in words, for the report."""
+    interceptor: Interception | None = None
+    assumed: Assumed | None = None

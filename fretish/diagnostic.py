@@ -57,6 +57,7 @@ class Code(Enum):
     FIRST_RUN_ONLY = ("F207", "`after` looks at the first stretch of its mode only")
     BEFORE_NOTHING = ("F208", "`before` requires nothing when its mode holds at the start")
     NEVER_DECIDED = ("F203", "no run can ever decide the requirement")
+    OWN_TRIGGER = ("F209", "a requirement is triggered by what its component commands")
 
     BAD_BINDINGS = ("F301", "the bindings are not TOML")
     UNKNOWN_BINDING_FIELD = ("F302", "the bindings have a field that fretc does not know")
@@ -73,6 +74,12 @@ class Code(Enum):
     MESSAGE_CLOCK = ("F313", "a clock that ticks by message cannot count seconds")
     NEVER_CHANGED = ("F314", "a proposition never changed in the logs")
     SLOW_TOPIC = ("F315", "a topic comes less often than the bindings need it")
+    BAD_MODALITY = ("F316", "the modality of a proposition cannot be emitted")
+
+    SAME_TOPIC = ("F320", "two ends of the interceptor are one topic")
+    BELOW_PERIOD = ("F321", "a duration is shorter than a tick of the interceptor's timer")
+    NO_TIMER = ("F322", "an interceptor without a timer is asked to measure time")
+    NO_INTERCEPTOR = ("F323", "the bindings declare no interceptor")
 
     UNREADABLE_LOG = ("F401", "the log cannot be read")
     NOT_A_LOG = ("F402", "the file is not an MCAP log")
@@ -99,17 +106,37 @@ class Code(Enum):
     BAD_EVIDENCE = ("F503", "the evidence cannot be read")
     BAD_EXPORT = ("F505", "the requirements of another tool cannot be read")
     STALE_EVIDENCE = ("F504", "the evidence is about another requirement, binding or log")
+    FEW_RUNS = ("F506", "a probability is estimated from few runs")
     BAD_LOCK = ("F510", "the lock cannot be read")
     ORPHANED_REVIEW = ("F511", "a review is of a requirement that is not there")
     CHANGED_SINCE_REVIEW = ("F512", "something has changed since it was reviewed")
     BAD_WAIVER = ("F513", "the waivers cannot be read")
     EXPIRED_WAIVER = ("F514", "a waiver has expired")
-    NO_SUCH_REQUIREMENT = ("F515", "no requirement and no diagnostic has that name")
     BAD_SETTINGS = ("F520", "the settings of the project cannot be read")
     BAD_PARENTS = ("F521", "a document with parents of requirements cannot be read")
+    UNCOVERED_HAZARD = ("F522", "no requirement is there for a hazard")
+    NO_PARENT = ("F523", "a requirement is there for no reason that is named")
+    UNREACHABLE_PLAN = ("F525", "a planned method can give no result")
+    NO_SUCH_REQUIREMENT = ("F515", "no requirement and no diagnostic has that name")
 
     NOT_EXPRESSIBLE = ("F601", "the target cannot express the requirement")
     BAD_MONITOR = ("F602", "the file is no generated monitor")
+    BAD_PROPERTY = ("F603", "AJPF would read a property in another way than it is written")
+    NOT_PROVED = ("F604", "the form for AJPF is not proved equal to the requirement")
+    WEAKENED = ("F605", "what is emitted says less than the requirement")
+    NO_TIME_TO_REACT = ("F606", "no agent that takes time to react satisfies the property")
+    STATE_ZERO = ("F607", "the property demands something of the first state")
+    BAD_AGENT = ("F610", "MCAPL would read an agent in another way than it is written")
+    BEYOND_MODEL = ("F611", "the agent uses what the model of agents does not have")
+    OTHER_AGENT = ("F612", "a property speaks of another agent than the one that is given")
+    BAD_PERCEPT = ("F613", "a percept cannot be drawn by the environment")
+    NOT_KEPT = ("F614", "the agent that would be generated does not keep the requirement")
+    TOO_LARGE = ("F670", "what would be made is too large")
+
+    SHORT_HOLD = ("F630", "the interceptor holds zero no longer than messages may be lost")
+    UNWATCHED = ("F631", "the interceptor does not notice that a channel is silent")
+    EVENT_DRIVEN = ("F632", "the interceptor speaks only when a command comes")
+    LATCHING = ("F633", "the interceptor's first stop is for ever")
 
     NO_SUCH_FILE = ("F901", "there is no such file")
     IS_A_DIRECTORY = ("F902", "the file is a directory")
@@ -147,6 +174,8 @@ class Diagnostic:
     span: Span | None = None
     help: str | None = None
     severity: Severity = Severity.ERROR
+    paste: str = ""
+    """Lines to put into a file as they are, which `help` speaks of."""
 
     @property
     def is_error(self) -> bool:

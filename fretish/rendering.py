@@ -21,6 +21,8 @@ def render(diagnostic: Diagnostic) -> str:
         lines.extend(_place(diagnostic.span))
     if diagnostic.help:
         lines.append(f"help: {visible(diagnostic.help)}")
+    if diagnostic.paste:
+        lines += ["", *map(visible, diagnostic.paste.rstrip("\n").split("\n"))]
     return "\n".join(lines)
 
 
@@ -30,8 +32,12 @@ def render_all(diagnostics: Sequence[Diagnostic]) -> str:
 
 
 def as_json(diagnostic: Diagnostic) -> dict[str, Any]:
-    """`{code, severity, message, file, line, column, help}`; absent places are null."""
+    """`{code, severity, message, file, line, column, help}`; absent places are null.
+
+    `help` ends with what is to be pasted.
+    """
     span = diagnostic.span
+    help_ = "\n\n".join(text for text in (diagnostic.help, diagnostic.paste) if text)
     return {
         "code": diagnostic.code.number,
         "severity": diagnostic.severity.value,
@@ -39,7 +45,7 @@ def as_json(diagnostic: Diagnostic) -> dict[str, Any]:
         "file": span.source.name if span else None,
         "line": span.line if span else None,
         "column": span.column if span else None,
-        "help": diagnostic.help,
+        "help": help_ or None,
     }
 
 

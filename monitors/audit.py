@@ -19,6 +19,7 @@ from monitors.signals import blind_zones
 from monitors.states import states
 from monitors.tallies import tally
 from monitors.traces import Timeline, Trace, trace
+from monitors.trials import Count, Trials
 from monitors.violations import Demand, Moment, violations
 
 Engine = Callable[[Monitor, Mapping[str, Column], int, str], tuple[Outcome, ...]]
@@ -32,6 +33,8 @@ class Watched:
     monitor: Monitor
     hashes: Mapping[str, str]
     demand: Demand = field(default_factory=Demand)
+    count: Count | None = None
+    """Of a requirement with a probability: what its triggers came to."""
 
 
 def signals_of(declarations: Declarations, propositions: Sequence[str]) -> tuple[str, ...]:
@@ -123,7 +126,31 @@ def _evidence(
         health=health(recording),
         assumptions=declarations.assumptions,
     )
-    return replace(evidence, reason=_reason(evidence, recording))
+    evidence = replace(evidence, reason=_reason(evidence, recording))
+    if watched.count is None:
+        return evidence
+    return _counted(evidence, _trials(watched.count, columns, seen))
+
+
+def _counted(evidence: Evidence, trials: Trials) -> Evidence:
+    """The evidence, where one run decides nothing: what was shown of it is counted."""
+    broken = (kernel.VIOLATED, kernel.NO_DATA)
+    assert not trials.failed or evidence.outcome.verdict in broken, "the monitor saw no failure"
+    if evidence.verdict == kernel.VACUOUS:
+        return replace(evidence, trials=trials)
+    if evidence.verdict == kernel.NO_DATA:
+        return replace(evidence, trials=trials, reason=f"{evidence.reason}; {trials}")
+    reason = f"{trials}: judged over all runs"
+    return replace(evidence, trials=trials, verdict=kernel.INCONCLUSIVE, reason=reason)
+
+
+def _trials(count: Count, columns: Mapping[str, Column], seen: Trace) -> Trials:
+    ticks = len(seen.timeline.times)
+    whole = count(columns, ticks)
+    if seen.cut is None or not ticks:
+        return whole
+    longer = {name: column.followed(seen.cut[name], ticks) for name, column in columns.items()}
+    return whole.before(count(longer, ticks + 1))
 
 
 _SHOWN = (kernel.SATISFIED, kernel.VACUOUS)

@@ -18,6 +18,7 @@ from monitors.kernel import NO_DATA, Outcome
 from monitors.margins import CROSSED, Margin
 from monitors.samples import Recording, Samples
 from monitors.tallies import Tally
+from monitors.trials import Trials
 from monitors.violations import Moment, Violation, Window
 
 SCHEMA = "fretc-evidence-1"
@@ -57,6 +58,8 @@ class Evidence:
     """SHA-256 of the log, the sentence, the bindings and the monitor."""
     health: Mapping[str, Any]
     assumptions: tuple[str, ...]
+    trials: Trials | None = None
+    """Of a requirement with a probability: what its triggers came to."""
 
 
 def health(recording: Recording) -> dict[str, Any]:
@@ -123,7 +126,15 @@ def as_record(evidence: Evidence) -> dict[str, Any]:
         "hashes": dict(evidence.hashes),
         "health": dict(evidence.health),
         "assumptions": list(evidence.assumptions),
+        **_trials(evidence.trials),
     }
+
+
+def _trials(trials: Trials | None) -> dict[str, Any]:
+    if trials is None:
+        return {}
+    counts = {"answered": trials.answered, "failed": trials.failed, "open": trials.open}
+    return {"trials": counts}
 
 
 def unread(

@@ -1,10 +1,10 @@
-"""A generated monitor's text → the monitor, ready to be stepped."""
+"""A generated text → its module; that of a monitor → the monitor, ready to be stepped."""
 
 from __future__ import annotations
 
 import sys
 from types import ModuleType
-from typing import cast
+from typing import Any, cast
 
 from monitors.kernel import Monitor
 
@@ -19,6 +19,15 @@ def load(name: str, text: str) -> Monitor:
     Raises:
         ValueError: the text defines no `MONITOR`.
     """
+    module = executed(text, name)
+    monitor = getattr(module, "MONITOR", None)
+    if not isinstance(monitor, type):
+        raise ValueError(f"{name} is no generated monitor")
+    return cast(Monitor, monitor())
+
+
+def executed(text: str, name: str) -> Any:
+    """The module of a generated text; its attributes are what the text defines."""
     module = ModuleType(f"_fretc_{name}")
     # Dataclasses look up their module by name while the text is being executed.
     sys.modules[module.__name__] = module
@@ -26,7 +35,4 @@ def load(name: str, text: str) -> Monitor:
         exec(compile(text, name, "exec"), module.__dict__)
     finally:
         del sys.modules[module.__name__]
-    monitor = getattr(module, "MONITOR", None)
-    if not isinstance(monitor, type):
-        raise ValueError(f"{name} is no generated monitor")
-    return cast(Monitor, monitor())
+    return module

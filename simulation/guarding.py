@@ -1,19 +1,13 @@
 """The safety system: the safety function and the interceptor as parts that hear and say."""
 
+from collections.abc import Callable, Sequence
 from typing import Any
 
 from simulation import messages
 from simulation.bus import Bus
-from simulation.safety import (
-    CommandHeard,
-    Decision,
-    Intercepted,
-    StopHeard,
-    TimerRang,
-    intercept,
-    stop_requested,
-)
-from simulation.scenario import Interceptor, Safety
+from simulation.motion import Velocity
+from simulation.safety import Decision, Interceptor, stop_requested
+from simulation.scenario import Safety
 
 ANSWER_LATENCY = 1_200_000
 """Nanoseconds from the message on /scan to the safety function's answer."""
@@ -80,22 +74,20 @@ class SafetyFunction:
 class Gate:
     """The interceptor: hears /gwendolen_control and /cmd_vel, says /cmd_vel_filtered."""
 
-    def __init__(self, bus: Bus, options: Interceptor, epoch: int) -> None:
-        self._bus, self._options = bus, options
-        self._state = Intercepted()
-        bus.subscribe("/gwendolen_control", self._hear_stop)
-        bus.subscribe("/cmd_vel", self._hear_command)
-        if options.period > 0:
-            period = round(options.period * _SECOND)
-            bus.every(period, epoch + period // 2, lambda now: self._take(TimerRang(), now))
+    def __init__(self, bus: Bus, interceptor: Interceptor, period: float, epoch: int) -> None:
+        """`period` in seconds, 0: it has no timer."""
+        self._bus, self._now = bus, epoch
+        node = interceptor(self._say)
+        bus.subscribe("/gwendolen_control", lambda heard, now: self._at(now, node.hear_stop, heard))
+        bus.subscribe("/cmd_vel", lambda heard, now: self._at(now, node.hear_command, heard))
+        if period > 0:
+            every = round(period * _SECOND)
+            bus.every(every, epoch + every // 2, lambda now: self._at(now, node.ring))
 
-    def _hear_stop(self, message: Any, now: int) -> None:
-        self._take(StopHeard(bool(message.data)), now)
+    def _at(self, now: int, take: Callable[..., None], *heard: Any) -> None:
+        self._now = now
+        take(*heard)
 
-    def _hear_command(self, message: Any, now: int) -> None:
-        self._take(CommandHeard(messages.velocity(message)), now)
-
-    def _take(self, heard: StopHeard | CommandHeard | TimerRang, now: int) -> None:
-        self._state, said = intercept(self._state, heard, now, self._options)
-        if said is not None:
-            self._bus.publish("/cmd_vel_filtered", messages.twist(said), now + INTERCEPT_LATENCY)
+    def _say(self, said: Sequence[float]) -> None:
+        message = messages.twist(Velocity(said[0], said[5]))
+        self._bus.publish("/cmd_vel_filtered", message, self._now + INTERCEPT_LATENCY)

@@ -22,7 +22,7 @@ from simulation.motion import STANDSTILL, Pose
 from simulation.navigation import RESOLUTION, PoseError
 from simulation.recording import TOPICS, Encoding, Recording, recording
 from simulation.robot import PHYSICS_STEP, Robot
-from simulation.safety import Decision, TooClose
+from simulation.safety import Decision, Interceptor, TooClose
 from simulation.scenario import Scenario
 from simulation.scene import STORE, Scene
 from simulation.walking import Walk
@@ -97,6 +97,7 @@ class Mission:
 def record(
     out: Path,
     scenario: Scenario,
+    interceptor: Interceptor,
     seed: int = 1,
     decision: Decision | None = None,
     encoding: Encoding = Encoding.ROS2,
@@ -109,6 +110,7 @@ def record(
     Args:
         out: an .mcap file in a folder that exists.
         scenario: what is wrong in it.
+        interceptor: makes what stands between commands and wheels.
         seed: not negative; the same seed gives the same messages on the same machine.
         decision: when to stop; if not given, the threshold of the scenario by hand.
         encoding: of the log's messages.
@@ -123,7 +125,7 @@ def record(
     """
     limit = scenario.duration if max_seconds is None else max_seconds
     with recording(out, encoding, scenario.recorder, EPOCH) as log:
-        run = _Run(scenario, seed, log, decision)
+        run = _Run(scenario, interceptor, seed, log, decision)
         ticks = round(limit * _SECOND / TICK)
         while run.tick < ticks and not run.over:
             if progress and run.tick % _TICKS_PER_SECOND == 0:
@@ -178,7 +180,12 @@ class _Run:
     """A mission under way: the parts, wired by topics as on the robot."""
 
     def __init__(
-        self, scenario: Scenario, seed: int, log: Recording, decision: Decision | None
+        self,
+        scenario: Scenario,
+        interceptor: Interceptor,
+        seed: int,
+        log: Recording,
+        decision: Decision | None,
     ) -> None:
         self.tick = 0
         self._scenario, self._seed, self._log = scenario, seed, log
@@ -196,7 +203,7 @@ class _Run:
         if scenario.safety.on:
             rule = decision or TooClose(lidar, scenario.safety.threshold)
             SafetyFunction(self._bus, rule, scenario.safety, EPOCH)
-        Gate(self._bus, scenario.interceptor, EPOCH)
+        Gate(self._bus, interceptor, scenario.interceptor.period, EPOCH)
         self._judge = _Judge(self._robot)
         self._bus.subscribe("/gwendolen_control", self._judge.hear_stop)
         self._begin()

@@ -3,15 +3,13 @@
 No input, no output, no clock: each step takes values and gives values.
 """
 
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Sequence
 from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
-from simulation import scenario
 from simulation.lidar import Lidar
-from simulation.motion import STANDSTILL, Velocity
 from simulation.scene import ROBOT, Box
 
 SAFE_DISTANCE = 0.05
@@ -31,7 +29,8 @@ def outline_clearance(ranges: NDArray[np.floating], lidar: Lidar, outline: Box) 
     Returns:
         0 for a return inside the outline and for one too near to measure (-inf, or a positive
         range below `range_min`); +inf if the scan saw nothing although it looked; NaN if
-        nothing is known, because no beam gave an answer. Single NaN beams are passed over.
+        nothing is known, because no beam gave an answer. Single NaN beams are passed over, and so
+        are finite ranges beyond `range_max`.
 
     Source: REP 117, Informational Distance Measurements.
     """
@@ -40,7 +39,7 @@ def outline_clearance(ranges: NDArray[np.floating], lidar: Lidar, outline: Box) 
     points = lidar.points(ranges)
     if len(points.x):
         return float(outline.distance(points.x, points.y).min())
-    return float("inf") if np.any(ranges > np.float32(lidar.range_max)) else float("nan")
+    return float("inf") if np.any(np.isposinf(ranges)) else float("nan")
 
 
 class Decision(Protocol):
@@ -85,67 +84,27 @@ def stop_requested(before: bool, *, demanded: bool, manual: bool) -> bool:
     return not manual and (before or demanded)
 
 
-@dataclass(frozen=True, slots=True)
-class Intercepted:
-    """What the interceptor remembers. Times in nanoseconds, None: never heard."""
+class Interception(Protocol):
+    """What stands between commands and wheels: the emitted interceptor stands here.
 
-    stop: bool = False
-    command: Velocity = STANDSTILL
-    command_at: int | None = None
-    safety_at: int | None = None
-
-
-@dataclass(frozen=True, slots=True)
-class StopHeard:
-    """A message on /gwendolen_control."""
-
-    requested: bool
-
-
-@dataclass(frozen=True, slots=True)
-class CommandHeard:
-    """A message on /cmd_vel."""
-
-    command: Velocity
-
-
-@dataclass(frozen=True, slots=True)
-class TimerRang:
-    """The interceptor's own clock."""
-
-
-def intercept(
-    state: Intercepted,
-    heard: StopHeard | CommandHeard | TimerRang,
-    time: int,
-    options: scenario.Interceptor,
-) -> tuple[Intercepted, Velocity | None]:
-    """One step: the state after it, and what is said on /cmd_vel_filtered; None: nothing is.
-
-    Args:
-        state: before.
-        heard: what has come.
-        time: nanoseconds.
-        options: how it behaves.
+    What it says goes where `Wheels` leads, before the call returns.
     """
-    match heard:
-        case StopHeard(requested):
-            stop = requested or (state.stop and options.latching)
-            after = replace(state, stop=stop, safety_at=time)
-            speaks = options.at_once and stop and not state.stop
-        case CommandHeard(command):
-            after, speaks = replace(state, command=command, command_at=time), True
-        case TimerRang():
-            after, speaks = state, True
-    return after, _passed(after, time, options) if speaks else None
+
+    def hear_stop(self, message: Any) -> None:
+        """A message on /gwendolen_control."""
+        ...
+
+    def hear_command(self, message: Any) -> None:
+        """A message on /cmd_vel."""
+        ...
+
+    def ring(self) -> None:
+        """A tick of its timer."""
+        ...
 
 
-def _passed(state: Intercepted, time: int, options: scenario.Interceptor) -> Velocity:
-    """The command, or zero: on a stop, and where commands or the safety function are silent."""
-    silent = _late(state.command_at, time, options.command_timeout)
-    blind = _late(state.safety_at, time, options.safety_timeout)
-    return STANDSTILL if state.stop or silent or blind else state.command
+Wheels = Callable[[Sequence[float]], None]
+"""Takes what is said to the wheels: m/s along x, y, z, and rad/s around them."""
 
-
-def _late(heard: int | None, time: int, timeout: float) -> bool:
-    return timeout > 0 and (heard is None or time - heard > round(timeout * _SECOND))
+Interceptor = Callable[[Wheels], Interception]
+"""Makes one."""

@@ -103,12 +103,17 @@ class Safety:
 
 @dataclass(frozen=True, slots=True)
 class Interceptor:
-    """What stands between commands and wheels. Times in seconds; 0: never."""
+    """What stands between commands and wheels. Times in seconds; 0: never.
+
+    It speaks at once and has a timer, or neither: then it speaks only when a command comes.
+    """
 
     at_once: bool = True
     """It speaks when a stop comes; else only when a command comes."""
     period: float = 0.05
     """And so often by itself."""
+    hold: float = 0.2
+    """Zero for so long after a stop has come, whatever comes meanwhile; only with a period."""
     command_timeout: float = 0.5
     safety_timeout: float = 1.2
     latching: bool = False
@@ -234,11 +239,26 @@ def _mistakes(scenario: Scenario) -> Iterator[str]:
     for name, value in shares.items():
         if not 0 <= value <= 1:
             yield f"`{name}` must be between 0 and 1"
+    yield from _interceptor_mistakes(scenario.interceptor)
     stated = scenario.expect
     ids = [id for one in fields(stated) for id in getattr(stated, one.name)]
     twice = next((id for id in ids if ids.count(id) > 1), None)
     if twice is not None:
         yield f"`expect` names {twice} twice"
+
+
+def _interceptor_mistakes(node: Interceptor) -> Iterator[str]:
+    times = ("hold", "command_timeout", "safety_timeout")
+    if node.period < 0:
+        yield "`interceptor.period` must not be below 0"
+    if node.at_once != (node.period > 0):
+        yield "`interceptor.at_once` must be true with a period above 0, and false without one"
+    for name in times:
+        value = getattr(node, name)
+        if node.period == 0 and value:
+            yield f"`interceptor.{name}` must be 0 without a period: there is no timer"
+        elif value and value < node.period:
+            yield f"`interceptor.{name}` must be 0, or not below the period"
 
 
 T = TypeVar("T")

@@ -16,6 +16,7 @@ import click
 
 from compiler import __version__
 from compiler.cli.bind import bind
+from compiler.cli.check import check
 from compiler.cli.evidence import verify_evidence
 from compiler.cli.explain import explain
 from compiler.cli.group import DEFAULT, Commands
@@ -35,7 +36,7 @@ def cli() -> None:
     """From FRETish requirements to monitors, audited logs and a traceability report.
 
     `fretc FILE...` parses and formalizes requirements; with `--emit` it makes files of them:
-    ltl, monitor, ajpf, json, fret-json. `fretc FILE --help` says more.
+    ltl, monitor, ajpf, smv, hoa, dot, prism, json, fret-json. `fretc FILE --help` says more.
     """
 
 
@@ -46,6 +47,7 @@ for _command in (
     explain,
     info,
     bind,
+    check,
     audit,
     report,
     lock,

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -16,7 +16,10 @@ if TYPE_CHECKING:
     from compiler.project import Project
     from compiler.targets.target import Options
 
-_EMITS = ("ltl", "monitor", "ajpf", "json", "fret-json")
+_EMITS = (
+    "ltl", "monitor", "ajpf", "ajpf-bundle", "interceptor", "dafny", "smv", "hoa", "dot", "prism",
+    "json", "fret-json",
+)  # fmt: skip
 _NOTATIONS = ("plain", "fret", "spot", "nusmv", "latex")
 
 
@@ -48,6 +51,9 @@ _NOTATIONS = ("plain", "fret", "spot", "nusmv", "latex")
 )
 @click.option("--simplify", is_flag=True, help="Show a simplified formula beside the exact one.")
 @click.option("--one-file", is_flag=True, help="Put the monitors of all requirements in one file.")
+@click.option(
+    "--weaken", is_flag=True, help="Let AJPF's files say `eventually` for `within`, and say so."
+)
 def compile_(
     files: tuple[str, ...],
     kinds: tuple[str, ...],
@@ -57,6 +63,7 @@ def compile_(
     notation: str,
     simplify: bool,
     one_file: bool,
+    weaken: bool,
 ) -> None:
     """Parse and formalize requirements; make files of them.
 
@@ -66,6 +73,8 @@ def compile_(
 
     if one_file and "monitor" not in kinds:
         stop(Diagnostic(Code.BAD_USAGE, "`--one-file` is for `--emit monitor`", help="add it"))
+    if weaken:
+        _check_weaken(kinds)
     paths = listed(files)
     if isinstance(paths, Diagnostic):
         stop(paths)
@@ -80,11 +89,23 @@ def compile_(
     from compiler.targets.target import Options
 
     free_texts = tuple(f.requirement for f in project.failed)
-    options = Options(notation, simplify, one_file, free_texts)
+    options = Options(notation, simplify, one_file, free_texts, weaken, project.declarations)
     if kinds:
         _emit(project, dict.fromkeys(kinds), output, options)
     else:
         _print_formulas(project, options)
+
+
+def _check_weaken(kinds: Sequence[str]) -> None:
+    """F907 where no kind of file that is asked for has a weaker form."""
+    from compiler.targets import TARGETS
+
+    weak = [f"`--emit {name}`" for name, target in TARGETS.items() if target.weak is not None]
+    if not any(TARGETS[kind].weak for kind in kinds):
+        told = f"`--weaken` is for {' and '.join(weak)}"
+        stop(
+            Diagnostic(Code.BAD_USAGE, told, help="nothing else may say less than its requirement")
+        )
 
 
 def _only_failed(project: Project) -> bool:
@@ -114,18 +135,21 @@ def _emit(project: Project, kinds: dict[str, None], output: str, options: Option
     from compiler.pipeline import clashes
     from compiler.targets import TARGETS
 
-    targets = [TARGETS[kind] for kind in kinds]
+    named = [TARGETS[kind] for kind in kinds]
+    targets = [(options.weaken and target.weak) or target for target in named]
     refused = [
         diagnostic
         for target in targets
         for rule in project.rules
         if (diagnostic := target.refuse(rule)) is not None
     ]
+    refused += [d for target in targets if (d := target.refuse_project(options))]
     if options.one_file:
         refused.extend(clashes(project.rules))
     if refused:
         stop(*refused)
     say([d for target in targets for rule in project.rules if (d := target.remark(rule))])
+    say([diagnostic for target in targets for diagnostic in target.remarks(options)])
     files = [artifact for target in targets for artifact in target.emit(project.rules, options)]
     _deliver_all({str(artifact.path): artifact.text for artifact in files}, output)
 

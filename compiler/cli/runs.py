@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 
 
 _AUDIT = {
-    "Judged by": ("requirements", "bindings", "integrity", "evaluation"),
+    "Judged by": ("requirements", "bindings", "integrity", "evaluation", "confidence"),
     "Printed and written": ("form", "evidence", "parquet", "annotate", "annotations"),
     "Many logs": ("jobs", "resume", "engine"),
     "Questions to tables and evidence: LOG is one of them, nothing is audited": (
@@ -87,6 +87,13 @@ _AUDIT = {
     "every record, CRC and count (full).",
 )
 @click.option(
+    "--confidence",
+    type=click.FloatRange(min=0.5, max=0.999, min_open=True),
+    default=0.95,
+    show_default=True,
+    help="Of what all logs together say of a requirement with a probability.",
+)
+@click.option(
     "--jobs",
     type=click.IntRange(min=1),
     default=os.cpu_count() or 1,
@@ -114,6 +121,7 @@ def audit(
     form: str,
     evaluation: str,
     integrity: str,
+    confidence: float,
     jobs: int,
     engine: str,
     resume: bool,
@@ -128,6 +136,7 @@ def audit(
     one log.
 
     Each run and requirement gets a verdict: satisfied, violated, inconclusive, vacuous or no data.
+    A requirement with a probability is judged over all runs: supported, refuted or inconclusive.
     Exit status: 0 all satisfied, 1 a violation, 2 bad use or bad input, 3 something is not shown.
     """
     if summary or query is not None:
@@ -152,7 +161,7 @@ def audit(
     say(project.diagnostics)
     if has_errors(project.diagnostics):
         raise SystemExit(BAD)
-    plan = planned(project, evaluation, Integrity(integrity))
+    plan = planned(project, evaluation, Integrity(integrity), confidence)
     if not isinstance(plan, Plan):
         stop(*plan)
     journal = Journal(Path(evidence), plan) if evidence != "-" and len(logs) > 1 else None
@@ -190,11 +199,11 @@ def _printed(result: Audit, project: Project, form: str) -> str:
         case "json":
             return result.as_json
         case "junit":
-            return junit(result.results)
+            return junit(result.results, result.estimates)
         case "github":
-            return github(result.results, project.rules)
+            return github(result.results, project.rules, result.estimates)
         case "sarif":
-            return sarif(result.results, project.rules, result.diagnostics)
+            return sarif(result.results, project.rules, result.diagnostics, result.estimates)
         case _:
             return coloured(result.text)
 

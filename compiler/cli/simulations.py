@@ -133,6 +133,7 @@ def _record(
     pictures: Mapping[str, str | None],
 ) -> None:
     from compiler import __version__
+    from compiler.campaign import intercepted
     from compiler.experiment import safety_function
     from simulation.mission import record
     from simulation.recording import Encoding
@@ -150,6 +151,7 @@ def _record(
             mission = record(
                 path,
                 scenario,
+                intercepted(scenario.interceptor),
                 seed,
                 decision,
                 Encoding(encoding),

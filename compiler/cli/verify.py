@@ -1,42 +1,144 @@
-"""The command about proofs: whether what was made of a requirement is what it says."""
+"""The command about proofs: whether what was made of requirements keeps them."""
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
 
-from compiler.cli.output import BAD, NOT_SHOWN, SHOWN, VIOLATION, say, stop
+from compiler.cli.group import Grouped
+from compiler.cli.output import BAD, NOT_SHOWN, SHOWN, VIOLATION, coloured, deliver, say, stop
 from fretish.diagnostic import Code, Diagnostic, has_errors
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterable, Sequence
 
-    from compiler.rule import Rule
-    from compiler.verifying import Verified
+    from compiler.layers import Request
+    from compiler.project import Project
+    from compiler.verification import Evidence
+    from fretish.source import Source
+
+_LAYERS = ("monitor", "interceptor", "loop", "bounds", "agent")
+_HEADINGS = {
+    "What is looked at": ("layers", "monitor", "provers", "bindings", "limit"),
+    "Texts in place of new ones": ("path", "interceptor", "agent", "properties", "percepts"),
+    "Printed and written": ("form", "output", "traces"),
+}
 
 
-@click.command(short_help="Prove that monitors mean what their requirements say.")
+@click.command(
+    cls=Grouped,
+    headings=_HEADINGS,
+    short_help="Prove that what is made of requirements keeps them.",
+)
 @click.argument("files", nargs=-1, required=True, metavar="FILE...")
-@click.option("--monitor", is_flag=True, help="Prove the monitor that `--emit monitor` makes.")
-@click.option("--file", "path", help="A monitor that was made before, in place of a new one.")
+@click.option(
+    "--layer",
+    "layers",
+    multiple=True,
+    type=click.Choice(_LAYERS),
+    help="What to look at, maybe several; all five if none is given.",
+)
+@click.option("--monitor", is_flag=True, help="The same as `--layer monitor`.")
+@click.option(
+    "--with",
+    "provers",
+    multiple=True,
+    type=click.Choice(("dafny", "crosshair")),
+    help="A prover to ask as well, if it is installed.",
+)
+@click.option("--file", "path", help="A monitor that was made before.")
+@click.option("--interceptor", help="An interceptor that was made before.")
+@click.option("--agent", help="An agent in Gwendolen; with --properties.")
+@click.option("--properties", help="The properties of the agent, as AJPF reads them.")
+@click.option(
+    "--percept", "percepts", multiple=True, help="A percept that the agent's environment draws."
+)
 @click.option("--bindings", help="bindings.toml; the one beside the first FILE if not given.")
+@click.option(
+    "--limit",
+    type=click.IntRange(min=1),
+    default=60,
+    show_default=True,
+    help="Seconds of a processor for each claim.",
+)
 @click.option(
     "--format", "form", type=click.Choice(("text", "json")), default="text", show_default=True
 )
+@click.option(
+    "-o",
+    "--output",
+    default="build/verification.json",
+    show_default=True,
+    help="Where evidence goes; - prints it.",
+)
+@click.option("--traces", help="A folder for each counterexample as a table that monitors read.")
 def verify(
-    files: tuple[str, ...], monitor: bool, path: str | None, bindings: str | None, form: str
+    files: tuple[str, ...],
+    layers: tuple[str, ...],
+    monitor: bool,
+    provers: tuple[str, ...],
+    path: str | None,
+    interceptor: str | None,
+    agent: str | None,
+    properties: str | None,
+    percepts: tuple[str, ...],
+    bindings: str | None,
+    limit: int,
+    form: str,
+    output: str,
+    traces: str | None,
 ) -> None:
-    """Prove that what was made of requirements means what they say.
+    """Prove that what is made of requirements keeps them, layer by layer.
 
-    With `--monitor`, the text of each monitor is executed and explored in lock step against the
-    counter automaton of its sentence, over all propositions and at its own bound: for traces of
-    any length. Exit status: 0 proved, 1 refuted, 3 not checked.
+    monitor: the text of a monitor means what its sentence says. interceptor: its text keeps its
+    contracts. loop: both, and any environment, keep the requirement under the assumptions of the
+    bindings. bounds: so they do whatever the times are. agent: its text has its properties.
+
+    Exit status: 0 all proved, 1 a claim about a requirement is refuted, 2 bad use or input,
+    3 something is vacuous, not checked, or stays stopped.
     """
+    from compiler.confined import Limits
+    from compiler.layers import Request
+    from compiler.verification import Layer
+
+    if (agent is None) != (properties is None):
+        stop(_half(agent))
+    named = dict.fromkeys((*layers, *(["monitor"] if monitor else [])))
+    if path is not None and not named:
+        named = {"monitor": None}
+    project = _project(files, bindings)
+    asked = Request(
+        [Layer(name) for name in named or _LAYERS],
+        Limits(seconds=limit),
+        _read(path),
+        _read(interceptor),
+        _read(agent),
+        _read(properties),
+        percepts,
+        provers,
+    )
+    _refused(project, asked)
+    found = _evidence(project, asked)
+    given = (path, interceptor, agent, properties, bindings)
+    inputs = [*files, *(name for name in given if name is not None)]
+    _tell(found, form, output, traces, inputs)
+    raise SystemExit(_status(found))
+
+
+def _half(agent: str | None) -> Diagnostic:
+    given, missing = ("properties", "agent") if agent is None else ("agent", "properties")
+    return Diagnostic(
+        Code.BAD_USAGE,
+        f"`--{given}` is of no use without `--{missing}`",
+        help="name both: `--agent FILE.gwen --properties FILE.psl`",
+    )
+
+
+def _project(files: tuple[str, ...], bindings: str | None) -> Project:
     from compiler.project import listed, load
 
-    if not monitor and path is None:
-        stop(Diagnostic(Code.BAD_USAGE, "nothing to verify is named", help="add `--monitor`"))
     paths = listed(files)
     if isinstance(paths, Diagnostic):
         stop(paths)
@@ -46,57 +148,97 @@ def verify(
         raise SystemExit(BAD)
     if not project.rules:
         stop(Diagnostic(Code.NOTHING_TO_DO, "there is no requirement to verify"))
-    _refused(project.rules)
-    found = [_verified(rule, path) for rule in project.rules]
-    _print(found, form)
-    _exit(found)
+    return project
 
 
-def _refused(rules: Sequence[Rule]) -> None:
+def _read(path: str | None) -> Source | None:
+    from compiler.files import read
+
+    if path is None:
+        return None
+    source = read(path)
+    if isinstance(source, Diagnostic):
+        stop(source)
+    return source
+
+
+def _refused(project: Project, asked: Request) -> None:
+    """Layers that step a monitor need one."""
     from compiler.targets import monitor
+    from compiler.verification import Layer
 
-    wrong = [diagnostic for rule in rules if (diagnostic := monitor.refuse(rule)) is not None]
+    if not {Layer.MONITOR, Layer.LOOP, Layer.BOUNDS}.intersection(asked.layers):
+        return
+    found = (monitor.refuse(rule) for rule in project.rules)
+    wrong = [diagnostic for diagnostic in found if diagnostic is not None]
     if wrong:
         stop(*wrong)
 
 
-def _verified(rule: Rule, path: str | None) -> Verified:
-    from compiler.files import read
-    from compiler.targets import monitor
-    from compiler.verifying import NotAMonitorError, verified
+def _evidence(project: Project, asked: Request) -> Sequence[Evidence]:
+    from compiler.layers import evidence
+    from compiler.verifying import NotAMonitorError
 
-    if path is None:
-        return verified(rule, monitor.text(rule))
-    source = read(path)
-    if isinstance(source, Diagnostic):
-        stop(source)
     try:
-        return verified(rule, source.text)
+        found = evidence(project, asked)
     except NotAMonitorError as error:
+        assert asked.monitor is not None
         stop(
             Diagnostic(
                 Code.BAD_MONITOR,
-                f"`{path}` is no generated monitor: {error}",
-                source.span(0, 0),
+                f"`{asked.monitor.name}` is no generated monitor: {error}",
+                asked.monitor.span(0, 0),
                 help="name a file that `--emit monitor` wrote",
             )
         )
+    if isinstance(found, Diagnostic):
+        stop(found)
+    return found
 
 
-def _print(found: Sequence[Verified], form: str) -> None:
-    from compiler.proofs import as_record, text
+def _tell(
+    found: Sequence[Evidence], form: str, output: str, traces: str | None, inputs: Iterable[str]
+) -> None:
+    """Print it, and write the evidence and the runs."""
+    from compiler import __version__
+    from compiler.proofsheet import lines
     from compiler.templating import to_json
+    from compiler.verification import document
 
-    if form == "json":
-        click.echo(to_json([as_record(verified) for verified in found]))
-        return
-    width = max(len(verified.requirement) for verified in found)
-    for verified in found:
-        click.echo(f"{verified.requirement:<{width}}  {text(verified)}")
+    text = f"{to_json(document(__version__, found))}\n"
+    if output != "-" or form == "json":
+        click.echo(text if form == "json" else coloured([*lines(found)]), nl=False)
+    files: dict[Path, str | bytes] = {}
+    if output != "-" or form != "json":
+        files[Path(output)] = text
+    if traces is not None:
+        files.update(_tables(found, Path(traces)))
+    deliver(files, inputs)
 
 
-def _exit(found: Sequence[Verified]) -> None:
-    from compiler.proofs import NOT_CHECKED, REFUTED, status
+def _tables(found: Sequence[Evidence], folder: Path) -> dict[Path, str]:
+    """Each run that a monitor can step, under the requirement, the layer and a number."""
+    from compiler.looptrace import EXTRA
+    from compiler.proofsheet import as_csv
+    from compiler.verification import Counterexample, Layer
 
-    told = {status(verified) for verified in found}
-    raise SystemExit(VIOLATION if REFUTED in told else NOT_SHOWN if NOT_CHECKED in told else SHOWN)
+    files: dict[Path, str] = {}
+    for one in found:
+        if one.layer not in (Layer.MONITOR, Layer.LOOP, Layer.BOUNDS):
+            continue
+        if isinstance(one.result, Counterexample) and one.result.trace is not None:
+            trace = one.result.trace
+            names = trace.names if one.layer is Layer.MONITOR else trace.names[: -len(EXTRA)]
+            stem = f"{one.requirement.lower()}_{one.layer}"
+            number = sum(path.name.startswith(f"{stem}_") for path in files) + 1
+            files[folder / f"{stem}_{number}.csv"] = as_csv(trace, names)
+    return files
+
+
+def _status(found: Sequence[Evidence]) -> int:
+    from compiler.closedloop import RELEASED
+    from compiler.verification import Counterexample, Proved
+
+    if any(isinstance(one.result, Counterexample) and one.claim != RELEASED for one in found):
+        return VIOLATION
+    return SHOWN if all(isinstance(one.result, Proved) for one in found) else NOT_SHOWN

@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from types import MappingProxyType
 
 from compiler import __version__
+from compiler.checks import checks
+from compiler.estimates import AVERAGE
 from compiler.evidence import Evidence
 from compiler.lock import Lock
+from compiler.odds import CONFIDENCE, REFUTED, SUPPORTED
+from compiler.products import shared_products
 from compiler.project import Project
 from compiler.proven import Proofs
 from compiler.report import phrases, reviews
@@ -16,6 +20,7 @@ from compiler.report.claims import (
     MARKS,
     NOT_EXERCISED,
     RETIRED,
+    SHOWN,
     SUSPECT,
     UNFORMALIZED,
     WAIVED,
@@ -86,9 +91,12 @@ def report(
         not_shown=tuple(_not_shown(view) for view in sections if view.reasons),
         reservations=reservations,
         planned=plans,
-        proofs=proof_views((each for each in proved if each.requirement in SHARED), ()),
+        proofs=proof_views(
+            (each for each in proved if each.requirement in SHARED),
+            shared_products(project.declarations),
+        ),
         verification=phrases.place(proofs.file) if proofs else "",
-        remarks=tuple(remark(diagnostic) for diagnostic in project.diagnostics),
+        remarks=tuple(remark(diagnostic) for diagnostic in _remarks(project, claimed)),
         hazards=hazard_views(project),
         matrix=matrix(project, claimed, sections, found),
         orphans=orphans(project, claimed, evidence),
@@ -97,9 +105,25 @@ def report(
         waivers=tuple(view.waiver for view in sections if view.waiver),
         requirements=sections,
         assumptions=_assumptions(project, evidence),
-        commands=commands(project, sections, tuple(found.values()), path, proofs),
+        commands=commands(
+            project, sections, tuple(found.values()), path, proofs, _confidence(evidence)
+        ),
         manifest=manifest(project, sections, tuple(found.values()), evidence, proofs),
     ), _stale(claimed, evidence, path)
+
+
+def _confidence(evidence: Evidence | None) -> float:
+    told = evidence.probabilities if evidence else ()
+    return next((one.confidence for one in told), CONFIDENCE)
+
+
+def _remarks(project: Project, claimed: Sequence[Claim]) -> Sequence[Diagnostic]:
+    """What reading it has told, and what `fretc check` finds; changes have a part of their own."""
+    said = project.diagnostics
+    if has_errors(said):
+        return said
+    found = checks(project, [claim.standing for claim in claimed])
+    return [*said, *(d for d in found if d.code is not Code.CHANGED_SINCE_REVIEW)]
 
 
 def _not_shown(view: RequirementView) -> NotShown:
@@ -125,14 +149,14 @@ def _overall(
     inforce = [view for view in sections if view.status != RETIRED]
     missing = [plan for view in inforce for plan in view.planned if not plan.has_result]
     refuted = [view.id for view in inforce if is_refuted(view)]
-    broken = [claim for claim in active if claim.verdict == kernel.VIOLATED]
-    good = [claim for claim in active if claim.verdict == kernel.SATISFIED]
+    broken = [claim for claim in active if claim.verdict in (kernel.VIOLATED, REFUTED)]
+    good = [claim for claim in active if claim.verdict in SHOWN]
     flawed = has_errors(project.diagnostics)
     said = tuple(
         filter(
             None,
             (
-                _held(active, good, len(runs)),
+                *_held(active, good, len(runs)),
                 _refuted(refuted),
                 *_few(reservations),
                 _waived(active),
@@ -146,7 +170,7 @@ def _overall(
     if broken:
         verb = "is" if len(broken) == 1 else "are"
         names = phrases.some([claim.id for claim in broken])
-        return Overall(_BROKEN, f"{names} {verb} violated.", said)
+        return Overall(_BROKEN, f"{names} {verb} {_how(broken)}.", said)
     if not good:
         return Overall(_NONE, "Nothing that was claimed is shown.", said)
     if len(good) < len(active) or flawed:
@@ -158,7 +182,27 @@ def _overall(
     return Overall(_ALL, "Everything that was claimed is shown.", said)
 
 
-def _held(active: Sequence[Claim], good: Sequence[Claim], runs: int) -> str:
+def _how(broken: Sequence[Claim]) -> str:
+    words = dict.fromkeys(str(claim.verdict) for claim in broken)
+    return " or ".join(words)
+
+
+def _held(active: Sequence[Claim], good: Sequence[Claim], runs: int) -> Iterator[str]:
+    """Of requirements that each run is judged by, and of those that all runs are."""
+    alone = [claim for claim in active if claim.together is None]
+    chances = [claim for claim in active if claim.together is not None]
+    if alone or not chances:
+        yield _held_alone(alone, [claim for claim in good if claim.together is None], runs)
+    if chances:
+        count = sum(claim.verdict == SUPPORTED for claim in chances)
+        yield (
+            f"{count} of {phrases.times(len(chances), 'probability', 'probabilities')} "
+            f"{'is' if len(chances) == 1 else 'are'} supported, on the average over the triggers "
+            f"of {phrases.times(runs, 'run')}."
+        )
+
+
+def _held_alone(active: Sequence[Claim], good: Sequence[Claim], runs: int) -> str:
     if not active:
         return "There is no requirement to show."
     if not runs:
@@ -215,8 +259,9 @@ def _few(reservations: Sequence[str]) -> Sequence[str]:
 
 def _reservations(view: RequirementView) -> Sequence[str]:
     """What a reader has to know of a requirement that is shown."""
-    if view.mark.word != kernel.SATISFIED:
+    if view.mark.word not in SHOWN:
         return ()
+    average = [f"{view.id} is supported: {AVERAGE}."] if view.mark.word == SUPPORTED else []
     waits = [
         (result.latency.longest_s, result.latency.longest, result.run_label)
         for result in view.results
@@ -228,7 +273,7 @@ def _reservations(view: RequirementView) -> Sequence[str]:
         for _, longest, run in sorted(waits, key=lambda wait: -wait[0])[:1]
     ]
     draft = [f"{view.id} is a draft."] if view.status == "draft" else []
-    return (*late, *draft)
+    return (*average, *late, *draft)
 
 
 def _claims(claimed: Sequence[Claim], runs: int) -> str:
@@ -251,10 +296,11 @@ def _counts(claimed: Sequence[Claim]) -> tuple[Count, ...]:
     best_first = (kernel.SATISFIED, *(word for word in MARKS if word != kernel.SATISFIED))
     always = (kernel.SATISFIED, kernel.VIOLATED, kernel.INCONCLUSIVE, kernel.VACUOUS)
     shown = (*always, kernel.NO_DATA, SUSPECT, NOT_EXERCISED)
+    rare = (UNFORMALIZED, WAIVED, RETIRED, SUPPORTED, REFUTED)
     return tuple(
         Count(MARKS[word], of_claims[word], of_results[word])
         for word in best_first
-        if word in shown or (word in (UNFORMALIZED, WAIVED, RETIRED) and of_claims[word])
+        if word in shown or (word in rare and of_claims[word])
     )
 
 

@@ -6,20 +6,25 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from types import MappingProxyType
 
+from compiler.estimates import Estimated
 from compiler.evidence import Evidence, Result
 from compiler.files import sha256
 from compiler.links import chains
 from compiler.lock import Lock, Standing, standings
+from compiler.odds import REFUTED, SUPPORTED
 from compiler.products import Product, products
 from compiler.project import Project, fingerprint
+from compiler.report.probabilities import ANSWERS, contradictions
 from compiler.report.views import Mark
 from compiler.rule import Rule
 from compiler.targets import monitor
+from compiler.trials import plain
 from compiler.waivers import Waiver
 from fretish.declarations import Declarations
 from fretish.diagnostic import Diagnostic
 from fretish.documents import Requirement
 from monitors import kernel
+from monitors.trials import NO_TRIALS
 
 SUSPECT = "suspect"
 UNFORMALIZED = "unformalized"
@@ -29,6 +34,7 @@ WAIVED = "waived"
 
 MARKS: Mapping[str, Mark] = {
     kernel.VIOLATED: Mark(kernel.VIOLATED, "✘", "violated"),
+    REFUTED: ANSWERS[REFUTED],
     UNFORMALIZED: Mark(UNFORMALIZED, "!", "unformalized"),
     SUSPECT: Mark(SUSPECT, "⚠", "suspect"),
     kernel.NO_DATA: Mark(kernel.NO_DATA, "?", "no-data"),
@@ -36,11 +42,14 @@ MARKS: Mapping[str, Mark] = {
     kernel.VACUOUS: Mark(kernel.VACUOUS, "∅", "vacuous"),
     NOT_EXERCISED: Mark(NOT_EXERCISED, "○", "not-exercised"),
     WAIVED: Mark(WAIVED, "w", "waived"),
+    SUPPORTED: ANSWERS[SUPPORTED],
     kernel.SATISFIED: Mark(kernel.SATISFIED, "✔", "satisfied"),
     RETIRED: Mark(RETIRED, "\N{EN DASH}", "retired"),
 }
 """Every verdict of the report, the worst first: that of several runs is the worst of theirs."""
 
+SHOWN = (kernel.SATISFIED, SUPPORTED)
+"""The verdicts that show a requirement."""
 UNBOUND, NOT_GENERATED = "unbound", "not generated"
 EXERCISED_PASS, EXERCISED_FAIL = "exercised, pass", "exercised, fail"
 COVERAGE = (
@@ -71,6 +80,14 @@ class Judged:
 
 
 @dataclass(frozen=True, slots=True)
+class Together:
+    """What all runs say of a probability, and why it does not count, if it does not."""
+
+    told: Estimated
+    suspicions: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
 class Claim:
     """A requirement: formalized (`rule`) or not (`diagnostic`), and its audits."""
 
@@ -84,6 +101,8 @@ class Claim:
     waiver: Waiver | None
     """One that counts now."""
     is_bound: bool
+    together: Together | None = None
+    """With a probability: what all runs say, in place of the verdicts of each."""
 
     @property
     def id(self) -> str:
@@ -92,9 +111,12 @@ class Claim:
 
     @property
     def verdict(self) -> str:
-        """The worst of its runs, or why it has none; `waived` where a waiver covers that."""
+        """The worst of its runs, or what they say together, or why it has none.
+
+        `waived` where a waiver covers that.
+        """
         found = self.unwaived
-        return WAIVED if self.waiver and found not in (kernel.SATISFIED, RETIRED) else found
+        return WAIVED if self.waiver and found not in (*SHOWN, RETIRED) else found
 
     @property
     def unwaived(self) -> str:
@@ -103,10 +125,17 @@ class Claim:
             return RETIRED
         if self.rule is None:
             return UNFORMALIZED
-        verdicts = [judged.verdict for judged in self.judged] or [NOT_EXERCISED]
+        verdicts = self._of_runs
         if self.standing.is_suspect:
             verdicts.append(SUSPECT)
         return min(verdicts, key=_RANK.__getitem__)
+
+    @property
+    def _of_runs(self) -> list[str]:
+        """The verdicts of all runs; with a probability, the one of all together."""
+        if self.together is not None:
+            return [SUSPECT if self.together.suspicions else self.together.told.answer]
+        return [judged.verdict for judged in self.judged] or [NOT_EXERCISED]
 
     @property
     def coverage(self) -> str:
@@ -114,13 +143,13 @@ class Claim:
         verdict = self.verdict
         if verdict in (RETIRED, WAIVED, UNFORMALIZED, SUSPECT):
             return verdict
-        if verdict == kernel.VIOLATED:
+        if verdict in (kernel.VIOLATED, REFUTED):
             return EXERCISED_FAIL
         if not self.is_bound:
             return UNBOUND
-        if all(product.refusal for product in self.products if product.target == "monitor"):
+        if self.rule is None or monitor.refuse(plain(self.rule)) is not None:
             return NOT_GENERATED
-        return EXERCISED_PASS if verdict == kernel.SATISFIED else NOT_EXERCISED
+        return EXERCISED_PASS if verdict in SHOWN else NOT_EXERCISED
 
     @property
     def mark(self) -> Mark:
@@ -154,20 +183,37 @@ def claims(
         rule = rules.get(id(requirement))
         judge = _Judge(rule, project.declarations)
         mine = [result for result in results if result.requirement == requirement.id]
+        judged = tuple(Judged(result, tuple(judge.suspicions(result))) for result in mine)
         found.append(
             Claim(
                 requirement,
                 anchors[-1],
                 rule,
                 failed.get(id(requirement)),
-                tuple(Judged(result, tuple(judge.suspicions(result))) for result in mine),
+                judged,
                 made.get(id(requirement), ()),
                 stands,
                 waivers.get(requirement.id),
                 rule is not None and _is_bound(rule, project.declarations),
+                _together(rule, evidence, judged),
             )
         )
     return tuple(found)
+
+
+def _together(
+    rule: Rule | None, evidence: Evidence | None, judged: Sequence[Judged]
+) -> Together | None:
+    if rule is None or evidence is None or rule.sentence.probability is None:
+        return None
+    told = next((one for one in evidence.probabilities if one.requirement == rule.id), None)
+    if told is None:
+        return None
+    runs = [(j.result.content, j.result.health.intact, j.result.trials) for j in judged]
+    known = [(content, intact, trials or NO_TRIALS) for content, intact, trials in runs]
+    stale = [reason for each in judged for reason in each.suspicions]
+    wrong = contradictions(told, rule.sentence.probability, known)
+    return Together(told, tuple(dict.fromkeys((*stale, *wrong))))
 
 
 def _is_bound(rule: Rule, declarations: Declarations | None) -> bool:

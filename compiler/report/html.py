@@ -13,6 +13,7 @@ from compiler.drawing import drawing as diagram_drawing
 from compiler.report.argument import argument
 from compiler.report.phrases import visible
 from compiler.report.plots import drawing, histogram
+from compiler.report.scales import scale
 from compiler.report.selection import Selection, selection, slimmed
 from compiler.report.tree import MOST, grouped, pieces, placed, shortened
 from compiler.report.views import Report
@@ -39,6 +40,7 @@ def html(report: Report, rules: Sequence[Rule] = ()) -> str:
         anchors=chosen.anchors,
         pictures=_visible(_pictures(chosen)),
         histograms=_visible(_histograms(page)),
+        scales=_visible(_scales(page)),
         diagrams=_diagrams(page, rules),
         argument=_visible(_argument(report)),
         script_hash=_hash(script),
@@ -116,6 +118,15 @@ def _nested(flat: Sequence[tuple[int, str, Any]]) -> list[dict[str, Any]]:
             }
         )
     return items
+
+
+def _scales(page: Report) -> dict[str, dict[str, Any]]:
+    """Of each probability its scale."""
+    return {
+        view.anchor: asdict(scale(view.probability, f"picture-{view.anchor}"))
+        for view in page.requirements
+        if view.probability is not None
+    }
 
 
 def _visible(value: Any) -> Any:

@@ -8,6 +8,7 @@ from pathlib import PurePath
 
 from compiler import __version__
 from compiler.evidence import Evidence
+from compiler.odds import CONFIDENCE
 from compiler.project import Project, fingerprint
 from compiler.proven import Proofs
 from compiler.report import phrases
@@ -22,16 +23,19 @@ def commands(
     runs: Sequence[Run],
     evidence: str,
     proofs: Proofs | None,
+    confidence: float = CONFIDENCE,
 ) -> tuple[Command, ...]:
     """The commands, in the order in which they are to be run."""
     proved = f" --verification {_quoted(proofs.file)}" if proofs else ""
     from_here = _options(project)
     logs = " ".join(_log(run.result.run) for run in runs) or "LOG..."
     to = _quoted(evidence)
+    level = "" if confidence == CONFIDENCE else f" --confidence {confidence}"
+    audit = f"fretc audit {logs} {from_here}{level} --evidence {to}"
     return (
         Command("Check the version of the tool", f"fretc --version   # fretc {__version__}"),
         *_check(runs),
-        Command("Audit the runs", f"fretc audit {logs} {from_here} --evidence {to}"),
+        Command("Audit the runs", audit),
         *_emissions(sections),
         Command("Write this report", f"fretc report {from_here} --evidence {to}{proved}"),
     )

@@ -234,6 +234,8 @@ def reasons(claim: Claim, runs: dict[Key, Run], *, audited: bool) -> tuple[str, 
         return (f"{claim.diagnostic.code.number}: {claim.diagnostic.message}",)
     if not claim.judged:
         return ("the audit did not cover it" if audited else "no run has been audited",)
+    if claim.together is not None:
+        return claim.together.suspicions or (f"over all runs: {claim.together.told.reason}",)
     against = [judged for judged in claim.judged if judged.verdict != kernel.SATISFIED]
     lines = [f"{runs[key(j.result)].label}: {_against(j)}" for j in against[:_TOLD]]
     left = len(against) - len(lines)

@@ -8,13 +8,15 @@ from typing import Any
 
 from compiler import printing
 from compiler.diagram import diagram, words
+from compiler.products import shared_products
 from compiler.project import Project
 from compiler.proven import Proof
 from compiler.record import wording
 from compiler.report import phrases
-from compiler.report.claims import RETIRED, Claim
+from compiler.report.claims import RETIRED, SHOWN, Claim
 from compiler.report.histograms import exercise, histograms
 from compiler.report.plans import planned
+from compiler.report.probabilities import probability_view
 from compiler.report.proofs import SHARED, proof_views
 from compiler.report.results import reasons, result_views
 from compiler.report.reviews import review, waiver
@@ -22,6 +24,7 @@ from compiler.report.runs import Key, Run
 from compiler.report.views import (
     Formula,
     Parent,
+    ProbabilityView,
     PropositionView,
     Remark,
     RequirementView,
@@ -33,7 +36,6 @@ from fretish.declarations import Declarations, Proposition, Signal
 from fretish.diagnostic import Diagnostic
 from fretish.meaning import meaning
 from fretish.printer import sentence
-from monitors import kernel
 
 
 def section(
@@ -55,10 +57,12 @@ def section(
         proofs: of all requirements, and of what they share.
     """
     requirement, rule = claim.requirement, claim.rule
-    mine = proof_views((p for p in proofs if p.requirement == claim.id), claim.products)
-    shared = proof_views((p for p in proofs if p.requirement in SHARED), ())
+    common = shared_products(project.declarations) if proofs else ()
+    made = (*claim.products, *common)
+    mine = proof_views((p for p in proofs if p.requirement == claim.id), made)
+    shared = proof_views((p for p in proofs if p.requirement in SHARED), common)
     clock = project.declarations.clock if project.declarations else None
-    shown = claim.verdict in (kernel.SATISFIED, RETIRED)
+    shown = claim.verdict in (*SHOWN, RETIRED)
     return RequirementView(
         id=claim.id,
         anchor=claim.anchor,
@@ -81,6 +85,7 @@ def section(
         params=dict(requirement.params),
         planned=planned(claim, (*mine, *shared)),
         artefacts=claim.products,
+        probability=_probability(claim),
         proofs=mine,
         exercise=exercise(claim),
         histograms=histograms(claim),
@@ -90,6 +95,12 @@ def section(
         review=review(claim),
         waiver=waiver(claim),
     )
+
+
+def _probability(claim: Claim) -> ProbabilityView | None:
+    if claim.together is None:
+        return None
+    return probability_view(claim.together.told, claim.together.suspicions)
 
 
 def remark(diagnostic: Diagnostic) -> Remark:

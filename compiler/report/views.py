@@ -331,6 +331,31 @@ class ResultView:
 
 
 @dataclass(frozen=True, slots=True)
+class BoundsView:
+    """An interval of a probability, and how it was made."""
+
+    name: str
+    low: float
+    high: float
+
+
+@dataclass(frozen=True, slots=True)
+class ProbabilityView:
+    """What all runs say of a probability; `text` says in words what its picture shows."""
+
+    mark: Mark
+    suspicions: tuple[str, ...]
+    """Why it does not count; empty where it does."""
+    stated: str
+    bound: float
+    reason: str
+    lines: tuple[str, ...]
+    estimate: float | None
+    bars: tuple[BoundsView, ...]
+    text: str
+
+
+@dataclass(frozen=True, slots=True)
 class RequirementView:
     """Everything known of one requirement."""
 
@@ -360,6 +385,8 @@ class RequirementView:
     exercise: str
     """What all runs together have asked of it."""
     histograms: tuple[Histogram, ...]
+    probability: ProbabilityView | None
+    """None: the sentence gives none, or no evidence tells of it."""
     results: tuple[ResultView, ...]
     reasons: tuple[str, ...]
     """Why it is not shown; empty where it is."""

@@ -21,6 +21,7 @@ from compiler.rule import Rule
 from compiler.runtime import kernel
 from compiler.targets.target import DEFAULT, Options, Target, not_expressible, stem
 from compiler.templating import render
+from compiler.trials import plain
 from fretish import syntax as s
 from fretish.checking import LOOK_AHEAD, calls, conditions
 from fretish.clock import assumed_ticks
@@ -51,7 +52,7 @@ def refuse(rule: Rule) -> Diagnostic | None:
             "a monitor",
             rule,
             "the probability",
-            "one run does not tell a probability: estimate it over many, or leave it out",
+            "one run does not tell a probability: `fretc audit` estimates it over many",
         )
     if assumed_ticks(rule.sentence, rule.clock) is None:
         return None
@@ -99,9 +100,13 @@ def emit(rules: Sequence[Rule], options: Options = DEFAULT) -> tuple[Artifact, .
 def text(*rules: Rule) -> str:
     """The Python source of one monitor for all of the rules.
 
+    Of a sentence with a probability it is the monitor of the same sentence without it, and says so.
+
     Args:
         rules: at least one, each with an id of its own, and all on one clock.
     """
+    left_out = [rule for rule in rules if rule.sentence.probability]
+    rules = tuple(map(plain, rules))
     names = tuple(dict.fromkeys(name for rule in rules for name in rule.watched))
     prefixes = _prefixes([rule.id for rule in rules])
     parameters = _parameters(names, prefixes.values())
@@ -114,6 +119,7 @@ def text(*rules: Rule) -> str:
         class_name=_class_name(rules[0].id) if len(rules) == 1 else "All",
         version=__version__,
         rules=[_described(rule) for rule in rules],
+        left_out=[_left_out(rule) for rule in left_out],
         tick=str(rules[0].clock) if rules[0].clock else "not declared",
         inputs=inputs,
         row=_tuple([p.name for p in inputs]),
@@ -162,6 +168,12 @@ class _Input:
 
 def _is_negated(proposition: str, made: Program) -> bool:
     return any(used.proposition == proposition and not used.positive for used in made.literals)
+
+
+def _left_out(rule: Rule) -> dict[str, str]:
+    odds = rule.sentence.probability
+    assert odds is not None
+    return {"id": rule.id, "odds": f"{odds.op} {odds.digits}", "fingerprint": rule.fingerprint}
 
 
 def _described(rule: Rule) -> dict[str, object]:

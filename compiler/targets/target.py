@@ -8,6 +8,7 @@ from typing import Protocol
 
 from compiler.artifact import Artifact
 from compiler.rule import Rule
+from fretish.declarations import Declarations
 from fretish.diagnostic import Code, Diagnostic
 from fretish.documents import Requirement
 
@@ -24,6 +25,10 @@ class Options:
     """Whether the monitors of all rules go into one file."""
     free_texts: tuple[Requirement, ...] = ()
     """Requirements without a rule, which only formats for exchange carry."""
+    weaken: bool = False
+    """Whether a target may say less than the requirement, where it then says so."""
+    declarations: Declarations | None = None
+    """What the bindings declare, for files about the robot and not about one rule."""
 
 
 DEFAULT = Options()
@@ -38,7 +43,10 @@ class Emit(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class Target:
-    """One kind of output. `refuse` is asked first; `emit` then never fails and never weakens."""
+    """One kind of output. `refuse` is asked first; `emit` then never fails and never weakens.
+
+    Except where `Options.weaken` allows it, and the target has a `weak` form of itself.
+    """
 
     name: str
     summary: str
@@ -46,8 +54,14 @@ class Target:
     refuse: Callable[[Rule], Diagnostic | None] = lambda rule: None
     remark: Callable[[Rule], Diagnostic | None] = lambda rule: None
     """What a user of the output should know; it does not keep it from being made."""
+    refuse_project: Callable[[Options], Diagnostic | None] = lambda options: None
+    """Asked once: what keeps the target from being made, whatever the rules are."""
+    remarks: Callable[[Options], tuple[Diagnostic, ...]] = lambda options: ()
+    """What to say once, beside what `remark` says of each rule."""
     per_rule: bool = True
     """False where all rules go into one file, for exchange with another tool."""
+    weak: Target | None = None
+    """The same target where weakening is allowed: it refuses less, and remarks what is lost."""
 
 
 def stem(rule: Rule) -> str:

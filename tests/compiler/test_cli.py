@@ -104,8 +104,9 @@ def test_emitted_files_go_to_build_and_are_named(fretc: Fretc) -> None:
 
 def test_minus_prints_in_place_of_writing(fretc: Fretc) -> None:
     run = fretc(write("r1.fret", R1), "--emit", "ajpf", "-o", "-")
-    assert run.out == (
-        f"# r1 {R1}\nr1: [] ((B(agilex_agent,too_close)) -> (<> (B(agilex_agent,stopped))))\n"
+    assert run.out.startswith(
+        f"# r1 {R1}\n# expected of r1: HOLDS (the requirement)\n"
+        "r1: [] ((B(agilex_agent,too_close)) -> (<> (B(agilex_agent,stopped))))\n"
     )
     assert not Path("build").exists()
 
@@ -117,6 +118,33 @@ def test_one_target_that_refuses_keeps_every_file_from_being_written(fretc: Fret
     assert run.err.startswith(
         "F601 AJPF cannot express the timing `within 3 ticks` of r\n  --> r.fret:1:1\n"
     )
+    assert not Path("build").exists()
+
+
+def test_within_is_emitted_for_ajpf_where_weakening_is_allowed(fretc: Fretc) -> None:
+    path = write("r.fret", "whenever p rover shall within 3 ticks satisfy q")
+    run = fretc(path, "--emit", "ajpf", "--emit", "ltl", "--weaken")
+    assert run.status == 0
+    assert run.err == (
+        "F605 warning: the property of r is weaker than the requirement: `within 3 ticks` has lost "
+        "its bound: a response that comes later, however late, satisfies it\n"
+        "  --> r.fret:1:24\n"
+        "   | whenever p rover shall within 3 ticks satisfy q\n"
+        "   |                        ^^^^^^^^^^^^^^\n"
+        "help: check the bound with `--emit monitor`\n"
+        "wrote build/r.psl\nwrote build/r.ltl\n"
+    )
+    text = Path("build/r.psl").read_text()
+    assert "\n# WEAKER than the requirement: `within 3 ticks` has lost its bound" in text
+    assert "\nr: [] ((B(rover,p)) -> (<> (B(rover,q))))\n" in text
+    assert "F[0,3] q" in Path("build/r.ltl").read_text()
+
+
+@pytest.mark.parametrize("kinds", [(), ("--emit", "monitor"), ("--emit", "ltl", "--emit", "json")])
+def test_only_the_files_of_ajpf_can_be_weaker(fretc: Fretc, kinds: tuple[str, ...]) -> None:
+    run = fretc(write("r1.fret", R1), *kinds, "--weaken")
+    assert run.status == 2
+    assert run.err.startswith("F907 `--weaken` is for `--emit ajpf`")
     assert not Path("build").exists()
 
 
@@ -138,7 +166,7 @@ def test_requirements_are_read_from_standard_input() -> None:
         text=True,
         check=False,
     )
-    assert (run.returncode, run.stdout.splitlines()[1].partition(":")[0]) == (0, "stdin")
+    assert (run.returncode, run.stdout.splitlines()[2].partition(":")[0]) == (0, "stdin")
 
 
 # Mistakes --------------------------------------------------------------------------------------

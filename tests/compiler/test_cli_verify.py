@@ -1,18 +1,39 @@
 """`fretc verify`: what it prints, and what it exits with."""
 
+import csv
 import json
+import subprocess
+import sys
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
+import jsonschema  # type: ignore[import-untyped]
 import pytest
 
+from compiler import confined
+from compiler.templating import template_root
 from tests.command import Fretc, Run, write
 
 R1 = "whenever p the sw shall within 2 ticks satisfy q"
 LOOKS_BACK = "whenever occurred(2, p) the sw shall always satisfy q"
+CLAIM = "the monitor means what the sentence says"
 PROVED = (
-    "proved: the same at every tick of every trace (4 states, 16 steps); "
+    f"proved: {CLAIM}; the same at every tick of every trace (4 states, 16 steps); "
     "columns agree on 1160 drawn ticks\n"
 )
+WROTE = "wrote build/verification.json\n"
+
+
+@pytest.fixture(autouse=True)
+def in_this_process(monkeypatch: pytest.MonkeyPatch, request: pytest.FixtureRequest) -> None:
+    """A new process takes a quarter of a second; that calls can be sent, some tests show."""
+
+    def direct(limits: object, function: Callable[..., Any], *args: Any) -> Any:
+        return function(*args)
+
+    if "confined" not in request.keywords:
+        monkeypatch.setattr(confined, "confined", direct)
 
 
 @pytest.fixture
@@ -38,25 +59,29 @@ def made(fretc: Fretc, r1: str) -> str:
 
 
 def test_a_monitor_that_is_made_is_proved(fretc: Fretc, r1: str) -> None:
-    assert fretc("verify", "--monitor", r1) == Run(0, f"r1  {PROVED}", "")
-    assert [path.name for path in Path().iterdir()] == [r1], "nothing is written"
+    assert fretc("verify", "--monitor", r1) == Run(0, f"✔ r1  monitor  {PROVED}", WROTE)
 
 
 def test_a_monitor_that_was_made_before_is_proved(fretc: Fretc, r1: str, made: str) -> None:
-    assert fretc("verify", "--file", made, r1) == Run(0, f"r1  {PROVED}", "")
+    assert fretc("verify", "--file", made, r1) == Run(0, f"✔ r1  monitor  {PROVED}", WROTE)
 
 
 def test_a_file_with_several_monitors_is_proved_for_each_requirement(fretc: Fretc) -> None:
     path = write("two.fret", f'+++\nid = "A"\n+++\n{R1}\n+++\nid = "BB"\n+++\n{R1}\n')
     assert fretc(path, "--emit", "monitor", "--one-file", "-o", ".").status == 0
     run = fretc("verify", "--file", "monitors.py", path)
-    assert (run.status, run.out) == (0, f"A   {PROVED}BB  {PROVED}")
+    assert (run.status, run.out) == (
+        0,
+        f"✔ A   monitor  {PROVED}✔ BB  monitor  {PROVED}",
+    )
 
 
 def test_the_names_of_a_folder_stand_in_one_column(fretc: Fretc) -> None:
     write("all/a.fret", R1)
     write("all/longer.fret", R1)
-    assert fretc("verify", "--monitor", "all") == Run(0, f"a       {PROVED}longer  {PROVED}", "")
+    assert fretc("verify", "--monitor", "all") == Run(
+        0, f"✔ a       monitor  {PROVED}✔ longer  monitor  {PROVED}", WROTE
+    )
 
 
 def test_the_bound_is_counted_by_the_clock(fretc: Fretc) -> None:
@@ -74,11 +99,13 @@ def test_a_refutation_shows_a_shortest_trace(fretc: Fretc, r1: str, made: str) -
     edited(made, "oldest_1 >= 2", "oldest_1 >= 3")
     assert fretc("verify", "--file", made, r1) == Run(
         1,
-        "r1  refuted: the shortest trace that shows it has 3 ticks; after it, pending (true if it "
-        "ended there), and should be violated (false if it ended there)\n"
-        "    tick 0: p = 1, q = 0\n"
-        "    ticks 1..2: p = 0, q = 0\n",
-        "",
+        f"✘ r1  monitor  counterexample: not true that {CLAIM}; the shortest trace that shows it "
+        "has 3 ticks; after it, pending (true if it ended there), and should be violated (false if "
+        "it ended there)\n"
+        "    tick  p  q\n"
+        "       0  1  0\n"
+        "    1..2  0  0\n",
+        WROTE,
     )
 
 
@@ -86,7 +113,7 @@ def test_a_monitor_of_the_sentence_as_it_was_is_refuted(fretc: Fretc, r1: str, m
     write(r1, R1.replace("whenever", "upon"))
     run = fretc("verify", "--file", made, r1)
     assert run.status == 1
-    assert run.out.startswith("r1  refuted: the shortest trace that shows it has 4 ticks;")
+    assert "; the shortest trace that shows it has 4 ticks;" in run.out
 
 
 def test_programs_that_differ_are_refuted(fretc: Fretc, r1: str, made: str) -> None:
@@ -95,18 +122,19 @@ def test_programs_that_differ_are_refuted(fretc: Fretc, r1: str, made: str) -> N
     first, *trace = run.out.splitlines()
     assert (run.status, first) == (
         1,
-        "r1  refuted: its column program and its steps differ on a trace",
+        f"✘ r1  monitor  counterexample: not true that {CLAIM}; its column program and its steps "
+        "differ on a trace",
     )
-    assert trace[-1].endswith(("p = 0, q = 0", "p = 1, q = 1"))
+    assert trace[-1].endswith(("  0  0", "  1  1"))
 
 
 def test_a_trace_may_have_unknown_values(fretc: Fretc, r1: str, made: str) -> None:
     edited(made, "elif p and not_q:", "elif p and not q:")
     run = fretc("verify", "--file", made, r1)
     assert run.status == 1
-    assert run.out.splitlines()[-1].endswith("p = 1, q = ?")
-    (record,) = json.loads(fretc("verify", "--file", made, r1, "--format", "json").out)
-    assert record["trace"][-1] == {"p": True, "q": None}
+    assert run.out.splitlines()[-1].endswith("  1  ?")
+    (record,) = told(fretc("verify", "--file", made, r1, "--format", "json"))
+    assert record["trace"]["rows"][-1] == [True, None]
 
 
 # Not checked ----------------------------------------------------------------------------------
@@ -116,21 +144,24 @@ def test_what_cannot_be_checked_is_told(fretc: Fretc) -> None:
     run = fretc("verify", "--monitor", write("r1.fret", LOOKS_BACK))
     assert (run.status, run.out) == (
         3,
-        "r1  not checked: `occurred` speaks of other ticks, and the automaton knows one\n",
+        f"? r1  monitor  not checked: {CLAIM}; `occurred` speaks of other ticks, and the automaton "
+        "knows one\n",
     )
 
 
 def test_a_step_that_looks_at_the_tick_is_not_checked(fretc: Fretc, r1: str, made: str) -> None:
     edited(made, "since_1 = oldest_1 >= 2", "since_1 = oldest_1 >= 2 or tick == 5000")
     assert fretc("verify", "--file", made, r1) == Run(
-        3, "r1  not checked: what it does at a tick depends on `tick`\n", ""
+        3, f"? r1  monitor  not checked: {CLAIM}; what it does at a tick depends on `tick`\n", WROTE
     )
 
 
 def test_a_monitor_of_another_requirement_is_not_checked(fretc: Fretc, r1: str, made: str) -> None:
     write("r2.fret", R1)
     run = fretc("verify", "--file", made, r1, "r2.fret")
-    assert run == Run(3, f"r1  {PROVED}r2  not checked: the monitor is of other requirements\n", "")
+    reason = "the monitor is of other requirements"
+    told = f"✔ r1  monitor  {PROVED}? r2  monitor  not checked: {CLAIM}; {reason}\n"
+    assert run == Run(3, told, WROTE)
 
 
 def test_the_worst_of_several_is_the_exit_status(fretc: Fretc, r1: str, made: str) -> None:
@@ -138,52 +169,274 @@ def test_the_worst_of_several_is_the_exit_status(fretc: Fretc, r1: str, made: st
     edited(made, "oldest_1 >= 2", "oldest_1 >= 3")
     run = fretc("verify", "--file", made, r1, "r2.fret")
     assert run.status == 1
-    assert [line[4:].partition(":")[0] for line in run.out.splitlines() if line[0] == "r"] == [
-        "refuted",
-        "not checked",
-    ]
+    assert [line[0] for line in run.out.splitlines() if line[0] != " "] == ["✘", "?"]
 
 
 # JSON -----------------------------------------------------------------------------------------
 
 
-def told(run: Run) -> object:
-    return json.loads(run.out)
+def told(run: Run) -> list[dict[str, Any]]:
+    """The evidence on standard output, which fits the schema."""
+    content = json.loads(run.out)
+    schema = json.loads((template_root() / "json/verification.schema.json").read_text())
+    jsonschema.validate(content, schema)
+    assert list(content) == ["schema", "fretc", "evidence"]
+    evidence: list[dict[str, Any]] = content["evidence"]
+    return evidence
 
 
 def test_a_proof_as_json(fretc: Fretc, r1: str) -> None:
     run = fretc("verify", "--monitor", r1, "--format", "json")
-    assert (run.status, told(run)) == (
+    (record,) = told(run)
+    assert len(record["artefacts"].pop("r1_monitor.py")) == 64
+    assert (run.status, record) == (
         0,
-        [{"requirement": "r1", "monitor": "proved", "states": 4, "steps": 16, "columns": 1160}],
+        {
+            "requirement": "r1",
+            "layer": "monitor",
+            "claim": CLAIM,
+            "result": "proved",
+            "detail": PROVED.partition("; ")[2].strip(),
+            "assumptions": [],
+            "engine": "fretc, lock step with the counter automaton of the sentence",
+            "artefacts": {},
+        },
     )
+
+
+def test_the_evidence_is_what_is_printed_as_json(fretc: Fretc, r1: str) -> None:
+    printed = fretc("verify", "--monitor", r1, "--format", "json").out
+    assert Path("build/verification.json").read_text() == printed
+    assert fretc("verify", "--monitor", r1, "-o", "-") == Run(0, printed, "")
 
 
 def test_a_refutation_as_json(fretc: Fretc, r1: str, made: str) -> None:
     edited(made, "oldest_1 >= 2", "oldest_1 >= 1")
     run = fretc("verify", "--file", made, r1, "--format", "json")
-    assert (run.status, told(run)) == (
+    (record,) = told(run)
+    assert (run.status, record["result"], record["trace"]) == (
         1,
-        [
-            {
-                "requirement": "r1",
-                "monitor": "refuted",
-                "expected": {"verdict": "pending", "finite": True},
-                "found": {"verdict": "violated", "finite": False},
-                "trace": [{"p": True, "q": False}, {"p": False, "q": False}],
-            }
-        ],
+        "counterexample",
+        {
+            "names": ["p", "q"],
+            "rows": [[True, False], [False, False]],
+            "actions": [],
+            "cycle": None,
+        },
+    )
+    assert record["detail"].endswith(
+        "violated (false if it ended there), and should be pending (true if it ended there)"
     )
 
 
 def test_what_is_not_checked_as_json(fretc: Fretc, r1: str, made: str) -> None:
     edited(made, "import argparse\n", "import argparse  # as it was\nimport array\n")
     run = fretc("verify", "--file", made, r1, "--format", "json")
-    reason = "the run time in it is not the one of this version of fretc"
-    assert (run.status, told(run)) == (
+    (record,) = told(run)
+    assert (run.status, record["result"], record["detail"]) == (
         3,
-        [{"requirement": "r1", "monitor": "not checked", "reason": reason}],
+        "not checked",
+        "the run time in it is not the one of this version of fretc",
     )
+
+
+# The closed loop ------------------------------------------------------------------------------
+
+BINDINGS = """\
+[clock]
+tick = "100 ms"
+
+[signal.d]
+path = "/d.data"
+unit = "m"
+
+[signal.v]
+path = "/v.data"
+unit = "m/s"
+
+[proposition.near]
+expr = "d < 5 cm"
+
+[proposition.stopped]
+expr = "abs(v) < 0.01 m/s"
+
+[interceptor]
+stop = "/stop"
+command = "/cmd_vel"
+output = "/wheels"
+period = "50 ms"
+hold = "200 ms"
+stop_timeout = "1200 ms"
+
+[assume]
+stands = "stopped"
+latency = "100 ms"
+lost = 1
+braking = "170 ms"
+"""
+NEAR = "whenever near the sw shall within {} milliseconds satisfy stopped"
+ASSUMPTIONS = """\
+assumptions
+   1  the safety function steps at every tick of 100 ms and sends its request every time \
+(`requests`, [assume])
+   2  stop messages are heard in the order of sending, each within 100 ms (`latency`, [assume])
+   3  never are more than 1 stop messages lost in a row (`lost`, [assume])
+   4  `stopped` is false while the wheels are told to move, and true once they have had zero for \
+170 ms (`braking`, [assume]), or earlier
+   5  the wheels have at once what was published last, and keep it while nothing is published
+   6  at the first tick the robot stands, and nothing has been heard yet
+   7  the node around the interceptor's step hands on every message, and publishes what it gives
+   8  the interceptor's timer rings once in each 50 ms (`period`, [interceptor])
+   9  `braking` of 170 ms counts as 200 ms, whole cells of the model
+"""
+
+
+@pytest.fixture
+def loop(fretc: Fretc) -> Callable[..., str]:
+    """Write a requirement and its bindings, some of them changed; the path of the requirement."""
+
+    def make(bound: int, *edits: tuple[str, str]) -> str:
+        text = BINDINGS
+        for old, new in edits:
+            assert text.count(old) == 1, old
+            text = text.replace(old, new)
+        write("bindings.toml", text)
+        return write("r1.fret", NEAR.format(bound))
+
+    return make
+
+
+@pytest.mark.confined
+def test_a_loop_that_keeps_its_requirement(fretc: Fretc, loop: Callable[..., str]) -> None:
+    run = fretc("verify", "--layer", "loop", loop(400))
+    kept, released, rest = run.out.split("\n", 2)
+    assert kept.startswith(
+        "✔ r1  loop  proved under (1-9): monitor, interceptor and any environment together keep "
+        "the requirement; "
+    )
+    assert released == (
+        "✔ r1  loop  proved under (1-9): the stop is released once no demand begins any more; "
+        "Spot finds no endless run that violates it"
+    )
+    assert (run.status, rest, run.err) == (0, ASSUMPTIONS, WROTE)
+
+
+def test_a_loop_that_does_not_shows_a_run(fretc: Fretc, loop: Callable[..., str]) -> None:
+    run = fretc("verify", "--layer", "loop", loop(200, ("lost = 1\n", "")))
+    first, *table = run.out.splitlines()[:5]
+    assert run.status == 1
+    assert first == (
+        "✘ r1  loop  counterexample under (1-9): not true that monitor, interceptor and any "
+        "environment together keep the requirement; violated at tick 3; no shorter run shows it"
+    )
+    assert table == [
+        "    tick  near  stopped  request  delivered  halt  wheels",
+        "       0     0        1        0          0     0       1  no stop is requested, and the "
+        "message is sent; a command to move is heard; `false` is heard",
+        "       1     1        0        1          1     1       0  a stop is requested, and the "
+        "message is sent; `true` is heard",
+        "    2..3     0        0        1          1     1       0  a stop is requested, and the "
+        "message is sent; `true` is heard",
+    ]
+
+
+def test_a_run_is_replayed_by_the_monitor_itself(fretc: Fretc, loop: Callable[..., str]) -> None:
+    path = loop(200)
+    assert fretc(path, "--emit", "monitor", "-o", ".").status == 0
+    run = fretc("verify", "--layer", "loop", path, "--traces", "runs")
+    assert run.err == "wrote build/verification.json\nwrote runs/r1_loop_1.csv\n"
+    with Path("runs/r1_loop_1.csv").open() as file:
+        rows = [*csv.reader(file)]
+    assert rows[0] == ["near", "stopped"]
+    replay = [sys.executable, "r1_monitor.py", "runs/r1_loop_1.csv"]
+    assert subprocess.run(replay, capture_output=True, check=False).returncode == 1
+
+
+@pytest.mark.confined
+def test_the_least_bound_is_told(fretc: Fretc, loop: Callable[..., str]) -> None:
+    run = fretc("verify", "--layer", "bounds", loop(400))
+    answered, enough = run.out.splitlines()[:2]
+    assert answered.startswith(
+        "✔ r1  bounds  proved under (1-8): every demand is answered within `lost` ticks and as "
+        "many more, at least one, as `latency` and `braking` fill together; by an inductive "
+    )
+    assert enough == (
+        "✔ r1  bounds  proved under (1, 5-12): the bound of 4 ticks is enough; the least that is "
+        "kept is 4 ticks (400 ms); with one tick less a run of 5 ticks violates it"
+    )
+    assert run.status == 0
+
+
+def test_a_stop_that_stays_is_no_violation(fretc: Fretc, loop: Callable[..., str]) -> None:
+    path = loop(400, ("[assume]", "latching = true\n\n[assume]"))
+    run = fretc("verify", "--layer", "loop", path)
+    assert (run.status, [line[0] for line in run.out.splitlines()[:2]]) == (3, ["✔", "✘"])
+
+
+@pytest.mark.parametrize(
+    ("sentence", "edits", "reason"),
+    [
+        (
+            "whenever stopped the sw shall within 200 milliseconds satisfy near",
+            [],
+            "its response does not speak of `stopped`, which is what the loop decides",
+        ),
+        (
+            NEAR.format(200),
+            [(BINDINGS[BINDINGS.index("[assume]") :], "")],
+            "the bindings assume nothing of the loop (`[assume]`)",
+        ),
+        (
+            NEAR.format(200),
+            [('period = "50 ms"', 'period = "70 ms"')],
+            "a tick of the clock, 100 ms, is no whole number of periods of the interceptor's "
+            "timer, 70 ms",
+        ),
+    ],
+)
+def test_what_is_no_loop_is_not_checked(
+    fretc: Fretc,
+    loop: Callable[..., str],
+    sentence: str,
+    edits: list[tuple[str, str]],
+    reason: str,
+) -> None:
+    path = loop(200, *edits)
+    write(path, sentence)
+    run = fretc("verify", "--layer", "loop", path)
+    assert run.status == 3
+    assert [line.endswith(f"; {reason}") for line in run.out.splitlines()] == [True, True]
+
+
+def test_without_bindings_there_is_no_loop(fretc: Fretc, r1: str) -> None:
+    run = fretc("verify", "--layer", "loop", "--layer", "bounds", r1)
+    assert run.status == 3
+    reason = "the bindings declare no interceptor (`[interceptor]`)"
+    assert [line.endswith(f"; {reason}") for line in run.out.splitlines()] == [True] * 4
+
+
+def test_an_interceptor_of_other_bindings_is_not_checked(
+    fretc: Fretc, loop: Callable[..., str]
+) -> None:
+    path = loop(400)
+    assert fretc(path, "--emit", "interceptor", "-o", ".").status == 0
+    assert fretc("verify", "--layer", "loop", path, "--interceptor", "interceptor.py").status == 0
+    edited("interceptor.py", "hold=4,", "hold=3,")
+    run = fretc("verify", "--layer", "loop", path, "--interceptor", "interceptor.py")
+    assert run.status == 3
+    assert "the interceptor has other options than the bindings declare" in run.out
+
+
+def test_all_five_layers_have_a_line(fretc: Fretc, loop: Callable[..., str]) -> None:
+    run = fretc("verify", loop(400), "--format", "json")
+    assert {record["layer"] for record in told(run)} == {
+        "monitor",
+        "interceptor",
+        "loop",
+        "bounds",
+        "agent",
+    }
+    assert run.status == 3, "no agent is named"
 
 
 # Bad use --------------------------------------------------------------------------------------
@@ -193,10 +446,24 @@ def first(run: Run) -> tuple[int, str, str]:
     return run.status, run.out, run.err.splitlines()[0]
 
 
-def test_something_to_verify_must_be_named(fretc: Fretc, r1: str) -> None:
-    assert fretc("verify", r1) == Run(
-        2, "", "F907 nothing to verify is named\nhelp: add `--monitor`\n"
+def test_a_layer_must_be_one_of_five(fretc: Fretc, r1: str) -> None:
+    status, out, line = first(fretc("verify", "--layer", "lop", r1))
+    assert (status, out, line[:4]) == (2, "", "F907")
+
+
+def test_an_agent_needs_its_properties(fretc: Fretc, r1: str) -> None:
+    assert fretc("verify", r1, "--agent", "SIF.gwen") == Run(
+        2,
+        "",
+        "F907 `--agent` is of no use without `--properties`\n"
+        "help: name both: `--agent FILE.gwen --properties FILE.psl`\n",
     )
+
+
+def test_a_requirement_is_not_written_over(fretc: Fretc, r1: str) -> None:
+    run = fretc("verify", "--monitor", r1, "-o", r1)
+    assert run.status == 2
+    assert run.err.startswith("F905 `r1.fret` cannot be written")
 
 
 def test_files_must_be_named_and_be_there(fretc: Fretc, r1: str) -> None:

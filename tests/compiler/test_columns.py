@@ -10,7 +10,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from compiler import formula as f
-from compiler.columns import evaluate
+from compiler.columns import evaluate, evaluate_unknown
 from compiler.semantics import holds
 from monitors.kernel import Monitor
 from monitors.kernel.verdicts import Truth, truth
@@ -23,6 +23,7 @@ from tests.strategies import (
     past,
     past_formulas,
     templates,
+    three_valued,
     traces,
 )
 
@@ -142,6 +143,44 @@ def test_a_column_is_the_truth_at_each_tick(
     columns = {name: [row[name] for row in trace] for name in ("a", "b")}
     expected = [holds(formula, trace, at) for at in range(len(trace))]
     assert evaluate(formula, numbers(columns), len(trace)) == number(expected)
+
+
+@given(st.one_of(past_formulas, future_formulas), three_valued("a", "b", max_size=5), st.data())
+def test_what_is_told_of_unknown_atoms_holds_whatever_they_were(
+    formula: f.Formula, trace: list[dict[str, bool | None]], data: st.DataObject
+) -> None:
+    _, columns = packed({name: [row[name] for row in trace] for name in ("a", "b")})
+    told = evaluate_unknown(formula, columns, len(trace))
+    value = st.booleans()
+    really = [{n: data.draw(value) if v is None else v for n, v in row.items()} for row in trace]
+    for at in range(len(trace)):
+        assert told.at(at) in (None, holds(formula, really, at))
+    if all(None not in row.values() for row in trace):
+        assert told.unknown == 0
+
+
+def test_unknown_is_told_by_the_parts() -> None:
+    _, columns = packed({"a": [None, True, False], "b": [True, None, False]})
+    a, b = f.Atom("a"), f.Atom("b")
+    told = [
+        [evaluate_unknown(formula, columns, 3).at(tick) for tick in range(3)]
+        for formula in (
+            f.Not(a),
+            f.And((a, b)),
+            f.Or((a, b)),
+            f.Xor(a, b),
+            f.Implies(a, b),
+            f.Iff(a, b),
+        )
+    ]
+    assert told == [
+        [None, False, True],
+        [None, None, False],
+        [True, True, False],
+        [None, None, False],
+        [True, None, True],
+        [None, None, True],
+    ]
 
 
 @pytest.mark.parametrize("scope", SCOPES)

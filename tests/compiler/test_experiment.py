@@ -1,19 +1,23 @@
 import math
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
+from compiler.campaign import intercepted
 from compiler.experiment import folder, plan, project, safety_function
 from compiler.project import load
 from fretish.diagnostic import has_errors
+from monitors.interceptor import Velocity as Twist
 from simulation import messages
 from simulation.lidar import Lidar
 from simulation.motion import Pose, Velocity
 from simulation.safety import TooClose
+from simulation.scenario import Interceptor
 
 LIDAR = Lidar(beams=8)
 MS = 1_000_000
@@ -136,9 +140,63 @@ ranges = st.lists(
 
 
 @given(ranges)
+@example([NAN] * 7 + [13.0])  # beyond the range of the sensor, and no +inf
 def test_while_nothing_is_open_it_decides_as_the_threshold_by_hand(values: list[float]) -> None:
     compiled, by_hand = safety_function(), TooClose(LIDAR)
     for decision in (compiled, by_hand):
         decision.hear("/odom", odometry(0.1), 0)
         decision.hear("/scan", scan(*values), 0)
     assert compiled.step(0) is by_hand.step(0)
+
+
+FAST = Twist(0.4, wz=0.1)
+STILL = Twist()
+GO, STOP = messages.boolean(False), messages.boolean(True)
+
+
+def said(options: Interceptor, *heard: Any) -> list[Twist]:
+    """What the emitted interceptor publishes; a number stands for that many ticks."""
+    out: list[Twist] = []
+    gate: Any = intercepted(options)(lambda six: out.append(Twist(*six)))
+    for one in heard:
+        if isinstance(one, int):
+            for _ in range(one):
+                gate.ring()
+        elif isinstance(one, Twist):
+            gate.hear_command(messages.twist(Velocity(one.vx, one.wz)))
+        else:
+            gate.hear_stop(one)
+    return out
+
+
+def test_the_simulated_robot_has_the_interceptor_of_the_bindings() -> None:
+    declared = project().declarations
+    assert declared is not None
+    assert declared.interceptor is not None
+    normal, node = Interceptor(), declared.interceptor
+    assert (node.stop, node.command, node.output, node.scan) == (
+        "/gwendolen_control",
+        "/cmd_vel",
+        "/cmd_vel_filtered",
+        None,
+    )
+    seconds = (normal.period, normal.hold, normal.safety_timeout, normal.command_timeout)
+    durations = (node.period, node.hold, node.stop_timeout, node.command_timeout)
+    assert tuple(round(one * 10**9) for one in seconds) == durations
+    assert (normal.at_once, normal.latching) == (node.form == "timer", node.latching)
+
+
+def test_an_interceptor_of_a_scenario_is_the_emitted_one_with_its_options() -> None:
+    assert said(Interceptor(), FAST, GO, FAST, 1) == [STILL, FAST, FAST]
+    assert said(Interceptor(), GO, FAST, STOP, GO, 5) == [FAST] + [STILL] * 5 + [FAST]
+    assert said(Interceptor(hold=0.05), GO, FAST, STOP, GO, 2) == [FAST, STILL, STILL, FAST]
+    assert said(Interceptor(), GO, FAST, 10) == [FAST] * 10 + [STILL]
+    patient = Interceptor(command_timeout=0, safety_timeout=0.1)
+    assert said(patient, GO, FAST, 2) == [FAST, FAST, STILL]
+    latching = Interceptor(hold=0, latching=True)
+    assert said(latching, GO, FAST, STOP, GO, FAST) == [FAST, STILL, STILL]
+
+
+def test_the_papers_interceptor_says_zero_only_when_a_command_comes() -> None:
+    paper = Interceptor(at_once=False, period=0, hold=0, command_timeout=0, safety_timeout=0)
+    assert said(paper, FAST, STOP, 3, FAST, GO, FAST) == [FAST, STILL, FAST]

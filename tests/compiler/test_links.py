@@ -171,7 +171,8 @@ def test_a_link_is_suspect_exactly_if_a_change_reaches_its_source(
     for _ in NODES:
         reached |= {b for a, b in edges if a in reached}
     found = suspects(Chain("R1", prints, links, {}), locked)
-    assert [s.link for s in found] == [ln for ln in links if int(ln.source.name) in reached]
+    assert {s.link for s in found} == {ln for ln in links if int(ln.source.name) in reached}
+    assert len({s.link for s in found}) == len(found)
     for suspect in found:
         assert suspect.causes
         assert {int(cause.name) for cause in suspect.causes} <= wrong

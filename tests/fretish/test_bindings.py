@@ -12,6 +12,7 @@ from fretish.declarations import (
     Aggregate,
     Declarations,
     Invalid,
+    Modality,
     Path,
     Reading,
     Reduce,
@@ -109,6 +110,16 @@ def test_a_proposition_is_read() -> None:
     slow = e.Comparison("<", e.Call("abs", (e.Name("vx"),)), e.Quantity("0.01", "m/s"))
     assert stopped.expression == e.Held(slow, 200_000_000)
     assert (stopped.role, stopped.kind) == (Role.OUTPUT, "physical")
+
+
+@pytest.mark.parametrize("modality", Modality)
+def test_a_modality_is_read_of_propositions_and_variables(modality: Modality) -> None:
+    assert read(GOOD).propositions["too_close"].modality is Modality.BELIEF
+    given = f'modality = "{modality}"\n'
+    found = read(changed('role = "input"\n', given) + f"[variable.go]\n{given}[variable.halt]\n")
+    assert found.propositions["too_close"].modality is modality
+    assert found.variables["go"].modality is modality
+    assert found.variables["halt"].modality is Modality.BELIEF
 
 
 def test_a_duration_holds_for_all_that_stands_before_it() -> None:
@@ -282,6 +293,15 @@ def test_a_path_names_a_topic_and_a_field(text: str, expected: Path | None) -> N
             'on_unknown = "maybe"',
             "F303 {}:24:14",
             "`on_unknown` must be true, false or `unknown`",
+        ),
+        ('role = "input"', 'modality = "K"', "F303 {}:22:12", "`modality` cannot be `K`"),
+        ('role = "input"', "modality = 3", "F303 {}:22:12", "`modality` cannot be `3`"),
+        (
+            'role = "input"',
+            'modality = "P"',
+            "F316 {}:22:12",
+            "`too_close` cannot be a percept (`P`): AJPF takes a percept for absent once the agent "
+            "has read it",
         ),
         ("for 200 ms", "for 200 m", "F306 {}:27:32", "`200 m` is no duration"),
         ('"physical"', '"real"', "F303 {}:29:8", "`kind` cannot be `real`"),

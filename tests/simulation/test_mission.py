@@ -13,7 +13,7 @@ from mcap_ros2.decoder import DecoderFactory
 from numpy.typing import NDArray
 from rosbags.highlevel import AnyReader
 
-from simulation.mission import Mission, possible, really, record
+from simulation.mission import Mission, possible, really
 from simulation.recording import TOPICS
 from simulation.scenario import (
     Interceptor,
@@ -27,6 +27,7 @@ from simulation.scenario import (
     load,
 )
 from simulation.scene import STORE
+from tests.simulation.missions import record
 
 SECOND = 10**9
 MOVED = load("obstacle-moved")
@@ -308,7 +309,7 @@ def test_a_nominal_mission_is_completed_without_a_stop(tmp_path: Path) -> None:
 def test_without_a_safety_function_nobody_speaks_and_the_robot_hits_the_obstacle(
     tmp_path: Path,
 ) -> None:
-    paper = Interceptor(at_once=False, period=0, command_timeout=0, safety_timeout=0)
+    paper = Interceptor(at_once=False, period=0, hold=0, command_timeout=0, safety_timeout=0)
     off = Scenario("off", store=MOVED.store, safety=Safety(on=False), interceptor=paper)
     log = read(record(tmp_path / "mission.mcap", off, max_seconds=30))
     assert log.control == []

@@ -6,9 +6,9 @@ from matplotlib.image import imread
 from PIL import Image
 from PIL.GifImagePlugin import GifImageFile
 
-from simulation.mission import record
 from simulation.picture import animate, draw
 from simulation.scenario import load
+from tests.simulation.missions import record
 
 
 def test_the_picture_shows_what_was_moved_and_where_the_robot_was_stopped(tmp_path: Path) -> None:

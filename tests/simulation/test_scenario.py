@@ -51,6 +51,18 @@ no_data = ["R2"]
         ('title = "a"\nduration = nan', "`duration` must be finite"),
         ('title = "a"\nduration = 0', "`duration` must be above 0"),
         ('title = "a"\n[safety]\nlate = -1', "`safety.late` must not be below 0"),
+        (
+            'title = "a"\n[interceptor]\nat_once = false',
+            "`interceptor.at_once` must be true with a period above 0, and false without one",
+        ),
+        (
+            'title = "a"\n[interceptor]\nat_once = false\nperiod = 0\nhold = 0',
+            "`interceptor.command_timeout` must be 0 without a period: there is no timer",
+        ),
+        (
+            'title = "a"\n[interceptor]\nhold = 0.01',
+            "`interceptor.hold` must be 0, or not below the period",
+        ),
         ('title = "a"\n[lidar]\nnearer = "x"', "`lidar.nearer` must be `near` or `lost`"),
         (
             'title = "a"\n[transport."/scan"]\nloss = 2',

@@ -1,0 +1,70 @@
+"""The command about a project as a whole, before any run."""
+
+from __future__ import annotations
+
+import click
+
+from compiler.cli.output import BAD, NOT_SHOWN, SHOWN, say, say_line, stop
+from fretish.diagnostic import Diagnostic, Severity, has_errors
+
+
+@click.command(short_help="Say what is wrong or missing in a project, before any run.")
+@click.argument("requirements", default="requirements", metavar="[FOLDER]")
+@click.option("--bindings", help="bindings.toml; the one in the folder if not given.")
+@click.option("--hazards", help="hazards.toml; the one in the folder if not given.")
+@click.option("--evidence", default="build/evidence.json", show_default=True)
+def check(requirements: str, bindings: str | None, hazards: str | None, evidence: str) -> None:
+    """Say what is wrong or missing in a project, before any run.
+
+    Mistakes in requirements, bindings, hazards, lock and waivers; numbers that have drifted apart;
+    requirements that hold whatever happens; planned methods that can give no result; links that
+    are missing; what has changed since its review. Exit status: 0 nothing to say, 3 warnings, 2
+    mistakes.
+    """
+    from compiler.checks import checks
+    from compiler.evidence import read as read_evidence
+    from compiler.links import chains
+    from compiler.lock import Lock, orphaned, standings
+    from compiler.lock import read as read_lock
+    from compiler.project import beside, load, requirement_files
+    from compiler.waivers import read as read_waivers
+    from compiler.waivers import today
+
+    files = requirement_files(requirements)
+    if isinstance(files, Diagnostic):
+        stop(files)
+    names = (beside(requirements, "bindings.toml"), beside(requirements, "hazards.toml"))
+    project = load(files, bindings or names[0], hazards or names[1], parents=True)
+    said = list(project.diagnostics)
+    audited = read_evidence(evidence)
+    if isinstance(audited, Diagnostic) and audited.is_error:
+        said.append(audited)
+    found = chains(project, None if isinstance(audited, Diagnostic) else audited)
+    lock, path = None, beside(requirements, "fretc.lock")
+    if path is not None:
+        known = read_lock(path)
+        lock = known if isinstance(known, Lock) else None
+        said.extend(orphaned(found, known, path) if isinstance(known, Lock) else (known,))
+    waived = beside(requirements, "waivers.toml")
+    if waived is not None:
+        said.extend(read_waivers(waived, [r.id for r in project.requirements], today())[1])
+    if not has_errors(said):
+        said.extend(checks(project, standings(found, lock)))
+    _finish(tuple(dict.fromkeys(said)), len(project.requirements))
+
+
+def _finish(said: tuple[Diagnostic, ...], count: int) -> None:
+    """Say it, and exit with what it means."""
+    say(said)
+    errors = sum(d.is_error for d in said)
+    warnings = sum(d.severity is Severity.WARNING for d in said)
+    if said:
+        say_line("")
+    say_line(
+        f"{_many(count, 'requirement')}: {_many(errors, 'mistake')}, {_many(warnings, 'warning')}"
+    )
+    raise SystemExit(BAD if errors else NOT_SHOWN if warnings else SHOWN)
+
+
+def _many(count: int, what: str) -> str:
+    return f"{count} {what}{'' if count == 1 else 's'}"

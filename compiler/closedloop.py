@@ -1,0 +1,258 @@
+"""Layer LOOP: monitor, interceptor and any environment, under the assumptions of the bindings.
+
+What is explored are the texts themselves: the monitor as the safety function that requests stops,
+the monitor that fretc makes of the sentence as the observer, and the steps of the interceptor. The
+model between them is `compiler.loopmodel`, and its durations are whole cells, rounded up.
+"""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator
+from dataclasses import dataclass, fields
+from math import gcd
+from typing import Any
+
+from compiler import automata
+from compiler import confined as processes
+from compiler.confined import Limits, Stopped
+from compiler.files import sha256
+from compiler.gate import Settings
+from compiler.interception import options, ticks
+from compiler.loopmodel import Channel
+from compiler.loopsearch import Case, Found, search
+from compiler.rule import Rule
+from compiler.targets import monitor as target
+from compiler.verification import Evidence, Layer, NotChecked, Result
+from fretish.clock import in_words
+from fretish.declarations import Assumed, Form, Interception, Planner, Requests
+from fretish.expressions import names
+
+KEPT = "monitor, interceptor and any environment together keep the requirement"
+RELEASED = "the stop is released once no demand begins any more"
+_FINEST = 20
+"""Cells to a tick, where the interceptor has no timer that says what a cell is."""
+
+
+@dataclass(frozen=True, slots=True)
+class Named:
+    """A text that is looked at, and the name that evidence has for it."""
+
+    name: str
+    text: str
+
+
+@dataclass(frozen=True, slots=True)
+class Setup:
+    """The parts of a loop beside the requirement; None: not declared."""
+
+    monitor: Named
+    interceptor: Named | None
+    interception: Interception | None
+    assumed: Assumed | None
+
+
+def loop(rule: Rule, setup: Setup, limits: Limits) -> tuple[Evidence, ...]:
+    """Both claims: the requirement is kept, and the stop is released."""
+    made = case(rule, setup)
+    if isinstance(made, str):
+        found: Found | Stopped = Stopped(made)
+    else:
+        found = processes.confined(limits, search, made)
+    if isinstance(found, Stopped):
+        found = Found(NotChecked(found.reason), NotChecked(found.reason))
+    told = () if isinstance(made, str) else tuple(assumptions(rule, setup, made))
+    return (
+        _evidence(rule, setup, KEPT, found.kept, told),
+        _evidence(rule, setup, RELEASED, found.released, told),
+    )
+
+
+def _evidence(
+    rule: Rule, setup: Setup, claim: str, result: Result, told: tuple[str, ...]
+) -> Evidence:
+    return Evidence(
+        rule.id,
+        Layer.LOOP,
+        claim,
+        result,
+        f"fretc, explicit states; Spot {automata.version()}",
+        told,
+        artefacts(setup),
+    )
+
+
+def artefacts(setup: Setup) -> dict[str, str]:
+    """SHA-256 of each text."""
+    texts = [setup.monitor, *([setup.interceptor] if setup.interceptor else [])]
+    return {named.name: sha256(named.text) for named in texts}
+
+
+# The case -------------------------------------------------------------------------------------
+
+
+def case(rule: Rule, setup: Setup) -> Case | str:
+    """What is to be searched, or why nothing can be."""
+    interception, assumed = setup.interception, setup.assumed
+    if interception is None or setup.interceptor is None:
+        return "the bindings declare no interceptor (`[interceptor]`)"
+    if assumed is None:
+        return "the bindings assume nothing of the loop (`[assume]`)"
+    if assumed.stands not in {name.id for name in names(rule.sentence.response)}:
+        return f"its response does not speak of `{assumed.stands}`, which is what the loop decides"
+    wrong = _otherwise(setup.interceptor.text, interception)
+    if wrong is not None:
+        return wrong
+    known = channel(rule, interception, assumed)
+    if isinstance(known, str):
+        return known
+    return Case(
+        rule.id,
+        rule.ft_infinite,
+        setup.monitor.text,
+        target.text(rule),
+        setup.interceptor.text,
+        settings(interception),
+        known,
+        assumed.stands,
+    )
+
+
+def settings(interception: Interception) -> Settings:
+    """The options of the interceptor, in ticks of its timer."""
+    made = options(interception)
+    return Settings(**{field.name: getattr(made, field.name) for field in fields(Settings)})
+
+
+def channel(rule: Rule, interception: Interception, assumed: Assumed) -> Channel | str:
+    """What is assumed, in cells; or why no cell can be found."""
+    tick = rule.clock.period if rule.clock else None
+    if tick is None:
+        return "the clock has no period: it ticks with messages"
+    cell = cell_of(tick, interception, assumed)
+    if tick % cell:
+        return (
+            f"a tick of the clock, {in_words(tick)}, is no whole number of periods of the "
+            f"interceptor's timer, {in_words(cell)}"
+        )
+    return Channel(
+        tick // cell,
+        ticks(assumed.latency, cell),
+        assumed.lost,
+        assumed.requests is Requests.EDGE,
+        assumed.planner is Planner.EVERY_TICK,
+        ticks(assumed.braking, cell),
+        interception.scan is not None,
+    )
+
+
+def cell_of(tick: int, interception: Interception, assumed: Assumed) -> int:
+    """Nanoseconds: a period of the timer; without one whatever measures the durations best."""
+    if interception.form is Form.TIMER:
+        return interception.period
+    exact = gcd(tick, assumed.latency, assumed.braking)
+    return exact if tick // exact <= _FINEST else tick
+
+
+def _otherwise(text: str, interception: Interception) -> str | None:
+    """Why the file is of another interceptor than the bindings declare; None: it is of this one."""
+    stated = _stated(text)
+    declared = settings(interception)
+    told = stated.get("OPTIONS", declared)
+    period = stated.get("PERIOD", interception.period / 1e9)
+    if told == declared and period == interception.period / 1e9:
+        return None
+    return "the interceptor has other options than the bindings declare: emit it again"
+
+
+def _stated(text: str) -> dict[str, object]:
+    """The constants `OPTIONS` and `PERIOD` of a file, as far as they can be read."""
+    found: dict[str, object] = {}
+    try:
+        body = ast.parse(text).body
+    except (SyntaxError, ValueError, RecursionError):
+        return found
+    for statement in body:
+        match statement:
+            case ast.Assign([ast.Name("PERIOD")], ast.Constant(value)):
+                found["PERIOD"] = value
+            case ast.Assign([ast.Name("OPTIONS")], ast.Call(ast.Name("Options"), [], keywords)):
+                found["OPTIONS"] = _options(keywords)
+            case ast.Assign([ast.Name("OPTIONS" | "PERIOD" as name)]):
+                found[name] = None
+    return found
+
+
+def _options(keywords: list[ast.keyword]) -> Settings | None:
+    """None where they are not written as constants by their names."""
+    given = {k.arg: k.value.value for k in keywords if isinstance(k.value, ast.Constant)}
+    known = {field.name: given.get(field.name, field.default) for field in fields(Settings)}
+    if len(given) < len(keywords) or not set(given) <= set(known):
+        return None
+    made: dict[str, Any] = known
+    return Settings(**made)
+
+
+# Assumptions ----------------------------------------------------------------------------------
+
+
+def assumptions(rule: Rule, setup: Setup, made: Case, *, any_time: bool = False) -> Iterator[str]:
+    """What the verdict takes for granted, in words, with where each is declared.
+
+    Args:
+        rule: the requirement.
+        setup: with what is declared.
+        made: the case of both.
+        any_time: the verdict holds whatever latency, losses and braking time are.
+    """
+    interception, assumed, channel = setup.interception, setup.assumed, made.channel
+    assert interception is not None
+    assert assumed is not None
+    assert rule.clock is not None
+    tick = rule.clock.period or 0
+    yield from _messages(assumed, tick, any_time=any_time)
+    if channel.punctual:
+        yield "the planner sends a command in every tick (`planner`, [assume])"
+    braking = "`braking`" if any_time else f"{in_words(assumed.braking)} (`braking`, [assume])"
+    yield (
+        f"`{assumed.stands}` is false while the wheels are told to move, and true once they have "
+        f"had zero for {braking}, or earlier"
+    )
+    yield "the wheels have at once what was published last, and keep it while nothing is published"
+    yield "at the first tick the robot stands, and nothing has been heard yet"
+    yield (
+        "the node around the interceptor's step hands on every message, and publishes what it gives"
+    )
+    if interception.form is Form.TIMER:
+        period = in_words(interception.period)
+        yield f"the interceptor's timer rings once in each {period} (`period`, [interceptor])"
+    if not any_time:
+        yield from _rounded(interception, assumed, tick)
+    if not made.settings.stop_timeout:
+        yield "the safety function never falls silent: there is no `stop_timeout` ([interceptor])"
+
+
+def _messages(assumed: Assumed, tick: int, *, any_time: bool) -> Iterator[str]:
+    """What is said of stop messages."""
+    when = "only where it changes" if assumed.requests is Requests.EDGE else "every time"
+    yield (
+        f"the safety function steps at every tick of {in_words(tick)} and sends its request {when} "
+        f"(`requests`, [assume])"
+    )
+    latency = "`latency`" if any_time else f"{in_words(assumed.latency)} (`latency`, [assume])"
+    yield f"stop messages are heard in the order of sending, each within {latency}"
+    if any_time:
+        yield "never are more than `lost` stop messages lost in a row"
+    elif assumed.lost:
+        yield f"never are more than {assumed.lost} stop messages lost in a row (`lost`, [assume])"
+    else:
+        yield "no stop message is lost (`lost`, [assume])"
+
+
+def _rounded(interception: Interception, assumed: Assumed, tick: int) -> Iterator[str]:
+    """Durations that are no whole number of cells: the longer one is proved."""
+    cell = cell_of(tick, interception, assumed)
+    for name, duration in (("latency", assumed.latency), ("braking", assumed.braking)):
+        if duration % cell:
+            longer = in_words(ticks(duration, cell) * cell)
+            yield f"`{name}` of {in_words(duration)} counts as {longer}, whole cells of the model"

@@ -1,0 +1,63 @@
+"""What triggers came to, and what all runs say of a probability, as the evidence has them."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from typing import get_args
+
+from compiler.estimates import GLYPHS, Estimated
+from compiler.odds import Bounds
+from compiler.shapes import Shape
+from fretish.expressions import ComparisonOperator
+from monitors.trials import Trials
+
+
+def probability(at: Shape) -> Estimated:
+    """One of the evidence's `probabilities`; a wrong shape raises `MisshapenError`."""
+    operators: dict[str, ComparisonOperator] = {op: op for op in get_args(ComparisonOperator)}
+    logs, triggers = at.field("logs"), trials(at.field("triggers"))
+    return Estimated(
+        requirement=at.field("requirement").text(),
+        operator=operators[at.field("operator").one_of(list(operators))],
+        bound=_bound(at.field("bound")),
+        answer=at.field("answer").one_of(list(GLYPHS)),
+        reason=at.field("reason").text(),
+        confidence=_share(at.field("confidence")),
+        answered=triggers.answered,
+        failed=triggers.failed,
+        open=triggers.open,
+        logs=logs.field("counted").count(),
+        silent=logs.field("silent").count(),
+        damaged=logs.field("damaged").count(),
+        copies=logs.field("copies").count(),
+        estimate=at.field("estimate").or_none(_share),
+        exact=_bounds(at.field("exact")),
+        resampled=at.field("resampled").or_none(_bounds),
+        needed=at.field("needed").or_none(Shape.count),
+    )
+
+
+def trials(at: Shape) -> Trials:
+    """What triggers came to."""
+    return Trials(*(at.field(name).count() for name in ("answered", "failed", "open")))
+
+
+def _bounds(at: Shape) -> Bounds:
+    return Bounds(_share(at.field("low")), _share(at.field("high")))
+
+
+def _bound(at: Shape) -> str:
+    """A probability as it is written."""
+    try:
+        stated = Fraction(at.text())
+    except (ValueError, ZeroDivisionError):
+        stated = Fraction(-1)
+    if not 0 <= stated <= 1:
+        raise at.wrong("a number from 0 to 1, as text")
+    return at.text()
+
+
+def _share(at: Shape) -> float:
+    if not 0 <= at.number() <= 1:
+        raise at.wrong("a number from 0 to 1")
+    return at.number()

@@ -1,0 +1,245 @@
+"""What all runs of an audit say of the requirements with a probability, in numbers and in words."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from math import ceil, floor
+from typing import Any
+
+from compiler import odds
+from compiler.odds import INCONCLUSIVE, REFUTED, SUPPORTED, Bounds
+from compiler.plan import Claim
+from fretish.diagnostic import Code, Diagnostic, Severity
+from fretish.expressions import ComparisonOperator
+from monitors.trials import NO_TRIALS, Trials
+
+GLYPHS: Mapping[str, tuple[str, str]] = {
+    SUPPORTED: ("✔", "green"),
+    REFUTED: ("✘", "red"),
+    INCONCLUSIVE: ("◔", "yellow"),
+}
+"""Answer → its sign and its colour."""
+AVERAGE = (
+    "this is the average over the triggers seen; PCTL demands it of every reachable state with a "
+    "trigger, which is more"
+)
+"""Said with every answer."""
+
+
+@dataclass(frozen=True, slots=True)
+class Estimated:
+    """What all runs say of one requirement."""
+
+    requirement: str
+    operator: ComparisonOperator
+    bound: str
+    """As it is written."""
+    answer: str
+    reason: str
+    confidence: float
+    answered: int
+    failed: int
+    open: int
+    logs: int
+    """With a trigger."""
+    silent: int
+    """Without a trigger."""
+    damaged: int
+    """That are damaged, or could not be read."""
+    copies: int
+    """That have the content of another one: they are not counted again."""
+    estimate: float | None
+    """Answered ones of those that are decided."""
+    exact: Bounds
+    resampled: Bounds | None
+    """None: there are too few logs."""
+    needed: int | None
+    """Further triggers, all as they should be, that `exact` needs; None: that does not help."""
+
+    @property
+    def text(self) -> str:
+        """`with probability >= 0.99`."""
+        return f"with probability {self.operator} {self.bound}"
+
+    @property
+    def as_record(self) -> dict[str, Any]:
+        """The JSON object."""
+        return {
+            "requirement": self.requirement,
+            "operator": self.operator,
+            "bound": self.bound,
+            "answer": self.answer,
+            "reason": self.reason,
+            "confidence": self.confidence,
+            "triggers": {"answered": self.answered, "failed": self.failed, "open": self.open},
+            "logs": {
+                "counted": self.logs,
+                "silent": self.silent,
+                "damaged": self.damaged,
+                "copies": self.copies,
+            },
+            "estimate": self.estimate,
+            "exact": _interval(self.exact),
+            "resampled": _interval(self.resampled),
+            "needed": self.needed,
+            "meaning": AVERAGE,
+        }
+
+    @property
+    def lines(self) -> tuple[str, ...]:
+        """For a person, the answer first."""
+        return tuple(self._lines())
+
+    def _lines(self) -> Iterator[str]:
+        count = self.answered + self.failed + self.open
+        yield f"{self.answer:<12}  {self.reason}"
+        told = f"{self.answered} of {count} triggers answered, {self.failed} failed"
+        yield f"{told}, {self.open} open, in {_times(self.logs, 'log')}{self._others}"
+        known = "not known" if self.estimate is None else f"{self.estimate:.4f}"
+        drawn = "too few logs" if self.resampled is None else shown(self.resampled)
+        each = odds.both_sides(self.operator, self.confidence)
+        yield (
+            f"estimate {known}; bounds, at {_percent(each)} each: {shown(self.exact)} "
+            f"(Clopper-Pearson), {drawn} (logs resampled)"
+        )
+        if self.needed is not None:
+            how = "without an answer" if self.operator in ("<", "<=") else "answered"
+            yield f"at least {_times(self.needed, 'more trigger')}, all {how}, would be needed"
+        if self.logs < odds.FEW:
+            yield f"fewer than {odds.FEW} logs: how logs differ is not known well"
+        yield AVERAGE
+
+    @property
+    def _others(self) -> str:
+        found = (
+            (self.silent, "without a trigger"),
+            (self.damaged, "damaged or not readable"),
+            (self.copies, "not counted: of the same content as another"),
+        )
+        return "".join(f", {count} {what}" for count, what in found if count)
+
+
+def estimates(
+    claims: Sequence[Claim], results: Sequence[Mapping[str, Any]], confidence: float
+) -> tuple[Estimated, ...]:
+    """One for each claim with a probability.
+
+    Args:
+        claims: all of an audit.
+        results: their records, of all runs.
+        confidence: between 0.5 and 1.
+    """
+    return tuple(
+        _estimated(claim, [r for r in results if r["requirement"] == claim.id], confidence)
+        for claim in claims
+        if claim.chance is not None
+    )
+
+
+def warnings(found: Sequence[Estimated]) -> Iterator[Diagnostic]:
+    """F506 for each that few runs tell of."""
+    for one in found:
+        if one.logs < odds.FEW:
+            yield Diagnostic(
+                Code.FEW_RUNS,
+                f"the probability of {one.requirement} is estimated from "
+                f"{_times(one.logs, 'log')} with a trigger",
+                help=f"audit {odds.FEW} or more: triggers of one log depend on each other",
+                severity=Severity.WARNING,
+            )
+
+
+def _estimated(claim: Claim, results: Sequence[Mapping[str, Any]], level: float) -> Estimated:
+    assert claim.chance is not None
+    op, bound = claim.chance.op, Fraction(claim.chance.bound)
+    distinct = _distinct(results)
+    runs = [_trials(result) for result in distinct]
+    damaged = sum(not result["health"]["intact"] for result in distinct)
+    found = odds.estimated(runs, odds.both_sides(op, level))
+    answer = odds.answer(found, op, bound)
+    lost = answer == SUPPORTED and damaged > 0
+    return Estimated(
+        requirement=claim.id,
+        operator=op,
+        bound=claim.chance.bound,
+        answer=INCONCLUSIVE if lost else answer,
+        reason=_damaged(damaged) if lost else _reason(found, answer, claim.chance.text),
+        confidence=level,
+        answered=found.trials.answered,
+        failed=found.trials.failed,
+        open=found.trials.open,
+        logs=found.runs,
+        silent=sum(result["health"]["intact"] for result in distinct) - _intact(distinct),
+        damaged=damaged,
+        copies=len(results) - len(distinct),
+        estimate=None if found.share is None else round(found.share, 9),
+        exact=found.exact,
+        resampled=None if found.runs < 2 else found.resampled,
+        needed=odds.needed(found, op, bound) if answer == INCONCLUSIVE else None,
+    )
+
+
+def _intact(results: Sequence[Mapping[str, Any]]) -> int:
+    """Those that are intact and have a trigger."""
+    return sum(bool(r["health"]["intact"] and _trials(r).count) for r in results)
+
+
+def _distinct(results: Sequence[Mapping[str, Any]]) -> list[Mapping[str, Any]]:
+    """Each content once: a copy of a log tells nothing new. What cannot be read has no hash."""
+    first: dict[str, Mapping[str, Any]] = {}
+    for place, result in enumerate(results):
+        hashes = result["hashes"]
+        first.setdefault(hashes.get("log") or hashes.get("log_summary") or f"{place}", result)
+    return list(first.values())
+
+
+def _trials(result: Mapping[str, Any]) -> Trials:
+    told = result.get("trials")
+    return Trials(**told) if told else NO_TRIALS
+
+
+# In words --------------------------------------------------------------------------------------
+
+
+def _reason(found: odds.Estimate, answer: str, text: str) -> str:
+    low, high = _low(found.bounds.low), _high(found.bounds.high)
+    if not found.trials.count:
+        return "there was no trigger"
+    if answer != INCONCLUSIVE:
+        return f"it lies between {low} and {high}, so {'' if answer == SUPPORTED else 'not '}{text}"
+    if found.runs < 2:
+        return "one log does not tell a probability: its triggers depend on each other"
+    return f"it lies between {low} and {high}, which leaves {text} open"
+
+
+def _damaged(count: int) -> str:
+    what = "log is" if count == 1 else "logs are"
+    return f"{count} {what} damaged or could not be read: what is lost could speak against it"
+
+
+def _interval(bounds: Bounds | None) -> dict[str, float] | None:
+    return None if bounds is None else {"low": bounds.low, "high": bounds.high}
+
+
+def shown(bounds: Bounds) -> str:
+    """`0.9900 to 1.0000`, rounded outwards."""
+    return f"{_low(bounds.low)} to {_high(bounds.high)}"
+
+
+def _low(bound: float) -> str:
+    """Rounded down: never more than is known."""
+    return f"{floor(bound * 10**4) / 10**4:.4f}"
+
+
+def _high(bound: float) -> str:
+    return f"{ceil(bound * 10**4) / 10**4:.4f}"
+
+
+def _percent(share: float) -> str:
+    return f"{share * 100:.4g} %"
+
+
+def _times(count: int, thing: str) -> str:
+    return f"{count} {thing}{'' if count == 1 else 's'}"

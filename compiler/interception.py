@@ -1,0 +1,30 @@
+"""The interceptor that the bindings declare, as its core counts it: in ticks of its own timer."""
+
+from __future__ import annotations
+
+from fretish.declarations import Form, Interception
+from monitors.interceptor import Options
+
+
+def options(interception: Interception) -> Options:
+    """Durations become ticks, rounded up.
+
+    Ticks come at their own times: `hold` of n ticks ends with the n-th tick after the request, more
+    than n - 1 periods after it; a timeout of n ticks halts no later than n periods after the last
+    message.
+    """
+    if interception.form is Form.EVENT:
+        return Options(0, 0, 0, 0, event_driven=True, latching=interception.latching)
+    period = interception.period
+    return Options(
+        hold=ticks(interception.hold, period),
+        stop_timeout=ticks(interception.stop_timeout, period),
+        scan_timeout=ticks(interception.scan_timeout, period),
+        command_timeout=ticks(interception.command_timeout, period),
+        latching=interception.latching,
+    )
+
+
+def ticks(duration: int, period: int) -> int:
+    """How many periods cover the duration; both in nanoseconds, the period above 0."""
+    return -(-duration // period)

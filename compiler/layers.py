@@ -1,0 +1,162 @@
+"""The five layers of `fretc verify`, asked of a project: which text goes to which engine."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterator
+from dataclasses import dataclass, replace
+from pathlib import PurePath
+
+from compiler import bounds, closedloop, proofs
+from compiler import confined as processes
+from compiler.agent_layer import agent_evidence, checked
+from compiler.closedloop import Named, Setup
+from compiler.confined import Limits, Stopped
+from compiler.contracts import contracts
+from compiler.files import sha256
+from compiler.interception import options
+from compiler.project import Project
+from compiler.provers import with_crosshair, with_dafny
+from compiler.rule import Rule
+from compiler.sif import sif
+from compiler.targets import ajpf, bundle, dafny, interceptor, monitor
+from compiler.targets.target import stem
+from compiler.verification import Evidence, Layer, NotChecked
+from fretish.diagnostic import Diagnostic
+from fretish.source import Source
+from monitors.interceptor import Options
+
+DAFNY, CROSSHAIR = "dafny", "crosshair"
+
+
+@dataclass(frozen=True, slots=True)
+class Request:
+    """What is to be looked at; None: what fretc makes itself."""
+
+    layers: Collection[Layer]
+    limits: Limits
+    monitor: Source | None = None
+    interceptor: Source | None = None
+    agent: Source | None = None
+    properties: Source | None = None
+    percepts: tuple[str, ...] = ()
+    provers: Collection[str] = ()
+
+
+def evidence(project: Project, asked: Request) -> tuple[Evidence, ...] | Diagnostic:
+    """All lines: requirement by requirement from the monitor outwards, then what all share.
+
+    Raises:
+        NotAMonitorError: the given text is no generated monitor.
+    """
+    found: list[Evidence] = []
+    for rule in project.rules:
+        found.extend(_of_rule(rule, _setup(rule, project, asked), asked))
+        if DAFNY in asked.provers:
+            found.extend(_dafny(rule, project, asked.limits))
+    found.extend(_interceptor(project, asked))
+    if Layer.AGENT not in asked.layers:
+        return tuple(found)
+    agent = _agent(project, asked)
+    return agent if isinstance(agent, Diagnostic) else (*found, *agent)
+
+
+def _of_rule(rule: Rule, setup: Setup, asked: Request) -> Iterator[Evidence]:
+    if Layer.MONITOR in asked.layers:
+        yield proofs.evidence(rule, setup.monitor.name, setup.monitor.text, asked.limits)
+    if Layer.LOOP in asked.layers:
+        yield from closedloop.loop(rule, setup, asked.limits)
+    if Layer.BOUNDS in asked.layers:
+        yield from bounds.bounds(rule, setup, asked.limits)
+
+
+def _setup(rule: Rule, project: Project, asked: Request) -> Setup:
+    declared = project.declarations
+    return Setup(
+        _named(asked.monitor) or Named(f"{stem(rule)}_monitor.py", monitor.text(rule)),
+        _gate(project, asked),
+        declared.interceptor if declared else None,
+        declared.assumed if declared else None,
+    )
+
+
+def _named(source: Source | None) -> Named | None:
+    return Named(PurePath(source.name).name, source.text) if source else None
+
+
+def _gate(project: Project, asked: Request) -> Named | None:
+    declared = project.declarations
+    if asked.interceptor is not None or declared is None or declared.interceptor is None:
+        return _named(asked.interceptor)
+    name = PurePath(declared.source.name).name
+    return Named(interceptor.NAME, interceptor.text(declared.interceptor, name))
+
+
+# Layers of other rooms ------------------------------------------------------------------------
+
+
+def _interceptor(project: Project, asked: Request) -> Iterator[Evidence]:
+    """Its contracts, and what CrossHair finds of them."""
+    gate = _gate(project, asked)
+    declared = project.declarations.interceptor if project.declarations else None
+    if Layer.INTERCEPTOR in asked.layers:
+        if gate is None or declared is None:
+            yield _unknown(
+                "interceptor",
+                Layer.INTERCEPTOR,
+                "the interceptor keeps its contracts",
+                "the bindings declare no interceptor (`[interceptor]`)",
+            )
+        else:
+            yield from _contracts(gate, options(declared), asked.limits)
+    if CROSSHAIR in asked.provers and gate is not None:
+        yield from with_crosshair(gate.text)
+
+
+def _contracts(gate: Named, declared: Options, limits: Limits) -> Iterator[Evidence]:
+    found = processes.confined(limits, contracts, gate.text, declared)
+    if isinstance(found, Stopped):
+        claim = "the interceptor keeps its contracts"
+        yield _unknown("interceptor", Layer.INTERCEPTOR, claim, found.reason, gate)
+    else:
+        yield from (replace(one, artefacts={gate.name: sha256(gate.text)}) for one in found)
+
+
+def _dafny(rule: Rule, project: Project, limits: Limits) -> Iterator[Evidence]:
+    refused = dafny.TARGET.refuse(rule)
+    if refused is not None:
+        claim = "Dafny verifies the file of the requirement"
+        yield _unknown(rule.id, Layer.LOOP, claim, refused.message)
+        return
+    text = dafny.text(rule, project.declarations)
+    yield from with_dafny(rule, text, project.declarations, seconds=float(limits.seconds))
+
+
+def _agent(project: Project, asked: Request) -> tuple[Evidence, ...] | Diagnostic:
+    """The agent that is named; else of each requirement the one that its bundle has."""
+    claim = "the agent has its properties"
+    if asked.agent is None or asked.properties is None:
+        return tuple(line for rule in project.rules for line in _bundle(rule, claim, asked.limits))
+    found = processes.confined(asked.limits, checked, asked.agent, asked.properties, asked.percepts)
+    if isinstance(found, Stopped):
+        named = _named(asked.agent)
+        return (_unknown("agent", Layer.AGENT, claim, found.reason, named),)
+    return found
+
+
+def _bundle(rule: Rule, claim: str, limits: Limits) -> tuple[Evidence, ...]:
+    refused = ajpf.refusal(rule)
+    made = sif(rule) if refused is None else refused
+    if isinstance(made, Diagnostic):
+        return (_unknown(rule.id, Layer.AGENT, claim, f"there is none: {made.message}"),)
+    texts = bundle.texts(rule, made)
+    found = processes.confined(limits, agent_evidence, rule, texts, made.percepts)
+    if isinstance(found, Stopped):
+        return (_unknown(rule.id, Layer.AGENT, claim, found.reason),)
+    return found
+
+
+def _unknown(
+    requirement: str, layer: Layer, claim: str, reason: str, text: Named | None = None
+) -> Evidence:
+    artefacts = {text.name: sha256(text.text)} if text else {}
+    return Evidence(requirement, layer, claim, NotChecked(reason), "fretc", (), artefacts)

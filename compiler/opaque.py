@@ -1,0 +1,35 @@
+"""A command that nothing can be done with but to keep it, hand it on or drop it.
+
+What is shown with one in the place of a velocity holds for every velocity.
+"""
+
+from __future__ import annotations
+
+from typing import Any, NoReturn
+
+
+class InspectedError(Exception):
+    """A text has looked into a command."""
+
+
+def _inspected(*_: object, **__: object) -> NoReturn:
+    raise InspectedError
+
+
+class Opaque:
+    """Two of them are told apart by `is` alone, which a pure core can use with None only."""
+
+    __slots__ = ()
+
+
+for _name in (
+    "__getattribute__ __eq__ __ne__ __lt__ __le__ __gt__ __ge__ __bool__ __len__ __iter__ "
+    "__contains__ __getitem__ __hash__ __add__ __radd__ __sub__ __rsub__ __neg__ __pos__ "
+    "__abs__ __invert__ __index__ __int__ __float__ __str__ __repr__ __format__ __call__"
+).split():
+    setattr(Opaque, _name, _inspected)
+
+
+def is_opaque(value: Any) -> bool:
+    """Whether it is one; asks nothing of it."""
+    return type(value) is Opaque

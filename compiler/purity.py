@@ -1,0 +1,307 @@
+"""Whether the core of an interceptor is pure: then what is explored of it is all that it does.
+
+What the tree may consist of is listed here; all else is told. There is no loop and no recursion, so
+every step ends; no attribute is written, no name bound twice, nothing called but the core's own
+functions and constructors, `min`, `max` and `replace`. Of the node below the core it is shown only
+that it leaves the names of the core alone.
+"""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator
+from dataclasses import dataclass
+from types import ModuleType
+from typing import Any
+
+from compiler.targets.interceptor import MARKER
+from monitors.loading import executed
+
+_IMPORTS = {
+    "__future__": {"annotations"},
+    "dataclasses": {"dataclass", "replace"},
+    "typing": {"NamedTuple"},
+}
+_BUILTINS = frozenset({"min", "max", "bool", "int", "float"})
+_CALLED = frozenset({"min", "max", "replace"})
+_FORBIDDEN = frozenset(
+    {"globals", "setattr", "delattr", "exec", "eval", "vars", "compile", "__import__", "__dict__"}
+    | {"modules", "__setattr__", "__globals__", "__builtins__", "__code__", "__class__"}
+)
+"""Names through which a node could reach into the core behind its back."""
+
+
+class _StrangeError(Exception):
+    """What is not on the list."""
+
+
+@dataclass(frozen=True, slots=True)
+class Core:
+    """The core, executed."""
+
+    module: Any
+    """A module; its attributes are classes, functions and constants."""
+
+
+def core(text: str, name: str = "interceptor") -> Core | str:
+    """Execute the core of an interceptor once it is known to be pure; else, why it is not.
+
+    Args:
+        text: what `--emit interceptor` wrote, or the core alone.
+        name: for tracebacks.
+    """
+    head, marked, node = text.partition(f"{MARKER}\n")
+    try:
+        tree = ast.parse(head)
+        names = _Module().check(tree)
+        if marked and "OPTIONS" not in names:
+            return "its core has no `OPTIONS`"
+        if marked:
+            _check_node(ast.parse(node), names)
+    except (SyntaxError, ValueError, RecursionError) as error:
+        return f"it is no Python: {error}"
+    except _StrangeError as error:
+        return f"its core is not as fretc can read it: {error}"
+    try:
+        module: ModuleType = executed(head, name)
+    except Exception as error:
+        return f"it cannot be executed: {type(error).__name__}: {error}"
+    return Core(module)
+
+
+def _strange(node: ast.AST) -> _StrangeError:
+    return _StrangeError(f"`{_line(node)}`")
+
+
+def _demand(right: bool, node: ast.AST) -> None:
+    if not right:
+        raise _strange(node)
+
+
+def _check_node(tree: ast.Module, names: frozenset[str]) -> None:
+    """The node binds no name of the core, and reaches for none behind its back."""
+    for part in ast.walk(tree):
+        match part:
+            case ast.Attribute(attr=name, ctx=ast.Store() | ast.Del()):
+                wrong = name in names or name in _FORBIDDEN
+            case ast.Name(name) | ast.Attribute(attr=name):
+                wrong = name in _FORBIDDEN
+            case ast.alias(name):
+                wrong = name == "*" or name.rpartition(".")[2] in _FORBIDDEN
+            case ast.Global():
+                wrong = True
+            case _:
+                continue
+        if wrong:
+            raise _StrangeError(f"the node below it could change it: `{_line(part)}`")
+    for part in _outermost(tree):
+        bound = {
+            name
+            for field, value in ast.iter_fields(part)
+            if field in ("name", "id", "asname", "rest")
+            for name in [value]
+            if isinstance(name, str)
+        }
+        stored = not isinstance(part, ast.Name) or not isinstance(part.ctx, ast.Load)
+        if stored and bound & names:
+            raise _StrangeError(f"the node below it binds a name of it: `{_line(part)}`")
+
+
+def _outermost(node: ast.AST) -> Iterator[ast.AST]:
+    """What binds names of the module: the insides of functions and classes do not."""
+    for child in ast.iter_child_nodes(node):
+        yield child
+        if not isinstance(
+            child, ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef | ast.Lambda
+        ):
+            yield from _outermost(child)
+
+
+def _line(node: ast.AST) -> str:
+    return (ast.unparse(node).splitlines() or ["nothing"])[0]
+
+
+class _Module:
+    """The statements of the core."""
+
+    def __init__(self) -> None:
+        self.bound: set[str] = set()
+        self.classes: set[str] = set()
+        self.functions: dict[str, set[str]] = {}
+        """What each of them calls."""
+
+    def check(self, tree: ast.Module) -> frozenset[str]:
+        """The names that it binds."""
+        _demand(any(_is_future(node) for node in tree.body), tree)
+        self._collect(tree)
+        for node in tree.body:
+            self._statement(node)
+        for name in self.functions:
+            self._ends(name, ())
+        return frozenset(self.bound)
+
+    def _collect(self, tree: ast.Module) -> None:
+        for node in tree.body:
+            match node:
+                case ast.ClassDef(name):
+                    self.classes.add(name)
+                case ast.FunctionDef(name):
+                    self.functions[name] = set()
+
+    def _statement(self, node: ast.stmt) -> None:
+        match node:
+            case ast.Expr(ast.Constant(str())):
+                return
+            case ast.ImportFrom(str(module), aliases, 0):
+                known = _IMPORTS.get(module, set())
+                _demand(all(a.name in known and a.asname is None for a in aliases), node)
+                for alias in aliases:
+                    self._bind(alias.name, node)
+            case ast.ClassDef(name):
+                self._bind(name, node)
+                _check_class(node)
+            case ast.FunctionDef(name):
+                self._bind(name, node)
+                _Function(self, node).check()
+            case ast.Assign([ast.Name(name)], ast.Call(ast.Name(maker), args, keywords)):
+                _demand(maker in self.classes, node)
+                values = [*args, *(keyword.value for keyword in keywords)]
+                _demand(all(isinstance(value, ast.Constant) for value in values), node)
+                self._bind(name, node)
+            case _:
+                raise _strange(node)
+
+    def _bind(self, name: str, node: ast.AST) -> None:
+        _demand(name not in self.bound and name not in _BUILTINS, node)
+        self.bound.add(name)
+
+    def _ends(self, name: str, above: tuple[str, ...]) -> None:
+        """It does not come to call itself."""
+        if name in above:
+            raise _StrangeError(f"`{name}` calls itself")
+        for called in self.functions[name]:
+            self._ends(called, (*above, name))
+
+
+def _is_future(node: ast.stmt) -> bool:
+    """With it annotations are not evaluated."""
+    return isinstance(node, ast.ImportFrom) and node.module == "__future__"
+
+
+def _check_class(node: ast.ClassDef) -> None:
+    """Fields with or without a constant, in a frozen dataclass or a NamedTuple."""
+    written = [ast.unparse(part) for part in (*node.decorator_list, *node.bases)]
+    _demand(written in (["dataclass(frozen=True, slots=True)"], ["NamedTuple"]), node)
+    _demand(len(node.bases) == (written == ["NamedTuple"]) and not node.keywords, node)
+    for part in node.body:
+        match part:
+            case ast.Expr(ast.Constant(str())):
+                pass
+            case ast.AnnAssign(ast.Name(name), _, None | ast.Constant()):
+                _demand(not name.startswith("_"), part)
+            case _:
+                raise _strange(part)
+
+
+class _Function:
+    """One function: its statements and expressions."""
+
+    def __init__(self, module: _Module, node: ast.FunctionDef) -> None:
+        self.module, self.node = module, node
+        self.local = {argument.arg for argument in node.args.args}
+
+    def check(self) -> None:
+        """It is pure and ends."""
+        node, given = self.node, self.node.args
+        plain = not (given.vararg or given.kwarg or given.kwonlyargs or given.posonlyargs)
+        _demand(plain and not given.defaults and not node.decorator_list, node)
+        for name in self.local:
+            self._local(name, node)
+        self._body(node.body)
+
+    def _local(self, name: str, node: ast.AST) -> None:
+        _demand(name not in {*self.module.classes, *self.module.functions, *_BUILTINS}, node)
+        _demand(name not in _CALLED, node)
+        self.local.add(name)
+
+    def _body(self, statements: list[ast.stmt]) -> None:
+        for node in statements:
+            match node:
+                case ast.Expr(ast.Constant(str())) | ast.Pass() | ast.Return(None):
+                    pass
+                case ast.Return(ast.expr() as value):
+                    self._expression(value)
+                case ast.Assign([ast.Name(name)], value) | ast.AnnAssign(
+                    ast.Name(name), _, ast.expr() as value
+                ):
+                    self._expression(value)
+                    self._local(name, node)
+                case ast.If(test, body, orelse):
+                    self._expression(test)
+                    self._body(body)
+                    self._body(orelse)
+                case ast.Match(subject, cases):
+                    self._expression(subject)
+                    for case in cases:
+                        self._case(case)
+                case _:
+                    raise _strange(node)
+
+    def _case(self, case: ast.match_case) -> None:
+        for part in ast.walk(case.pattern):
+            match part:
+                case ast.MatchClass(ast.Name(name)):
+                    _demand(name in self.module.classes, part)
+                case ast.MatchAs(name=name):
+                    if name is not None:
+                        self._local(name, part)
+                case ast.MatchValue(ast.Constant()) | ast.MatchSingleton() | ast.MatchOr():
+                    pass
+                case ast.Name() | ast.Constant() | ast.expr_context():
+                    pass
+                case _:
+                    raise _strange(case.pattern)
+        if case.guard is not None:
+            self._expression(case.guard)
+        self._body(case.body)
+
+    def _expression(self, node: ast.expr) -> None:
+        for part in _parts(node):
+            self._expression(part)
+        match node:
+            case ast.Name(name):
+                known = {*self.local, *self.module.bound}
+                _demand(name in known and name not in ("dataclass", "NamedTuple"), node)
+            case ast.Attribute(_, name):
+                _demand(not name.startswith("_"), node)
+            case ast.Compare(_, operators, rest):
+                for operator, right in zip(operators, rest, strict=True):
+                    if isinstance(operator, ast.Is | ast.IsNot):
+                        none = isinstance(right, ast.Constant) and right.value is None
+                        _demand(none, node)
+            case ast.BinOp(_, ast.Add() | ast.Sub(), _) | ast.BoolOp() | ast.IfExp():
+                pass
+            case ast.Constant() | ast.UnaryOp() | ast.Tuple(ctx=ast.Load()):
+                pass
+            case ast.Call(ast.Name(name), args, keywords):
+                _demand(name in _CALLED or name in {*self.module.functions, *self._makers()}, node)
+                _demand(not any(isinstance(arg, ast.Starred) for arg in args), node)
+                _demand(all(keyword.arg is not None for keyword in keywords), node)
+                if name in self.module.functions:
+                    self.module.functions[self.node.name].add(name)
+            case _:
+                raise _strange(node)
+
+    def _makers(self) -> set[str]:
+        return self.module.classes
+
+
+def _parts(node: ast.expr) -> Iterator[ast.expr]:
+    """The expressions in it; what is called is looked at where it is called."""
+    for child in ast.iter_child_nodes(node):
+        if isinstance(node, ast.Call) and child is node.func:
+            continue
+        if isinstance(child, ast.keyword):
+            yield child.value
+        elif isinstance(child, ast.expr):
+            yield child

@@ -1,0 +1,66 @@
+"""What all runs say of a requirement with a probability: held against the runs, and shown."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from compiler.estimates import GLYPHS, Estimated, shown
+from compiler.odds import INCONCLUSIVE, REFUTED, SUPPORTED, Bounds
+from compiler.report.views import BoundsView, Mark, ProbabilityView
+from fretish import syntax
+from monitors import kernel
+from monitors.trials import Trials
+
+_KINDS = {
+    SUPPORTED: str(kernel.SATISFIED),
+    REFUTED: str(kernel.VIOLATED),
+    INCONCLUSIVE: str(kernel.INCONCLUSIVE),
+}
+ANSWERS = {word: Mark(word, GLYPHS[word][0], kind) for word, kind in _KINDS.items()}
+"""Answer → how it is shown."""
+
+
+def contradictions(
+    told: Estimated, stated: syntax.Probability, runs: Sequence[tuple[str, bool, Trials]]
+) -> Iterator[str]:
+    """Why it is not what its runs add up to.
+
+    Args:
+        told: what the evidence says of all runs.
+        stated: the probability of the sentence.
+        runs: of each run what tells its content from another, whether it is intact, its trials.
+    """
+    if (told.operator, told.bound) != (stated.op, stated.digits):
+        yield "the evidence is about another probability"
+    once = {content: (intact, counted) for content, intact, counted in reversed(runs)}.values()
+    sums = tuple(
+        sum(getattr(counted, name) for _, counted in once)
+        for name in ("answered", "failed", "open")
+    )
+    if sums != (told.answered, told.failed, told.open):
+        yield "the evidence contradicts itself: its runs do not add up to what it says of all"
+    elif told.answer == SUPPORTED and not all(intact for intact, _ in once):
+        yield "a log is damaged, and no damaged log supports a probability"
+
+
+# The view --------------------------------------------------------------------------------------
+
+
+def probability_view(told: Estimated, suspicions: Sequence[str]) -> ProbabilityView:
+    """What is shown in the section of the requirement."""
+    bars = [BoundsView("Clopper-Pearson", told.exact.low, told.exact.high)]
+    if told.resampled is not None:
+        bars.append(BoundsView("logs resampled", told.resampled.low, told.resampled.high))
+    stretches = " and ".join(f"{shown(Bounds(b.low, b.high))} ({b.name})" for b in bars)
+    share = "not known" if told.estimate is None else f"{told.estimate:.4f}"
+    return ProbabilityView(
+        mark=ANSWERS[told.answer],
+        suspicions=tuple(suspicions),
+        stated=told.text,
+        bound=float(told.bound),
+        reason=told.reason,
+        lines=told.lines[1:],
+        estimate=told.estimate,
+        bars=tuple(bars),
+        text=f"Estimate {share}; bounds {stretches}; the bound of the sentence is {told.bound}.",
+    )

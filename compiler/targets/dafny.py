@@ -1,0 +1,309 @@
+"""`--emit dafny`: monitor step, interceptor and closed loop with their proofs, for Dafny.
+
+Each file has up to three parts. The monitor: a counter stepped tick by tick, with a lemma that it
+is exact against the definition of the timing over the whole sequence; the bound is a number that is
+compared, so its size costs nothing. The interceptor: a step and a class with contracts. The closed
+loop: for every bound and every delay, the requirement is never violated.
+
+The text keeps to what Dafny 2.3 and Dafny 4 both read. Used, and why both accept it:
+- `function` and `predicate` without `method` or `ghost`: ghost in 2.3, compiled in 4. So methods
+  write their expressions out and name functions in `ensures` only, and every quantifier in a
+  predicate is over integers between bounds, which 4 can compile.
+- `const` of modules, `datatype` with named fields and `d.(field := value)`, `match` without braces:
+  the same in both.
+- `constructor ()` that only assigns fields: needs no `new;` in either.
+- `lemma {:induction false}`, `decreases`, `forall v | range ensures ...` and `var v :| ...` in
+  lemmas: the same; lemmas are ghost in both.
+- No semicolon after a declaration or clause, no `function method`, no `assume`, no `seq` slices.
+
+Sources: the Safe-ROS paper, its Dafny listing of `cmd_vel_interceptor`, for the class and its three
+obligations; for the counters see `compiler.counters`.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import PurePosixPath
+
+from compiler import formula as f
+from compiler.artifact import Artifact
+from compiler.deduction import CHANNELS, Delay, delay, loopless
+from compiler.demand import Uninterpreted, boolean
+from compiler.interception import options as core
+from compiler.letters import atoms_of, temporal_predicate
+from compiler.rule import Rule
+from compiler.targets.target import DEFAULT, Options, Target, not_expressible, stem
+from compiler.templating import render
+from fretish import expressions as e
+from fretish import syntax as s
+from fretish.declarations import Declarations
+from fretish.depth import deep
+from fretish.diagnostic import Diagnostic
+from fretish.syntax import ConditionKind, ScopeKind
+
+_ELSEWHERE = "check its monitor with `fretc verify`"
+
+
+@deep
+def refuse(rule: Rule) -> Diagnostic | None:
+    """F601 for the first part of the rule of which nothing could be proved."""
+    sentence = rule.sentence
+    if rule.pctl is not None:
+        return not_expressible(
+            "Dafny", rule, "the probability", "leave it out, or use a probabilistic tool"
+        )
+    if sentence.scope is not None:
+        scope = _SCOPES[sentence.scope.kind]
+        return not_expressible("Dafny", rule, f"the scope `{scope}`", _ELSEWHERE)
+    predicate = temporal_predicate(sentence)
+    if predicate is not None:
+        what = f"the predicate `{predicate}`, which speaks of other ticks,"
+        return not_expressible("Dafny", rule, what, _ELSEWHERE)
+    return None
+
+
+_SCOPES: Mapping[ScopeKind, str] = {
+    ScopeKind.IN: "in",
+    ScopeKind.NOT_IN: "unless in",
+    ScopeKind.BEFORE: "before",
+    ScopeKind.AFTER: "after",
+    ScopeKind.ONLY_IN: "only in",
+    ScopeKind.ONLY_BEFORE: "only before",
+    ScopeKind.ONLY_AFTER: "only after",
+}
+
+
+@deep
+def emit(rules: Sequence[Rule], options: Options = DEFAULT) -> tuple[Artifact, ...]:
+    """`<id>.dfy` for each rule."""
+    declared = options.declarations
+    return tuple(Artifact(PurePosixPath(_name(rule)), text(rule, declared)) for rule in rules)
+
+
+def _name(rule: Rule) -> str:
+    return f"{stem(rule)}.dfy"
+
+
+def text(rule: Rule, declarations: Declarations | None) -> str:
+    """The whole file; the same for the same rule and declarations.
+
+    Args:
+        rule: one that is not refused.
+        declarations: None where no bindings are at hand: then the interceptor is the plain one.
+    """
+    return render(
+        "dafny/requirement.dfy.j2",
+        id=rule.id,
+        title=rule.requirement.title,
+        sentence=" ".join(rule.requirement.wording.text.split()),
+        file=_name(rule),
+        monitor=_monitor(rule).rstrip() + "\n",
+        interceptor=_interceptor(declarations).rstrip() + "\n",
+        loop=_loop(rule, declarations).rstrip(),
+    )
+
+
+# Monitor --------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True)
+class Trigger:
+    """When a demand begins, in Dafny."""
+
+    at: str
+    """At tick t of a sequence w."""
+    now: str
+    """At tick x, for a monitor m."""
+    memory: str
+    """What is remembered of tick x."""
+    remembered: str
+    """The same, of a sequence w after k ticks."""
+    memory_means: str
+    in_loop: str
+    loop_memory: str
+    always_before: str
+    """What the loop remembers after ticks on which the condition holds."""
+
+
+_TRIGGERS: Mapping[ConditionKind | None, Trigger] = {
+    None: Trigger(
+        at="t == 0",
+        now="!m.before",
+        memory="true",
+        remembered="k > 0",
+        memory_means="before: there was a tick.",
+        in_loop="!l.before",
+        loop_memory="true",
+        always_before="true",
+    ),
+    ConditionKind.HOLDING: Trigger(
+        at="Condition(w[t])",
+        now="Condition(x)",
+        memory="false",
+        remembered="false",
+        memory_means="before: nothing has to be remembered of the condition.",
+        in_loop="condition",
+        loop_memory="false",
+        always_before="false",
+    ),
+    ConditionKind.TRIGGER: Trigger(
+        at="Condition(w[t]) && (t == 0 || !Condition(w[t - 1]))",
+        now="Condition(x) && !m.before",
+        memory="Condition(x)",
+        remembered="k > 0 && Condition(w[k - 1])",
+        memory_means="before: the condition held at the tick before.",
+        in_loop="condition && !l.before",
+        loop_memory="condition",
+        always_before="true",
+    ),
+}
+
+
+def _monitor(rule: Rule) -> str:
+    sentence, timing = rule.sentence, rule.sentence.timing
+    fields = _fields(atoms_of(sentence))
+    stop = timing.stop if isinstance(timing, s.Until | s.Before) else None
+    return render(
+        f"dafny/{_counter(timing)}.dfy.j2",
+        fields=fields,
+        condition=_dafny(sentence.condition.expression, fields) if sentence.condition else None,
+        response=_dafny(sentence.response, fields),
+        stop=_dafny(stop, fields) if stop else None,
+        trigger=_trigger(rule),
+        clash=isinstance(timing, s.After),
+        sign="!" if isinstance(timing, s.Never) else "",
+        **_bound(rule),
+    )
+
+
+def _trigger(rule: Rule) -> Trigger:
+    condition = rule.sentence.condition
+    return _TRIGGERS[condition.kind if condition else None]
+
+
+def _counter(timing: s.Timing) -> str:
+    """The name of its template; `never` is `always not`."""
+    return "always" if isinstance(timing, s.Never) else type(timing).__name__.lower()
+
+
+def _bound(rule: Rule) -> Mapping[str, object]:
+    """How the templates name the bound: a parameter and an argument, where there is one."""
+    bounded = s.duration(rule.sentence.timing) is not None
+    return {
+        "bounded": bounded,
+        "bound": rule.ticks,
+        "n": "n: nat, " if bounded else "",
+        "with_n": "n, " if bounded else "",
+    }
+
+
+_WORDS = {
+    "!=": "ne",
+    "<=": "le",
+    ">=": "ge",
+    "<": "lt",
+    ">": "gt",
+    "=": "eq",
+    "+": "plus",
+    "-": "minus",
+    "*": "times",
+    "/": "over",
+    "^": "power",
+}
+_OPERATORS = re.compile("|".join(map(re.escape, _WORDS)))
+_RESERVED = frozenset(
+    """abstract allocated allows array as assert assume bool break by calc case char class
+    codatatype
+    colemma const constructor continue copredicate datatype decreases downto else ensures exists
+    expect export extends false forall fresh from function ghost greatest hides if imap import in
+    include inductive int invariant is iset iterator label labels least lemma map match method
+    modifies modify module multiset nameonly nat new newtype null object old opaque opened
+    ORDINAL original predicate print protected provides reads real refines requires return returns
+    reveal reveals seq set static string then this trait true twostate type unchanged var where
+    while witness yield yields""".split()
+)
+"""The key words of Dafny 2.3 and 4, and those of its types that one might write as a name."""
+
+
+def _fields(atoms: Sequence[str]) -> Mapping[str, str]:
+    """Atom → a name in Dafny, no two alike; a tick without propositions has one that nobody reads.
+
+    A name ends neither with `?` nor in digits that look like an array's, and begins with a letter.
+    """
+    names: dict[str, str] = {}
+    for atom in atoms:
+        worded = _OPERATORS.sub(lambda found: f" {_WORDS[found.group()]} ", atom)
+        name = re.sub(r"[^A-Za-z0-9]+", "_", worded).strip("_") or "p"
+        name = name if name[0].isalpha() else f"p_{name}"
+        if name in _RESERVED or re.fullmatch(r"(array|bv)\d+\??", name):
+            name = f"{name}_"
+        while name in names.values():
+            name = f"{name}_"
+        names[atom] = name
+    return names or {"no proposition": "unused"}
+
+
+def _dafny(expression: e.Expression, fields: Mapping[str, str]) -> str:
+    return _text(boolean(expression, Uninterpreted().alone()), fields)
+
+
+def _text(formula: f.Formula, fields: Mapping[str, str]) -> str:
+    """A formula without time, of tick `x`; every operator in parentheses."""
+
+    def text(part: f.Formula) -> str:
+        return _text(part, fields)
+
+    match formula:
+        case f.Const(value):
+            return "true" if value else "false"
+        case f.Atom(name):
+            return f"x.{fields[name]}"
+        case f.Not(arg):
+            return f"!{text(arg)}"
+        case f.And(args):
+            return f"({' && '.join(map(text, args))})"
+        case f.Or(args):
+            return f"({' || '.join(map(text, args))})"
+        case f.Implies(left, right):
+            return f"({text(left)} ==> {text(right)})"
+        case f.Iff(left, right):
+            return f"({text(left)} <==> {text(right)})"
+        case f.Xor(left, right):
+            return f"({text(left)} != {text(right)})"
+        case _:
+            raise AssertionError(f"not of one tick: {formula}")
+
+
+# Interceptor ----------------------------------------------------------------------------------
+
+
+def _interceptor(declarations: Declarations | None) -> str:
+    if declarations is None or declarations.interceptor is None:
+        return render("dafny/latch.dfy.j2")
+    options = core(declarations.interceptor)
+    watched = [channel for channel in CHANNELS if getattr(options, f"{channel[1]}_timeout")]
+    return render("dafny/interceptor.dfy.j2", options=options, watched=watched)
+
+
+# Closed loop ----------------------------------------------------------------------------------
+
+
+def _loop(rule: Rule, declarations: Declarations | None) -> str:
+    reason = loopless(rule, declarations)
+    if reason is not None:
+        return render("dafny/loopless.dfy.j2", reason=reason)
+    known = delay(rule, declarations)
+    fits = isinstance(known, Delay) and rule.ticks is not None and known.total <= rule.ticks
+    return render(
+        "dafny/loop.dfy.j2",
+        trigger=_trigger(rule),
+        declared=known if fits else None,
+        **_bound(rule),
+    )
+
+
+TARGET = Target(
+    "dafny", "monitor step, interceptor and closed loop with proofs, for Dafny", emit, refuse
+)

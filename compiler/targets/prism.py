@@ -1,0 +1,246 @@
+"""`--emit prism`: a requirement with a probability, for PRISM and Storm.
+
+Two files: `<id>.props`, the property in PRISM's syntax over labels, and `<id>.prism`, a frame of a
+model that can be run at once and that the user replaces. What PRISM's language lacks is said by
+what it has, and means the same: `P=p` as two bounds, `G<=n a` by its complement, and a bound of
+ticks within an LTL formula, which PRISM allows around states only, as a chain of `X`.
+Sources: the PRISM manual, Property Specification and The PRISM Language; FRET's shape of
+probabilistic requirements is that of `compiler.future.probabilistic`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import replace
+from decimal import Decimal, localcontext
+from functools import reduce
+from pathlib import PurePosixPath
+
+from compiler import formula as f
+from compiler import printing
+from compiler.artifact import Artifact
+from compiler.naming import legal_names
+from compiler.record import wording
+from compiler.rule import Rule
+from compiler.targets.target import DEFAULT, Options, Target, not_expressible, stem
+from compiler.templating import render
+from fretish import expressions as e
+from fretish.checking import LOOK_BACK, calls, conditions
+from fretish.depth import deep
+from fretish.diagnostic import Code, Diagnostic
+from fretish.printer import timing as printing_of
+
+_MOST_STEPS = 64
+"""Of a chain of `X`: the automaton of a longer one is beyond any model checker."""
+_MOST_OPERATORS = 100_000
+"""Of a property."""
+_RESERVED = frozenset(
+    "A bool clock const ctmc C double dtmc E endinit endinvariant endmodule endobservables "
+    "endplayer endrewards endsystem false formula filter func F global G init invariant I int "
+    "label max mdp min module X nondeterministic observable observables of Pmax Pmin P player "
+    "pomdp popta probabilistic prob pta rate rewards Rmax Rmin R S smg stochastic system true U W "
+    "deadlock round floor ceil pow mod log".split()
+)
+"""Key words, functions and labels of PRISM and Storm."""
+
+
+@deep
+def refuse(rule: Rule) -> Diagnostic | None:
+    """F601 without a probability, and for what PRISM's formulas cannot say."""
+    if rule.pctl is None:
+        return not_expressible(
+            "PRISM",
+            rule,
+            "a certainty such as that",
+            "add `with probability >= 0.99` before the timing, or use `--emit smv` or `hoa`",
+        )
+    predicate = _looks_back(rule)
+    if predicate is not None:
+        return not_expressible(
+            "PRISM",
+            rule,
+            f"the predicate `{predicate}`, which looks back,",
+            "say it by a condition or a timing",
+        )
+    if _steps(rule.pctl) > _MOST_STEPS:
+        return not_expressible(
+            "PRISM",
+            rule,
+            f"more than {_MOST_STEPS} ticks of `{printing_of(rule.sentence.timing)}` "
+            "in one path formula",
+            "state the requirement without a scope, or use a clock with longer ticks",
+        )
+    if _size(rule.pctl) > _MOST_OPERATORS:
+        return Diagnostic(
+            Code.TOO_LARGE,
+            f"the property of {rule.id} has more than {_MOST_OPERATORS} operators",
+            rule.requirement.wording,
+            help="PRISM's formulas have no `<->` and no `xor`: give parts names of their own",
+        )
+    return None
+
+
+def _size(formula: f.Formula) -> int:
+    """How many operators the text has, with the operands of `<->` and `xor` written twice."""
+    parts = sum(map(_size, f.children(formula)))
+    return 1 + (2 * parts if isinstance(formula, f.Iff | f.Xor) else parts)
+
+
+def _looks_back(rule: Rule) -> str | None:
+    for expression in conditions(rule.sentence):
+        found = next((name for name in calls(expression) if name in LOOK_BACK), None)
+        if found is None and any(name.id == "FTP" for name in e.names(expression)):
+            found = "FTP"
+        if found is not None:
+            return found
+    return None
+
+
+@deep
+def emit(rules: Sequence[Rule], options: Options = DEFAULT) -> tuple[Artifact, ...]:
+    """`<id>.props` and `<id>.prism` for each rule."""
+    return tuple(file for rule in rules for file in _files(rule))
+
+
+def _files(rule: Rule) -> Iterator[Artifact]:
+    assert rule.pctl is not None, "refused"
+    names = legal_names(rule.propositions, _RESERVED)
+    chances = legal_names(names.values(), _RESERVED | {*names.values()}, "p_")
+    modules = legal_names(names.values(), {*names.values(), *chances.values()}, "draw_")
+    inputs = [
+        (name, proposition, chances[name], modules[name]) for proposition, name in names.items()
+    ]
+    told = {"id": rule.id, "sentence": wording(rule.requirement), "inputs": inputs}
+    for ending, more in (("props", {"property": property_(rule.pctl, names)}), ("prism", {})):
+        text = render(f"prism/requirement.{ending}.j2", stem=stem(rule), **told, **more)
+        yield Artifact(PurePosixPath(f"{stem(rule)}.{ending}"), text)
+
+
+# The property ---------------------------------------------------------------------------------
+
+
+def property_(formula: f.Formula, names: Mapping[str, str]) -> str:
+    """PCTL* in PRISM's syntax; each proposition is a label.
+
+    Args:
+        formula: a state formula, as the outermost `P>=1 [ ... ]` is one.
+        names: the label of each proposition.
+    """
+    dialect = replace(
+        printing.PCTL,
+        atom=lambda name: f'"{names[name]}"',
+        bounds=lambda ahead: "" if ahead == f.EVER else f"<={ahead.hi}",
+    )
+    return _Property(dialect).state(formula)
+
+
+class _Property:
+    def __init__(self, dialect: printing.Dialect) -> None:
+        self._dialect = dialect
+
+    def state(self, formula: f.Formula) -> str:
+        """A formula that is true or false of a state."""
+        return self._read(formula, self._odds)
+
+    def _odds(self, odds: f.Odds) -> str:
+        if isinstance(odds.arg, f.Globally) and odds.arg.ahead != f.EVER and _is_simple(odds.arg):
+            return self._odds(complement(odds))
+        path = f"[ {self._path(odds.arg)} ]"
+        if odds.op == "=":
+            return f"(P>={odds.bound} {path} & P<={odds.bound} {path})"
+        if odds.op == "!=":
+            return f"(P<{odds.bound} {path} | P>{odds.bound} {path})"
+        return f"P{odds.op}{odds.bound} {path}"
+
+    def _path(self, formula: f.Formula) -> str:
+        """One operator around states keeps its bound; any other formula is LTL, which has none."""
+        if _is_simple(formula):
+            return self._read(formula, self._odds)
+        return self._read(unrolled(formula), self._odds)
+
+    def _read(self, formula: f.Formula, odds: Callable[[f.Odds], str]) -> str:
+        """The text, with each probability within it in place."""
+        found: dict[str, str] = {}
+
+        def hide(part: f.Formula) -> f.Formula:
+            if isinstance(part, f.Odds):
+                name = f"_{len(found)}_"
+                found[name] = odds(part)
+                return f.Atom(name)
+            return f.rebuild(part, hide)
+
+        atom = self._dialect.atom
+        dialect = replace(
+            self._dialect, atom=lambda name: found[name] if name in found else atom(name)
+        )
+        return printing.text(printing.for_prism(hide(formula)), dialect)
+
+
+def complement(odds: f.Odds) -> f.Odds:
+    """`P<=0.1 [ F<=n !a ]` for `P>=0.9 [ G<=n a ]`, which Storm does not read."""
+    assert isinstance(odds.arg, f.Globally)
+    with localcontext(prec=len(odds.bound) + 2):
+        bound = format(1 - Decimal(odds.bound), "f")
+    flipped = odds.op.translate(str.maketrans("<>", "><"))
+    return f.Odds(flipped, bound, f.eventually(f.not_(odds.arg.arg), odds.arg.ahead))
+
+
+def _is_simple(formula: f.Formula) -> bool:
+    """`F<=n a`, `G<=n a`: what PRISM reads with a bound; a and all else without an operator."""
+    if isinstance(formula, f.Eventually | f.Globally) and formula.ahead.lo == 0:
+        return not _is_temporal(formula.arg)
+    return False
+
+
+def _is_temporal(formula: f.Formula) -> bool:
+    match formula:
+        case f.Odds():
+            return False  # it is true or false of a state
+        case f.Next() | f.Eventually() | f.Globally() | f.Until() | f.Release():
+            return True
+        case _:
+            return any(map(_is_temporal, f.children(formula)))
+
+
+def unrolled(formula: f.Formula) -> f.Formula:
+    """The formula with chains of `X` for bounds; what stands within a probability is left alone."""
+    if isinstance(formula, f.Odds):
+        return formula
+    rebuilt = f.rebuild(formula, unrolled)
+    match rebuilt:
+        case f.Eventually(arg, f.Interval(lo, int(hi))):
+            return _later(
+                reduce(lambda rest, _: f.or_(arg, f.next_(rest)), range(hi - lo), arg), lo
+            )
+        case f.Globally(arg, f.Interval(lo, int(hi))):
+            return _later(
+                reduce(lambda rest, _: f.and_(arg, f.next_(rest)), range(hi - lo), arg), lo
+            )
+        case _:
+            return rebuilt
+
+
+def _later(formula: f.Formula, ticks: int) -> f.Formula:
+    return reduce(lambda rest, _: f.next_(rest), range(ticks), formula)
+
+
+def _steps(formula: f.Formula) -> int:
+    """How many `X` the chains of the longest LTL formula within it have."""
+    match formula:
+        case f.Odds(_, _, arg):
+            return _steps(arg) if _is_simple(arg) else max(_chain(arg), _steps(arg))
+        case _:
+            return max(map(_steps, f.children(formula)), default=0)
+
+
+def _chain(formula: f.Formula) -> int:
+    match formula:
+        case f.Odds():
+            return 0
+        case f.Eventually(arg, f.Interval(_, int(hi))) | f.Globally(arg, f.Interval(_, int(hi))):
+            return hi + _chain(arg)
+        case _:
+            return max(map(_chain, f.children(formula)), default=0)
+
+
+TARGET = Target("prism", "a property and a frame of a model, for PRISM and Storm", emit, refuse)

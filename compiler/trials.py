@@ -1,0 +1,99 @@
+"""What each trigger came to, for a requirement with a probability.
+
+FRET's PCTL* puts the probability around what is demanded at each trigger; the trials are the
+triggers of the runs, and each is met or not by that very formula, read at the tick of the trigger
+(`compiler.future.demanded_at`). Triggers are those of the monitor (`compiler.past.staged`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+from compiler import predicates
+from compiler.columns import evaluate_unknown
+from compiler.demand import Kind, Obligation, obligation
+from compiler.future import demanded_at, end_marker
+from compiler.past import staged
+from compiler.rule import Rule
+from fretish.depth import deep
+from fretish.expressions import ComparisonOperator
+from fretish.printer import sentence as printed
+from fretish.source import Source
+from monitors.kernel import Column
+from monitors.trials import Trials
+
+
+@dataclass(frozen=True, slots=True)
+class Chance:
+    """With which probability each demand is to be met, and what that demand is."""
+
+    op: ComparisonOperator
+    bound: str
+    """As it is written: `0.99`."""
+    obligation: Obligation
+
+    @property
+    def text(self) -> str:
+        """`>= 0.99`."""
+        return f"{self.op} {self.bound}"
+
+
+@deep
+def chance(rule: Rule) -> Chance | None:
+    """None where the sentence gives no probability."""
+    odds = rule.sentence.probability
+    if odds is None:
+        return None
+    told = obligation(rule.sentence, rule.ticks or 0, predicates.Past())
+    return Chance(odds.op, odds.digits, told)
+
+
+_LASTING = (Kind.ALWAYS, Kind.UNTIL, Kind.BEFORE)
+"""They only forbid: they are met when the log ends, if nothing has broken them."""
+
+
+@deep
+def trials(told: Obligation, columns: Mapping[str, Column], ticks: int) -> Trials:
+    """What each trigger of one run came to.
+
+    What follows the log is unknown, for more ticks than any deadline lies ahead.
+
+    Args:
+        told: what is demanded.
+        columns: one for each proposition.
+        ticks: the length of the run.
+    """
+    if not ticks:
+        return Trials(0, 0, 0)
+    triggers = evaluate_unknown(staged(told).trigger, columns, ticks)
+    # A deadline that no trigger of the run can reach is as far as any other one.
+    demand = replace(told.demand, ticks=min(told.demand.ticks, ticks))
+    met = demanded_at(demand, end_marker(told.scope, told.mode))
+    longer = ticks + demand.ticks + _BEYOND
+    ahead = (1 << longer) - (1 << ticks)
+    unending = {name: Column(c.true, c.unknown | ahead) for name, c in columns.items()}
+    shown = evaluate_unknown(met, unending, longer)
+    at_end = evaluate_unknown(met, columns, ticks).true if demand.kind in _LASTING else 0
+    answered = triggers.true & (shown.true | at_end)
+    failed = triggers.true & ~(shown.true | shown.unknown)
+    return Trials(
+        answered=answered.bit_count(),
+        failed=failed.bit_count(),
+        open=((triggers.true | triggers.unknown) & ~(answered | failed)).bit_count(),
+        kept=(answered & ~shown.true).bit_count(),
+    )
+
+
+_BEYOND = 3
+"""Ticks after the latest deadline: the last tick of all must not lie before any."""
+
+
+def plain(rule: Rule) -> Rule:
+    """The rule of the same sentence without its probability, under the same id."""
+    if rule.sentence.probability is None:
+        return rule
+    sentence = replace(rule.sentence, probability=None)
+    source = Source(rule.requirement.wording.source.name, printed(sentence))
+    requirement = replace(rule.requirement, wording=source.span())
+    return replace(rule, requirement=requirement, sentence=sentence, pctl=None)

@@ -1,0 +1,276 @@
+"""Files for Dafny: the definitions in them, what they leave out, and what Dafny says of them."""
+
+import re
+from collections.abc import Callable
+from functools import cache
+from itertools import product
+from pathlib import Path
+
+import pytest
+
+from compiler.counters import accepts, initial, step, template
+from compiler.pipeline import formalize
+from compiler.project import load
+from compiler.rule import Rule
+from compiler.targets import TARGETS
+from compiler.targets.dafny import text
+from fretish.bindings import read_bindings
+from fretish.declarations import Declarations
+from fretish.documents import Requirement
+from fretish.rendering import render
+from fretish.source import Source
+from tests.dafny_reader import Reader
+
+TARGET = TARGETS["dafny"]
+CONDITIONS = ("", "when p ", "whenever p ")
+TIMINGS = (
+    "immediately",
+    "at the next timepoint",
+    "at the last timepoint",
+    "eventually",
+    "always",
+    "never",
+    "within {n} ticks",
+    "for {n} ticks",
+    "after {n} ticks",
+    "until s",
+    "before s",
+)
+BINDINGS = """\
+[clock]
+tick = "100 ms"
+
+[signal.range]
+path = "/scan.range_min"
+type = "sensor_msgs/LaserScan"
+unit = "m"
+max_age = "100 ms"
+
+[proposition.p]
+text = "near"
+expr = "range < 1 m"
+
+[proposition.q]
+text = "still"
+expr = "range > 2 m"
+
+[interceptor]
+stop         = "/stop"
+command      = "/cmd_vel"
+output       = "/cmd_vel_filtered"
+scan         = "/scan"
+period       = "50 ms"
+hold         = "200 ms"
+stop_timeout = "1200 ms"
+scan_timeout = "500 ms"
+
+[assume]
+stands  = "q"
+latency = "100 ms"
+lost    = 1
+braking = "200 ms"
+"""
+EVENT = re.sub(r"(period|hold|\w+_timeout) .*\n", "", BINDINGS).replace(
+    "[assume]", 'form = "event"\n\n[assume]'
+)
+
+
+def bound(text: str = BINDINGS) -> Declarations:
+    found, wrong = read_bindings(Source("bindings.toml", text))
+    assert found is not None, wrong
+    return found
+
+
+def rule(sentence: str, declarations: Declarations | None = None) -> Rule:
+    requirement = Requirement("R1", Source("r.fret", sentence).span())
+    made, said = formalize(requirement, declarations)
+    assert made is not None, said
+    return made
+
+
+def emitted(sentence: str, bindings: str | None = BINDINGS) -> str:
+    declarations = bound(bindings) if bindings else None
+    made = rule(sentence, declarations)
+    assert TARGET.refuse(made) is None
+    return text(made, declarations)
+
+
+# The monitor in the text is the reference automaton -------------------------------------------
+
+
+@pytest.mark.parametrize("condition", CONDITIONS)
+@pytest.mark.parametrize("timing", TIMINGS)
+@pytest.mark.parametrize("n", [0, 1, 2])
+def test_the_step_and_the_definition_are_those_of_the_reference(
+    condition: str, timing: str, n: int
+) -> None:
+    if n and "{n}" not in timing:
+        return
+    made = rule(f"{condition}robot shall {timing.format(n=n)} satisfy q")
+    read = Reader(text(made, None))
+    ticks = (n,) if "{n}" in timing else ()
+    names = re.findall(r"(\w+): bool", re.findall(r"datatype Tick = .*", text(made, None))[0])
+    reference = template(made.sentence, n)
+    length = 3 if len(names) > 2 else 4
+    for word in product(product((False, True), repeat=len(names)), repeat=length):
+        letters = [dict(zip(names, letter, strict=True)) for letter in word]
+        w = [read.Tick(*letter) for letter in word]
+        state, broken = initial(reference), False
+        for k in range(length + 1):
+            monitor = read.Run(*ticks, w, k)
+            if timing in ("eventually", "at the last timepoint"):
+                assert (monitor.demand.count > 0) == (not accepts(reference, state))
+                assert read.Unanswered(w, k) == (not accepts(reference, state))
+            else:
+                assert monitor.demand.broken == broken, (letters, k)
+                assert read.Violated(*ticks, w, k) == broken, (letters, k)
+            if k == length or broken:
+                break
+            p, q, s = (letters[k].get(name, False) for name in "pqs")
+            after = step(reference, state, False, p, q, s)
+            state, broken = after or state, after is None
+
+
+# Text ------------------------------------------------------------------------------------------
+
+_NOT_IN_BOTH = (
+    r"\bfunction method\b|\bpredicate method\b",  # 2.3 only
+    r"\bghost (function|predicate)\b",  # 4 only
+    r"\bassume\b|\{:axiom\}|\{:verify|\{:extern|\binclude\b|/\*",  # nothing is taken on trust
+    r"\{:(?!induction false\})",
+    r"^\s*(requires|ensures(?! var)|modifies|reads|decreases)\b.*;\s*$",  # an old end of a clause
+    r"^(var|const|datatype)\b.*;\s*$",
+    r"\bnew;|\binductive\b|\bleast\b|\bcopredicate\b|\bcolemma\b|\bby method\b",
+    r"\[[^\]]*\.\.",  # slices of sequences
+    r"\bcase \w+\(.*\) => *\{|\bmatch \w+ *\{",
+    r"\bforall \w+, \w+ *\||<-",  # other quantifier syntax
+)
+
+
+@pytest.mark.parametrize("pattern", _NOT_IN_BOTH)
+def test_the_text_keeps_to_what_dafny_2_3_and_4_both_read(pattern: str) -> None:
+    for found in _every_text():
+        assert not re.search(pattern, re.sub(r"//[^\n]*", "", found), re.MULTILINE)
+
+
+@cache
+def _every_text() -> tuple[str, ...]:
+    latching = BINDINGS.replace("[assume]", "latching = true\n\n[assume]")
+    return tuple(
+        emitted(f"{condition}robot shall {timing.format(n=6)} satisfy q", bindings)
+        for bindings in (None, latching, EVENT)
+        for timing in TIMINGS
+        for condition in CONDITIONS
+    )
+
+
+def test_methods_call_no_function() -> None:
+    """A function is ghost in 2.3, so that what runs must not need it."""
+    code = emitted("whenever p robot shall within 2 ticks satisfy q")
+    functions = re.findall(r"^ *(?:function|predicate) (\w+)", code, re.MULTILINE)
+    bodies = re.findall(r"^  (?:method|constructor)[^{]*?\n  \{\n(.*?)^  \}", code, re.M | re.S)
+    assert len(bodies) == 5
+    for body in bodies:
+        assert not set(functions) & set(re.findall(r"\w+", body))
+
+
+def test_names_that_dafny_cannot_read_are_changed_and_told() -> None:
+    found = emitted("whenever (map & x > 3) robot shall satisfy (x >= 3 | bv8)", None)
+    assert "datatype Tick = Tick(map_: bool, x_gt_3: bool, x_ge_3: bool, bv8_: bool)" in found
+    assert "// map_ is map\n// x_gt_3 is (x > 3)\n// x_ge_3 is (x >= 3)\n" in found
+    assert "  (x.map_ && x.x_gt_3)\n" in found
+
+
+def test_a_sentence_that_names_no_proposition_has_a_tick_all_the_same() -> None:
+    assert "datatype Tick = Tick(unused: bool)" in emitted("robot shall always satisfy true", None)
+
+
+@pytest.mark.parametrize(
+    ("sentence", "bindings", "reason"),
+    [
+        (
+            "whenever p robot shall within 5 ticks satisfy q",
+            None,
+            "the bindings have no [interceptor], and the plain form waits for a command to stop",
+        ),
+        (
+            "whenever p robot shall within 5 ticks satisfy q",
+            EVENT,
+            "the event form waits for a command to stop, so no delay bounds its answer",
+        ),
+        (
+            "whenever p robot shall for 5 ticks satisfy q",
+            BINDINGS,
+            "it is about answers, and `for 5 ticks` asks for something else",
+        ),
+        (
+            "whenever q robot shall eventually satisfy p",
+            BINDINGS,
+            "what a stop brings about is `q`, and the response is something else",
+        ),
+    ],
+)
+def test_what_cannot_be_shown_of_the_loop_is_left_out_and_said(
+    sentence: str, bindings: str | None, reason: str
+) -> None:
+    found = emitted(sentence, bindings)
+    assert f"// Nothing is shown of it:\n// {reason}.\n" in found
+    assert "NeverViolated" not in found
+    assert "AnsweredInTime" not in found
+
+
+def test_the_numbers_of_the_bindings_are_in_the_text() -> None:
+    found = emitted("whenever p robot shall within 5 ticks satisfy q")
+    constants = dict(re.findall(r"const (\w+): (?:int|bool) := (\w+)", found))
+    assert constants == {
+        "BOUND": "5",
+        "HOLD": "4",
+        "STOP_TIMEOUT": "24",
+        "SCAN_TIMEOUT": "10",
+        "COMMAND_TIMEOUT": "0",
+        "EVENT_DRIVEN": "false",
+        "LATCHING": "false",
+        "REACH": "1",  # one tick of latency, less the tick itself, and a lost message
+        "BRAKING": "3",  # two ticks, and the one in which it began
+    }
+
+
+def test_a_declared_delay_above_the_bound_is_not_claimed() -> None:
+    found = emitted("whenever p robot shall within 3 ticks satisfy q")
+    assert "lemma {:induction false} NeverViolated(" in found
+    assert "NeverViolatedAsDeclared" not in found
+
+
+@pytest.mark.parametrize(
+    ("sentence", "told"),
+    [
+        ("in m robot shall satisfy q", "the scope `in` of R1"),
+        ("only before m robot shall satisfy q", "the scope `only before` of R1"),
+        ("robot shall with probability >= 0.9 eventually satisfy q", "the probability of R1"),
+        (
+            "when persisted(2, p) robot shall satisfy q",
+            "the predicate `persisted`, which speaks of other ticks, of R1",
+        ),
+    ],
+)
+def test_what_has_no_proof_is_refused(sentence: str, told: str) -> None:
+    found = TARGET.refuse(rule(sentence))
+    assert found is not None
+    assert render(found).startswith(f"F601 Dafny cannot express {told}\n")
+
+
+# Golden ----------------------------------------------------------------------------------------
+
+
+def test_a_whole_file_of_a_deadline(golden: Callable[[str, str], None]) -> None:
+    golden("dafny/within.dfy", emitted("whenever p robot shall within 5 ticks satisfy q"))
+
+
+def test_the_command_writes_the_file(fretc: Callable[..., object], tmp_path: Path) -> None:
+    (tmp_path / "bindings.toml").write_text(BINDINGS)
+    (tmp_path / "r1.fret").write_text(
+        '+++\nid = "R1"\n+++\nwhenever p robot shall within 5 ticks satisfy q\n'
+    )
+    fretc("r1.fret", "--emit", "dafny")
+    project = load(["r1.fret"])
+    assert (tmp_path / "build/r1.dfy").read_text() == text(project.rules[0], project.declarations)

@@ -1,0 +1,109 @@
+"""`fretc check`: what is wrong or missing in a project, before any run."""
+
+from pathlib import Path
+
+import pytest
+
+from tests.command import Fretc, write
+from tests.compiler.report import cases
+
+GOOD = cases.R1.replace("shall eventually", "shall within 300 milliseconds")
+BY = ("--reviewer", "A", "--role", "B", "--comment", "c", "--date", "2026-01-01")
+
+
+@pytest.fixture
+def good(fretc: Fretc) -> Fretc:
+    """A project with nothing to be said of it."""
+    write("requirements/r1.fret", GOOD)
+    write("requirements/bindings.toml", cases.BINDINGS)
+    write("requirements/hazards.toml", cases.HAZARDS)
+    return fretc
+
+
+def edited(name: str, old: str, new: str) -> None:
+    path = Path("requirements") / name
+    text = path.read_text()
+    assert old in text
+    path.write_text(text.replace(old, new))
+
+
+def test_a_sound_project_is_said_to_be_sound(good: Fretc) -> None:
+    run = good("check")
+    assert (run.status, run.out, run.err) == (0, "", "1 requirement: 0 mistakes, 0 warnings\n")
+
+
+def test_a_trigger_that_the_component_itself_commands_is_told(good: Fretc) -> None:
+    edited("bindings.toml", 'role = "input"\nkind = "belief"', 'role = "output"\nkind = "command"')
+    run = good("check")
+    assert run.status == 3
+    assert run.err == (
+        "F209 warning: R1 is triggered by `near`, which robot itself commands: it holds where "
+        "nothing is ever commanded\n"
+        "  --> requirements/r1.fret:10:10\n"
+        "   | whenever near the robot shall within 300 milliseconds satisfy stopped\n"
+        "   |          ^^^^\n"
+        "help: trigger it by what the sensors see, or say `role` and `kind` of the proposition\n"
+        "\n"
+        "1 requirement: 0 mistakes, 1 warning\n"
+    )
+
+
+def test_a_plan_that_can_give_no_result_is_told(good: Fretc) -> None:
+    edited("r1.fret", '["audit"]', '["audit", "ajpf"]')
+    run = good("check")
+    assert run.status == 3
+    assert "F525 warning: R1 plans `ajpf`, and there can be no result: AJPF cannot" in run.err
+
+
+def test_a_remark_of_a_planned_method_is_told(good: Fretc) -> None:
+    edited("r1.fret", "within 300 milliseconds", "eventually")
+    run = good("check")
+    assert (run.status, "F203 warning" in run.err) == (3, True)
+
+
+def test_missing_links_are_told_in_both_directions(good: Fretc) -> None:
+    edited("r1.fret", 'parents = ["HAZ-1"]\n', "")
+    run = good("check")
+    assert run.status == 3
+    assert "F522 warning: no requirement in force names HAZ-1 (The robot hits something)" in run.err
+    assert "F523 warning: R1 names no parent" in run.err
+
+
+def test_a_retired_requirement_covers_no_hazard_and_is_not_looked_at(good: Fretc) -> None:
+    edited("r1.fret", '"approved"', '"retired"')
+    edited("r1.fret", '["audit"]', '["ajpf"]')
+    run = good("check")
+    assert run.status == 3
+    assert "F522" in run.err
+    assert "F525" not in run.err
+
+
+def test_what_changed_since_its_review_is_told(good: Fretc) -> None:
+    assert good("lock", *BY).status == 0
+    assert good("check").status == 0
+    edited("r1.fret", "300 milliseconds", "400 milliseconds")
+    run = good("check")
+    assert run.status == 3
+    assert (
+        "F512 warning: R1 was reviewed on 2026-01-01, and since then sentence R1 changed" in run.err
+    )
+
+
+def test_a_review_of_what_is_gone_is_told(good: Fretc) -> None:
+    assert good("lock", *BY).status == 0
+    edited("r1.fret", 'id = "R1"', 'id = "R2"')
+    run = good("check")
+    assert run.status == 3
+    assert "F511 warning: R1 was reviewed, and is not among the requirements" in run.err
+
+
+def test_mistakes_win_over_warnings(good: Fretc) -> None:
+    write("requirements/waivers.toml", "[R9]\n")
+    run = good("check")
+    assert run.status == 2
+    assert "F513 R9 is waived, and is not among the requirements" in run.err
+
+
+def test_a_lock_that_cannot_be_read_is_a_mistake(good: Fretc) -> None:
+    write("requirements/fretc.lock", "x")
+    assert good("check").status == 2

@@ -1,0 +1,223 @@
+"""The closed loop over the texts: what it keeps, and the runs by which it does not."""
+
+from dataclasses import replace
+
+import pytest
+
+from compiler import formula as f
+from compiler.gate import Settings
+from compiler.loopmodel import Channel
+from compiler.loopsearch import is_safety, search
+from compiler.verification import Counterexample, NotChecked, Proved, Result, Vacuous, status
+from tests.loops import CORE, EVENTUALLY, LATCH, TIMER, WITHIN, case, edited, with_safety
+
+EDGE = Channel(1, edge=True)
+
+
+def trace(result: Result) -> list[str]:
+    """The rows of a run as digits, each with what happened."""
+    assert isinstance(result, Counterexample)
+    assert result.trace is not None
+    digits = ("".join("-" if v is None else str(int(v)) for v in row) for row in result.trace.rows)
+    return [f"{row} {told}" for row, told in zip(digits, result.trace.actions, strict=True)]
+
+
+# The loops of the paper and their mends -------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("settings", "channel", "kept", "released"),
+    [
+        (LATCH, Channel(1, edge=True), "counterexample", "counterexample"),
+        (LATCH, Channel(1, edge=True, punctual=True), "proved", "counterexample"),
+        (TIMER, Channel(1), "proved", "proved"),
+        (TIMER, Channel(1, lost=2), "counterexample", "proved"),
+        (TIMER, Channel(1, lost=2, edge=True), "counterexample", "counterexample"),
+    ],
+    ids=["the paper's", "with a busy planner", "timer", "lossy", "lossy and on change only"],
+)
+def test_what_each_loop_keeps_within_two_ticks(
+    settings: Settings, channel: Channel, kept: str, released: str
+) -> None:
+    found = search(case(WITHIN.format(2), settings, channel))
+    assert (status(found.kept), status(found.released)) == (kept, released)
+
+
+def test_without_a_bound_only_what_is_sent_once_is_lost() -> None:
+    found = {
+        lost: status(search(case(EVENTUALLY, TIMER, Channel(1, lost=2, edge=edge))).kept)
+        for lost, edge in (("level", False), ("edge", True))
+    }
+    assert found == {"level": "proved", "edge": "counterexample"}
+
+
+def test_the_latch_of_the_paper_lets_the_wheels_turn_where_the_planner_falls_silent() -> None:
+    found = search(case(WITHIN.format(2), LATCH, EDGE))
+    assert trace(found.kept) == [
+        "010-01 no stop is requested; a command to move is heard",
+        "101111 a stop is requested, and the message is sent; `true` is heard",
+        "001-11 a stop is requested, and no message is sent",
+        "001-11 a stop is requested, and no message is sent",
+    ]
+
+
+def test_without_a_bound_that_run_has_no_end() -> None:
+    found = search(case(EVENTUALLY, LATCH, EDGE)).kept
+    assert trace(found) == [
+        "010-01 no stop is requested; a command to move is heard",
+        "101111 a stop is requested, and the message is sent; `true` is heard",
+        "001-11 a stop is requested, and no message is sent",
+    ]
+    assert isinstance(found, Counterexample)
+    assert found.trace is not None
+    assert (found.trace.names, found.trace.cycle) == (
+        ("near", "stopped", "request", "delivered", "halt", "wheels"),
+        2,
+    )
+
+
+def test_a_loop_that_loses_two_messages_keeps_a_bound_of_three() -> None:
+    lossy = Channel(1, lost=2)
+    found = {n: status(search(case(WITHIN.format(n), TIMER, lossy)).kept) for n in (2, 3)}
+    assert found == {2: "counterexample", 3: "proved"}
+    assert trace(search(case(WITHIN.format(2), TIMER, lossy)).kept)[1:] == [
+        "101-01 a stop is requested, and the message is lost",
+        "001-01 a stop is requested, and the message is lost",
+        "001110 a stop is requested, and the message is sent; `true` is heard",
+    ]
+
+
+@pytest.mark.parametrize(
+    ("channel", "least"),
+    [
+        (Channel(2, latency=2, braking=4), 3),
+        (Channel(2, latency=1, braking=1), 1),
+        (Channel(2, latency=2, braking=1), 2),
+        (Channel(2, latency=2, lost=1, braking=4), 4),
+    ],
+)
+def test_latency_losses_and_braking_add_up(channel: Channel, least: int) -> None:
+    settings = Settings(hold=4, stop_timeout=24)
+    kept = status(search(case(WITHIN.format(least), settings, channel)).kept)
+    short = "immediately" if least == 1 else f"within {least - 1} ticks"
+    sentence = f"whenever near the sw shall {short} satisfy stopped"
+    assert (kept, status(search(case(sentence, settings, channel)).kept)) == (
+        "proved",
+        "counterexample",
+    )
+
+
+def test_a_robot_may_stand_earlier_than_it_must() -> None:
+    """Else nobody could refute that it moves on for three ticks after the trigger."""
+    sentence = "upon near the sw shall after 3 ticks satisfy stopped"
+    found = search(case(sentence, TIMER, Channel(1, braking=3)))
+    assert status(found.kept) == "counterexample"
+
+
+def test_a_watchdog_stops_a_robot_for_good_where_silence_is_normal() -> None:
+    found = search(case(WITHIN.format(2), Settings(stop_timeout=3), EDGE))
+    assert (status(found.kept), status(found.released)) == ("proved", "counterexample")
+
+
+# Texts that are wrong -------------------------------------------------------------------------
+
+
+FORWARDS = "return after, ZERO if halted(after, options) else command"
+
+
+def test_an_interceptor_that_forwards_while_it_is_stopped_is_refuted() -> None:
+    wrong = edited(CORE, FORWARDS, "return after, command")
+    found = search(case(WITHIN.format(2), core=wrong)).kept
+    assert status(found) == "counterexample"
+    assert "`true` is heard" in trace(found)[1]
+
+
+def test_a_safety_function_that_is_a_tick_late_is_refuted() -> None:
+    """The observer is the monitor that fretc makes, not the one that is late."""
+    known = case(WITHIN.format(2), TIMER, Channel(1, lost=1))
+    assert isinstance(search(known).kept, Proved)
+    late = edited(known.safety, "self.r1_owed = since_2", "self.r1_owed = since_1")
+    late = edited(late, "self.r1_trigger = near", "self.r1_trigger = False")
+    assert status(search(with_safety(known, late)).kept) == "counterexample"
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "reason"),
+    [
+        (
+            FORWARDS,
+            "return after, ZERO if command.vx > 1 else command",
+            "its step looks into a velocity",
+        ),
+        (
+            "return replace(state, scan_age=0), None",
+            "print(state)\n    return replace(state, scan_age=0), None",
+            "`hear_scan` uses `print`",
+        ),
+        (
+            "return replace(state, scan_age=0), None",
+            "return replace(state, scan_age=0), Velocity(1.0)",
+            "it makes a velocity that it has not heard",
+        ),
+        ("def halted(", "def stopped(", "it defines no `halted`"),
+        ("ZERO = Velocity()", "ZERO = Velocity(1.0)", "its step depends on `ZERO = Velocity(1.0)`"),
+    ],
+)
+def test_what_is_no_pure_interceptor_is_not_checked(old: str, new: str, reason: str) -> None:
+    found = search(
+        case(WITHIN.format(2), channel=Channel(1, scans=True), core=edited(CORE, old, new))
+    )
+    assert found.kept == found.released == NotChecked(reason)
+
+
+def test_an_interceptor_whose_numbers_grow_for_ever_is_not_checked() -> None:
+    grows = edited(
+        CORE,
+        "return replace(state, scan_age=0), None",
+        "return replace(state, scan_age=state.scan_age + 1), None",
+    )
+    known = case(WITHIN.format(2), channel=Channel(1, scans=True), core=grows)
+    reason = "its State takes more than 500 values"
+    assert search(replace(known, limit=500)).kept == NotChecked(reason)
+
+
+# Vacuity and limits ---------------------------------------------------------------------------
+
+
+def test_a_demand_that_never_begins_is_vacuous() -> None:
+    found = search(case("whenever near & !near the sw shall within 2 ticks satisfy stopped"))
+    assert isinstance(found.kept, Vacuous)
+    assert found.kept.detail.startswith("no demand ever begins")
+
+
+def test_a_robot_that_never_moves_is_vacuous() -> None:
+    frozen = edited(CORE, "        stop=False,\n", "        stop=True,\n")
+    found = search(case(WITHIN.format(2), Settings(latching=True), core=frozen))
+    assert isinstance(found.kept, Vacuous)
+    assert found.kept.detail.startswith("the robot never moves")
+
+
+def test_a_stop_that_is_never_in_force_is_vacuous() -> None:
+    deaf = edited(CORE, "stop=requested or", "stop=False and requested or")
+    found = search(case(WITHIN.format(2), core=deaf))
+    assert found.released == Vacuous("no stop is ever in force")
+
+
+def test_too_many_states_are_not_checked() -> None:
+    known = replace(case(WITHIN.format(2), TIMER, Channel(1, lost=2)), limit=3)
+    assert search(known).kept == NotChecked("more than 3 states")
+
+
+@pytest.mark.parametrize(
+    ("formula", "expected"),
+    [
+        (f.globally(f.eventually(f.Atom("p"))), False),
+        (f.globally(f.eventually(f.Atom("p"), f.Interval(0, 3))), True),
+        (f.not_(f.eventually(f.Atom("p"))), True),
+        (f.until(f.Atom("p"), f.Atom("q")), False),
+        (f.release(f.Atom("p"), f.Atom("q")), True),
+        (f.implies(f.globally(f.Atom("p")), f.Atom("q")), False),
+    ],
+)
+def test_what_finite_runs_can_refute(formula: f.Formula, expected: bool) -> None:
+    assert is_safety(formula) == expected

@@ -1,0 +1,56 @@
+"""A sentence through a target, as the tests of targets want it."""
+
+from compiler.pipeline import formalize
+from compiler.rule import Rule
+from compiler.targets import TARGETS
+from fretish.documents import Requirement
+from fretish.rendering import render
+from fretish.source import Source
+
+
+def rule(sentence: str, id: str = "R1") -> Rule:
+    made, said = formalize(Requirement(id, Source("r.fret", sentence).span()), None)
+    assert made is not None, said
+    return made
+
+
+def emitted(target: str, sentence: str, id: str = "R1") -> dict[str, str]:
+    """The texts of the files by their names."""
+    made = rule(sentence, id)
+    told = TARGETS[target].refuse(made)
+    assert told is None, render(told)
+    return {str(file.path): file.text for file in TARGETS[target].emit([made])}
+
+
+def refused(target: str, sentence: str) -> str:
+    told = TARGETS[target].refuse(rule(sentence))
+    assert told is not None
+    return render(told)
+
+
+SHARING = [
+    "whenever p the sw shall within {n} ticks satisfy !p",
+    "whenever p the sw shall after {n} ticks satisfy p",
+    "whenever !p the sw shall after {n} ticks satisfy p",
+    "upon p | q the sw shall after {n} ticks satisfy q",
+    "upon p & q the sw shall within {n} ticks satisfy p xor q",
+    "whenever p the sw shall within {n} ticks satisfy p & !p",
+    "whenever p & !p the sw shall for {n} ticks satisfy q",
+    "in p mode whenever q the sw shall within {n} ticks satisfy !p",
+    "in p mode the sw shall finally satisfy p & q",
+    "in p mode the sw shall eventually satisfy !p",
+    "only in p mode whenever q the sw shall after {n} ticks satisfy !q",
+    "only after p mode whenever q the sw shall always satisfy p -> q",
+    "upon p the sw shall until !p satisfy q",
+    "whenever p the sw shall before !p satisfy p <-> (q xor r <-> p)",
+    "the sw shall immediately satisfy x > 3 | !(x > 3)",
+    "the sw shall always satisfy true",
+    "the sw shall eventually satisfy false",
+    "whenever x > 3 the sw shall within {n} ticks satisfy !(x > 3) & y = 0",
+]
+"""Sentences whose expressions share propositions, so that not all letters occur."""
+
+LOOKING_BACK = "whenever persisted(3, p) the sw shall within 2 ticks satisfy q"
+PROBABLE = "whenever p the sw shall with probability >= 0.9 within 2 ticks satisfy q"
+MANY = " & ".join(f"p{i}" for i in range(20))
+"""More propositions than their valuations can be listed."""

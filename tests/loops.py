@@ -1,0 +1,40 @@
+"""Closed loops in tests: sentences, numbers in cells, and the texts that fretc makes."""
+
+from dataclasses import replace
+
+from compiler.gate import Settings
+from compiler.loopmodel import Channel
+from compiler.loopsearch import Case
+from compiler.runtime import interceptor
+from compiler.targets import monitor as target
+from tests.monitoring import rule
+
+WITHIN = "whenever near the sw shall within {} ticks satisfy stopped"
+EVENTUALLY = "whenever near the sw shall eventually satisfy stopped"
+LATCH = Settings(event_driven=True, latching=True)
+"""The node of the Safe-ROS paper."""
+TIMER = Settings()
+CORE = f"from __future__ import annotations\n{interceptor().imports}\n\n{interceptor().text}\n"
+
+
+def case(
+    sentence: str,
+    settings: Settings = TIMER,
+    channel: Channel = Channel(1),  # noqa: B008
+    core: str = CORE,
+) -> Case:
+    """The case of a sentence about `near` and `stopped`."""
+    made = rule(sentence)
+    text = target.text(made)
+    return Case("R1", made.ft_infinite, text, text, core, settings, channel, "stopped")
+
+
+def with_safety(known: Case, text: str) -> Case:
+    """The same, with another text in the place of the safety function."""
+    return replace(known, safety=text)
+
+
+def edited(text: str, old: str, new: str) -> str:
+    """The text with its one place of `old` changed."""
+    assert text.count(old) == 1, (text.count(old), old)
+    return text.replace(old, new)
