@@ -167,7 +167,7 @@ class _Exchange:
                 _KINDS[kind], _attribute(kind_of, name), _value(kind, name, values[name])
             )
             for name, kind in attributes.items()
-            if values[name].strip()
+            if (values[name] if kind is Kind.ID else values[name].strip())
         ]
         return ReqIFSpecObject(id, found, kind_of, last_change=self._changed)
 
