@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 _HEADINGS = {
     "Made from": ("requirements", "bindings", "hazards", "evidence", "lock", "waivers"),
-    "Forms": ("html", "json_", "csv", "junit", "sarif", "markdown", "gsn"),
+    "Forms": ("html", "json_", "csv", "junit", "sarif", "markdown", "reqif", "gsn"),
 }
 
 
