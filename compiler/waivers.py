@@ -5,12 +5,12 @@ A waiver hides nothing: the verdict that it covers is shown beside it. It ends b
 
 from __future__ import annotations
 
-import os
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from datetime import UTC, date, datetime
 from typing import Any
 
+from compiler.dates import source_date
 from compiler.files import read as read_text
 from compiler.lock import is_date
 from fretish.diagnostic import Code, Diagnostic, Severity, suggestion
@@ -39,14 +39,8 @@ class Waiver:
 
 
 def today() -> str:
-    """The day of `SOURCE_DATE_EPOCH` where that is set, so that a report can be made again; UTC.
-
-    Source: reproducible-builds.org, SOURCE_DATE_EPOCH specification 1.1.
-    """
-    epoch = os.environ.get("SOURCE_DATE_EPOCH", "")
-    if epoch.isdecimal() and int(epoch) < 10**11:
-        return datetime.fromtimestamp(int(epoch), UTC).date().isoformat()
-    return datetime.now(UTC).date().isoformat()
+    """The day of `SOURCE_DATE_EPOCH` where that is set, so that a report can be made again; UTC."""
+    return (source_date() or datetime.now(UTC)).date().isoformat()
 
 
 def read(

@@ -28,7 +28,7 @@ _HEADINGS = {
         "lock",
         "waivers",
     ),
-    "Forms": ("html", "json_", "csv", "junit", "sarif", "markdown", "gsn"),
+    "Forms": ("html", "json_", "csv", "junit", "sarif", "markdown", "reqif", "gsn"),
 }
 
 
@@ -42,6 +42,7 @@ _HEADINGS = {
 @click.option("--sarif", help="What the runs show, for code scanning.")
 @click.option("--markdown", help="A comment for a pull request.")
 @click.option("--gsn", help="The assurance argument, as YAML that gsn2x reads.")
+@click.option("--reqif", help="Requirements and verdicts, for a requirements tool.")
 @click.option(
     "--requirements", default="requirements", show_default=True, help="Folder, or one file."
 )
@@ -79,7 +80,11 @@ def report(
     from compiler.project import beside, load, requirement_files
     from compiler.proven import written
     from compiler.report import make
+    from compiler.report.forms import missing_reqif
 
+    absent = missing_reqif() if forms["reqif"] is not None else None
+    if absent is not None:
+        stop(absent)
     files = requirement_files(requirements)
     if isinstance(files, Diagnostic):
         stop(files)
@@ -139,7 +144,15 @@ def _texts(
         "sarif": lambda: sarif(whole, _audited(evidence, whole), project.rules, said),
         "markdown": lambda: markdown(whole),
         "gsn": lambda: gsn(whole),
+        "reqif": lambda: _reqif(whole),
     }
+
+
+def _reqif(whole: Report) -> str:
+    """Imported only here: it needs what an extra installs."""
+    from compiler.report.forms.reqif import reqif
+
+    return reqif(whole)
 
 
 def _audited(evidence: str, whole: Report) -> Sequence[Mapping[str, Any]]:

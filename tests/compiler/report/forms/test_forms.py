@@ -13,6 +13,7 @@ import pytest
 import yaml
 
 from tests.command import Fretc, write
+from tests.compiler import junit_schema
 from tests.compiler.report.cases import evidence, project, requirement, result, violation
 from tests.compiler.sarif_schema import SARIF
 
@@ -104,6 +105,12 @@ def test_junit_has_a_case_for_each_requirement(reported: Fretc) -> None:
         ("R4", ["error"]),
         ("R5", ["skipped"]),
     ]
+
+
+def test_junit_has_the_elements_of_the_schema_that_jenkins_has(reported: Fretc) -> None:
+    root = ElementTree.fromstring(form(reported, "junit"))
+    assert list(junit_schema.complaints(root)) == []
+    assert {element.tag for element in root.iter()} == set(junit_schema.MAY)
 
 
 @pytest.mark.parametrize(("options", "kind"), [((), "skipped"), (("--strict",), "failure")])
