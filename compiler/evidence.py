@@ -16,6 +16,7 @@ from compiler.estimates import Estimated
 from compiler.files import read as read_text
 from compiler.files import sha256
 from compiler.shapes import MisshapenError, Shape
+from compiler.surroundings import Window, window
 from fretish.diagnostic import Code, Diagnostic, Severity
 from fretish.source import Source
 from monitors import kernel
@@ -52,6 +53,8 @@ class Violation:
     """The response that did not come."""
     values: Mapping[str, float | None]
     """Each signal at the first tick, in its base unit; None: unknown."""
+    window: Window | None = None
+    """The signals around it; None where the audit kept none."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -277,13 +280,16 @@ def _moment(at: Shape) -> Moment:
 
 def _violation(at: Shape) -> Violation:
     values = at.field("values").fields()
+    start = at.field("start_s").seconds()
+    first_ns = at.field("start_ns").whole() - round(start * 1e9)
     return Violation(
-        Moment(at.field("first_tick").count(), at.field("start_s").seconds()),
+        Moment(at.field("first_tick").count(), start),
         Moment(at.field("last_tick").count(), at.field("end_s").seconds()),
         at.field("trigger").or_none(_moment),
         at.field("deadline").or_none(_moment),
         at.field("missing").text(),
         {name: value.or_none(Shape.number) for name, value in values.items()},
+        at.field("window").or_none(lambda each: window(each, first_ns)),
     )
 
 

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from pathlib import PurePath
 
 from compiler.files import sha256
 from compiler.rule import Rule
-from compiler.targets import TARGETS
+from compiler.targets import TARGETS, interceptor
 from compiler.targets.target import Target
+from fretish.declarations import Declarations
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,3 +48,12 @@ def _of_target(target: Target, rule: Rule) -> tuple[Product, ...]:
         Product(target.name, str(artifact.path), sha256(artifact.text), "")
         for artifact in target.emit([rule])
     )
+
+
+def shared_products(declarations: Declarations | None) -> tuple[Product, ...]:
+    """What is made of the bindings alone, and looked at together with every requirement."""
+    declared = declarations.interceptor if declarations else None
+    if declarations is None or declared is None:
+        return ()
+    text = interceptor.text(declared, PurePath(declarations.source.name).name)
+    return (Product(interceptor.TARGET.name, interceptor.NAME, sha256(text), ""),)

@@ -27,6 +27,10 @@ if TYPE_CHECKING:
 @click.option("--bindings", help="bindings.toml; the one in the requirements' folder if not given.")
 @click.option("--logs", "folder", help="Look for the logs below this folder, by their names.")
 @click.option("--report", help="An HTML report: it is made again from FILE, and compared.")
+@click.option(
+    "--verification",
+    help="What `fretc verify` found; build/verification.json, if it is there and none is given.",
+)
 @click.option("--jobs", type=click.IntRange(min=1), default=os.cpu_count() or 1)
 @click.option(
     "--format", "form", type=click.Choice(("text", "json")), default="text", show_default=True
@@ -37,6 +41,7 @@ def verify_evidence(
     bindings: str | None,
     folder: str | None,
     report: str | None,
+    verification: str | None,
     jobs: int,
     form: str,
 ) -> None:
@@ -48,6 +53,7 @@ def verify_evidence(
     """
     from compiler.evidence import read
     from compiler.files import read as read_text
+    from compiler.proven import written
 
     source = read_text(file)
     audited = read(file)
@@ -55,7 +61,8 @@ def verify_evidence(
         stop(_error(source if isinstance(source, Diagnostic) else audited))
     project, plan = _plan(requirements, bindings)
     found = _rechecked(source.text, plan, [result.run for result in audited.results], folder, jobs)
-    same = _report(project, file, report, requirements) if report is not None else None
+    made_from = (file, verification or written(), requirements)
+    same = _report(project, report, *made_from) if report is not None else None
     if form == "json":
         _print_json(found, same)
     else:
@@ -107,7 +114,9 @@ def _rechecked(
     return found
 
 
-def _report(project: Project, evidence: str, path: str, requirements: str) -> bool:
+def _report(
+    project: Project, path: str, evidence: str, verification: str | None, requirements: str
+) -> bool:
     """Whether the report that is made now is the one in the file, byte for byte."""
     from compiler.files import read
     from compiler.project import beside
@@ -117,7 +126,8 @@ def _report(project: Project, evidence: str, path: str, requirements: str) -> bo
     if isinstance(there, Diagnostic):
         stop(there)
     names = [beside(requirements, name) for name in ("fretc.lock", "waivers.toml")]
-    return make(project, evidence, lock=names[0], waivers=names[1]).html == there.text
+    made = make(project, evidence, lock=names[0], waivers=names[1], verification=verification)
+    return made.html == there.text
 
 
 _GLYPHS = {"stands": ("✔", "green"), "differs": ("✘", "red"), "not checked": ("?", "magenta")}

@@ -19,7 +19,15 @@ if TYPE_CHECKING:
     from compiler.report.views import Report
 
 _HEADINGS = {
-    "Made from": ("requirements", "bindings", "hazards", "evidence", "lock", "waivers"),
+    "Made from": (
+        "requirements",
+        "bindings",
+        "hazards",
+        "evidence",
+        "verification",
+        "lock",
+        "waivers",
+    ),
     "Forms": ("html", "json_", "csv", "junit", "sarif", "markdown", "reqif", "gsn"),
 }
 
@@ -41,6 +49,10 @@ _HEADINGS = {
 @click.option("--bindings", help="bindings.toml; the one in the requirements' folder if not given.")
 @click.option("--hazards", help="hazards.toml; the one in the requirements' folder if not given.")
 @click.option("--evidence", default="build/evidence.json", show_default=True)
+@click.option(
+    "--verification",
+    help="What `fretc verify` found; build/verification.json, if it is there and none is given.",
+)
 @click.option("--lock", help="fretc.lock; the one in the requirements' folder if not given.")
 @click.option("--waivers", help="waivers.toml; the one in the requirements' folder if not given.")
 @click.option(
@@ -54,6 +66,7 @@ def report(
     bindings: str | None,
     hazards: str | None,
     evidence: str,
+    verification: str | None,
     lock: str | None,
     waivers: str | None,
     strict: bool,
@@ -65,6 +78,7 @@ def report(
     SOURCE_DATE_EPOCH, where that is set.
     """
     from compiler.project import beside, load, requirement_files
+    from compiler.proven import written
     from compiler.report import make
     from compiler.report.forms import missing_reqif
 
@@ -82,13 +96,14 @@ def report(
     )
     lock = lock or beside(requirements, "fretc.lock")
     waivers = waivers or beside(requirements, "waivers.toml")
-    made = make(project, evidence, lock=lock, waivers=waivers)
+    verification = verification or written()
+    made = make(project, evidence, lock=lock, waivers=waivers, verification=verification)
     say([*project.diagnostics, *made.diagnostics])
     if made.report is None:
         raise SystemExit(BAD)
     wanted = {"html": html, **{name: path for name, path in forms.items() if path is not None}}
     texts = _texts(made, project, evidence, strict=strict)
-    _deliver(wanted, texts, [evidence, *files, *filter(None, (lock, waivers))])
+    _deliver(wanted, texts, [evidence, *files, *filter(None, (verification, lock, waivers))])
     if has_errors([*project.diagnostics, *made.diagnostics]):
         raise SystemExit(BAD)
     raise SystemExit(_status(made.report) if strict else SHOWN)
@@ -151,7 +166,9 @@ def _audited(evidence: str, whole: Report) -> Sequence[Mapping[str, Any]]:
 
 
 def _status(whole: Report) -> int:
+    from compiler.report.proofs import is_refuted
+
     words = {view.mark.word for view in whole.requirements}
-    if words & {"violated", "suspect"}:
+    if words & {"violated", "suspect"} or any(map(is_refuted, whole.requirements)):
         return VIOLATION
     return SHOWN if words <= {"satisfied", "waived", "retired"} else NOT_SHOWN

@@ -8,9 +8,11 @@ from dataclasses import asdict, dataclass
 from compiler.evidence import read
 from compiler.lock import read as read_lock
 from compiler.project import Project
+from compiler.proven import read as read_proofs
 from compiler.report.assembly import report
 from compiler.report.html import html
 from compiler.report.views import Report
+from compiler.rule import Rule
 from compiler.templating import to_json
 from compiler.waivers import Waiver, today
 from compiler.waivers import read as read_waivers
@@ -23,11 +25,13 @@ class Made:
 
     report: Report | None
     diagnostics: tuple[Diagnostic, ...]
+    rules: tuple[Rule, ...] = ()
+    """Those that the report is about; the page draws what they mean."""
 
     @property
     def html(self) -> str | None:
         """The page."""
-        return None if self.report is None else html(self.report)
+        return None if self.report is None else html(self.report, self.rules)
 
     @property
     def json(self) -> str | None:
@@ -36,7 +40,12 @@ class Made:
 
 
 def make(
-    project: Project, evidence: str, *, lock: str | None = None, waivers: str | None = None
+    project: Project,
+    evidence: str,
+    *,
+    lock: str | None = None,
+    waivers: str | None = None,
+    verification: str | None = None,
 ) -> Made:
     """Make the report.
 
@@ -45,18 +54,22 @@ def make(
         evidence: path of an evidence file; where there is none, nothing has been exercised.
         lock: path of a lock; None: nothing has been reviewed.
         waivers: path of a file of waivers; None: nothing is waived.
+        verification: path of what `fretc verify` wrote; None: nothing was proved.
     """
     audited = read(evidence)
     if isinstance(audited, Diagnostic) and audited.is_error:
         return Made(None, (audited,))
+    proofs = read_proofs(verification) if verification is not None else None
+    if isinstance(proofs, Diagnostic):
+        return Made(None, (proofs,))
     known = read_lock(lock) if lock is not None else None
     if isinstance(known, Diagnostic):
         return Made(None, (known,))
     waived, told = _waived(project, waivers)
     found = None if isinstance(audited, Diagnostic) else audited
-    whole, said = report(project, found, evidence, known, waived)
+    whole, said = report(project, found, evidence, known, waived, proofs)
     missing = (audited,) if isinstance(audited, Diagnostic) else ()
-    return Made(whole, (*missing, *told, *said))
+    return Made(whole, (*missing, *told, *said), project.rules)
 
 
 def _waived(

@@ -11,7 +11,9 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 
+from compiler.proven import PROVED
 from compiler.report import phrases
+from compiler.report.proofs import is_refuted
 from compiler.report.views import Report, RequirementView
 from monitors import kernel
 
@@ -92,14 +94,16 @@ class _Argument:
 
     def _requirement(self, view: RequirementView) -> Iterator[Element]:
         goal = self._goal(view.anchor)
-        shown = view.mark.word == kernel.SATISFIED
+        shown = view.mark.word == kernel.SATISFIED and not is_refuted(view)
+        proved = [proof for proof in view.proofs if proof.mark.word == PROVED]
         solution = goal.replace("G_", "Sn_", 1)
+        proofs = f"{solution}_proofs"
         context = goal.replace("G_", "C_", 1)
         waived = goal.replace("G_", "J_", 1)
         around = [context] if view.meaning else []
         around += [waived] if view.waiver else []
         text = f"{view.id} holds: {view.sentence}"
-        below = (solution,) if shown else ()
+        below = (*((solution,) if shown else ()), *((proofs,) if proved else ()))
         yield Element(goal, Kind.GOAL, text, below, tuple(around), undeveloped=not shown)
         if view.meaning:
             yield Element(context, Kind.CONTEXT, view.meaning)
@@ -109,6 +113,10 @@ class _Argument:
         if shown:
             runs = phrases.times(len(view.results), "audited run")
             yield Element(solution, Kind.SOLUTION, f"{view.id} is satisfied in {runs}")
+        if proved:
+            layers = phrases.joined(list(dict.fromkeys(proof.layer for proof in proved)))
+            claims = phrases.times(len(proved), "claim")
+            yield Element(proofs, Kind.SOLUTION, f"{claims} about {view.id} proved ({layers})")
 
     def _goal(self, anchor: str) -> str:
         return _id("G", anchor)

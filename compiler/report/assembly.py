@@ -12,7 +12,9 @@ from compiler.estimates import AVERAGE
 from compiler.evidence import Evidence
 from compiler.lock import Lock
 from compiler.odds import CONFIDENCE, REFUTED, SUPPORTED
+from compiler.products import shared_products
 from compiler.project import Project
+from compiler.proven import Proofs
 from compiler.report import phrases, reviews
 from compiler.report.claims import (
     MARKS,
@@ -26,6 +28,7 @@ from compiler.report.claims import (
     claims,
 )
 from compiler.report.matrix import hazard_views, matrix, orphans, strangers
+from compiler.report.proofs import SHARED, is_refuted, proof_views
 from compiler.report.reproduction import commands, folder_of, manifest
 from compiler.report.runs import Run, run_views, runs, trust
 from compiler.report.sections import remark, section
@@ -51,6 +54,7 @@ def report(
     path: str,
     lock: Lock | None = None,
     waivers: Mapping[str, Waiver] = MappingProxyType({}),
+    proofs: Proofs | None = None,
 ) -> tuple[Report, tuple[Diagnostic, ...]]:
     """The report, and what there is to say of the evidence.
 
@@ -60,12 +64,14 @@ def report(
         path: where the evidence is, or is to be.
         lock: None where nothing has been reviewed.
         waivers: those that count now, by the requirement.
+        proofs: None where nothing was verified.
     """
     found = runs(evidence)
     claimed = claims(project, evidence, lock, waivers)
     anchors = {claim.id: claim.anchor for claim in reversed(claimed)}
     audited = evidence is not None
-    sections = tuple(section(claim, project, found, anchors, audited) for claim in claimed)
+    proved = proofs.proofs if proofs else ()
+    sections = tuple(section(claim, project, found, anchors, audited, proved) for claim in claimed)
     plans = tuple(plan for view in sections for plan in view.planned if view.status != RETIRED)
     reservations = (
         *(line for view in sections for line in _reservations(view)),
@@ -78,13 +84,18 @@ def report(
         components=tuple(sorted({rule.sentence.component for rule in project.rules})),
         evidence=phrases.place(path) if evidence else "",
         audited_by=evidence.fretc if evidence else "",
-        overall=_overall(project, claimed, plans, tuple(found.values()), reservations),
+        overall=_overall(project, claimed, sections, tuple(found.values()), reservations),
         runs=run_views(found.values(), project),
         claims=_claims(claimed, len(found)),
         counts=_counts(claimed),
         not_shown=tuple(_not_shown(view) for view in sections if view.reasons),
         reservations=reservations,
         planned=plans,
+        proofs=proof_views(
+            (each for each in proved if each.requirement in SHARED),
+            shared_products(project.declarations),
+        ),
+        verification=phrases.place(proofs.file) if proofs else "",
         remarks=tuple(remark(diagnostic) for diagnostic in _remarks(project, claimed)),
         hazards=hazard_views(project),
         matrix=matrix(project, claimed, sections, found),
@@ -94,8 +105,10 @@ def report(
         waivers=tuple(view.waiver for view in sections if view.waiver),
         requirements=sections,
         assumptions=_assumptions(project, evidence),
-        commands=commands(project, sections, tuple(found.values()), path, _confidence(evidence)),
-        manifest=manifest(project, sections, tuple(found.values()), evidence),
+        commands=commands(
+            project, sections, tuple(found.values()), path, proofs, _confidence(evidence)
+        ),
+        manifest=manifest(project, sections, tuple(found.values()), evidence, proofs),
     ), _stale(claimed, evidence, path)
 
 
@@ -128,12 +141,14 @@ _BROKEN = Mark("violated", "✘", "violated")
 def _overall(
     project: Project,
     claimed: Sequence[Claim],
-    plans: Sequence[Planned],
+    sections: Sequence[RequirementView],
     runs: Sequence[Run],
     reservations: Sequence[str],
 ) -> Overall:
     active = [claim for claim in claimed if claim.verdict != RETIRED]
-    missing = [plan for plan in plans if not plan.has_result]
+    inforce = [view for view in sections if view.status != RETIRED]
+    missing = [plan for view in inforce for plan in view.planned if not plan.has_result]
+    refuted = [view.id for view in inforce if is_refuted(view)]
     broken = [claim for claim in active if claim.verdict in (kernel.VIOLATED, REFUTED)]
     good = [claim for claim in active if claim.verdict in SHOWN]
     flawed = has_errors(project.diagnostics)
@@ -142,6 +157,7 @@ def _overall(
             None,
             (
                 *_held(active, good, len(runs)),
+                _refuted(refuted),
                 *_few(reservations),
                 _waived(active),
                 _unplanned(missing),
@@ -159,6 +175,8 @@ def _overall(
         return Overall(_NONE, "Nothing that was claimed is shown.", said)
     if len(good) < len(active) or flawed:
         return Overall(_PART, "Not everything that was claimed is shown.", said)
+    if refuted:
+        return Overall(_PART, "What was audited held; verification found counterexamples.", said)
     if missing:
         return Overall(_PART, "What was audited held; not all that was planned is shown.", said)
     return Overall(_ALL, "Everything that was claimed is shown.", said)
@@ -196,6 +214,12 @@ def _held_alone(active: Sequence[Claim], good: Sequence[Claim], runs: int) -> st
     everywhere = all(len(claim.judged) == runs for claim in good)
     where = _where(runs) if everywhere else "each run in which they were audited"
     return f"{len(good)} of {len(active)} requirements held in {where}."
+
+
+def _refuted(ids: Sequence[str]) -> str:
+    if not ids:
+        return ""
+    return f"Verification found a counterexample to {phrases.some(ids)}; part 4 has the claim."
 
 
 def _waived(active: Sequence[Claim]) -> str:
@@ -238,12 +262,15 @@ def _reservations(view: RequirementView) -> Sequence[str]:
     if view.mark.word not in SHOWN:
         return ()
     average = [f"{view.id} is supported: {AVERAGE}."] if view.mark.word == SUPPORTED else []
-    late = [
-        f"{view.id} sets no bound on its response; in {result.run_label} the longest took "
-        f"{result.latency.longest}."
+    waits = [
+        (result.latency.longest_s, result.latency.longest, result.run_label)
         for result in view.results
         if result.latency and not result.latency.is_bounded
         if result.latency.at_once < result.latency.answered
+    ]
+    late = [
+        f"{view.id} sets no bound on its response; in {run} the longest took {longest}."
+        for _, longest, run in sorted(waits, key=lambda wait: -wait[0])[:1]
     ]
     draft = [f"{view.id} is a draft."] if view.status == "draft" else []
     return (*average, *late, *draft)

@@ -1,79 +1,132 @@
-"""The report as one HTML file: every text made visible, every timeline laid out, then placed."""
+"""The report as one HTML file: every text made visible, every picture laid out, then placed."""
 
 from __future__ import annotations
 
-from dataclasses import asdict, dataclass
+import base64
+import hashlib
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, replace
 from typing import Any
 
-from compiler.report.phrases import decimal, visible
+from compiler.diagram import diagram
+from compiler.drawing import drawing as diagram_drawing
+from compiler.report.argument import argument
+from compiler.report.phrases import visible
+from compiler.report.plots import drawing, histogram
 from compiler.report.scales import scale
-from compiler.report.views import Lane, Report, Timeline
+from compiler.report.selection import Selection, selection, slimmed
+from compiler.report.tree import MOST, grouped, pieces, placed, shortened
+from compiler.report.views import Report
+from compiler.rule import Rule
 from compiler.templating import render
 
-_WIDTH, _LEFT, _RIGHT = 720, 92, 30
-_ROW, _BAR, _TOP, _AXIS = 22, 12, 6, 24
-_TICKS = 8
-"""Labels on the axis, about."""
-_THINNEST = 1.5
+_SCRIPT, _STYLE = "report/page.js.j2", "report/style.css.j2"
 
 
-@dataclass(frozen=True, slots=True)
-class Bar:
-    """A stretch of a lane, in units of the drawing."""
+def html(report: Report, rules: Sequence[Rule] = ()) -> str:
+    """The whole file.
 
-    x: float
-    width: float
-
-
-@dataclass(frozen=True, slots=True)
-class DrawnLane:
-    """A lane of a timeline."""
-
-    name: str
-    kind: str
-    y: int
-    bars: tuple[Bar, ...]
-
-
-@dataclass(frozen=True, slots=True)
-class Drawing:
-    """A timeline laid out; `ticks` are places on the axis with their label in seconds."""
-
-    id: str
-    title: str
-    text: str
-    width: int
-    height: int
-    left: int
-    right: int
-    axis: int
-    row: int
-    bar: int
-    lanes: tuple[DrawnLane, ...]
-    ticks: tuple[tuple[float, str], ...]
-
-
-def html(report: Report) -> str:
-    """The whole file."""
-    drawings = {
-        result.anchor: [
-            asdict(_drawing(timeline, f"picture-{result.anchor}.{number}"))
-            for number, timeline in enumerate(result.timelines, 1)
-        ]
-        for section in report.requirements
-        for result in section.results
-    }
-    scales = {
-        section.anchor: asdict(scale(section.probability, f"picture-{section.anchor}"))
-        for section in report.requirements
-        if section.probability is not None
-    }
+    Args:
+        report: what it says.
+        rules: those whose meaning is drawn.
+    """
+    chosen = selection(report)
+    page = slimmed(report, chosen)
+    script, style = render(_SCRIPT), render(_STYLE)
     return render(
         "report/report.html.j2",
-        report=_visible(asdict(report)),
-        drawings=_visible(drawings),
-        scales=_visible(scales),
+        report=_visible(asdict(page)),
+        chosen=_visible(asdict(replace(chosen, anchors=frozenset()))),
+        anchors=chosen.anchors,
+        pictures=_visible(_pictures(chosen)),
+        histograms=_visible(_histograms(page)),
+        scales=_visible(_scales(page)),
+        diagrams=_diagrams(page, rules),
+        argument=_visible(_argument(report)),
+        script_hash=_hash(script),
+        style_hash=_hash(style),
     )
+
+
+def _hash(text: str) -> str:
+    """As a Content-Security-Policy names an inline script or style.
+
+    Source: Content Security Policy Level 3, section 2.3.1, hash-source.
+    """
+    return f"sha256-{base64.b64encode(hashlib.sha256(text.encode()).digest()).decode()}"
+
+
+def _pictures(chosen: Selection) -> dict[str, list[dict[str, Any]]]:
+    """Of each result with details its timelines."""
+    return {
+        result.anchor: [
+            asdict(drawing(timeline, f"picture-{result.anchor}.{number}"))
+            for number, timeline in enumerate(result.timelines, 1)
+        ]
+        for shown in chosen.by_anchor.values()
+        for result in (*shown.details, *shown.folded)
+    }
+
+
+def _histograms(page: Report) -> dict[str, list[dict[str, Any]]]:
+    return {
+        view.anchor: [
+            asdict(histogram(each, f"histogram-{view.anchor}.{number}"))
+            for number, each in enumerate(view.histograms, 1)
+        ]
+        for view in page.requirements
+    }
+
+
+def _diagrams(page: Report, rules: Sequence[Rule]) -> Mapping[str, dict[str, Any]]:
+    """What each sentence means, drawn; the drawing makes its own texts visible."""
+    known = {(rule.id, rule.fingerprint): rule for rule in rules}
+    found = {}
+    for view in page.requirements:
+        rule = known.get((view.id, view.fingerprint))
+        if view.diagram and rule is not None:
+            found[view.anchor] = asdict(diagram_drawing(diagram(rule), f"means-{view.anchor}"))
+    return found
+
+
+def _argument(report: Report) -> dict[str, Any]:
+    """The tree drawn, the same as a list, and how many elements there are in all."""
+    whole = argument(report)
+    few = grouped(whole)
+    drawn = shortened(few)
+    return {
+        "total": len(whole),
+        "most": MOST,
+        "is_short": len(drawn) < len(few),
+        "pieces": [asdict(piece) for piece in pieces(drawn)],
+        "items": _nested([(each.depth, each.element.kind.name, each) for each in placed(drawn)]),
+    }
+
+
+def _nested(flat: Sequence[tuple[int, str, Any]]) -> list[dict[str, Any]]:
+    """Each element with how many lists open before it and close after it."""
+    items = []
+    for i, (depth, kind, each) in enumerate(flat):
+        after = flat[i + 1][0] if i + 1 < len(flat) else 0
+        items.append(
+            {
+                "kind": kind.capitalize(),
+                "text": each.element.text,
+                "undeveloped": each.element.undeveloped,
+                "opens": after > depth,
+                "closes": max(0, depth - after),
+            }
+        )
+    return items
+
+
+def _scales(page: Report) -> dict[str, dict[str, Any]]:
+    """Of each probability its scale."""
+    return {
+        view.anchor: asdict(scale(view.probability, f"picture-{view.anchor}"))
+        for view in page.requirements
+        if view.probability is not None
+    }
 
 
 def _visible(value: Any) -> Any:
@@ -87,54 +140,3 @@ def _visible(value: Any) -> Any:
             return [_visible(item) for item in value]
         case _:
             return value
-
-
-# Timelines -------------------------------------------------------------------------------------
-
-
-def _drawing(timeline: Timeline, id: str) -> Drawing:
-    axis = _TOP + _ROW * len(timeline.lanes)
-    return Drawing(
-        id=id,
-        title=timeline.title,
-        text=timeline.text,
-        width=_WIDTH,
-        height=axis + _AXIS,
-        left=_LEFT,
-        right=_WIDTH - _RIGHT,
-        axis=axis,
-        row=_ROW,
-        bar=_BAR,
-        lanes=tuple(_lane(lane, i, timeline) for i, lane in enumerate(timeline.lanes)),
-        ticks=_axis(timeline),
-    )
-
-
-def _x(seconds: float, timeline: Timeline) -> float:
-    share = (seconds - timeline.start) / (timeline.end - timeline.start)
-    return round(_LEFT + share * (_WIDTH - _LEFT - _RIGHT), 2)
-
-
-def _lane(lane: Lane, number: int, timeline: Timeline) -> DrawnLane:
-    bars = []
-    for mark in lane.marks:
-        start, end = _x(mark.start, timeline), _x(mark.end, timeline)
-        bars.append(Bar(start, round(max(_THINNEST, end - start), 2)))
-    return DrawnLane(lane.name, lane.kind, _TOP + _ROW * number, tuple(bars))
-
-
-def _axis(timeline: Timeline) -> tuple[tuple[float, str], ...]:
-    """Round numbers of seconds, at most some ten of them."""
-    step = _step((timeline.end - timeline.start) / _TICKS)
-    first = int(-(-timeline.start // step))
-    places = [(first + i) * step for i in range(2 * _TICKS)]
-    inside = [place for place in places if place <= timeline.end + step * 1e-6]
-    return tuple((_x(place, timeline), decimal(place)) for place in inside)
-
-
-def _step(least: float) -> float:
-    """1, 2 or 5 times a power of ten, not below `least`."""
-    power = 10.0 ** len(str(int(least))) if least >= 1 else 1.0
-    while power / 10 >= least and power > 1e-9:
-        power /= 10
-    return next((power / 10 * n for n in (1, 2, 5) if power / 10 * n >= least), power)

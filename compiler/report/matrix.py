@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterable, Sequence
 
 from compiler.evidence import Evidence
@@ -11,10 +12,9 @@ from compiler.report.claims import MARKS, RETIRED, Claim
 from compiler.report.results import result_anchor
 from compiler.report.runs import Key, Run, key
 from compiler.report.views import Cell, HazardView, Orphans, RequirementView, Row
-from monitors import kernel
 
 _SINGLE = 6
-"""More satisfied runs than these share one cell."""
+"""More runs of one verdict than these share one cell."""
 
 
 def hazard_views(project: Project) -> tuple[HazardView, ...]:
@@ -85,19 +85,21 @@ def _row(
 
 
 def _cells(claim: Claim, runs: dict[Key, Run]) -> tuple[Cell, ...]:
-    """One for each run; many satisfied ones share one, so that the others are seen."""
+    """One for each run; many of one verdict share one, so that the others are seen."""
     if not claim.judged:
         return (Cell(claim.mark, "", claim.anchor),)
-    cells = [
+    counts = Counter(judged.verdict for judged in claim.judged)
+    single = tuple(
         Cell(MARKS[judged.verdict], runs[key(judged.result)].label, result_anchor(claim, number))
         for number, judged in enumerate(claim.judged, 1)
-    ]
-    good = MARKS[kernel.SATISFIED]
-    count = sum(cell.mark == good for cell in cells)
-    if count <= _SINGLE:
-        return tuple(cells)
-    shared = Cell(good, f"in {phrases.times(count, 'run')}", claim.anchor)
-    return (*(cell for cell in cells if cell.mark != good), shared)
+        if counts[judged.verdict] <= _SINGLE
+    )
+    shared = tuple(
+        Cell(mark, f"in {phrases.times(counts[word], 'run')}", claim.anchor)
+        for word, mark in MARKS.items()
+        if counts[word] > _SINGLE
+    )
+    return (*single, *shared)
 
 
 # Orphans ---------------------------------------------------------------------------------------

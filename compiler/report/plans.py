@@ -2,20 +2,43 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
+from compiler import proven
 from compiler.report import phrases
 from compiler.report.claims import UNFORMALIZED, Claim
-from compiler.report.views import Planned
+from compiler.report.proofs import METHODS, covering, in_words, worst
+from compiler.report.views import Planned, ProofView
 from compiler.targets import TARGETS
 
 _AUDIT = "audit"
 
 
-def planned(claim: Claim) -> tuple[Planned, ...]:
-    """Every method that the requirement's `verify` names, in its order."""
+def planned(claim: Claim, proofs: Sequence[ProofView]) -> tuple[Planned, ...]:
+    """Every method that the requirement's `verify` names, in its order.
+
+    Args:
+        claim: the requirement.
+        proofs: of it, and of what all requirements share.
+    """
     return tuple(
-        _audit(claim) if method == _AUDIT else _other(claim, method)
-        for method in dict.fromkeys(claim.requirement.verify)
+        _planned(claim, method, proofs) for method in dict.fromkeys(claim.requirement.verify)
     )
+
+
+def _planned(claim: Claim, method: str, proofs: Sequence[ProofView]) -> Planned:
+    if method == _AUDIT:
+        return _audit(claim)
+    found = covering(method, proofs) if method in METHODS else []
+    return _proved(claim, method, found) if found else _other(claim, method)
+
+
+def _proved(claim: Claim, method: str, found: Sequence[ProofView]) -> Planned:
+    """The worst of its proofs decides; what was not checked or says nothing is no result."""
+    word = worst(found).mark.word
+    known = word in (proven.PROVED, proven.COUNTEREXAMPLE)
+    refuted = word == proven.COUNTEREXAMPLE
+    return Planned(claim.id, claim.anchor, method, known, in_words(found), refuted)
 
 
 def _audit(claim: Claim) -> Planned:

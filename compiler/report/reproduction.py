@@ -10,6 +10,7 @@ from compiler import __version__
 from compiler.evidence import Evidence
 from compiler.odds import CONFIDENCE
 from compiler.project import Project, fingerprint
+from compiler.proven import Proofs
 from compiler.report import phrases
 from compiler.report.runs import Run
 from compiler.report.views import Command, Hash, RequirementView
@@ -21,9 +22,11 @@ def commands(
     sections: Sequence[RequirementView],
     runs: Sequence[Run],
     evidence: str,
+    proofs: Proofs | None,
     confidence: float = CONFIDENCE,
 ) -> tuple[Command, ...]:
     """The commands, in the order in which they are to be run."""
+    proved = f" --verification {_quoted(proofs.file)}" if proofs else ""
     from_here = _options(project)
     logs = " ".join(_log(run.result.run) for run in runs) or "LOG..."
     to = _quoted(evidence)
@@ -34,7 +37,7 @@ def commands(
         *_check(runs),
         Command("Audit the runs", audit),
         *_emissions(sections),
-        Command("Write this report", f"fretc report {from_here} --evidence {to}"),
+        Command("Write this report", f"fretc report {from_here} --evidence {to}{proved}"),
     )
 
 
@@ -108,6 +111,7 @@ def manifest(
     sections: Sequence[RequirementView],
     runs: Sequence[Run],
     evidence: Evidence | None,
+    proofs: Proofs | None,
 ) -> tuple[Hash, ...]:
     """Every hash that the report rests on."""
     bindings = project.declarations
@@ -121,6 +125,8 @@ def manifest(
     )
     if evidence is not None:
         lines.append(Hash("evidence", phrases.place(evidence.file), evidence.sha256))
+    if proofs is not None:
+        lines.append(Hash("verification", phrases.place(proofs.file), proofs.sha256))
     lines.extend(
         Hash("run", phrases.place(run.result.run), run.result.hashes.get("log", "")) for run in runs
     )

@@ -15,18 +15,23 @@ from compiler.report.views import Latency, Listing, ResultView, ThresholdView, V
 from compiler.rule import Rule
 from fretish import syntax
 from fretish.clock import Clock
+from fretish.declarations import Declarations
 from fretish.meaning import span
 from monitors import kernel
 
 LISTED = 100
 """Violations, open demands and unknown stretches that are listed; the evidence has them all."""
 _WAITS = 5
+_TOLD = 10
+"""Runs that are named as reasons why a requirement is not shown."""
 
 
-def result_views(claim: Claim, runs: dict[Key, Run], clock: Clock | None) -> tuple[ResultView, ...]:
+def result_views(
+    claim: Claim, runs: dict[Key, Run], declared: Declarations | None
+) -> tuple[ResultView, ...]:
     """Every audit of a requirement, in the order of the runs."""
     return tuple(
-        _view(judged, claim, number, runs[key(judged.result)], clock)
+        _view(judged, claim, number, runs[key(judged.result)], declared)
         for number, judged in enumerate(claim.judged, 1)
     )
 
@@ -36,9 +41,12 @@ def result_anchor(claim: Claim, number: int) -> str:
     return f"{claim.anchor.replace('req-', 'result-', 1)}.{number}"
 
 
-def _view(judged: Judged, claim: Claim, number: int, run: Run, clock: Clock | None) -> ResultView:
+def _view(
+    judged: Judged, claim: Claim, number: int, run: Run, declared: Declarations | None
+) -> ResultView:
     result = judged.result
-    tick = _tick(result, None if judged.is_stale else clock)
+    known = None if judged.is_stale else declared
+    tick = _tick(result, known.clock if known else None)
     return ResultView(
         anchor=result_anchor(claim, number),
         run=run.anchor,
@@ -48,6 +56,7 @@ def _view(judged: Judged, claim: Claim, number: int, run: Run, clock: Clock | No
         said=MARKS[result.verdict] if judged.is_stale else None,
         suspicions=judged.suspicions,
         reason=result.reason,
+        triggers=len(result.triggers),
         exercised=_exercised(result),
         latency=_latency(result, claim.rule),
         thresholds=tuple(map(_threshold, result.thresholds)),
@@ -55,7 +64,7 @@ def _view(judged: Judged, claim: Claim, number: int, run: Run, clock: Clock | No
         violations_total=len(result.violations),
         open=_open(result),
         unknown=_unknown(result),
-        timelines=timelines(result, tick),
+        timelines=timelines(result, tick, _ages(known)),
     )
 
 
@@ -66,6 +75,12 @@ def _tick(result: Result, clock: Clock | None) -> float:
     if result.start_ns is None or result.end_ns is None or result.end_ns <= result.start_ns:
         return 1.0
     return (result.end_ns - result.start_ns) / 1e9 / max(1, result.ticks)
+
+
+def _ages(declared: Declarations | None) -> dict[str, float]:
+    """Seconds after which a sample no longer counts, of the signals that have such an age."""
+    signals = declared.signals.values() if declared else ()
+    return {signal.name: signal.max_age / 1e9 for signal in signals if signal.max_age}
 
 
 def _exercised(result: Result) -> str:
@@ -107,6 +122,7 @@ def _latency(result: Result, rule: Rule | None) -> Latency | None:
         answers=f"{answers}, {phrases.whole(at_once)} of them at the same tick",
         median=phrases.seconds(median(result.latencies)),
         longest=f"{phrases.seconds(longest)}{after}",
+        longest_s=longest,
         is_bounded=rule is None or not isinstance(rule.sentence.timing, syntax.Eventually),
         bound=_bound(rule),
         waits=_waits(result),
@@ -221,7 +237,7 @@ def reasons(claim: Claim, runs: dict[Key, Run], *, audited: bool) -> tuple[str, 
     if claim.together is not None:
         return claim.together.suspicions or (f"over all runs: {claim.together.told.reason}",)
     against = [judged for judged in claim.judged if judged.verdict != kernel.SATISFIED]
-    lines = [f"{runs[key(j.result)].label}: {_against(j)}" for j in against[:LISTED]]
+    lines = [f"{runs[key(j.result)].label}: {_against(j)}" for j in against[:_TOLD]]
     left = len(against) - len(lines)
     return (*lines, *([f"and {phrases.times(left, 'more run')}"] if left else []))
 

@@ -43,7 +43,8 @@ def reviewed(claims: Sequence[Claim]) -> str:
     if not known:
         return "No requirement has been reviewed."
     suspect = sum(standing.is_suspect for standing in known)
-    stands = f"; {suspect} of these reviews no longer stand" if suspect else ", and all stand"
+    verb = "stands" if suspect == 1 else "stand"
+    stands = f"; {suspect} of these reviews no longer {verb}" if suspect else ", and all stand"
     return f"{len(known)} of {phrases.times(len(claims), 'requirement')} reviewed{stands}."
 
 

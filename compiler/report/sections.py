@@ -3,16 +3,21 @@
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from compiler import printing
+from compiler.diagram import diagram, words
+from compiler.products import shared_products
 from compiler.project import Project
+from compiler.proven import Proof
 from compiler.record import wording
 from compiler.report import phrases
 from compiler.report.claims import RETIRED, SHOWN, Claim
+from compiler.report.histograms import exercise, histograms
 from compiler.report.plans import planned
 from compiler.report.probabilities import probability_view
+from compiler.report.proofs import SHARED, proof_views
 from compiler.report.results import reasons, result_views
 from compiler.report.reviews import review, waiver
 from compiler.report.runs import Key, Run
@@ -34,7 +39,12 @@ from fretish.printer import sentence
 
 
 def section(
-    claim: Claim, project: Project, runs: dict[Key, Run], anchors: Mapping[str, str], audited: bool
+    claim: Claim,
+    project: Project,
+    runs: dict[Key, Run],
+    anchors: Mapping[str, str],
+    audited: bool,
+    proofs: Sequence[Proof] = (),
 ) -> RequirementView:
     """The view of one requirement.
 
@@ -44,8 +54,13 @@ def section(
         runs: all runs.
         anchors: where the section of each requirement is, by its id.
         audited: whether there is any evidence.
+        proofs: of all requirements, and of what they share.
     """
     requirement, rule = claim.requirement, claim.rule
+    common = shared_products(project.declarations) if proofs else ()
+    made = (*claim.products, *common)
+    mine = proof_views((p for p in proofs if p.requirement == claim.id), made)
+    shared = proof_views((p for p in proofs if p.requirement in SHARED), common)
     clock = project.declarations.clock if project.declarations else None
     shown = claim.verdict in (*SHOWN, RETIRED)
     return RequirementView(
@@ -61,16 +76,20 @@ def section(
         fingerprint=rule.fingerprint if rule else "",
         meaning=meaning(rule.sentence, rule.ticks, rule.clock) if rule else "",
         error=remark(claim.diagnostic) if claim.diagnostic else None,
+        diagram=words(diagram(rule)) if rule else "",
         formulas=_formulas(rule) if rule else (),
         propositions=_propositions(rule, project.declarations) if rule else (),
         clock=_clock(clock),
         parents=tuple(_parent(parent, project, anchors) for parent in requirement.parents),
         rationale=requirement.rationale,
         params=dict(requirement.params),
-        planned=planned(claim),
+        planned=planned(claim, (*mine, *shared)),
         artefacts=claim.products,
         probability=_probability(claim),
-        results=result_views(claim, runs, clock),
+        proofs=mine,
+        exercise=exercise(claim),
+        histograms=histograms(claim),
+        results=result_views(claim, runs, project.declarations),
         reasons=() if shown else reasons(claim, runs, audited=audited),
         coverage=claim.coverage,
         review=review(claim),

@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from math import floor, isinf, log10
+from types import MappingProxyType
 
 from compiler.evidence import Moment, Result, Violation
-from compiler.report.phrases import joined, seconds, times
-from compiler.report.views import Lane, SpanMark, Timeline
+from compiler.report.phrases import joined, seconds, times, value
+from compiler.report.pictures import Flag, Lane, Panel, SpanMark, Timeline
+from compiler.report.signals import left_out, panels
 
 DETAIL = 400
 """Two marks nearer than this part of the picture are drawn as one: that bounds their number."""
-_DRAWN = 12
-"""Violations that get a picture of their own."""
+DRAWN = 6
+"""Violations of one result that get a picture of their own; the others are listed."""
 _AROUND = 10
 """Ticks to show before and after a violation, at least."""
 
@@ -25,12 +28,15 @@ class Stretch:
     end: float
 
 
-def timelines(result: Result, tick: float) -> tuple[Timeline, ...]:
+def timelines(
+    result: Result, tick: float, ages: Mapping[str, float] = MappingProxyType({})
+) -> tuple[Timeline, ...]:
     """One for each of the first violations; where there is none, one for the whole run.
 
     Args:
         result: one run, one requirement.
         tick: seconds of a tick; an average where the clock ticks by message.
+        ages: seconds after which a sample of a signal no longer counts; absent: never.
     """
     if not result.ticks:
         return ()
@@ -38,16 +44,109 @@ def timelines(result: Result, tick: float) -> tuple[Timeline, ...]:
     if not result.violations:
         return (events.timeline("The whole run", Stretch(0.0, result.ticks * tick)),)
     return tuple(
-        events.timeline(f"Violation {number}", _around(violation, tick))
-        for number, violation in enumerate(result.violations[:_DRAWN], 1)
+        _explained(events.timeline(f"Violation {number}", stretch), violation, result, tick, ages)
+        for number, violation in enumerate(result.violations[:DRAWN], 1)
+        for stretch in [_around(violation, tick)]
     )
+
+
+def _explained(
+    plain: Timeline, violation: Violation, result: Result, tick: float, ages: Mapping[str, float]
+) -> Timeline:
+    """With the signals, the trigger, the deadline, the broken stretch, and the cause in words."""
+    drawn = panels(violation, result, ages, plain.start, plain.end)
+    broken = _violated(violation, tick)
+    told = [
+        cause(violation, result),
+        plain.text,
+        *(_panel_in_words(panel) for panel in drawn),
+        _not_drawn(left_out(violation, drawn)),
+    ]
+    return replace(
+        plain,
+        text=" ".join(filter(None, told)),
+        panels=drawn,
+        flags=tuple(_flags(violation)),
+        broken=_rounded(SpanMark(broken.start, broken.end, 1)),
+        cause=cause(violation, result),
+    )
+
+
+def _flags(violation: Violation) -> Iterable[Flag]:
+    for kind, moment in (("trigger", violation.trigger), ("deadline", violation.deadline)):
+        if moment is not None:
+            yield Flag(kind, round(moment.seconds, 6))
+
+
+def cause(violation: Violation, result: Result) -> str:
+    """Why it is a violation: what did not come, and what the signals were then."""
+    start, end = violation.first.seconds, violation.last.seconds
+    when = f"at {seconds(start)}" if start == end else f"from {seconds(start)} to {seconds(end)}"
+    missing = violation.missing or "the response"
+    if violation.deadline is not None:
+        what = f"`{missing}` did not come by {seconds(violation.deadline.seconds)}"
+    else:
+        what = f"`{missing}` did not hold {when}"
+    if violation.trigger is not None:
+        what += f", triggered at {seconds(violation.trigger.seconds)}"
+    values = [f"{name} was {_value_then(name, violation, result)}" for name in violation.values]
+    return f"{what}; at {seconds(start)} {joined(values)}." if values else f"{what}."
+
+
+def _value_then(signal: str, violation: Violation, result: Result) -> str:
+    """The value at the first broken tick; the window also knows infinite ones."""
+    known = violation.values[signal]
+    if known is None and violation.window and signal in violation.window.samples:
+        found = violation.window.samples[signal].at(violation.first.seconds)
+        if found is not None and isinf(found):
+            return "+inf" if found > 0 else "-inf"
+    return value(known, result.units.get(signal, ""))
+
+
+def _panel_in_words(panel: Panel) -> str:
+    points = [point for piece in panel.pieces for point in piece.points]
+    levels = [level.label for level in panel.levels if level.label]
+    parts = [
+        f"{panel.signal} {_extent(points, panel)}",
+        f"threshold {joined(levels)}" if levels else "",
+        f"unknown for {_total([(m.start, m.end) for m in panel.unknown])}" if panel.unknown else "",
+        f"infinite for {_total([(a, b) for a, b, _ in panel.infinite])}" if panel.infinite else "",
+    ]
+    return f"{', '.join(filter(None, parts))}."
+
+
+def _extent(points: Sequence[tuple[float, float, float]], panel: Panel) -> str:
+    if not points:
+        return "has no finite value"
+    digits = 3 - floor(log10(panel.high - panel.low))  # finer than can be drawn
+    least, greatest = (
+        round(number, digits)
+        for number in (min(point[1] for point in points), max(point[2] for point in points))
+    )
+    if least == greatest:
+        return f"is {value(least, panel.unit)}"
+    return f"is {value(least, panel.unit)} to {value(greatest, panel.unit)}"
+
+
+def _total(stretches: Sequence[tuple[float, float]]) -> str:
+    return seconds(sum(end - start for start, end in stretches))
+
+
+def _not_drawn(names: Sequence[str]) -> str:
+    return f"Not drawn: {joined(names)}." if names else ""
 
 
 def _around(violation: Violation, tick: float) -> Stretch:
     first = violation.trigger or violation.first
     start, end = min(first.seconds, violation.first.seconds), violation.last.seconds + tick
     margin = max(_AROUND * tick, (end - start) / 8, 1e-3)
-    return Stretch(max(0.0, start - margin), max(end, start) + margin)
+    shown = Stretch(max(0.0, start - margin), max(end, start) + margin)
+    window = violation.window
+    if window is None or not window.samples:
+        return shown
+    # Of what lies outside the evidence holds no samples: it is not shown as if it were unknown.
+    inside = Stretch(max(shown.start, window.start), min(shown.end, window.end))
+    return inside if inside.end - inside.start > tick / 2 else shown
 
 
 class _Events:

@@ -10,6 +10,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from compiler.products import Product
+from compiler.report.pictures import Histogram, Timeline
 
 SCHEMA = "fretc-report-1"
 
@@ -112,6 +113,7 @@ class Planned:
     method: str
     has_result: bool
     result: str
+    refuted: bool = False
 
 
 # 3: the matrix ---------------------------------------------------------------------------------
@@ -202,32 +204,19 @@ class WaiverView:
 
 
 @dataclass(frozen=True, slots=True)
-class SpanMark:
-    """A stretch of time on a lane of a timeline, and how many events it stands for."""
+class ProofView:
+    """What `fretc verify` says of one claim; `said` is its result where it is suspect."""
 
-    start: float
-    end: float
-    count: int
-
-
-@dataclass(frozen=True, slots=True)
-class Lane:
-    """One kind of event on a timeline."""
-
-    name: str
-    kind: str
-    marks: tuple[SpanMark, ...]
-
-
-@dataclass(frozen=True, slots=True)
-class Timeline:
-    """A picture of a stretch of a run; `text` says the same in words."""
-
-    title: str
-    start: float
-    end: float
-    lanes: tuple[Lane, ...]
-    text: str
+    requirement: str
+    layer: str
+    claim: str
+    mark: Mark
+    said: Mark | None
+    detail: str
+    assumptions: tuple[str, ...]
+    engine: str
+    artefacts: tuple[tuple[str, str], ...]
+    suspicions: tuple[str, ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -280,6 +269,7 @@ class Latency:
     answers: str
     median: str
     longest: str
+    longest_s: float
     is_bounded: bool
     bound: str
     waits: tuple[str, ...]
@@ -329,6 +319,7 @@ class ResultView:
     said: Mark | None
     suspicions: tuple[str, ...]
     reason: str
+    triggers: int
     exercised: str
     latency: Latency | None
     thresholds: tuple[ThresholdView, ...]
@@ -380,6 +371,8 @@ class RequirementView:
     fingerprint: str
     meaning: str
     error: Remark | None
+    diagram: str
+    """The picture of its meaning in words; empty where there is none."""
     formulas: tuple[Formula, ...]
     propositions: tuple[PropositionView, ...]
     clock: str
@@ -388,6 +381,10 @@ class RequirementView:
     params: Mapping[str, str]
     planned: tuple[Planned, ...]
     artefacts: tuple[Product, ...]
+    proofs: tuple[ProofView, ...]
+    exercise: str
+    """What all runs together have asked of it."""
+    histograms: tuple[Histogram, ...]
     probability: ProbabilityView | None
     """None: the sentence gives none, or no evidence tells of it."""
     results: tuple[ResultView, ...]
@@ -436,6 +433,10 @@ class Report:
     not_shown: tuple[NotShown, ...]
     reservations: tuple[str, ...]
     planned: tuple[Planned, ...]
+    proofs: tuple[ProofView, ...]
+    """What was proved of things that are no requirement: of the interceptor, of the agent."""
+    verification: str
+    """The file with all proofs; empty where there is none."""
     remarks: tuple[Remark, ...]
     hazards: tuple[HazardView, ...]
     matrix: tuple[Row, ...]

@@ -293,6 +293,7 @@ def test_a_retired_requirement_is_neither_claimed_nor_missing(tmp_path: Path) ->
             "method": "audit",
             "has_result": True,
             "result": "1 run audited: satisfied",
+            "refuted": False,
         }
     ]
     assert content["claims"] == "1 requirement in force, 1 retired, audited against 1 run."
@@ -377,6 +378,7 @@ def test_a_response_without_a_bound_is_shown_with_a_reservation(tmp_path: Path) 
         "answers": "3 triggers, 1 of them at the same tick",
         "median": "2.4 s",
         "longest": "2.5 s, after the trigger at 1 s",
+        "longest_s": 2.5,
         "is_bounded": False,
         "bound": "No bound was required: the sentence says `eventually`, so a response satisfies "
         "it however late it comes.",

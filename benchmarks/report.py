@@ -1,0 +1,226 @@
+"""How large the report is and how long it takes to make, from evidence that is there already."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import random
+import resource
+import tempfile
+import time
+from pathlib import Path
+from typing import Any
+
+from compiler.files import sha256
+from compiler.project import Project, fingerprint, load
+from compiler.record import wording
+from compiler.report import make
+from compiler.targets import monitor
+from monitors.evidence import SCHEMA
+
+BINDINGS = """\
+[clock]
+time = "log_time"
+tick = "100 ms"
+end = "inconclusive"
+
+[signal.clearance]
+path = "/scan.ranges[:]"
+type = "sensor_msgs/LaserScan"
+reduce = "min"
+unit = "m"
+max_age = "300 ms"
+
+[signal.vx]
+path = "/odom.twist.twist.linear.x"
+type = "nav_msgs/Odometry"
+unit = "m/s"
+max_age = "100 ms"
+
+[proposition.near]
+text = "an obstacle is near"
+expr = "clearance < 5 cm"
+role = "input"
+kind = "belief"
+agg = "any"
+
+[proposition.stopped]
+text = "the robot does not move"
+expr = "abs(vx) < 0.01 m/s"
+role = "output"
+kind = "physical"
+agg = "last"
+"""
+TICKS = 6_000
+"""Ten minutes."""
+
+
+def project(folder: Path, requirements: int) -> Project:
+    """So many requirements, ten to a hazard."""
+    hazards = [
+        f'["HAZ-{n}"]\ntitle = "Hazard {n}"\nseverity = "critical"\n'
+        for n in range((requirements + 9) // 10)
+    ]
+    (folder / "hazards.toml").write_text("\n".join(hazards), encoding="utf-8")
+    (folder / "bindings.toml").write_text(BINDINGS, encoding="utf-8")
+    paths = []
+    for n in range(requirements):
+        header = (
+            f'id = "R{n}"\ntitle = "Stop in time, case {n}"\nparents = ["HAZ-{n // 10}"]\n'
+            'text = "The robot must stop when something is near."\nstatus = "approved"\n'
+        )
+        sentence = f"whenever near the robot shall within {10 + n} ticks satisfy stopped"
+        paths.append(folder / f"r{n}.fret")
+        paths[-1].write_text(f"+++\n{header}+++\n{sentence}\n", encoding="utf-8")
+    names = [str(path) for path in paths]
+    return load(names, str(folder / "bindings.toml"), str(folder / "hazards.toml"))
+
+
+def evidence(known: Project, runs: int, share: float) -> dict[str, Any]:
+    """What an audit would have written: of each requirement a share of runs is violated."""
+    assert known.declarations is not None
+    choose = random.Random(1)
+    bindings = fingerprint(known.declarations)
+    monitors = [sha256(monitor.text(rule)) for rule in known.rules]
+    results = [
+        _result(choose, rule, hashed, bindings, run, violated=choose.random() < share)
+        for run in range(runs)
+        for rule, hashed in zip(known.rules, monitors, strict=True)
+    ]
+    texts = [
+        {"id": rule.id, "sentence": wording(rule.requirement), "sha256": rule.fingerprint}
+        for rule in known.rules
+    ]
+    head = {"schema": SCHEMA, "fretc": "0", "bindings": {"file": "b", "sha256": bindings}}
+    return {**head, "requirements": texts, "results": results}
+
+
+def _moment(tick: int) -> dict[str, Any]:
+    return {"tick": tick, "ns": 10**9 + tick * 10**8, "seconds": tick / 10}
+
+
+def _result(
+    choose: random.Random, rule: Any, hashed: str, bindings: str, run: int, *, violated: bool
+) -> dict[str, Any]:
+    triggers = sorted(choose.sample(range(TICKS - 200), 40))
+    broken = triggers[:8] if violated else []
+    late = [round(choose.uniform(0, 0.9), 1) for _ in triggers[len(broken) :]]
+    clear = choose.uniform(0.06, 2)
+    return {
+        "run": f"runs/{run:04}.mcap",
+        "requirement": rule.id,
+        "verdict": "violated" if violated else "satisfied",
+        "finite": not violated,
+        "reason": "broken 8 times" if violated else "held, 40 triggers",
+        "clock": "100 ms, by log_time",
+        "ticks": TICKS,
+        "start_ns": 10**9,
+        "end_ns": 10**9 + TICKS * 10**8,
+        "states": [],
+        "answers": [],
+        "triggers": [_moment(tick) for tick in triggers],
+        "violations": [_violation(choose, tick, rule.ticks or 0) for tick in broken],
+        "unknown": [],
+        "open": [],
+        "latencies_s": late,
+        "propositions": {},
+        "thresholds": [
+            _threshold("near", "clearance", 0.05, "m", None if violated else clear - 0.05),
+            _threshold("stopped", "abs(vx)", 0.01, "m/s", None),
+        ],
+        "units": {"clearance": "m", "vx": "m/s"},
+        "assumptions": [],
+        "hashes": {
+            "log": sha256(str(run)),
+            "sentence": rule.fingerprint,
+            "bindings": bindings,
+            "monitor": hashed,
+        },
+        "health": {
+            "intact": True,
+            "size": 12_345_678,
+            "checked": None,
+            "gaps": [],
+            "findings": [],
+            "topics": {f"/topic{n}": _topic() for n in range(12)},
+        },
+    }
+
+
+def _topic() -> dict[str, Any]:
+    return {
+        "type": "nav_msgs/msg/Odometry",
+        "count": 30_000,
+        "first_ns": 10**9,
+        "last_ns": 601 * 10**9,
+        "longest_gap_ns": 40_000_000,
+        "out_of_order": 0,
+    }
+
+
+def _threshold(
+    proposition: str, signal: str, bound: float, unit: str, margin: float | None
+) -> dict[str, Any]:
+    return {
+        "proposition": proposition,
+        "signal": signal,
+        "operator": "<",
+        "bound": bound,
+        "unit": unit,
+        "least": bound + margin if margin is not None else 0.0,
+        "greatest": 3.0,
+        "comparison": "crossed" if margin is None else "false",
+        "margin": margin,
+        "nearest": {"ns": 10**9, "seconds": 0.0},
+    }
+
+
+def _violation(choose: random.Random, trigger: int, horizon: int) -> dict[str, Any]:
+    first, start = trigger + horizon, 10**9 + trigger * 10**8 - 10**9
+    end = 10**9 + (trigger + horizon) * 10**8 + 10**9
+    times = [start + (end - start) * i // 49 for i in range(50)]
+    samples = {
+        name: {"times_ns": times, "values": [round(choose.uniform(0, most), 4) for _ in times]}
+        for name, most in (("clearance", 0.3), ("vx", 0.4))
+    }
+    return {
+        "first_tick": first,
+        "last_tick": first + 3,
+        "start_ns": 10**9 + first * 10**8,
+        "end_ns": 10**9 + (first + 3) * 10**8,
+        "start_s": first / 10,
+        "end_s": (first + 3) / 10,
+        "trigger": _moment(trigger),
+        "deadline": _moment(first),
+        "missing": "stopped",
+        "values": {"clearance": 0.0318, "vx": 0.21},
+        "window": {"start_ns": start, "end_ns": end, "samples": samples},
+    }
+
+
+def main() -> None:
+    """Print a line for each size; each is made of evidence that is written first."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--sizes", default="50x20,50x20x1,1000x100")
+    print(f"{'requirements x runs':>20} {'violated':>9} {'evidence':>10} {'page':>9} {'CPU':>8}")
+    for size in parser.parse_args().sizes.split(","):
+        requirements, runs, *share = (float(part) for part in size.split("x"))
+        violated = share[0] if share else 0.05
+        with tempfile.TemporaryDirectory() as folder:
+            known = project(Path(folder), int(requirements))
+            path = Path(folder, "evidence.json")
+            path.write_text(json.dumps(evidence(known, int(runs), violated)), encoding="utf-8")
+            start = time.process_time()
+            page = make(known, str(path)).html
+            took = time.process_time() - start
+            read = path.stat().st_size / 1e6
+        assert page is not None
+        named = f"{requirements:.0f} x {runs:.0f}"
+        written = len(page.encode()) / 1e6
+        print(f"{named:>20} {violated:>9.0%} {read:>7.1f} MB {written:>6.2f} MB {took:>6.1f} s")
+    most = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1e6
+    print(f"most memory: {most:.1f} GB")
+
+
+if __name__ == "__main__":
+    main()

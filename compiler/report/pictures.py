@@ -1,0 +1,105 @@
+"""What the pictures of the report show, as frozen values; where it is drawn is decided elsewhere.
+
+Times are seconds from the first tick of a run.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, slots=True)
+class SpanMark:
+    """A stretch of time on a lane of a timeline, and how many events it stands for."""
+
+    start: float
+    end: float
+    count: int
+
+
+@dataclass(frozen=True, slots=True)
+class Lane:
+    """One kind of event on a timeline."""
+
+    name: str
+    kind: str
+    marks: tuple[SpanMark, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Piece:
+    """A signal while it is known: `(seconds, least, greatest)`, each in force up to the next."""
+
+    points: tuple[tuple[float, float, float], ...]
+    end: float
+
+
+@dataclass(frozen=True, slots=True)
+class Level:
+    """The bound of a threshold, and how it is written."""
+
+    value: float
+    label: str
+
+
+@dataclass(frozen=True, slots=True)
+class Panel:
+    """One signal over a timeline, from `low` to `high` in `unit`."""
+
+    signal: str
+    unit: str
+    low: float
+    high: float
+    pieces: tuple[Piece, ...]
+    levels: tuple[Level, ...]
+    unknown: tuple[SpanMark, ...]
+    infinite: tuple[tuple[float, float, str], ...]
+    """From, to, and `+inf` or `-inf`."""
+
+
+@dataclass(frozen=True, slots=True)
+class Flag:
+    """An instant with a name: the trigger, the deadline."""
+
+    kind: str
+    at: float
+
+
+@dataclass(frozen=True, slots=True)
+class Timeline:
+    """A picture of a stretch of a run; `text` says the same in words."""
+
+    title: str
+    start: float
+    end: float
+    lanes: tuple[Lane, ...]
+    text: str
+    panels: tuple[Panel, ...] = ()
+    flags: tuple[Flag, ...] = ()
+    broken: SpanMark | None = None
+    cause: str = ""
+    """Why it is violated, in words; empty where it is not."""
+
+
+@dataclass(frozen=True, slots=True)
+class Bin:
+    """Values from `low` on and below `high`, and how many there are."""
+
+    low: float
+    high: float
+    count: int
+
+
+@dataclass(frozen=True, slots=True)
+class Histogram:
+    """How often each value came; `text` says the numbers."""
+
+    title: str
+    unit: str
+    bins: tuple[Bin, ...]
+    bound: float | None
+    """What no value may be beyond; None where nothing says so."""
+    bound_label: str
+    text: str
+    crossed: int = 0
+    """Runs that have no value because they were beyond the bound."""

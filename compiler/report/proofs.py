@@ -1,0 +1,98 @@
+"""What was proved of a requirement, as it is shown, and what that says of its planned methods."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+
+from compiler import proven
+from compiler.products import Product
+from compiler.proven import Proof
+from compiler.report import phrases
+from compiler.report.claims import MARKS, SUSPECT
+from compiler.report.views import Mark, ProofView, RequirementView
+from compiler.verification import Layer
+
+_MARKS: Mapping[str, Mark] = {
+    proven.COUNTEREXAMPLE: Mark(proven.COUNTEREXAMPLE, "✘", "violated"),
+    proven.NOT_CHECKED: Mark(proven.NOT_CHECKED, "?", "no-data"),
+    proven.VACUOUS: Mark(proven.VACUOUS, "∅", "vacuous"),
+    proven.PROVED: Mark(proven.PROVED, "✔", "satisfied"),
+}
+"""The worst first, as for verdicts."""
+_ALL = ("verify", "proof")
+_PROVERS = ("dafny", "crosshair")
+METHODS = (*_ALL, *_PROVERS, *map(str, Layer))
+"""Methods of `verify = [...]` that `fretc verify` can give a result for."""
+_OF_MONITOR = (str(Layer.MONITOR), str(Layer.LOOP), str(Layer.BOUNDS))
+"""Layers whose claims are about the text of the requirement's monitor."""
+SHARED = ("interceptor", "agent")
+"""Claims that are about no single requirement."""
+
+
+def proof_views(proofs: Iterable[Proof], made: Iterable[Product]) -> tuple[ProofView, ...]:
+    """Each proof as it is shown.
+
+    Args:
+        proofs: of one requirement, or of what all share.
+        made: what the targets make now; a proof about another text is suspect.
+    """
+    now = {product.file: product.sha256 for product in made if product.sha256}
+    return tuple(_view(proof, now) for proof in proofs)
+
+
+def _view(proof: Proof, now: Mapping[str, str]) -> ProofView:
+    suspicions = tuple(_suspicions(proof, now))
+    mark = _MARKS[proof.result]
+    return ProofView(
+        requirement=proof.requirement,
+        layer=proof.layer,
+        claim=proof.claim,
+        mark=MARKS[SUSPECT] if suspicions else mark,
+        said=mark if suspicions else None,
+        detail=proof.detail,
+        assumptions=proof.assumptions,
+        engine=proof.engine,
+        artefacts=tuple(sorted(proof.artefacts.items())),
+        suspicions=suspicions,
+    )
+
+
+def _suspicions(proof: Proof, now: Mapping[str, str]) -> Iterator[str]:
+    """Texts that are made otherwise now; what fretc does not make is told by its hash only."""
+    for name, known in proof.artefacts.items():
+        if name in now and now[name] != known:
+            yield f"{name} is not made like that any more"
+    monitors = {hashed for name, hashed in now.items() if name.endswith("_monitor.py")}
+    if proof.layer in _OF_MONITOR and not monitors & {*proof.artefacts.values()}:
+        yield "it is about another monitor than the one that is made now"
+
+
+def covering(method: str, proofs: Sequence[ProofView]) -> list[ProofView]:
+    """The proofs that are results of a planned method."""
+    if method in _ALL:
+        return list(proofs)
+    if method in _PROVERS:
+        return [proof for proof in proofs if method in proof.engine.casefold()]
+    return [proof for proof in proofs if proof.layer == method]
+
+
+def worst(proofs: Iterable[ProofView]) -> ProofView:
+    """The one that decides."""
+    rank = [proven.COUNTEREXAMPLE, SUSPECT, proven.NOT_CHECKED, proven.VACUOUS, proven.PROVED]
+    return min(proofs, key=lambda proof: rank.index(proof.mark.word))
+
+
+def in_words(proofs: Sequence[ProofView]) -> str:
+    """`2 claims proved`; else what is in the way."""
+    found = worst(proofs)
+    if found.mark.word == proven.PROVED:
+        return f"{phrases.times(len(proofs), 'claim')} proved"
+    why = found.suspicions[0] if found.suspicions else found.detail
+    return f"{found.mark.word}: {found.claim} ({why})"
+
+
+def is_refuted(view: RequirementView) -> bool:
+    """Whether verification found a run against it, whatever the audited ones show."""
+    return any(plan.refuted for plan in view.planned) or any(
+        proof.mark.word == proven.COUNTEREXAMPLE for proof in view.proofs
+    )
