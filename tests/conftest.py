@@ -4,6 +4,7 @@
 """
 
 import os
+import signal
 import warnings
 from collections.abc import Callable
 from pathlib import Path
@@ -17,6 +18,11 @@ with warnings.catch_warnings():
     import spot  # noqa: F401
 
 from tests.command import Fretc, runner
+
+if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
+    # A shell starts what runs in its background so, and every process that a test starts would
+    # inherit that Ctrl-C does nothing.
+    signal.signal(signal.SIGINT, signal.default_int_handler)
 
 settings.register_profile("default", max_examples=100, deadline=None)
 settings.register_profile("full", max_examples=2000, deadline=None)

@@ -1,8 +1,7 @@
 """The JSON form of the report says what its schema says, field by field."""
 
-import inspect
 import json
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import fields, is_dataclass
 from pathlib import Path
 from types import NoneType
@@ -14,7 +13,30 @@ from compiler.report import views
 
 ROOT = Path(__file__).parents[3]
 SCHEMA = json.loads((ROOT / "templates/json/report.schema.json").read_text("utf-8"))
-VIEWS = [one for _, one in inspect.getmembers(views, inspect.isclass) if is_dataclass(one)]
+
+
+def within(view: Any) -> Iterator[Any]:
+    """Every dataclass of a field, whatever module it is in."""
+    for hint in get_type_hints(view).values():
+        waiting = [hint]
+        for each in waiting:  # grows while it is read
+            waiting += get_args(each)
+            if is_dataclass(each):
+                yield each
+
+
+def reached() -> list[Any]:
+    """The report and all that is in it."""
+    found: dict[Any, None] = {views.Report: None}
+    for view in (waiting := [views.Report]):
+        for each in within(view):
+            if each not in found:
+                found[each] = None
+                waiting.append(each)
+    return sorted(found, key=lambda view: str(view.__name__))
+
+
+VIEWS = reached()
 PLAIN = {str: "string", int: "integer", float: "number", bool: "boolean", NoneType: "null"}
 
 
