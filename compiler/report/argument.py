@@ -13,9 +13,9 @@ from enum import StrEnum
 
 from compiler.proven import PROVED
 from compiler.report import phrases
+from compiler.report.claims import SHOWN
 from compiler.report.proofs import is_refuted
 from compiler.report.views import Report, RequirementView
-from monitors import kernel
 
 
 class Kind(StrEnum):
@@ -94,16 +94,18 @@ class _Argument:
 
     def _requirement(self, view: RequirementView) -> Iterator[Element]:
         goal = self._goal(view.anchor)
-        shown = view.mark.word == kernel.SATISFIED and not is_refuted(view)
+        shown = view.mark.word in SHOWN and not is_refuted(view)
         proved = [proof for proof in view.proofs if proof.mark.word == PROVED]
         solution = goal.replace("G_", "Sn_", 1)
-        proofs = f"{solution}_proofs"
+        # A goal is developed or not: what is proved of one that is not shown is context.
+        proofs = f"{solution if shown else goal.replace('G_', 'C_', 1)}_proofs"
         context = goal.replace("G_", "C_", 1)
         waived = goal.replace("G_", "J_", 1)
         around = [context] if view.meaning else []
         around += [waived] if view.waiver else []
+        around += [proofs] if proved and not shown else []
         text = f"{view.id} holds: {view.sentence}"
-        below = (*((solution,) if shown else ()), *((proofs,) if proved else ()))
+        below = (solution, *([proofs] if proved else [])) if shown else ()
         yield Element(goal, Kind.GOAL, text, below, tuple(around), undeveloped=not shown)
         if view.meaning:
             yield Element(context, Kind.CONTEXT, view.meaning)
@@ -112,11 +114,12 @@ class _Argument:
             yield Element(waived, Kind.JUSTIFICATION, said)
         if shown:
             runs = phrases.times(len(view.results), "audited run")
-            yield Element(solution, Kind.SOLUTION, f"{view.id} is satisfied in {runs}")
+            yield Element(solution, Kind.SOLUTION, f"{view.id} is {view.mark.word} in {runs}")
         if proved:
             layers = phrases.joined(list(dict.fromkeys(proof.layer for proof in proved)))
             claims = phrases.times(len(proved), "claim")
-            yield Element(proofs, Kind.SOLUTION, f"{claims} about {view.id} proved ({layers})")
+            kind = Kind.SOLUTION if shown else Kind.CONTEXT
+            yield Element(proofs, kind, f"{claims} about {view.id} proved ({layers})")
 
     def _goal(self, anchor: str) -> str:
         return _id("G", anchor)

@@ -3,6 +3,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+import yaml
 from click.testing import CliRunner
 
 from compiler.cli import cli
@@ -10,9 +11,11 @@ from compiler.files import sha256
 from compiler.project import Project
 from compiler.report import Made, make
 from compiler.report.argument import Kind, argument
+from compiler.report.forms.gsn import gsn
 from compiler.targets import monitor
 from fretish.diagnostic import Code
 from tests.compiler.report.cases import evidence, project, requirement, result, said
+from tests.compiler.report.forms.test_forms import complaints
 from tests.compiler.report.test_make import validate
 
 SENTENCE = "whenever near the robot shall within 30 ticks satisfy stopped"
@@ -84,6 +87,17 @@ def test_the_argument_rests_on_proofs_and_on_nothing_that_is_refuted(tmp_path: P
     refuted = reported(tmp_path, {"found": "counterexample"}, verify=[]).report
     assert refuted is not None
     assert [each.text[:8] for each in argument(refuted) if each.undeveloped] == ["R1 holds"]
+
+
+def test_what_is_proved_of_a_goal_that_is_not_shown_is_context(tmp_path: Path) -> None:
+    lines = [{}, {"layer": "loop", "found": "counterexample"}]
+    report = reported(tmp_path, *lines, verify=[]).report
+    assert report is not None
+    (goal,) = [each for each in argument(report) if each.text.startswith("R1 holds")]
+    assert (goal.supported_by, goal.undeveloped) == ((), True)
+    told = {each.id: (each.kind, each.text) for each in argument(report)}
+    assert told[goal.in_context_of[-1]] == (Kind.CONTEXT, "1 claim about R1 proved (monitor)")
+    assert complaints(yaml.safe_load(gsn(report))) == []
 
 
 def test_a_counterexample_counts_also_where_no_method_was_planned(tmp_path: Path) -> None:
