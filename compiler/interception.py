@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
-from fretish.declarations import Form, Interception
+import hashlib
+import json
+import tomllib
+
+from fretish.declarations import Declarations, Form, Interception
 from monitors.interceptor import Options
 
 
@@ -23,6 +27,22 @@ def options(interception: Interception) -> Options:
         command_timeout=ticks(interception.command_timeout, period),
         latching=interception.latching,
     )
+
+
+ASSUMED = "[interceptor] and [assume]"
+"""What a proof about the closed loop rests on beside texts, as its evidence calls it."""
+
+
+def assumed(declarations: Declarations) -> str:
+    """SHA-256 of what the bindings say of the interceptor and of what is assumed; "" if nothing.
+
+    White space, comments and order do not count; the clock does, for times are told in ticks.
+    """
+    data = tomllib.loads(declarations.source.text)
+    told = {name: data[name] for name in ("clock", "interceptor", "assume") if name in data}
+    if "assume" not in told:
+        return ""
+    return hashlib.sha256(json.dumps(told, sort_keys=True).encode()).hexdigest()
 
 
 def ticks(duration: int, period: int) -> int:

@@ -13,7 +13,7 @@ from compiler.closedloop import Named, Setup
 from compiler.confined import Limits, Stopped
 from compiler.contracts import contracts
 from compiler.files import sha256
-from compiler.interception import options
+from compiler.interception import ASSUMED, assumed, options
 from compiler.project import Project
 from compiler.provers import with_crosshair, with_dafny
 from compiler.rule import Rule
@@ -63,10 +63,14 @@ def evidence(project: Project, asked: Request) -> tuple[Evidence, ...] | Diagnos
 def _of_rule(rule: Rule, setup: Setup, asked: Request) -> Iterator[Evidence]:
     if Layer.MONITOR in asked.layers:
         yield proofs.evidence(rule, setup.monitor.name, setup.monitor.text, asked.limits)
+    found: list[Evidence] = []
     if Layer.LOOP in asked.layers:
-        yield from closedloop.loop(rule, setup, asked.limits)
+        found.extend(closedloop.loop(rule, setup, asked.limits))
     if Layer.BOUNDS in asked.layers:
-        yield from bounds.bounds(rule, setup, asked.limits)
+        found.extend(bounds.bounds(rule, setup, asked.limits))
+    known = assumed(rule.declarations) if rule.declarations else ""
+    for one in found:
+        yield replace(one, artefacts={**one.artefacts, **({ASSUMED: known} if known else {})})
 
 
 def _setup(rule: Rule, project: Project, asked: Request) -> Setup:

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from pathlib import PurePath
 
 from compiler.files import sha256
+from compiler.interception import ASSUMED, assumed
 from compiler.rule import Rule
 from compiler.targets import TARGETS, interceptor
 from compiler.targets.target import Target
@@ -56,4 +57,5 @@ def shared_products(declarations: Declarations | None) -> tuple[Product, ...]:
     if declarations is None or declared is None:
         return ()
     text = interceptor.text(declared, PurePath(declarations.source.name).name)
-    return (Product(interceptor.TARGET.name, interceptor.NAME, sha256(text), ""),)
+    node = Product(interceptor.TARGET.name, interceptor.NAME, sha256(text), "")
+    return (node, Product("bindings", ASSUMED, assumed(declarations), ""))

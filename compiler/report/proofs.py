@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from compiler import proven
+from compiler.interception import ASSUMED
 from compiler.products import Product
 from compiler.proven import Proof
 from compiler.report import phrases
@@ -61,7 +62,8 @@ def _suspicions(proof: Proof, now: Mapping[str, str]) -> Iterator[str]:
     """Texts that are made otherwise now; what fretc does not make is told by its hash only."""
     for name, known in proof.artefacts.items():
         if name in now and now[name] != known:
-            yield f"{name} is not made like that any more"
+            what = "is not what it was" if name == ASSUMED else "is not made like that any more"
+            yield f"{name} {what}"
     monitors = {hashed for name, hashed in now.items() if name.endswith("_monitor.py")}
     if proof.layer in _OF_MONITOR and not monitors & {*proof.artefacts.values()}:
         yield "it is about another monitor than the one that is made now"

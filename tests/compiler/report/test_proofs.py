@@ -14,7 +14,16 @@ from compiler.report.argument import Kind, argument
 from compiler.report.forms.gsn import gsn
 from compiler.targets import monitor
 from fretish.diagnostic import Code
-from tests.compiler.report.cases import evidence, project, requirement, result, said
+from tests.command import Fretc, write
+from tests.compiler.report.cases import (
+    BINDINGS,
+    HAZARDS,
+    evidence,
+    project,
+    requirement,
+    result,
+    said,
+)
 from tests.compiler.report.forms.test_forms import complaints
 from tests.compiler.report.test_make import validate
 
@@ -183,3 +192,37 @@ def test_a_file_of_another_shape_is_told_and_no_report_is_made(
     (found,) = report.diagnostics
     assert found.code is Code.BAD_EVIDENCE
     assert message in found.message
+
+
+ASSUMING = """
+[interceptor]
+stop = "/stop"
+command = "/cmd_vel"
+output = "/wheels"
+period = "50 ms"
+hold = "200 ms"
+
+[assume]
+stands = "stopped"
+latency = "100 ms"
+braking = "200 ms"
+"""
+
+
+@pytest.mark.confined
+def test_another_assumption_makes_what_was_proved_of_the_loop_suspect(fretc: Fretc) -> None:
+    write("requirements/r1.fret", requirement("R1", SENTENCE, verify=["loop"]))
+    bindings = write("requirements/bindings.toml", BINDINGS + ASSUMING)
+    write("requirements/hazards.toml", HAZARDS)
+    assert fretc("verify", "requirements/r1.fret", "--layer", "loop").status == 0
+    assert marks(fretc) == {"proved"}
+    write(bindings, (BINDINGS + ASSUMING).replace('"100 ms"\nbraking', '"100 ms" # still\nbraking'))
+    assert marks(fretc) == {"proved"}, "a comment is no change"
+    write(bindings, (BINDINGS + ASSUMING).replace('braking = "200 ms"', 'braking = "900 ms"'))
+    assert marks(fretc) == {"suspect"}
+
+
+def marks(fretc: Fretc) -> set[str]:
+    fretc("report", "--json", "report.json")
+    (view,) = json.loads(Path("report.json").read_text())["requirements"]
+    return {proof["mark"]["word"] for proof in view["proofs"]}
