@@ -321,6 +321,19 @@ def test_a_loop_that_keeps_its_requirement(fretc: Fretc, loop: Callable[..., str
     assert (run.status, rest, run.err) == (0, ASSUMPTIONS, WROTE)
 
 
+def test_a_heartbeat_is_an_assumption(fretc: Fretc, loop: Callable[..., str]) -> None:
+    beating = ("lost = 1\n", 'requests = "edge"\nheartbeat = "250 ms"\n')
+    run = fretc("verify", "--layer", "loop", loop(300, beating))
+    assert (run.status, [line[0] for line in run.out.splitlines()[:2]]) == (0, ["✔", "✔"])
+    lines = [line[4:].strip() for line in run.out.splitlines()[3:]]
+    assert lines[0] == (
+        "the safety function steps at every tick of 100 ms and sends its request where it changes, "
+        "and again once it has been silent for 250 ms, or earlier (`requests` and `heartbeat`, "
+        "[assume])"
+    )
+    assert lines[-1] == "`heartbeat` of 250 ms counts as 300 ms, whole ticks of the clock"
+
+
 def test_a_loop_that_does_not_shows_a_run(fretc: Fretc, loop: Callable[..., str]) -> None:
     run = fretc("verify", "--layer", "loop", loop(200, ("lost = 1\n", "")))
     first, *table = run.out.splitlines()[:5]

@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 
 from compiler.counters import accepts, initial, step, template
+from compiler.deduction import claims
 from compiler.pipeline import formalize
 from compiler.project import load
 from compiler.rule import Rule
@@ -233,6 +234,29 @@ def test_the_numbers_of_the_bindings_are_in_the_text() -> None:
         "REACH": "1",  # one tick of latency, less the tick itself, and a lost message
         "BRAKING": "3",  # two ticks, and the one in which it began
     }
+
+
+@pytest.mark.parametrize(
+    ("requests", "reach"),
+    [
+        ('requests = "edge"\nheartbeat = "250 ms"', "6"),  # two messages, three ticks apart
+        ('requests = "level"', "2"),
+        ('requests = "edge"', None),
+    ],
+)
+def test_a_lost_message_costs_the_time_to_the_next(requests: str, reach: str | None) -> None:
+    bindings = BINDINGS.replace("lost    = 1", f"lost = 2\n{requests}")
+    found = emitted("whenever p robot shall eventually satisfy q", bindings)
+    declarations = bound(bindings)
+    told = claims(rule("whenever p robot shall eventually satisfy q", declarations), declarations)
+    if reach is None:
+        assert told[-1].unshown is not None
+        assert told[-1].unshown.endswith("([assume] requests, lost and no heartbeat)")
+    else:
+        assert f"reach = {reach} ticks ([assume] latency and lost)" in told[-1].assumptions
+        assert told[-1].sentence.endswith(f"within {int(reach) + 3} ticks, the declared delay")
+    assert ("or one from before" in told[-1].assumptions[1]) == ("edge" in requests)
+    assert "AnsweredInTime" in found
 
 
 def test_a_declared_delay_above_the_bound_is_not_claimed() -> None:
