@@ -31,7 +31,7 @@ _MEMORY = 4 * 2**30
 
 
 _STARTED = 30.0
-"""Seconds in which a prover tells its version."""
+"""Seconds in which a prover tells its version, or has read its text."""
 
 
 def _sha256(text: str) -> str:
@@ -169,7 +169,7 @@ def _member(text: str, line: int) -> str:
 
 # CrossHair ------------------------------------------------------------------------------------
 
-CROSSHAIR_SECONDS = 20.0
+CROSSHAIR_SECONDS = 60.0
 _CROSSHAIR_ABSENT = "CrossHair is not installed: pip install 'fretc[crosshair]'"
 _MODULE = "interceptor_core"
 _WHOLE = "the numbers of a velocity are whole; no function names one of them"
@@ -196,7 +196,7 @@ def with_crosshair(
     Args:
         text: the core, with `post:` lines in its docstrings (PEP 316). It is executed.
         requirement: what the lines of evidence are filed under.
-        seconds: for each contract.
+        seconds: for each function; its contracts share them.
 
     Returns:
         One line for each contract: proved if CrossHair has confirmed it over all paths, refuted
@@ -290,14 +290,13 @@ def _explored(
     """The contracts of one function: claims and what is known of them."""
     command = [
         *(sys.executable, "-m", "crosshair", "check", "--report_all"),
-        *("--analysis_kind=PEP316", f"--per_condition_timeout={seconds:g}"),
+        *("--analysis_kind=PEP316", f"--per_condition_timeout={seconds / len(contracts):g}"),
         f"{_MODULE}.{function}",
     ]
-    limit = seconds * len(contracts) + 30
     with TemporaryDirectory(prefix="fretc-") as name:
         folder = Path(name)
         (folder / f"{_MODULE}.py").write_text(text, encoding="utf-8")
-        ran = run(command, folder, seconds=limit, memory=_MEMORY)
+        ran = run(command, folder, seconds=seconds + _STARTED, memory=_MEMORY)
     told: dict[int, tuple[str, str]] = {}
     for line in ran.text.splitlines():
         if found := _TOLD.match(line):

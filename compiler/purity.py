@@ -36,6 +36,13 @@ class _StrangeError(Exception):
 
 
 @dataclass(frozen=True, slots=True)
+class Head:
+    """The text of a core that is known to be pure, without the node below it."""
+
+    text: str
+
+
+@dataclass(frozen=True, slots=True)
 class Core:
     """The core, executed."""
 
@@ -50,9 +57,25 @@ def core(text: str, name: str = "interceptor") -> Core | str:
         text: what `--emit interceptor` wrote, or the core alone.
         name: for tracebacks.
     """
-    head, marked, node = text.partition(f"{MARKER}\n")
+    known = head(text)
+    if isinstance(known, str):
+        return known
     try:
-        tree = ast.parse(head)
+        module: ModuleType = executed(known.text, name)
+    except Exception as error:
+        return f"it cannot be executed: {type(error).__name__}: {error}"
+    return Core(module)
+
+
+def head(text: str) -> Head | str:
+    """The core of an interceptor where it is pure; else, why it is not. Nothing is executed.
+
+    Args:
+        text: what `--emit interceptor` wrote, or the core alone.
+    """
+    above, marked, node = text.partition(f"{MARKER}\n")
+    try:
+        tree = ast.parse(above)
         names = _Module().check(tree)
         if marked and "OPTIONS" not in names:
             return "its core has no `OPTIONS`"
@@ -62,11 +85,7 @@ def core(text: str, name: str = "interceptor") -> Core | str:
         return f"it is no Python: {error}"
     except _StrangeError as error:
         return f"its core is not as fretc can read it: {error}"
-    try:
-        module: ModuleType = executed(head, name)
-    except Exception as error:
-        return f"it cannot be executed: {type(error).__name__}: {error}"
-    return Core(module)
+    return Head(above)
 
 
 def _strange(node: ast.AST) -> _StrangeError:

@@ -9,7 +9,7 @@ import pytest
 from compiler.contracts import contracts
 from compiler.heard import COMMAND, RELEASE, RING, SCAN, STOP
 from compiler.interception import options as counted
-from compiler.purity import Core, core
+from compiler.purity import Core, Head, core, head
 from compiler.targets.interceptor import text
 from compiler.verification import Counterexample, Evidence, Layer, NotChecked, Proved
 from fretish.declarations import Form, Interception
@@ -349,6 +349,14 @@ def test_where_nothing_can_be_said_the_reason_is(
     (result,) = {e.result for e in contracts(mutant(*changes), OPTIONS, most=3000)}
     assert isinstance(result, NotChecked)
     assert result.reason.startswith(told)
+
+
+def test_the_core_ends_where_the_node_begins() -> None:
+    found = head(EMITTED)
+    assert isinstance(found, Head)
+    assert EMITTED.startswith(found.text)
+    assert found.text.rstrip().endswith("# latching = false\n)")
+    assert head(found.text) == found
 
 
 def test_a_text_that_is_no_interceptor_is_not_checked() -> None:
