@@ -187,15 +187,45 @@ def test_a_safety_function_that_is_a_tick_late_is_refuted() -> None:
         (
             "return replace(state, scan_age=0), None",
             "print(state)\n    return replace(state, scan_age=0), None",
-            "`hear_scan` uses `print`",
+            "its core is not as fretc can read it: `print(state)`",
         ),
         (
             "return replace(state, scan_age=0), None",
             "return replace(state, scan_age=0), Velocity(1.0)",
             "it makes a velocity that it has not heard",
         ),
-        ("def halted(", "def stopped(", "it defines no `halted`"),
-        ("ZERO = Velocity()", "ZERO = Velocity(1.0)", "its step depends on `ZERO = Velocity(1.0)`"),
+        (
+            "return replace(state, scan_age=0), None",
+            "after = replace(state, command=ZERO)\n    return (after, ZERO) if after == state "
+            "else (state, None)",
+            "its step looks into a velocity",
+        ),
+        (
+            FORWARDS,
+            "return (after, None) if after == state else (after, command)",
+            "its step looks into a velocity",
+        ),
+        (
+            "    return replace(state, scan_age=0), None",
+            "    return state.command",
+            "its step gives no pair",
+        ),
+        (
+            "command=command, command_age=0",
+            "command=command, stop=command, command_age=0",
+            "its step looks into a velocity",
+        ),
+        (
+            "command=command, command_age=0",
+            "command=command, held=command, command_age=0",
+            "its step looks into a velocity",
+        ),
+        ("def halted(", "def stopped(", "its core has no `halted`"),
+        (
+            "ZERO = Velocity()",
+            "ZERO = Velocity(1.0)",
+            "its core is not as fretc can read it: `ZERO = Velocity(1.0)`",
+        ),
     ],
 )
 def test_what_is_no_pure_interceptor_is_not_checked(old: str, new: str, reason: str) -> None:
