@@ -12,7 +12,7 @@ import hashlib
 import re
 import shutil
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
@@ -186,7 +186,11 @@ class _Contract:
 
 
 def with_crosshair(
-    text: str, requirement: str = "interceptor", *, seconds: float = CROSSHAIR_SECONDS
+    text: str,
+    requirement: str = "interceptor",
+    *,
+    seconds: float = CROSSHAIR_SECONDS,
+    tell: Callable[[str], None] = lambda function: None,
 ) -> tuple[Evidence, ...]:
     """Let CrossHair look for inputs that break the contracts of an interceptor's core.
 
@@ -197,6 +201,7 @@ def with_crosshair(
         text: the core, with `post:` lines in its docstrings (PEP 316). It is executed.
         requirement: what the lines of evidence are filed under.
         seconds: for each function; its contracts share them.
+        tell: is called with the name of each function before it is looked at.
 
     Returns:
         One line for each contract: proved if CrossHair has confirmed it over all paths, refuted
@@ -212,6 +217,7 @@ def with_crosshair(
     for name in dict.fromkeys(contract.function for contract in contracts):
         own = [contract for contract in contracts if contract.function == name]
         if engine:
+            tell(name)
             found += _explored(whole or text, name, own, seconds)
         else:
             found += [(_claim(contract), NotChecked(_CROSSHAIR_ABSENT)) for contract in own]
