@@ -2,6 +2,7 @@
 
 import csv
 import json
+import shutil
 import subprocess
 import sys
 from collections.abc import Callable
@@ -322,6 +323,18 @@ def test_a_loop_that_keeps_its_requirement(fretc: Fretc, loop: Callable[..., str
         "Spot finds no endless run that violates it"
     )
     assert (run.status, rest, run.err) == (0, ASSUMPTIONS, WROTE)
+
+
+def test_the_stop_of_r1_is_released(fretc: Fretc) -> None:
+    """Its safety function speaks on change; a watchdog that hears nothing halts it for good."""
+    shutil.copytree(template_root().parent / "requirements", "requirements")
+    bindings = Path("requirements/bindings.toml")
+    run = fretc("verify", "requirements/r1.fret", "--layer", "loop")
+    assert (run.status, [line[0] for line in run.out.splitlines()[:2]]) == (0, ["✔", "✔"])
+    lines = bindings.read_text().splitlines(keepends=True)
+    bindings.write_text("".join(line for line in lines if not line.startswith("heartbeat")))
+    run = fretc("verify", "requirements/r1.fret", "--layer", "loop")
+    assert (run.status, [line[0] for line in run.out.splitlines()[:2]]) == (3, ["✔", "✘"])
 
 
 def test_a_heartbeat_is_an_assumption(fretc: Fretc, loop: Callable[..., str]) -> None:
