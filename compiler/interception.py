@@ -50,13 +50,13 @@ def ticks(duration: int, period: int) -> int:
     return -(-duration // period)
 
 
-def repetition(assumed: Assumed, tick: int) -> int | None:
+def repetition(given: Assumed, tick: int) -> int | None:
     """Ticks after which a request that does not change is sent again; None: never.
 
     Args:
-        assumed: what the bindings say of the safety function.
+        given: what the bindings say of the safety function.
         tick: of its clock, nanoseconds.
     """
-    if assumed.requests is Requests.LEVEL:
+    if given.requests is Requests.LEVEL:
         return 1
-    return ticks(assumed.heartbeat, tick) or None
+    return ticks(given.heartbeat, tick) or None
