@@ -2,9 +2,9 @@
 
 The closed loop has a twin in whole numbers (`compiler.looptwin`). z3 proves an inductive invariant
 of it with the times left open: a demand is open for less than any D with
-`D * tick >= lost * tick + latency + braking` above `lost`. Beside the proof, the twin is held
-against the texts at small times, and the texts show by a run that under the declared times less is
-not enough.
+`D * tick >= lost * heartbeat + latency + braking` and `D * tick > lost * heartbeat`, where requests
+at every tick have a heartbeat of a tick. Beside the proof, the twin is held against the texts at
+small times, and the texts show by a run that under the declared times less is not enough.
 
 Source: Manna, Pnueli, Temporal verification of reactive systems: safety, 1995, chapter 1
 (invariance).
@@ -33,6 +33,7 @@ from compiler.looptwin import (
     begins,
     covered,
     relation,
+    times_of,
 )
 from compiler.pipeline import formalize
 from compiler.rule import Rule
@@ -44,10 +45,8 @@ from fretish.documents import Requirement
 from fretish.printer import canonical
 from fretish.source import Source
 
-ANSWERED = (
-    "every demand is answered within `lost` ticks and as many more, at least one, as `latency` and "
-    "`braking` fill together"
-)
+_MORE = "as many more, at least one, as `latency` and `braking` fill together"
+ANSWERED = f"every demand is answered within `lost` ticks and {_MORE}"
 INSTALL = "z3 is not installed: pip install 'fretc[bounds]'"
 _SMALL = ((1, 0, 0, 0), (1, 1, 1, 1), (2, 1, 1, 2), (1, 2, 2, 0), (3, 4, 1, 2))
 """Cells to a tick, latency, losses in a row, braking: where the twin is held against the texts."""
@@ -91,10 +90,17 @@ def bounds(rule: Rule, setup: Setup, limits: Limits) -> tuple[Evidence, ...]:
     return tuple(
         Evidence(rule.id, Layer.BOUNDS, claim, result, engine, assumed, artefacts(setup))
         for claim, result, assumed in (
-            (ANSWERED, found.answered, left_open),
+            (_answered(asked), found.answered, left_open),
             (_enough(rule), found.enough, told),
         )
     )
+
+
+def _answered(asked: Question | str) -> str:
+    beat = 1 if isinstance(asked, str) else times_of(asked.case.channel).heartbeat
+    if beat == 1:
+        return ANSWERED
+    return f"every demand is answered within {beat} ticks for each message of `lost` and {_MORE}"
 
 
 def _enough(rule: Rule) -> str:
@@ -122,8 +128,8 @@ def question(rule: Rule, setup: Setup) -> Question | str:
         return "its timing is neither `within` nor `eventually`"
     if made.settings.event_driven:
         return "an interceptor without a timer stops nothing before the next command"
-    if made.channel.edge:
-        return "a request that is sent only once may be lost (`requests`, [assume])"
+    if made.channel.edge and not made.channel.heartbeat:
+        return "a request that is sent only once may be lost (`requests`, [assume]: no `heartbeat`)"
     if not _answers(sentence, made.stands):
         return f"`{made.stands}` alone does not answer it"
     assert rule.clock is not None
@@ -148,7 +154,7 @@ def search(asked: Question) -> Answer:
         return Answer(NotChecked(INSTALL), NotChecked(INSTALL))
     try:
         steps, loops = _covered(asked)
-        wrong, version = _proved(asked.case.channel.cells)
+        wrong, version = _proved(times_of(asked.case.channel))
         if wrong is not None:
             return Answer(NotChecked(wrong), NotChecked(wrong), version)
         answered = Proved(
@@ -185,7 +191,15 @@ def _covered(asked: Question) -> tuple[int, int]:
 
 
 def _channel(declared: Channel, cells: int, latency: int, lost: int, braking: int) -> Channel:
-    return replace(declared, cells=cells, latency=latency, lost=lost, braking=braking)
+    """Small times; a heartbeat is made short, too, and stays one."""
+    return replace(
+        declared,
+        cells=cells,
+        latency=latency,
+        lost=lost,
+        braking=braking,
+        heartbeat=min(declared.heartbeat, 3),
+    )
 
 
 def _short(settings: Settings) -> Settings:
@@ -202,7 +216,7 @@ def _short(settings: Settings) -> Settings:
 def _formula(channel: Channel) -> int:
     """D: ticks after which each demand is answered, as the claim says."""
     filled = -(-(channel.latency + channel.braking) // channel.cells)
-    return channel.lost + max(1, filled)
+    return channel.lost * times_of(channel).heartbeat + max(1, filled)
 
 
 def _endless(asked: Question) -> Case:
@@ -257,8 +271,12 @@ def _violating(asked: Question) -> Any:
 # z3 -------------------------------------------------------------------------------------------
 
 
-def _proved(cells: int) -> tuple[str | None, str]:
-    """What keeps the invariant from being proved, if anything does; and z3's version."""
+def _proved(declared: Times) -> tuple[str | None, str]:
+    """What keeps the invariant from being proved, if anything does; and z3's version.
+
+    Args:
+        declared: of these, `cells` and `heartbeat` count; the others are left open.
+    """
     import z3
 
     class Terms:
@@ -274,13 +292,15 @@ def _proved(cells: int) -> tuple[str | None, str]:
             return z3.Not(part)
 
     logic = Terms()
-    times = Times(cells, *z3.Ints("latency lost braking"))
-    bound, declared = z3.Ints("D n")
-    now, then = (Numbers(*z3.Ints(f"e{i} a{i} w{i} z{i}")) for i in (0, 1))
-    choice = Choice(z3.Bool("stands"), z3.Bool("is_lost"), z3.Int("cell"))
-    enough = cells * bound >= cells * times.lost + times.latency + times.braking
+    cells, beat = declared.cells, declared.heartbeat
+    times = Times(cells, beat, *z3.Ints("latency lost braking"))
+    bound, some = z3.Ints("D n")
+    now, then = (Numbers(*z3.Ints(f"e{i} a{i} w{i} z{i} r{i} s{i}")) for i in (0, 1))
+    stands, sent, lost = z3.Bools("stands is_sent is_lost")
+    choice = Choice(stands, sent, lost, z3.Int("cell"))
+    enough = cells * bound >= cells * beat * times.lost + times.latency + times.braking
     given = z3.And(
-        times.latency >= 0, times.lost >= 0, times.braking >= 0, bound > times.lost, enough
+        times.latency >= 0, times.lost >= 0, times.braking >= 0, bound > beat * times.lost, enough
     )
     here, there = (_invariant(numbers, times, bound, logic) for numbers in (now, then))
     queries = {
@@ -288,7 +308,7 @@ def _proved(cells: int) -> tuple[str | None, str]:
         "a step does not keep it": z3.And(
             here, relation(now, then, choice, times, logic), z3.Not(there)
         ),
-        "it does not keep the bound": z3.And(here, declared >= bound, now.open >= declared),
+        "it does not keep the bound": z3.And(here, some >= bound, now.open >= some),
     }
     for wrong, query in queries.items():
         solver = z3.Solver()
@@ -304,22 +324,22 @@ def _proved(cells: int) -> tuple[str | None, str]:
 def _invariant(at: Numbers, times: Times, bound: Any, logic: Any) -> Any:
     """Why an answer comes in time: what is true at the end of each tick.
 
-    While all requests since the trigger are lost, the demand is as old as they are many; the first
-    that is sent is in flight for less than the latency; and from when it is heard on, the wheels
-    have zero.
+    While all requests since a stop is requested are lost, that is for no longer than it takes to
+    send as many; the first that is not lost is in flight for less than the latency; and from when
+    it is heard on, the wheels have zero. A demand that is open is no older than its request.
     """
-    k, both, either = times.cells, logic.both, logic.either
-    passed = k * (at.open + 1)
-    lost = both(at.age == NONE, at.losses >= at.open + 1)
-    flying = both(at.age >= k, at.age < times.latency, passed - at.age <= k * times.lost)
-    since = passed - k * times.lost - times.latency + 1
-    heard = both(at.age == ARRIVED, either(at.still >= times.braking + 1, at.still >= since))
-    closed = both(at.open == -1, at.age == NONE)
-    opened = both(at.open >= 0, at.open < bound, either(lost, flying, heard))
+    k, beat, both, either = times.cells, times.heartbeat, logic.both, logic.either
+    passed, tried = k * (at.open + 1), k * beat * times.lost
+    told = at.open + 1 <= (at.losses - 1) * beat + at.silent
+    lost = both(at.age == NONE, at.losses >= 1, at.silent >= 1, told)
+    flying = both(at.age >= k, at.age < times.latency, passed - at.age <= tried)
+    since = passed - tried - times.latency + 1
+    still = either(at.still >= times.braking + 1, at.still >= since)
+    heard = both(at.age == ARRIVED, at.still >= 1, still)
+    released = both(at.asked == 0, at.open == -1, at.age == NONE)
+    asked = both(at.asked == 1, at.open >= -1, at.open < bound, either(lost, flying, heard))
     ranges = both(
-        at.losses >= 0,
-        at.losses <= times.lost,
-        at.still >= -1,
-        at.still <= times.braking + 1,
+        *(at.losses >= 0, at.losses <= times.lost, at.silent >= 0, at.silent <= beat),
+        *(at.still >= -1, at.still <= times.braking + 1),
     )
-    return both(ranges, either(closed, opened))
+    return both(ranges, either(released, asked))

@@ -143,6 +143,7 @@ def channel(rule: Rule, interception: Interception, assumed: Assumed) -> Channel
         assumed.planner is Planner.EVERY_TICK,
         ticks(assumed.braking, cell),
         interception.scan is not None,
+        ticks(assumed.heartbeat, tick),
     )
 
 
@@ -226,18 +227,16 @@ def assumptions(rule: Rule, setup: Setup, made: Case, *, any_time: bool = False)
     if interception.form is Form.TIMER:
         period = in_words(interception.period)
         yield f"the interceptor's timer rings once in each {period} (`period`, [interceptor])"
-    if not any_time:
-        yield from _rounded(interception, assumed, tick)
+    yield from _rounded(interception, assumed, tick, any_time=any_time)
     if not made.settings.stop_timeout:
         yield "the safety function never falls silent: there is no `stop_timeout` ([interceptor])"
 
 
 def _messages(assumed: Assumed, tick: int, *, any_time: bool) -> Iterator[str]:
     """What is said of stop messages."""
-    when = "only where it changes" if assumed.requests is Requests.EDGE else "every time"
     yield (
-        f"the safety function steps at every tick of {in_words(tick)} and sends its request {when} "
-        f"(`requests`, [assume])"
+        f"the safety function steps at every tick of {in_words(tick)} and sends its request "
+        f"{_when(assumed)}"
     )
     latency = "`latency`" if any_time else f"{in_words(assumed.latency)} (`latency`, [assume])"
     yield f"stop messages are heard in the order of sending, each within {latency}"
@@ -249,10 +248,27 @@ def _messages(assumed: Assumed, tick: int, *, any_time: bool) -> Iterator[str]:
         yield "no stop message is lost (`lost`, [assume])"
 
 
-def _rounded(interception: Interception, assumed: Assumed, tick: int) -> Iterator[str]:
-    """Durations that are no whole number of cells: the longer one is proved."""
+def _when(assumed: Assumed) -> str:
+    if assumed.heartbeat:
+        return (
+            f"where it changes, and again once it has been silent for "
+            f"{in_words(assumed.heartbeat)}, or earlier (`requests` and `heartbeat`, [assume])"
+        )
+    when = "only where it changes" if assumed.requests is Requests.EDGE else "every time"
+    return f"{when} (`requests`, [assume])"
+
+
+def _rounded(
+    interception: Interception, assumed: Assumed, tick: int, *, any_time: bool
+) -> Iterator[str]:
+    """Durations that are no whole number of cells, or of ticks: the longer one is proved."""
     cell = cell_of(tick, interception, assumed)
-    for name, duration in (("latency", assumed.latency), ("braking", assumed.braking)):
-        if duration % cell:
-            longer = in_words(ticks(duration, cell) * cell)
-            yield f"`{name}` of {in_words(duration)} counts as {longer}, whole cells of the model"
+    cells = "whole cells of the model"
+    for name, duration, unit, whole in (
+        ("latency", 0 if any_time else assumed.latency, cell, cells),
+        ("braking", 0 if any_time else assumed.braking, cell, cells),
+        ("heartbeat", assumed.heartbeat, tick, "whole ticks of the clock"),
+    ):
+        if duration % unit:
+            longer = in_words(ticks(duration, unit) * unit)
+            yield f"`{name}` of {in_words(duration)} counts as {longer}, {whole}"

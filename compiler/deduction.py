@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from compiler import formula as f
 from compiler.demand import Uninterpreted, boolean
 from compiler.interception import options as core
-from compiler.interception import ticks
+from compiler.interception import repetition, ticks
 from compiler.printing import identifier
 from compiler.rule import Rule
 from compiler.verification import Layer
@@ -30,7 +30,8 @@ class Delay:
 
     reach: int
     """A request is heard before the end of the tick so many ticks after the trigger: latency
-    rounded up, less the tick itself, and a tick for each message that may be lost in a row."""
+    rounded up, less the tick itself, and for each message that may be lost in a row the time to the
+    next one: a tick, or the heartbeat."""
     braking: int
     """At so many ends of ticks in a row the wheels have zero: braking rounded up, and the tick in
     which it began."""
@@ -62,12 +63,13 @@ def delay(rule: Rule, declarations: Declarations | None) -> Delay | str | None:
     assumed = declarations.assumed if declarations else None
     if assumed is None:
         return None
-    if assumed.requests is Requests.EDGE and assumed.lost:
-        return "a request that is sent once may be lost ([assume] requests and lost)"
     period = rule.clock.period if rule.clock else None
     if period is None:
         return "the clock ticks by message, so a latency is no number of ticks"
-    reach = max(ticks(assumed.latency, period) - 1, 0) + assumed.lost
+    every = repetition(assumed, period)
+    if every is None and assumed.lost:
+        return "a request that is sent once may be lost ([assume] requests, lost and no heartbeat)"
+    reach = max(ticks(assumed.latency, period) - 1, 0) + assumed.lost * (every or 0)
     return Delay(reach, ticks(assumed.braking, period) + 1)
 
 
@@ -127,33 +129,41 @@ _ASSUMED = (
 )
 
 
+def _assumed(declarations: Declarations | None) -> tuple[str, ...]:
+    """On change only, a demand that begins while a stop is requested brings no message with it."""
+    assumed = declarations.assumed if declarations else None
+    if assumed is None or assumed.requests is Requests.LEVEL:
+        return _ASSUMED
+    requests, heard, stands = _ASSUMED
+    return (requests, f"{heard}; or one from before the trigger is still in force", stands)
+
+
 def _loop_claims(rule: Rule, declarations: Declarations | None) -> Iterator[Claim]:
     if loopless(rule, declarations) is not None:
         return
+    given = _assumed(declarations)
     known, bound = delay(rule, declarations), rule.ticks
     every = "for every bound n and every delay reach + braking of at most n"
     sentence = f"never violated, {every}"
     if bound is None:
         sentence = "every trigger is answered within reach + braking ticks, whatever they are"
-    yield Claim(Layer.BOUNDS, sentence, _ASSUMED)
+    yield Claim(Layer.BOUNDS, sentence, given)
     if known is not None:
-        yield _declared_claim(known, bound)
+        yield _declared_claim(known, bound, given)
 
 
-def _declared_claim(known: Delay | str, bound: int | None) -> Claim:
+def _declared_claim(known: Delay | str, bound: int | None, given: tuple[str, ...]) -> Claim:
     """The same for the numbers of [assume]."""
     at = "the declared delay" if bound is None else f"the bound of {bound} ticks"
     if isinstance(known, str):
-        return Claim(Layer.BOUNDS, f"never late at {at}", _ASSUMED, known)
+        return Claim(Layer.BOUNDS, f"never late at {at}", given, known)
     numbers = (
         f"reach = {known.reach} ticks ([assume] latency and lost)",
         f"braking = {known.braking} ticks ([assume] braking)",
     )
     if bound is None:
         sentence = f"every trigger is answered within {known.total} ticks, the declared delay"
-        return Claim(Layer.BOUNDS, sentence, (*_ASSUMED, *numbers))
+        return Claim(Layer.BOUNDS, sentence, (*given, *numbers))
     late = f"the declared delay of {known.total} ticks is more than the bound of {bound}"
     sentence = f"never violated at {at} and the declared delay of {known.total}"
-    return Claim(
-        Layer.BOUNDS, sentence, (*_ASSUMED, *numbers), late if known.total > bound else None
-    )
+    return Claim(Layer.BOUNDS, sentence, (*given, *numbers), late if known.total > bound else None)

@@ -12,14 +12,11 @@ from dataclasses import asdict, dataclass
 from typing import Any, NamedTuple
 
 from compiler.heard import COMMAND, RELEASE, RING, SCAN, STOP, Moment, Seen, after, first
-from compiler.opaque import InspectedError, Opaque, is_opaque
+from compiler.opaque import InspectedError, Opaque, is_opaque, is_zero
 from compiler.purity import core
 from monitors.interceptor import Options
 
 Key = tuple[object, ...]
-_NEEDED = (
-    "Velocity Options State StopHeard CommandHeard ScanHeard TimerRang initial step ZERO".split()
-)
 
 
 class _StrangeError(Exception):
@@ -84,9 +81,6 @@ class _Walk:
     def __init__(
         self, module: Any, options: Options, broken: Sequence[Callable[[Moment], bool]], most: int
     ) -> None:
-        missing = next((name for name in _NEEDED if not hasattr(module, name)), None)
-        if missing is not None:
-            raise _StrangeError(f"its core has no `{missing}`")
         self.module, self.declared, self.broken, self.most = module, options, broken, most
         self.fields = tuple(getattr(module.State, "__dataclass_fields__", ()))
         try:
@@ -143,7 +137,7 @@ class _Walk:
 
     def _step(self, state: Any, message: Any) -> tuple[Any, Any]:
         given = self._called(lambda: self.module.step(state, message, self.options))
-        if not isinstance(given, tuple) or len(given) != 2:
+        if type(given) is not tuple or len(given) != 2:
             raise _StrangeError("a step gives no state and command")
         return given[0], given[1]
 
@@ -162,6 +156,8 @@ class _Walk:
             try:
                 if broken(moment):
                     yield i
+            except InspectedError:
+                raise _StrangeError("its state has a command in the place of a number") from None
             except (AttributeError, TypeError) as error:
                 raise _StrangeError(f"its state is another one: {error}") from None
 
@@ -170,12 +166,7 @@ class _Walk:
             return "nothing"
         if is_opaque(said):
             return "last" if said is now.last else "other"
-        return "zero" if self._is_zero(said) else "other"
-
-    def _is_zero(self, value: Any) -> bool:
-        return type(value) is self.module.Velocity and not any(
-            is_opaque(part) or part != 0 for part in value
-        )
+        return "zero" if is_zero(said, self.module.Velocity) else "other"
 
     def _normal(self, state: Any, seen: Seen) -> _Place:
         """One of all states that differ only in which commands they hold."""
@@ -193,7 +184,7 @@ class _Walk:
             elif value is None or isinstance(value, int | float):
                 values[name] = value
                 key.append(value)
-            elif self._is_zero(value):
+            elif is_zero(value, self.module.Velocity):
                 values[name] = self.module.ZERO
                 key.append("zero")
             else:

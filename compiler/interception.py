@@ -6,7 +6,7 @@ import hashlib
 import json
 import tomllib
 
-from fretish.declarations import Declarations, Form, Interception
+from fretish.declarations import Assumed, Declarations, Form, Interception, Requests
 from monitors.interceptor import Options
 
 
@@ -48,3 +48,15 @@ def assumed(declarations: Declarations) -> str:
 def ticks(duration: int, period: int) -> int:
     """How many periods cover the duration; both in nanoseconds, the period above 0."""
     return -(-duration // period)
+
+
+def repetition(given: Assumed, tick: int) -> int | None:
+    """Ticks after which a request that does not change is sent again; None: never.
+
+    Args:
+        given: what the bindings say of the safety function.
+        tick: of its clock, nanoseconds.
+    """
+    if given.requests is Requests.LEVEL:
+        return 1
+    return ticks(given.heartbeat, tick) or None

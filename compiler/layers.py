@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator
+from collections.abc import Callable, Collection, Iterator
 from dataclasses import dataclass, replace
 from pathlib import PurePath
 
@@ -16,6 +16,7 @@ from compiler.files import sha256
 from compiler.interception import ASSUMED, assumed, options
 from compiler.project import Project
 from compiler.provers import with_crosshair, with_dafny
+from compiler.purity import head
 from compiler.rule import Rule
 from compiler.sif import sif
 from compiler.targets import ajpf, bundle, dafny, interceptor, monitor
@@ -42,31 +43,47 @@ class Request:
     provers: Collection[str] = ()
 
 
-def evidence(project: Project, asked: Request) -> tuple[Evidence, ...] | Diagnostic:
+Tell = Callable[[str], None]
+"""Is told what is worked on from now on, in words."""
+
+
+def evidence(
+    project: Project, asked: Request, tell: Tell = lambda words: None
+) -> tuple[Evidence, ...] | Diagnostic:
     """All lines: requirement by requirement from the monitor outwards, then what all share.
+
+    Args:
+        project: the requirements and what their bindings declare.
+        asked: which layers, with which texts.
+        tell: is called before each claim that takes its time.
 
     Raises:
         NotAMonitorError: the given text is no generated monitor.
     """
     found: list[Evidence] = []
     for rule in project.rules:
-        found.extend(_of_rule(rule, _setup(rule, project, asked), asked))
+        found.extend(_of_rule(rule, _setup(rule, project, asked), asked, tell))
         if DAFNY in asked.provers:
+            tell(f"{rule.id}: Dafny")
             found.extend(_dafny(rule, project, asked.limits))
-    found.extend(_interceptor(project, asked))
+    found.extend(_interceptor(project, asked, tell))
     if Layer.AGENT not in asked.layers:
         return tuple(found)
+    tell("agent: its properties")
     agent = _agent(project, asked)
     return agent if isinstance(agent, Diagnostic) else (*found, *agent)
 
 
-def _of_rule(rule: Rule, setup: Setup, asked: Request) -> Iterator[Evidence]:
+def _of_rule(rule: Rule, setup: Setup, asked: Request, tell: Tell) -> Iterator[Evidence]:
     if Layer.MONITOR in asked.layers:
+        tell(f"{rule.id}: monitor")
         yield proofs.evidence(rule, setup.monitor.name, setup.monitor.text, asked.limits)
     found: list[Evidence] = []
     if Layer.LOOP in asked.layers:
+        tell(f"{rule.id}: loop")
         found.extend(closedloop.loop(rule, setup, asked.limits))
     if Layer.BOUNDS in asked.layers:
+        tell(f"{rule.id}: bounds")
         found.extend(bounds.bounds(rule, setup, asked.limits))
     known = assumed(rule.declarations) if rule.declarations else ""
     for one in found:
@@ -98,7 +115,7 @@ def _gate(project: Project, asked: Request) -> Named | None:
 # Layers of other rooms ------------------------------------------------------------------------
 
 
-def _interceptor(project: Project, asked: Request) -> Iterator[Evidence]:
+def _interceptor(project: Project, asked: Request, tell: Tell) -> Iterator[Evidence]:
     """Its contracts, and what CrossHair finds of them."""
     gate = _gate(project, asked)
     declared = project.declarations.interceptor if project.declarations else None
@@ -111,9 +128,10 @@ def _interceptor(project: Project, asked: Request) -> Iterator[Evidence]:
                 "the bindings declare no interceptor (`[interceptor]`)",
             )
         else:
+            tell("interceptor: its contracts")
             yield from _contracts(gate, options(declared), asked.limits)
     if CROSSHAIR in asked.provers and gate is not None:
-        yield from with_crosshair(gate.text)
+        yield from _crosshair(gate, asked.limits, tell)
 
 
 def _contracts(gate: Named, declared: Options, limits: Limits) -> Iterator[Evidence]:
@@ -123,6 +141,21 @@ def _contracts(gate: Named, declared: Options, limits: Limits) -> Iterator[Evide
         yield _unknown("interceptor", Layer.INTERCEPTOR, claim, found.reason, gate)
     else:
         yield from (replace(one, artefacts={gate.name: sha256(gate.text)}) for one in found)
+
+
+def _crosshair(gate: Named, limits: Limits, tell: Tell) -> Iterator[Evidence]:
+    """Of the core alone: the node takes commands apart, and CrossHair would execute it."""
+    known = head(gate.text)
+    if isinstance(known, str):
+        claim = "CrossHair confirms the contracts in the text"
+        yield _unknown("interceptor", Layer.INTERCEPTOR, claim, known, gate)
+        return
+    found = with_crosshair(
+        known.text,
+        seconds=float(limits.seconds),
+        tell=lambda name: tell(f"interceptor: CrossHair, `{name}`"),
+    )
+    yield from (replace(one, artefacts={gate.name: sha256(gate.text)}) for one in found)
 
 
 def _dafny(rule: Rule, project: Project, limits: Limits) -> Iterator[Evidence]:

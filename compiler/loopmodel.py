@@ -6,7 +6,8 @@ One step is one tick of the monitor's clock. What happens at and after it, in th
    the robot stands: false while the wheels are told to move, true once they have had zero for the
    braking time, and before that as the environment likes, for good while they have zero.
 2. The safety function steps, as does the observer. The first requests a stop while a demand begins
-   or is open; its message is lost or sent.
+   or is open; its message is lost or sent. Where it speaks on change, it may repeat itself at any
+   tick, and does once it has been silent for its heartbeat.
 3. The tick has so many cells as the interceptor's timer rings in it, and in each cell it rings
    once. Before and after it, stop messages are heard in the order in which they were sent, and
    commands and scans in any number and order.
@@ -42,16 +43,19 @@ class Channel:
     lost: int = 0
     """Stop messages in a row."""
     edge: bool = False
-    """Requests are sent on change only, not at every tick."""
+    """Requests are sent on change, not at every tick."""
     punctual: bool = False
     """At least one command comes in every tick."""
     braking: int = 0
     scans: bool = False
     """The interceptor hears scans."""
+    heartbeat: int = 0
+    """With `edge`, in ticks: one is sent after a silence of so many, or earlier; 0: none is."""
 
     def __post_init__(self) -> None:
         assert self.cells >= 1
-        assert min(self.latency, self.lost, self.braking) >= 0
+        assert min(self.latency, self.lost, self.braking, self.heartbeat) >= 0
+        assert self.edge or not self.heartbeat
 
     @property
     def stands(self) -> int:
@@ -78,6 +82,9 @@ class Node(NamedTuple):
     """Stop messages that were lost since the last that was not."""
     requested: bool
     """What the last stop message said, lost or not."""
+    silent: int
+    """Ticks from the last stop message to the next tick, or from tick 0 where there was none; 0
+    where no heartbeat counts them."""
 
 
 class Tick(NamedTuple):
@@ -89,6 +96,8 @@ class Tick(NamedTuple):
     requested: bool
     sent: bool | None
     """None: no message; False: it is lost."""
+    again: bool
+    """The message says what the last one did, for the heartbeat."""
     violated: bool
 
 
@@ -139,7 +148,7 @@ class Loop:
         self._judged: dict[tuple[Hashable, Hashable, Valuation], tuple[Hashable, ...]] = {}
         watching = observer.save() if observer else None
         wheels = Wheels(gate.initial, channel.stands, ())
-        self.initial = Node(safety.save(), watching, wheels, 0, False)
+        self.initial = Node(safety.save(), watching, wheels, 0, False, 0)
 
     # One tick -------------------------------------------------------------------------------
 
@@ -170,11 +179,12 @@ class Loop:
     def _begins(self, node: Node, letter: Valuation, still: int) -> Iterator[tuple[Tick, Node]]:
         safety, observer, triggered, owed, violated = self._judge(node, letter)
         requested = bool(triggered or owed)
-        for sent, losses in self._fates(node, requested):
-            tick = Tick(letter, bool(triggered), bool(owed), requested, sent, bool(violated))
-            said = node.requested if sent is None else requested
-            wheels = self._begun(node.wheels, tick, still)
-            yield tick, Node(safety, observer, wheels, losses, said)
+        same = self.channel.edge and requested == node.requested
+        for sent, losses in self._fates(node, same):
+            told = (bool(triggered), bool(owed), requested, sent, same and sent is not None)
+            tick = Tick(letter, *told, bool(violated))
+            wheels, silent = self._begun(node.wheels, tick, still), self._silence(node, sent)
+            yield tick, Node(safety, observer, wheels, losses, requested, silent)
 
     def _begun(self, wheels: Wheels, tick: Tick, still: int) -> Wheels:
         sent = ((tick.requested, 0),) if tick.sent else ()
@@ -207,12 +217,26 @@ class Loop:
             self._judged[key] = found
         return found
 
-    def _fates(self, node: Node, requested: bool) -> list[tuple[bool | None, int]]:
-        """What becomes of the message, and how many are lost in a row then."""
-        if self.channel.edge and requested == node.requested:
-            return [(None, node.losses)]
+    def _fates(self, node: Node, same: bool) -> list[tuple[bool | None, int]]:
+        """What becomes of the message, and how many are lost in a row then.
+
+        Args:
+            node: before the tick.
+            same: it would say what the last one did, and need not be sent for that.
+        """
+        beat = self.channel.heartbeat
+        quiet: list[tuple[bool | None, int]] = [(None, node.losses)]
         lost: list[tuple[bool | None, int]] = [(False, node.losses + 1)]
-        return [(True, 0), *(lost if node.losses < self.channel.lost else [])]
+        if same and not beat:
+            return quiet
+        said = [(True, 0), *(lost if node.losses < self.channel.lost else [])]
+        return [*quiet, *said] if same and node.silent < beat else said
+
+    def _silence(self, node: Node, sent: bool | None) -> int:
+        """Ticks without a message, at the next tick."""
+        if self.channel.edge and not self.channel.heartbeat:
+            return 0
+        return node.silent + 1 if sent is None else 1
 
     # From one tick to the next --------------------------------------------------------------
 

@@ -81,7 +81,7 @@ class _Again:
         self._state: Any = loop.gate.fresh()
         self._still = loop.channel.stands
         self._flying: list[tuple[bool, int]] = []
-        self._lost, self._said = 0, False
+        self._lost, self._silent, self._said = 0, 0, False
         self.violated = False
 
     def row(self, moment: Moment) -> tuple[Truth, ...]:
@@ -114,7 +114,12 @@ class _Again:
         monitor.step(**given)  # type: ignore[attr-defined]
 
     def _send(self, tick: Tick) -> None:
-        assert (tick.sent is None) == (self._channel.edge and tick.requested == self._said)
+        same = self._channel.edge and tick.requested == self._said
+        beat = self._channel.heartbeat
+        assert tick.again == (same and tick.sent is not None)
+        assert beat or not tick.again
+        assert tick.sent is not None or (same and (not beat or self._silent < beat))
+        self._silent = self._silent + 1 if tick.sent is None else 1
         if tick.sent is not None:
             self._said, self._lost = tick.requested, 0 if tick.sent else self._lost + 1
         assert self._lost <= self._channel.lost
@@ -143,12 +148,13 @@ def _in_words(moment: Moment) -> str:
 
 def _message(tick: Tick) -> Iterator[str]:
     what = "a stop is requested" if tick.requested else "no stop is requested"
+    again = " again" if tick.again else ""
     if tick.sent is None:
         yield f"{what}, and no message is sent" if tick.requested else what
     elif tick.sent:
-        yield f"{what}, and the message is sent"
+        yield f"{what}, and the message is sent{again}"
     else:
-        yield f"{what}, and the message is lost"
+        yield f"{what}, and the message is{' sent again, and' if tick.again else ''} lost"
 
 
 def _heard(heard: Sequence[Heard | None]) -> Iterator[str]:

@@ -1,7 +1,8 @@
-"""A twin of the closed loop in four whole numbers, as one relation for solvers and for Python.
+"""A twin of the closed loop in six whole numbers, as one relation for solvers and for Python.
 
 It forgets everything but one demand that is open: for how long, what became of the first request
-that was not lost since it began, and for how long the wheels have zero. So it may do more than the
+that was not lost since a stop is requested without a break, and for how long the wheels have zero.
+Requests at every tick are those of a heartbeat of one tick. So it may do more than the
 loop, never less; that is checked step by step where the loop is small (`covered`), and what an
 inductive invariant says of the twin is then true of the loop. Times are cells, those of
 `compiler.loopmodel`.
@@ -27,26 +28,34 @@ class Numbers(NamedTuple):
     open: Any
     """Ticks since the trigger of the oldest open demand; -1: none is open."""
     age: Any
-    """Cells since the first request was sent that was not lost since then."""
+    """Cells since the first request was sent that was not lost since a stop is requested."""
     losses: Any
     """Messages that were lost since the last that was not."""
     still: Any
     """Ends of cells since the wheels have zero, up to `braking + 1`; -1: they move."""
+    asked: Any
+    """1: a stop is requested, whether anyone is told or not; 0: none is."""
+    silent: Any
+    """Ticks from the last message to the next tick."""
 
 
 class Choice(NamedTuple):
     """What is left open in a step."""
 
     stands: Any
+    sent: Any
     lost: Any
+    """The message that is sent."""
     cell: Any
     """In which the request is heard, if it is; -1: at the instant of the tick."""
 
 
 class Times(NamedTuple):
-    """The parameters; `cells` is a number in every use, the others may be terms."""
+    """The parameters; `cells` and `heartbeat` are numbers in every use, the others may be terms."""
 
     cells: int
+    heartbeat: int
+    """Ticks: after so many without a message one is sent, lost or not."""
     latency: Any
     lost: Any
     braking: Any
@@ -81,15 +90,15 @@ class Plain:
         return not part
 
 
-INITIAL = Numbers(-1, NONE, 0, None)
+INITIAL = Numbers(-1, NONE, 0, None, 0, 0)
 """`still` is what it is when the robot stands: `braking + 1`."""
 
 
 def begins(now: Numbers, times: Times, logic: Logic) -> Any:
     """Before the first tick."""
-    return logic.both(
-        now.open == -1, now.age == NONE, now.losses == 0, now.still == times.braking + 1
-    )
+    standing = now.still == times.braking + 1
+    quiet = logic.both(now.losses == 0, now.asked == 0, now.silent == 0)
+    return logic.both(now.open == -1, now.age == NONE, standing, quiet)
 
 
 def relation(now: Numbers, then: Numbers, choice: Choice, times: Times, logic: Logic) -> Any:
@@ -99,34 +108,50 @@ def relation(now: Numbers, then: Numbers, choice: Choice, times: Times, logic: L
         either(no(choice.stands), now.still >= 0),
         either(choice.stands, now.still <= times.braking),
     )
-    sent = either(
-        both(choice.lost, now.losses < times.lost, then.losses == now.losses + 1),
-        both(no(choice.lost), then.losses == 0),
-    )
     ranges = both(then.open >= -1, then.still >= -1, then.still <= times.braking + 1)
-    closed = both(then.open == -1, then.age == NONE)
     opened = both(
         no(choice.stands),
         either(
             both(now.open < 0, then.open == 0),
             both(now.open >= 0, then.open == now.open + 1),
         ),
+    )
+    released = both(then.asked == 0, then.open == -1, then.age == NONE)
+    asked = both(
+        then.asked == 1,
+        either(then.open == -1, opened),
         _requested(now, then, choice, times, logic),
     )
-    return both(sampled, sent, ranges, either(closed, opened))
+    message = _message(now, then, choice, times, logic)
+    return both(sampled, message, ranges, either(released, asked))
+
+
+def _message(now: Numbers, then: Numbers, choice: Choice, times: Times, logic: Logic) -> Any:
+    """What becomes of the message: a change is always told, and silence has an end."""
+    both, either, no = logic.both, logic.either, logic.no
+    quiet = both(
+        then.asked == now.asked, now.silent < times.heartbeat, then.silent == now.silent + 1
+    )
+    lost = both(choice.lost, now.losses < times.lost, then.losses == now.losses + 1)
+    kept = both(no(choice.lost), then.losses == 0)
+    return either(
+        both(no(choice.sent), quiet, then.losses == now.losses),
+        both(choice.sent, then.silent == 1, either(lost, kept)),
+    )
 
 
 def _requested(now: Numbers, then: Numbers, choice: Choice, times: Times, logic: Logic) -> Any:
-    """What becomes of the request in a tick at whose end the demand is open."""
+    """What becomes of the request in a tick in which a stop is requested."""
     both, either, no = logic.both, logic.either, logic.no
-    none = either(now.open < 0, now.age == NONE)
+    none = either(now.asked == 0, now.age == NONE)
+    unsent, sent = either(no(choice.sent), choice.lost), both(choice.sent, no(choice.lost))
     waiting = both(no(none), now.age >= 0)
     heard = both(no(none), now.age == ARRIVED)
     k, end = times.cells, times.braking + 1
     return either(
-        both(none, choice.lost, then.age == NONE),
-        both(none, no(choice.lost), then.age == k, k < times.latency),
-        both(none, no(choice.lost), then.age == ARRIVED, _heard(0, then, choice, times, logic)),
+        both(none, unsent, then.age == NONE),
+        both(none, sent, then.age == k, k < times.latency),
+        both(none, sent, then.age == ARRIVED, _heard(0, then, choice, times, logic)),
         both(waiting, then.age == now.age + k, then.age < times.latency),
         both(waiting, then.age == ARRIVED, _heard(now.age, then, choice, times, logic)),
         both(heard, then.age == ARRIVED, either(then.still >= end, then.still >= now.still + k)),
@@ -171,13 +196,14 @@ def covered(loop: Loop, limit: int, longest: int) -> Covered:
         TooManyStatesError: there are more states than the limit.
     """
     channel = loop.channel
-    times = Times(channel.cells, channel.latency, channel.lost, channel.braking)
+    assert channel.heartbeat or not channel.edge
+    times = times_of(channel)
     begin = INITIAL._replace(still=channel.stands)
     seen: set[tuple[Node, int, int]] = {(loop.initial, begin.open, begin.age)}
     allowed: dict[tuple[Numbers, Numbers], bool] = {}
     waiting, steps, most = list(seen), 0, -1
     for node, open_, age in waiting:
-        now = Numbers(open_, age, node.losses, node.wheels.still)
+        now = _numbers(open_, age, node)
         for tick, after in loop.steps(node):
             if tick.violated:
                 continue
@@ -199,17 +225,26 @@ def covered(loop: Loop, limit: int, longest: int) -> Covered:
 
 def _followed(now: Numbers, tick: Tick, after: Node, channel: Channel) -> Numbers:
     """What the twin remembers of a step of the loop."""
-    losses, still = after.losses, after.wheels.still
-    if not tick.owed:
-        return Numbers(-1, NONE, losses, still)
-    age = now.age if now.open >= 0 else NONE
+    if not tick.requested:
+        return _numbers(-1, NONE, after)
+    age = now.age if now.asked else NONE
     if age == NONE and tick.sent:
         age = 0
     if age >= 0:
         age += channel.cells
         flying = any(queued == age for _, queued in after.wheels.queue)
         age = age if flying else ARRIVED
-    return Numbers(now.open + 1, age, losses, still)
+    return _numbers(now.open + 1 if tick.owed else -1, age, after)
+
+
+def _numbers(open_: int, age: int, node: Node) -> Numbers:
+    return Numbers(open_, age, node.losses, node.wheels.still, int(node.requested), node.silent)
+
+
+def times_of(channel: Channel) -> Times:
+    """Those of a channel that repeats what it says: at every tick, or after a silence."""
+    beat = channel.heartbeat if channel.edge else 1
+    return Times(channel.cells, beat, channel.latency, channel.lost, channel.braking)
 
 
 def _is_step(now: Numbers, then: Numbers, times: Times) -> bool:
@@ -217,5 +252,6 @@ def _is_step(now: Numbers, then: Numbers, times: Times) -> bool:
 
 
 def _choices(times: Times) -> Iterator[Choice]:
-    for stands, lost, cell in product((False, True), (False, True), range(-1, times.cells)):
-        yield Choice(stands, lost, cell)
+    fates = ((False, False), (True, False), (True, True))
+    for stands, (sent, lost), cell in product((False, True), fates, range(-1, times.cells)):
+        yield Choice(stands, sent, lost, cell)

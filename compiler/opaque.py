@@ -17,15 +17,17 @@ def _inspected(*_: object, **__: object) -> NoReturn:
 
 
 class Opaque:
-    """Two of them are told apart by `is` alone, which a pure core can use with None only."""
+    """Two of them are told apart by `is` alone, which no pure core uses."""
 
     __slots__ = ()
 
 
 for _name in (
     "__getattribute__ __eq__ __ne__ __lt__ __le__ __gt__ __ge__ __bool__ __len__ __iter__ "
-    "__contains__ __getitem__ __hash__ __add__ __radd__ __sub__ __rsub__ __neg__ __pos__ "
-    "__abs__ __invert__ __index__ __int__ __float__ __str__ __repr__ __format__ __call__"
+    "__contains__ __getitem__ __hash__ __add__ __radd__ __sub__ __rsub__ __mul__ __rmul__ "
+    "__truediv__ __rtruediv__ __floordiv__ __rfloordiv__ __mod__ __rmod__ __pow__ __rpow__ "
+    "__matmul__ __rmatmul__ __neg__ __pos__ __abs__ __invert__ __round__ __index__ __int__ "
+    "__float__ __complex__ __bytes__ __str__ __repr__ __format__ __call__"
 ).split():
     setattr(Opaque, _name, _inspected)
 
@@ -33,3 +35,8 @@ for _name in (
 def is_opaque(value: Any) -> bool:
     """Whether it is one; asks nothing of it."""
     return type(value) is Opaque
+
+
+def is_zero(value: Any, velocity: type[tuple[Any, ...]]) -> bool:
+    """Whether it is a velocity of that class with nothing but zeros; asks no opaque one."""
+    return type(value) is velocity and not any(is_opaque(part) or part != 0 for part in value)

@@ -12,7 +12,7 @@ import hashlib
 import re
 import shutil
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
@@ -31,7 +31,7 @@ _MEMORY = 4 * 2**30
 
 
 _STARTED = 30.0
-"""Seconds in which a prover tells its version."""
+"""Seconds in which a prover tells its version, or has read its text."""
 
 
 def _sha256(text: str) -> str:
@@ -169,7 +169,7 @@ def _member(text: str, line: int) -> str:
 
 # CrossHair ------------------------------------------------------------------------------------
 
-CROSSHAIR_SECONDS = 20.0
+CROSSHAIR_SECONDS = 60.0
 _CROSSHAIR_ABSENT = "CrossHair is not installed: pip install 'fretc[crosshair]'"
 _MODULE = "interceptor_core"
 _WHOLE = "the numbers of a velocity are whole; no function names one of them"
@@ -186,7 +186,11 @@ class _Contract:
 
 
 def with_crosshair(
-    text: str, requirement: str = "interceptor", *, seconds: float = CROSSHAIR_SECONDS
+    text: str,
+    requirement: str = "interceptor",
+    *,
+    seconds: float = CROSSHAIR_SECONDS,
+    tell: Callable[[str], None] = lambda function: None,
 ) -> tuple[Evidence, ...]:
     """Let CrossHair look for inputs that break the contracts of an interceptor's core.
 
@@ -196,7 +200,8 @@ def with_crosshair(
     Args:
         text: the core, with `post:` lines in its docstrings (PEP 316). It is executed.
         requirement: what the lines of evidence are filed under.
-        seconds: for each contract.
+        seconds: for each function; its contracts share them.
+        tell: is called with the name of each function before it is looked at.
 
     Returns:
         One line for each contract: proved if CrossHair has confirmed it over all paths, refuted
@@ -212,6 +217,7 @@ def with_crosshair(
     for name in dict.fromkeys(contract.function for contract in contracts):
         own = [contract for contract in contracts if contract.function == name]
         if engine:
+            tell(name)
             found += _explored(whole or text, name, own, seconds)
         else:
             found += [(_claim(contract), NotChecked(_CROSSHAIR_ABSENT)) for contract in own]
@@ -290,14 +296,13 @@ def _explored(
     """The contracts of one function: claims and what is known of them."""
     command = [
         *(sys.executable, "-m", "crosshair", "check", "--report_all"),
-        *("--analysis_kind=PEP316", f"--per_condition_timeout={seconds:g}"),
+        *("--analysis_kind=PEP316", f"--per_condition_timeout={seconds / len(contracts):g}"),
         f"{_MODULE}.{function}",
     ]
-    limit = seconds * len(contracts) + 30
     with TemporaryDirectory(prefix="fretc-") as name:
         folder = Path(name)
         (folder / f"{_MODULE}.py").write_text(text, encoding="utf-8")
-        ran = run(command, folder, seconds=limit, memory=_MEMORY)
+        ran = run(command, folder, seconds=seconds + _STARTED, memory=_MEMORY)
     told: dict[int, tuple[str, str]] = {}
     for line in ran.text.splitlines():
         if found := _TOLD.match(line):

@@ -2,8 +2,9 @@
 
 What the tree may consist of is listed here; all else is told. There is no loop and no recursion, so
 every step ends; no attribute is written, no name bound twice, nothing called but the core's own
-functions and constructors, `min`, `max` and `replace`. Of the node below the core it is shown only
-that it leaves the names of the core alone.
+functions and constructors, `min`, `max` and `replace`. No object is told from another that is equal
+to it, and no constant is read but `ZERO`, so that a state is its values. Of the node below the core
+it is shown only that it leaves the names of the core alone.
 """
 
 from __future__ import annotations
@@ -22,6 +23,9 @@ _IMPORTS = {
     "dataclasses": {"dataclass", "replace"},
     "typing": {"NamedTuple"},
 }
+_NEEDED = (
+    "ZERO Velocity Options State StopHeard CommandHeard ScanHeard TimerRang initial halted step"
+).split()
 _BUILTINS = frozenset({"min", "max", "bool", "int", "float"})
 _CALLED = frozenset({"min", "max", "replace"})
 _FORBIDDEN = frozenset(
@@ -33,6 +37,13 @@ _FORBIDDEN = frozenset(
 
 class _StrangeError(Exception):
     """What is not on the list."""
+
+
+@dataclass(frozen=True, slots=True)
+class Head:
+    """The text of a core that is known to be pure, without the node below it."""
+
+    text: str
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,9 +61,28 @@ def core(text: str, name: str = "interceptor") -> Core | str:
         text: what `--emit interceptor` wrote, or the core alone.
         name: for tracebacks.
     """
-    head, marked, node = text.partition(f"{MARKER}\n")
+    known = head(text)
+    if isinstance(known, str):
+        return known
     try:
-        tree = ast.parse(head)
+        module: ModuleType = executed(known.text, name)
+    except Exception as error:
+        return f"it cannot be executed: {type(error).__name__}: {error}"
+    return Core(module)
+
+
+def head(text: str) -> Head | str:
+    """The core of an interceptor where it is pure; else, why it is not. Nothing is executed.
+
+    Args:
+        text: what `--emit interceptor` wrote, or the core alone.
+    """
+    above, marked, node = text.partition(f"{MARKER}\n")
+    try:
+        tree = ast.parse(above)
+        missing = [name for name in _NEEDED if name not in _defined(tree)]
+        if missing:
+            return f"its core has no `{missing[0]}`"
         names = _Module().check(tree)
         if marked and "OPTIONS" not in names:
             return "its core has no `OPTIONS`"
@@ -62,11 +92,15 @@ def core(text: str, name: str = "interceptor") -> Core | str:
         return f"it is no Python: {error}"
     except _StrangeError as error:
         return f"its core is not as fretc can read it: {error}"
-    try:
-        module: ModuleType = executed(head, name)
-    except Exception as error:
-        return f"it cannot be executed: {type(error).__name__}: {error}"
-    return Core(module)
+    return Head(above)
+
+
+def _defined(tree: ast.Module) -> Iterator[str]:
+    """Classes, functions and constants, without a look at what they are."""
+    for node in tree.body:
+        match node:
+            case ast.ClassDef(name) | ast.FunctionDef(name) | ast.Assign([ast.Name(name)]):
+                yield name
 
 
 def _strange(node: ast.AST) -> _StrangeError:
@@ -127,6 +161,8 @@ class _Module:
     def __init__(self) -> None:
         self.bound: set[str] = set()
         self.classes: set[str] = set()
+        self.unread: set[str] = {"dataclass", "NamedTuple"}
+        """Names that no function may use."""
         self.functions: dict[str, set[str]] = {}
         """What each of them calls."""
 
@@ -167,9 +203,17 @@ class _Module:
                 _demand(maker in self.classes, node)
                 values = [*args, *(keyword.value for keyword in keywords)]
                 _demand(all(isinstance(value, ast.Constant) for value in values), node)
-                self._bind(name, node)
+                self._constant(name, maker, plain=not values, node=node)
             case _:
                 raise _strange(node)
+
+    def _constant(self, name: str, maker: str, *, plain: bool, node: ast.AST) -> None:
+        """`ZERO` is what it is called; any other is an option of the node."""
+        self._bind(name, node)
+        if name == "ZERO":
+            _demand(maker == "Velocity" and plain, node)
+        else:
+            self.unread.add(name)
 
     def _bind(self, name: str, node: ast.AST) -> None:
         _demand(name not in self.bound and name not in _BUILTINS, node)
@@ -250,12 +294,13 @@ class _Function:
     def _case(self, case: ast.match_case) -> None:
         for part in ast.walk(case.pattern):
             match part:
-                case ast.MatchClass(ast.Name(name)):
+                case ast.MatchClass(ast.Name(name), _, keywords):
                     _demand(name in self.module.classes, part)
+                    _demand(not any(word.startswith("_") for word in keywords), part)
                 case ast.MatchAs(name=name):
                     if name is not None:
                         self._local(name, part)
-                case ast.MatchValue(ast.Constant()) | ast.MatchSingleton() | ast.MatchOr():
+                case ast.MatchValue(ast.Constant()) | ast.MatchOr():
                     pass
                 case ast.Name() | ast.Constant() | ast.expr_context():
                     pass
@@ -271,14 +316,11 @@ class _Function:
         match node:
             case ast.Name(name):
                 known = {*self.local, *self.module.bound}
-                _demand(name in known and name not in ("dataclass", "NamedTuple"), node)
+                _demand(name in known and name not in self.module.unread, node)
             case ast.Attribute(_, name):
                 _demand(not name.startswith("_"), node)
-            case ast.Compare(_, operators, rest):
-                for operator, right in zip(operators, rest, strict=True):
-                    if isinstance(operator, ast.Is | ast.IsNot):
-                        none = isinstance(right, ast.Constant) and right.value is None
-                        _demand(none, node)
+            case ast.Compare(_, operators):
+                _demand(not any(isinstance(o, ast.Is | ast.IsNot) for o in operators), node)
             case ast.BinOp(_, ast.Add() | ast.Sub(), _) | ast.BoolOp() | ast.IfExp():
                 pass
             case ast.Constant() | ast.UnaryOp() | ast.Tuple(ctx=ast.Load()):

@@ -257,6 +257,8 @@ class Assumed:
     """At most so many messages of the safety function are lost in a row."""
     requests: Requests = Requests.LEVEL
     planner: Planner = Planner.ANY
+    heartbeat: int = 0
+    """On change only: it is sent again after so long without a message, or earlier; 0: never."""
     span: Span | None = field(default=None, compare=False, repr=False)
 
 

@@ -26,8 +26,9 @@ scan_timeout = "500 ms"             # and that of the sensor
 
 _TOPICS = ("stop", "command", "output", "scan")
 _TIMES = ("hold", "stop_timeout", "scan_timeout", "command_timeout")
+_OPTIONAL = (*_TIMES, "heartbeat")
 _INTERCEPTOR = (*_TOPICS, "period", *_TIMES, "form", "latching", "ros")
-_ASSUME = ("stands", "latency", "lost", "requests", "planner", "braking")
+_ASSUME = ("stands", "latency", "lost", "requests", "heartbeat", "planner", "braking")
 _TOPIC = re.compile(r"(?:/?[A-Za-z_]\w*|~)(?:/[A-Za-z_]\w*)*", re.ASCII)
 """A name of ROS; no part begins with a digit."""
 
@@ -83,12 +84,13 @@ class Loop(Fields):
         latency = self._needed(table, "latency", "100 ms")
         braking = self._needed(table, "braking", "200 ms")
         requests = self._choice(table, ("assume", "requests"), Requests, Requests.LEVEL)
+        heartbeat = self._heartbeat(table, requests)
         planner = self._choice(table, ("assume", "planner"), Planner, Planner.ANY)
         lost = self._lost(table)
         if len(self.wrong) > before:
             return None
         span = self.tables.place("assume")
-        return Assumed(stands, latency, braking, lost, requests, planner, span)
+        return Assumed(stands, latency, braking, lost, requests, planner, heartbeat, span)
 
     def _table(self, name: str) -> Mapping[str, Any] | None:
         table = self.tables.data.get(name)
@@ -126,7 +128,7 @@ class Loop(Fields):
             Code.BAD_BINDING_FIELD,
             f"`{key}` must be a duration{above}",
             self.tables.value(*at),
-            f'write `{key} = "100 ms"`' + ("; leave it out for none" if key in _TIMES else ""),
+            f'write `{key} = "100 ms"`' + ("; leave it out for none" if key in _OPTIONAL else ""),
         )
         return None
 
@@ -221,6 +223,19 @@ class Loop(Fields):
             f"did you mean `{near}`?" if near else f"declare `[proposition.{name}]`",
         )
         return name
+
+    def _heartbeat(self, table: Mapping[str, Any], requests: Requests) -> int:
+        """Nanoseconds; 0: a request is sent on change only, or at every tick."""
+        found = self._duration(table, ("assume", "heartbeat")) or 0
+        if found and requests is Requests.LEVEL and table.get("requests", "level") == "level":
+            self._say(
+                Code.BAD_BINDING_FIELD,
+                '`heartbeat` is of no use with `requests = "level"`, which repeats at every tick',
+                self.tables.value("assume", "heartbeat"),
+                'write `requests = "edge"` if the safety function speaks on change and after a '
+                "silence; else leave `heartbeat` out",
+            )
+        return found
 
     def _lost(self, table: Mapping[str, Any]) -> int:
         value = self._field(table, ("assume", "lost"), int, "a whole number of messages")

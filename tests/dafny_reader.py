@@ -1,4 +1,4 @@
-"""Functions of a Dafny text, evaluated: enough of the language for the emitted monitors."""
+"""Functions of a Dafny text, evaluated: enough of the language for what is emitted."""
 
 from __future__ import annotations
 
@@ -8,29 +8,31 @@ from types import SimpleNamespace
 from typing import Any
 
 _TOKENS = re.compile(
-    r"\s*(<==>|==>|:\||::|:=|==|!=|<=|>=|&&|\|\||[-+!<>(){}\[\],.;|:]|\d+|[A-Za-z_]\w*)"
+    r"\s*(<==>|==>|=>|:\||::|:=|==|!=|<=|>=|&&|\|\||[-+!<>(){}\[\],.;|:]|\d+(?:\.\d+)?|[A-Za-z_]\w*)"
 )
+_INTERCEPTOR, _LOOP = "// Interceptor ---", "// Closed loop ---"
 Scope = dict[str, Any]
 Code = Callable[[Scope], Any]
 
 
 class Reader:
-    """The functions, predicates, constants and datatypes of a text."""
+    """The functions, predicates, constants and datatypes of a part of a text."""
 
-    def __init__(self, text: str) -> None:
+    def __init__(self, text: str, *, interceptor: bool = False) -> None:
+        """Of the monitor, or of the interceptor."""
+        monitor, _, rest = text.partition(_INTERCEPTOR)
+        text = rest.partition(_LOOP)[0] if interceptor else monitor
         text = re.sub(r"//[^\n]*", "", text)
         self.known: Scope = {"true": True, "false": False}
-        for name, made, fields in re.findall(r"datatype (\w+) = (\w+)\(([^)|]*)\)", text):
-            if name == made:
-                self.known[name] = _constructor(re.findall(r"(\w+):", fields))
-        for name, value in re.findall(r"const (\w+): int := (\d+)", text):
-            self.known[name] = int(value)
+        for told in re.findall(r"^datatype \w+ = (.*)$", text, re.MULTILINE):
+            for name, fields in re.findall(r"(\w+)(?:\(([^)]*)\))?(?: \||$)", told):
+                self.known[name] = _constructor(name, re.findall(r"(\w+):", fields))
+        for name, value in re.findall(r"^const (\w+): \w+ := (.*)$", text, re.MULTILINE):
+            self.known[name] = _Parser(_TOKENS.findall(value)).all()(self.known)
         declared = r"^(?:function|predicate) (\w+)\(([^)]*)\)[^{]*?\n\{\n(.*?)\n\}$"
         for name, told, body in re.findall(declared, text, re.MULTILINE | re.DOTALL):
-            if name in ("Invariant", "Hear"):  # of the proof; and what follows is no monitor
+            if name == "Invariant":  # of the proof
                 continue
-            if name == "Older":
-                break
             self.known[name] = self._function(re.findall(r"(\w+):", told), body)
 
     def __getattr__(self, name: str) -> Any:
@@ -45,8 +47,13 @@ class Reader:
         return call
 
 
-def _constructor(fields: list[str]) -> Callable[..., Any]:
-    return lambda *args: SimpleNamespace(**dict(zip(fields, args, strict=True)))
+def _constructor(name: str, fields: list[str]) -> Any:
+    """What makes a value; the value itself where it has no fields."""
+
+    def made(*args: Any) -> SimpleNamespace:
+        return SimpleNamespace(made_=name, **dict(zip(fields, args, strict=True)))
+
+    return made if fields else made()
 
 
 _COMPARED: Mapping[str, Callable[[Any, Any], bool]] = {
@@ -84,6 +91,8 @@ class _Parser:
             self.need(";")
             rest = self.expression()
             return lambda s: rest({**s, name: value(s)})
+        if self.at("match"):
+            return self.matched()
         if self.at("if"):
             asked = self.expression()
             self.need("then")
@@ -100,6 +109,26 @@ class _Parser:
                 body({**s, name: i}) for i in range(len(s["w"]) + 1)
             )
         return self.implied()
+
+    def matched(self) -> Code:
+        """The cases of a match; each names a constructor and its fields."""
+        subject = self.primary()
+        cases: dict[str, tuple[list[str], Code]] = {}
+        while self.at("case"):
+            name, fields = self.tokens.pop(0), []
+            if self.at("("):
+                while not self.at(")"):
+                    fields.append(self.tokens.pop(0))
+                    self.at(",")
+            self.need("=>")
+            cases[name] = fields, self.expression()
+
+        def code(s: Scope) -> Any:
+            made, *values = vars(subject(s)).values()
+            fields, body = cases[made]
+            return body({**s, **dict(zip(fields, values, strict=True))})
+
+        return code
 
     def implied(self) -> Code:
         left = self.joined()
@@ -165,12 +194,18 @@ class _Parser:
             return lambda s: len(s[name])
         else:
             token = self.tokens.pop(0)
-            code = (lambda s: int(token)) if token.isdigit() else (lambda s: s[token])
+            code = (
+                (lambda s: number)
+                if (number := _number(token)) is not None
+                else (lambda s: s[token])
+            )
         while mark := self.at("(", "[", "."):
             code = self.after(code, mark)
         return code
 
     def after(self, code: Code, mark: str) -> Code:
+        if mark == "." and self.at("("):
+            return self.updated(code)
         if mark == ".":
             name = self.tokens.pop(0)
             return lambda s: getattr(code(s), name)
@@ -183,6 +218,24 @@ class _Parser:
         if args:
             self.need(")")
         return lambda s: code(s)(*[arg(s) for arg in args])
+
+    def updated(self, code: Code) -> Code:
+        """`s.(f := e, g := h)`: the same but for some fields."""
+        changes: dict[str, Code] = {}
+        while not self.at(")"):
+            name = self.tokens.pop(0)
+            self.need(":=")
+            changes[name] = self.expression()
+            self.at(",")
+        return lambda s: SimpleNamespace(
+            **{**vars(code(s)), **{name: change(s) for name, change in changes.items()}}
+        )
+
+
+def _number(token: str) -> int | float | None:
+    if not token[0].isdigit():
+        return None
+    return float(token) if "." in token else int(token)
 
 
 def _sum(left: Code, right: Code, sign: int) -> Code:

@@ -1,4 +1,4 @@
-"""How far a command is, on standard error, where that is a terminal."""
+"""How far a command is, and at what, on standard error, where that is a terminal."""
 
 from __future__ import annotations
 
@@ -27,3 +27,9 @@ def progress(length: int, label: str) -> Iterator[Callable[[int, str], None]]:
         length=length, label=label, file=sys.stderr, item_show_func=lambda words: words
     ) as bar:
         yield lambda done, words: bar.update(done - bar.pos, words)
+
+
+def at_work(words: str) -> None:
+    """A line with what is being worked on."""
+    if sys.stderr.isatty():
+        click.echo(words, err=True)

@@ -176,11 +176,12 @@ def _refused(project: Project, asked: Request) -> None:
 
 
 def _evidence(project: Project, asked: Request) -> Sequence[Evidence]:
+    from compiler.cli.progress import at_work
     from compiler.layers import evidence
     from compiler.verifying import NotAMonitorError
 
     try:
-        found = evidence(project, asked)
+        found = evidence(project, asked, at_work)
     except NotAMonitorError as error:
         assert asked.monitor is not None
         stop(

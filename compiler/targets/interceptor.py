@@ -13,7 +13,7 @@ from typing import Any
 from compiler import __version__
 from compiler.artifact import Artifact
 from compiler.interception import options as counted
-from compiler.interception import ticks
+from compiler.interception import repetition, ticks
 from compiler.rule import Rule
 from compiler.runtime import interceptor as core
 from compiler.targets.target import DEFAULT, Options, Target
@@ -102,20 +102,21 @@ def _unwatched(node: Interception) -> Iterator[Diagnostic]:
 
 
 def _short_hold(declared: Declarations, node: Interception) -> Iterator[Diagnostic]:
-    """Requests that are sent at every tick may be lost, `lost` in a row."""
+    """Requests may be lost, `lost` in a row, before one is heard."""
     assumed, period = declared.assumed, declared.clock.period
     if assumed is None or not assumed.lost or period is None:
         return
     sure = max(ticks(node.hold, node.period) - 1, 0) * node.period
-    if sure > assumed.lost * period:
+    gap = assumed.lost * period * (repetition(assumed, period) or 1)
+    if sure > gap:
         return
     yield _warning(
         Code.SHORT_HOLD,
         f"zero is held for {_duration(sure)} for certain, and messages may be lost for "
-        f"{_duration(assumed.lost * period)}: a robot that was stopped may move between two "
+        f"{_duration(gap)}: a robot that was stopped may move between two "
         "requests",
         node,
-        f"make `hold` longer than {_duration(assumed.lost * period + node.period)}",
+        f"make `hold` longer than {_duration(gap + node.period)}",
     )
 
 

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import pytest
 
-from compiler import bounds
+from compiler import bounds, looptwin
 from compiler.bounds import Answer, Question, search
 from compiler.gate import Settings
 from compiler.loopmodel import Channel, Loop
@@ -52,7 +52,14 @@ def test_without_a_bound_the_least_is_told() -> None:
 
 @pytest.mark.parametrize(
     ("channel", "least"),
-    [(Channel(1), 1), (Channel(1, lost=2), 3), (Channel(3, latency=4, lost=1, braking=3), 4)],
+    [
+        (Channel(1), 1),
+        (Channel(1, lost=2), 3),
+        (Channel(3, latency=4, lost=1, braking=3), 4),
+        (Channel(1, lost=2, edge=True, heartbeat=3), 7),
+        (Channel(2, latency=3, lost=1, braking=2, edge=True, heartbeat=2), 5),
+        (Channel(2, latency=1, braking=2, edge=True, heartbeat=4), 2),
+    ],
 )
 def test_the_least_bound_is_the_one_that_is_proved(channel: Channel, least: int) -> None:
     found = search(asked(EVENTUALLY, Settings(), channel))
@@ -77,6 +84,19 @@ def test_a_twin_that_promises_too_much_is_found(monkeypatch: pytest.MonkeyPatch)
     strange = covered(loop, 10**5, 9).strange
     assert strange is not None
     assert strange[1].losses == 2
+
+
+def test_a_twin_whose_heart_beats_too_fast_is_found() -> None:
+    loop = Parts.of(
+        case(WITHIN.format(9), Settings(), Channel(1, lost=1, edge=True, heartbeat=3))
+    ).loop
+    assert covered(loop, 10**5, 9).strange is None
+    right = looptwin.times_of
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(looptwin, "times_of", lambda known: right(known)._replace(heartbeat=2))
+        strange = covered(loop, 10**5, 9).strange
+    assert strange is not None
+    assert (strange[0].silent, strange[1].silent) == (2, 3)
 
 
 def test_an_invariant_that_is_too_strong_is_not_proved(monkeypatch: pytest.MonkeyPatch) -> None:

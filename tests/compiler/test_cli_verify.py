@@ -2,17 +2,21 @@
 
 import csv
 import json
+import shutil
 import subprocess
 import sys
 from collections.abc import Callable
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
 import jsonschema  # type: ignore[import-untyped]
 import pytest
 
-from compiler import confined
+from compiler import confined, external, layers, provers
+from compiler.external import Ran
 from compiler.templating import template_root
+from compiler.verification import Evidence
 from tests.command import Fretc, Run, write
 
 R1 = "whenever p the sw shall within 2 ticks satisfy q"
@@ -321,6 +325,31 @@ def test_a_loop_that_keeps_its_requirement(fretc: Fretc, loop: Callable[..., str
     assert (run.status, rest, run.err) == (0, ASSUMPTIONS, WROTE)
 
 
+def test_the_stop_of_r1_is_released(fretc: Fretc) -> None:
+    """Its safety function speaks on change; a watchdog that hears nothing halts it for good."""
+    shutil.copytree(template_root().parent / "requirements", "requirements")
+    bindings = Path("requirements/bindings.toml")
+    run = fretc("verify", "requirements/r1.fret", "--layer", "loop")
+    assert (run.status, [line[0] for line in run.out.splitlines()[:2]]) == (0, ["✔", "✔"])
+    lines = bindings.read_text().splitlines(keepends=True)
+    bindings.write_text("".join(line for line in lines if not line.startswith("heartbeat")))
+    run = fretc("verify", "requirements/r1.fret", "--layer", "loop")
+    assert (run.status, [line[0] for line in run.out.splitlines()[:2]]) == (3, ["✔", "✘"])
+
+
+def test_a_heartbeat_is_an_assumption(fretc: Fretc, loop: Callable[..., str]) -> None:
+    beating = ("lost = 1\n", 'requests = "edge"\nheartbeat = "250 ms"\n')
+    run = fretc("verify", "--layer", "loop", loop(300, beating))
+    assert (run.status, [line[0] for line in run.out.splitlines()[:2]]) == (0, ["✔", "✔"])
+    lines = [line[4:].strip() for line in run.out.splitlines()[3:]]
+    assert lines[0] == (
+        "the safety function steps at every tick of 100 ms and sends its request where it changes, "
+        "and again once it has been silent for 250 ms, or earlier (`requests` and `heartbeat`, "
+        "[assume])"
+    )
+    assert lines[-1] == "`heartbeat` of 250 ms counts as 300 ms, whole ticks of the clock"
+
+
 def test_a_loop_that_does_not_shows_a_run(fretc: Fretc, loop: Callable[..., str]) -> None:
     run = fretc("verify", "--layer", "loop", loop(200, ("lost = 1\n", "")))
     first, *table = run.out.splitlines()[:5]
@@ -437,6 +466,86 @@ def test_all_five_layers_have_a_line(fretc: Fretc, loop: Callable[..., str]) -> 
         "agent",
     }
     assert run.status == 3, "no agent is named"
+
+
+# Other provers --------------------------------------------------------------------------------
+
+
+@pytest.fixture
+def node(fretc: Fretc, loop: Callable[..., str]) -> tuple[str, str]:
+    """The requirement, and the interceptor that was made for it."""
+    path = loop(400)
+    assert fretc(path, "--emit", "interceptor", "-o", ".").status == 0
+    return path, "interceptor.py"
+
+
+@pytest.mark.skipif(find_spec("crosshair") is None, reason="CrossHair is not installed")
+def test_crosshair_is_given_the_core_and_the_limit(
+    fretc: Fretc, node: tuple[str, str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """With the node beside it every number of a velocity is a case of its own, and there is no end.
+
+    Of the contracts two stay, so that it takes seconds.
+    """
+    path, made = node
+    text = Path(made).read_text(encoding="utf-8").replace("    post:", "    told:")
+    write(made, text.replace("told: __return__ or", "post: __return__ or"))
+    limits: list[float] = []
+    asked = external.run
+
+    def run(*args: Any, seconds: float, memory: int) -> Ran:
+        limits.append(seconds)
+        return asked(*args, seconds=seconds, memory=memory)
+
+    monkeypatch.setattr(provers, "run", run)
+    options = ("--layer", "interceptor", "--with", "crosshair", "--limit", "20")
+    found = told(fretc("verify", *options, "--interceptor", made, path, "--format", "json"))[-2:]
+    assert limits == [50], "20 s, and half a minute to begin"
+    assert [(one["claim"], one["result"]) for one in found] == [
+        ("`halted` keeps `__return__ or not state.stop`", "proved"),
+        ("`halted` keeps `__return__ or state.held <= 0`", "proved"),
+    ]
+    assert list(found[0]["artefacts"]) == ["interceptor.py"]
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "reason"),
+    [
+        ("ZERO = Velocity()", "ZERO = print()", "its core is not as fretc can read it: "),
+        ("\n\nclass Gate:", "\n\nstep = print\n\nclass Gate:", "the node below it"),
+    ],
+)
+def test_crosshair_does_not_execute_what_may_not_be_pure(
+    fretc: Fretc,
+    node: tuple[str, str],
+    monkeypatch: pytest.MonkeyPatch,
+    old: str,
+    new: str,
+    reason: str,
+) -> None:
+    monkeypatch.setattr(layers, "with_crosshair", None)
+    path, made = node
+    edited(made, old, new)
+    options = ("--layer", "interceptor", "--with", "crosshair", "--interceptor", made)
+    run = fretc("verify", *options, path, "--format", "json")
+    last = told(run)[-1]
+    assert (run.status, last["result"]) == (3, "not checked")
+    assert last["claim"] == "CrossHair confirms the contracts in the text"
+    assert reason in last["detail"]
+
+
+def test_dafny_is_given_the_limit(
+    fretc: Fretc, node: tuple[str, str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    seen: list[float] = []
+
+    def dafny(*_: object, seconds: float) -> tuple[Evidence, ...]:
+        seen.append(seconds)
+        return ()
+
+    monkeypatch.setattr(layers, "with_dafny", dafny)
+    fretc("verify", "--layer", "interceptor", "--with", "dafny", "--limit", "7", node[0])
+    assert seen == [7]
 
 
 # Bad use --------------------------------------------------------------------------------------

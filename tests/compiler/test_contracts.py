@@ -7,9 +7,10 @@ from typing import Any
 import pytest
 
 from compiler.contracts import contracts
+from compiler.gate import Gate, NotAnInterceptorError, Settings
 from compiler.heard import COMMAND, RELEASE, RING, SCAN, STOP
 from compiler.interception import options as counted
-from compiler.purity import Core, core
+from compiler.purity import Core, Head, core, head
 from compiler.targets.interceptor import text
 from compiler.verification import Counterexample, Evidence, Layer, NotChecked, Proved
 from fretish.declarations import Form, Interception
@@ -115,6 +116,7 @@ def test_a_channel_that_is_not_watched_is_an_assumption() -> None:
 # Places in the text
 SCANNED = "    return replace(state, scan_age=0), None"
 PASSED = "return after, ZERO if halted(after, options) else command"
+CASE = "        case ScanHeard():"
 GROWS = "stop_age=min(state.stop_age + 1, options.stop_timeout)"
 HELD = "held=options.hold if requested else state.held"
 WATCH_STOP = "        or expired(state.stop_age, options.stop_timeout)\n"
@@ -288,13 +290,30 @@ def test_every_counterexample_replays(name: str) -> None:
         ("ZERO = Velocity()", "ZERO = [].pop()", "`ZERO = [].pop()`"),
         ("    held: int\n", "    held: int = print()\n", "`held: int = print()`"),
         ("from __future__ import annotations\n", "", '`"""What'),
+        ("ZERO = Velocity()", "ZERO = Velocity(1.0)", "`ZERO = Velocity(1.0)`"),
+        ("ZERO = Velocity()", "ZERO = Velocity()\nHOLD = Options(1, 0, 0, 0)", "`HOLD`"),
+        (SCANNED, "    return replace(state, held=OPTIONS.hold), None", "`OPTIONS`"),
+        (SCANNED, "    return replace(state, scan_age=0 * 2), None", "`0 * 2`"),
+        (SCANNED, "    return replace(state, scan_age=(0, 1)[0]), None", "`(0, 1)[0]`"),
+        (SCANNED, "    return replace(state, scan_age=abs(0)), None", "`abs(0)`"),
+        (SCANNED, "    if state is None:\n        pass\n    return state, None", "`state is None`"),
+        (CASE, "        case ScanHeard(__class__=c):", "`ScanHeard(__class__=c)`"),
+        (CASE, f"        case None:\n            pass\n{CASE}", "`None`"),
+        ("def hear_scan(state: State,", "def hear_scan(state: State, *more: State,", "`def hear"),
+        ("class ScanHeard:", "class ScanHeard(metaclass=type):", "`@dataclass"),
     ],
-)
+)  # fmt: skip
 def test_a_core_that_may_not_be_pure_is_not_executed(old: str, new: str, told: str) -> None:
-    found = reason(mutant((old, new)))
+    """By none of those that explore it."""
+    changed = mutant((old, new))
+    if "HOLD" in new:
+        changed = mutant((SCANNED, "    return replace(state, held=HOLD.hold), None"), of=changed)
+    found = reason(changed)
     assert found.startswith("its core is not as fretc can read it: ")
-    if new:
-        assert found.endswith(told)
+    assert told in found or not new
+    with pytest.raises(NotAnInterceptorError) as refused:
+        Gate(changed, Settings())
+    assert str(refused.value) == found
 
 
 @pytest.mark.parametrize(
@@ -311,8 +330,10 @@ def test_a_core_that_may_not_be_pure_is_not_executed(old: str, new: str, told: s
     ],
 )
 def test_a_node_that_changes_the_core_is_told(line: str) -> None:
-    found = reason(mutant(("\n\nclass Gate:", f"\n\n{line}\n\nclass Gate:")))
-    assert "the node below it" in found
+    changed = mutant(("\n\nclass Gate:", f"\n\n{line}\n\nclass Gate:"))
+    assert "the node below it" in reason(changed)
+    with pytest.raises(NotAnInterceptorError, match="the node below it"):
+        Gate(changed, Settings())
 
 
 @pytest.mark.parametrize(
@@ -328,6 +349,11 @@ def test_a_node_that_changes_the_core_is_told(line: str) -> None:
             ((HANDED, "            return hear_command(state, max(command, ZERO), options)"),),
             "it looks into a command",
         ),
+        (
+            ((PASSED, f"return replace(after, held=command), {PASSED[14:]}"),),
+            "its state has a command in the place of a number",
+        ),
+        (((SCANNED, "    return state.command"),), "a step gives no state and command"),
         ((("hold=2", "hold=3"),), "its options are not those that are declared"),
         (((SCANNED, "    return replace(state, age=0), None"),), "a step fails: TypeError"),
         (((SCANNED, "    return None"),), "a step gives no state and command"),
@@ -349,6 +375,14 @@ def test_where_nothing_can_be_said_the_reason_is(
     (result,) = {e.result for e in contracts(mutant(*changes), OPTIONS, most=3000)}
     assert isinstance(result, NotChecked)
     assert result.reason.startswith(told)
+
+
+def test_the_core_ends_where_the_node_begins() -> None:
+    found = head(EMITTED)
+    assert isinstance(found, Head)
+    assert EMITTED.startswith(found.text)
+    assert found.text.rstrip().endswith("# latching = false\n)")
+    assert head(found.text) == found
 
 
 def test_a_text_that_is_no_interceptor_is_not_checked() -> None:

@@ -44,6 +44,8 @@ class Simulation:
         self.since: int | None = -(10**6)
         self.flying: list[tuple[int, bool]] = []
         self.losses, self.said, self.now = 0, False, 0
+        self.ticks, self.spoke = 0, 0
+        self.regular = seed % 2 == 0
 
     def tick(self) -> Row:
         """Sample, request, and let the time of one tick pass."""
@@ -71,9 +73,10 @@ class Simulation:
         return passed >= self.channel.braking * PERIOD
 
     def _send(self, request: bool) -> None:
-        if self.channel.edge and request == self.said:
+        tick, self.ticks = self.ticks, self.ticks + 1
+        if self.channel.edge and request == self.said and not self._beats(tick):
             return
-        self.said = request
+        self.said, self.spoke = request, tick
         if self.losses < self.channel.lost and self.choose.random() < 0.5:
             self.losses += 1
             return
@@ -81,6 +84,13 @@ class Simulation:
         latest = self.now + self.channel.latency * PERIOD
         earliest = max([self.now, *(due for due, _ in self.flying)])
         self.flying.append((self.choose.randint(min(earliest, latest), latest), request))
+
+    def _beats(self, tick: int) -> bool:
+        """At its own times, whatever was said between; or counted from what was said last."""
+        beat = self.channel.heartbeat
+        if not beat:
+            return False
+        return tick % beat == 0 if self.regular else tick - self.spoke >= beat
 
     def _pass(self, end: int, commands: list[int]) -> None:
         core, start = self.core, self.now
@@ -139,6 +149,8 @@ def _same(wheels: Wheels, row: Row) -> bool:
         (Settings(command_timeout=2), Channel(2, latency=1, braking=3, punctual=True)),
         (LATCH, Channel(1, edge=True)),
         (Settings(hold=1), Channel(3, latency=0, lost=1, edge=True, braking=1)),
+        (Settings(stop_timeout=5), Channel(1, latency=2, lost=1, edge=True, heartbeat=3)),
+        (Settings(hold=2), Channel(2, latency=3, lost=2, edge=True, braking=1, heartbeat=2)),
     ],
 )
 def test_every_simulated_tick_is_a_step_of_the_model(settings: Settings, channel: Channel) -> None:

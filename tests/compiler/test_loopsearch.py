@@ -51,6 +51,41 @@ def test_without_a_bound_only_what_is_sent_once_is_lost() -> None:
     assert found == {"level": "proved", "edge": "counterexample"}
 
 
+def test_a_heartbeat_mends_what_is_lost_on_change_only() -> None:
+    """Two messages may be lost, three ticks apart: after six ticks the third one is heard."""
+    lossy = Channel(1, lost=2, edge=True, heartbeat=3)
+    found = {n: search(case(WITHIN.format(n), TIMER, lossy)) for n in (6, 7)}
+    assert (status(found[6].kept), status(found[7].kept)) == ("counterexample", "proved")
+    assert status(found[7].released) == "proved"
+    assert status(search(case(EVENTUALLY, TIMER, lossy)).kept) == "proved"
+    assert trace(found[6].kept)[1:] == [
+        "101-01 a stop is requested, and the message is lost",
+        "001-01 a stop is requested, and no message is sent",
+        "001-01 a stop is requested, and no message is sent",
+        "001-01 a stop is requested, and the message is sent again, and lost",
+        "001-01 a stop is requested, and no message is sent",
+        "001-01 a stop is requested, and no message is sent",
+        "001110 a stop is requested, and the message is sent again; `true` is heard",
+    ]
+
+
+@pytest.mark.parametrize(("timeout", "released"), [(6, "counterexample"), (7, "proved")])
+def test_a_watchdog_lets_go_where_the_heartbeat_is_faster(timeout: int, released: str) -> None:
+    """Two cells to a tick: three ticks of silence, and no more."""
+    beating = Channel(2, edge=True, heartbeat=3)
+    found = search(case(WITHIN.format(3), Settings(stop_timeout=timeout), beating))
+    assert (status(found.kept), status(found.released)) == ("proved", released)
+
+
+def test_a_heartbeat_of_one_tick_speaks_at_every_tick() -> None:
+    told = {
+        search(case(WITHIN.format(3), TIMER, channel)).kept
+        for channel in (Channel(1, lost=2), Channel(1, lost=2, edge=True, heartbeat=1))
+    }
+    (result,) = {status(one) for one in told}
+    assert result == "proved"
+
+
 def test_the_latch_of_the_paper_lets_the_wheels_turn_where_the_planner_falls_silent() -> None:
     found = search(case(WITHIN.format(2), LATCH, EDGE))
     assert trace(found.kept) == [
@@ -152,15 +187,45 @@ def test_a_safety_function_that_is_a_tick_late_is_refuted() -> None:
         (
             "return replace(state, scan_age=0), None",
             "print(state)\n    return replace(state, scan_age=0), None",
-            "`hear_scan` uses `print`",
+            "its core is not as fretc can read it: `print(state)`",
         ),
         (
             "return replace(state, scan_age=0), None",
             "return replace(state, scan_age=0), Velocity(1.0)",
             "it makes a velocity that it has not heard",
         ),
-        ("def halted(", "def stopped(", "it defines no `halted`"),
-        ("ZERO = Velocity()", "ZERO = Velocity(1.0)", "its step depends on `ZERO = Velocity(1.0)`"),
+        (
+            "return replace(state, scan_age=0), None",
+            "after = replace(state, command=ZERO)\n    return (after, ZERO) if after == state "
+            "else (state, None)",
+            "its step looks into a velocity",
+        ),
+        (
+            FORWARDS,
+            "return (after, None) if after == state else (after, command)",
+            "its step looks into a velocity",
+        ),
+        (
+            "    return replace(state, scan_age=0), None",
+            "    return state.command",
+            "its step gives no pair",
+        ),
+        (
+            "command=command, command_age=0",
+            "command=command, stop=command, command_age=0",
+            "its step looks into a velocity",
+        ),
+        (
+            "command=command, command_age=0",
+            "command=command, held=command, command_age=0",
+            "its step looks into a velocity",
+        ),
+        ("def halted(", "def stopped(", "its core has no `halted`"),
+        (
+            "ZERO = Velocity()",
+            "ZERO = Velocity(1.0)",
+            "its core is not as fretc can read it: `ZERO = Velocity(1.0)`",
+        ),
     ],
 )
 def test_what_is_no_pure_interceptor_is_not_checked(old: str, new: str, reason: str) -> None:

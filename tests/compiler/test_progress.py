@@ -7,8 +7,9 @@ from pathlib import Path
 
 import pytest
 
+from compiler import layers
 from compiler.cli.progress import progress
-from tests.command import Fretc
+from tests.command import Fretc, write
 
 ROOT = Path(__file__).parent.parent.parent
 
@@ -53,6 +54,26 @@ def test_an_audit_counts_the_bytes_of_its_logs(
     places = [shown.index(words) for words in (" 74%", "1/3 logs, 2/2 MB", "3/3 logs, 2/2 MB")]
     assert places == sorted(places)
     assert "auditing" in shown
+
+
+def test_a_proof_tells_what_it_is_at(fretc: Fretc, monkeypatch: pytest.MonkeyPatch) -> None:
+    path = write("r1.fret", "whenever p the sw shall within 2 ticks satisfy q")
+    terminal = Terminal()
+    monkeypatch.setattr(sys, "stderr", terminal)
+    options = ("--layer", "loop", "--layer", "agent", "--layer", "bounds", "--with", "dafny")
+    monkeypatch.setattr(layers, "with_dafny", lambda *_, **__: ())
+    fretc("verify", path, *options, "-o", "-")
+    assert terminal.getvalue().splitlines() == [
+        "r1: loop",
+        "r1: bounds",
+        "r1: Dafny",
+        "agent: its properties",
+    ]
+
+
+def test_a_proof_tells_nothing_of_that_elsewhere(fretc: Fretc) -> None:
+    path = write("r1.fret", "whenever p the sw shall within 2 ticks satisfy q")
+    assert fretc("verify", path, "--layer", "loop", "-o", "-").err == ""
 
 
 def test_a_single_log_needs_no_bar(fretc: Fretc, monkeypatch: pytest.MonkeyPatch) -> None:

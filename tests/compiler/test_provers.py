@@ -274,7 +274,9 @@ def divided(x: int) -> float:
 
 @needs_crosshair
 def test_crosshair_confirms_and_refutes_contract_by_contract() -> None:
-    found = with_crosshair(CORE, "R1", seconds=10)
+    said: list[str] = []
+    found = with_crosshair(CORE, "R1", seconds=10, tell=said.append)
+    assert said == ["bounded", "divided"]
     kept, broken = found[:2]
     assert (kept.requirement, kept.layer) == ("R1", Layer.INTERCEPTOR)
     assert (kept.claim, kept.result) == (

@@ -48,6 +48,13 @@ HOLD = 'hold            = "200 ms"'
 STANDS = '"stopped"\nlatency'
 
 
+USELESS = '`heartbeat` is of no use with `requests = "level"`, which repeats at every tick'
+
+
+EDGE = 'requests = "edge"'
+NO_DURATION = "`heartbeat` must be a duration above 0"
+
+
 def mistakes(text: str) -> list[str]:
     found, wrong = read_bindings(Source("b.toml", text))
     assert found is None
@@ -96,6 +103,15 @@ def test_what_is_left_out_is_not_watched_and_assumes_little() -> None:
     assert (bare.interceptor, bare.assumed) == (None, None)
 
 
+def test_a_safety_function_may_repeat_itself() -> None:
+    beating = GOOD.replace('requests = "edge"', 'requests = "edge"\nheartbeat = "0.45 s"')
+    found, wrong = read_bindings(Source("b.toml", beating))
+    assert wrong == ()
+    assert found is not None
+    assert found.assumed is not None
+    assert (found.assumed.requests, found.assumed.heartbeat) == (Requests.EDGE, 450 * MS)
+
+
 def test_an_interceptor_needs_no_clock() -> None:
     found, wrong = read_bindings(Source("b.toml", TABLE))
     assert wrong == ()
@@ -137,6 +153,11 @@ def test_an_interceptor_needs_no_clock() -> None:
         ("lost     = 1", "lost = 0.5", "F303 28: `lost` must be a whole number of messages"),
         ('"edge"', '"edges"', "F303 29: `requests` cannot be `edges`"),
         ('"every tick"', '"never"', "F303 30: `planner` cannot be `never`"),
+        (EDGE, f"{EDGE}\nheartbeat = 3", f"F303 30: {NO_DURATION}"),
+        (EDGE, f'{EDGE}\nheartbeat = "0 s"', f"F303 30: {NO_DURATION}"),
+        (EDGE, 'heartbeat = "1 s"', f"F303 29: {USELESS}"),
+        (EDGE, 'heartbeat = "1 s"\nrequests = "level"', f"F303 29: {USELESS}"),
+        (EDGE, 'heartbeat = "1 s"\nrequests = "edges"', "F303 30: `requests` cannot be `edges`"),
         ("planner ", "planer ", "F302 30: `planer` is no field of [assume]"),
     ],
 )  # fmt: skip

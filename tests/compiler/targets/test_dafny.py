@@ -1,7 +1,8 @@
 """Files for Dafny: the definitions in them, what they leave out, and what Dafny says of them."""
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from dataclasses import replace
 from functools import cache
 from itertools import product
 from pathlib import Path
@@ -9,16 +10,19 @@ from pathlib import Path
 import pytest
 
 from compiler.counters import accepts, initial, step, template
+from compiler.deduction import claims
 from compiler.pipeline import formalize
 from compiler.project import load
 from compiler.rule import Rule
 from compiler.targets import TARGETS
 from compiler.targets.dafny import text
 from fretish.bindings import read_bindings
-from fretish.declarations import Declarations
+from fretish.declarations import Declarations, Form, Interception
 from fretish.documents import Requirement
 from fretish.rendering import render
 from fretish.source import Source
+from monitors import interceptor as core
+from monitors.interceptor import Velocity
 from tests.dafny_reader import Reader
 
 TARGET = TARGETS["dafny"]
@@ -131,6 +135,95 @@ def test_the_step_and_the_definition_are_those_of_the_reference(
             state, broken = after or state, after is None
 
 
+# The step of the interceptor is that of the core ------------------------------------------------
+
+Heard = core.StopHeard | core.CommandHeard | core.ScanHeard | core.TimerRang
+FAST, SLOW = Velocity(0.4, wz=0.1), Velocity(-0.15)
+TIMED = [
+    core.Options(hold, stop, scan, command, latching=latching)
+    for hold, stop, scan, command in product((0, 2), (0, 2), (0, 1), (0, 2))
+    for latching in (False, True)
+]
+EVENTS = [core.Options(0, 0, 0, 0, event_driven=True, latching=one) for one in (False, True)]
+
+
+def interceptor_text(options: core.Options) -> str:
+    """The file for an interceptor with these options, a tick of its timer being 50 ms."""
+    declarations = bound(BINDINGS)
+    tick = 50_000_000
+    node = Interception(
+        "/stop",
+        "/cmd_vel",
+        "/out",
+        "/scan",
+        period=tick,
+        hold=options.hold * tick,
+        stop_timeout=options.stop_timeout * tick,
+        scan_timeout=options.scan_timeout * tick,
+        command_timeout=options.command_timeout * tick,
+        form=Form.EVENT if options.event_driven else Form.TIMER,
+        latching=options.latching,
+    )
+    made = rule("robot shall eventually satisfy q")
+    return text(made, replace(declarations, interceptor=node))
+
+
+@pytest.mark.parametrize("options", [*TIMED, *EVENTS])
+def test_the_interceptor_does_in_each_state_what_the_core_does(options: core.Options) -> None:
+    read = Reader(interceptor_text(options), interceptor=True)
+    messages: list[tuple[Heard, object]] = [
+        (core.StopHeard(True), read.StopHeard(True)),
+        (core.StopHeard(False), read.StopHeard(False)),
+        (core.CommandHeard(SLOW), read.CommandHeard(read.Velocity(*SLOW))),
+        (core.CommandHeard(core.ZERO), read.CommandHeard(read.ZERO)),
+        (core.ScanHeard(), read.ScanHeard),
+        (core.TimerRang(), read.TimerRang),
+    ]
+
+    def alike(state: core.State) -> object:
+        values = {name: getattr(state, name) for name in state.__slots__}
+        return read.Interceptor(*{**values, "command": read.Velocity(*state.command)}.values())
+
+    assert read.Initial() == alike(core.initial(options))
+    for state in in_range(options):
+        assert read.InRange(alike(state))
+        assert read.Halted(alike(state)) == core.halted(state, options)
+        for ours, theirs in messages:
+            after, said = core.step(state, ours, options)
+            told = read.InterceptorStep(alike(state), theirs)
+            assert told.state == alike(after), (state, ours)
+            published = read.Nothing if said is None else read.Output(read.Velocity(*said))
+            assert told.published == published, (state, ours)
+
+
+def in_range(options: core.Options) -> Iterator[core.State]:
+    """Every state within its bounds, reached or not, with a command to move and one to stand."""
+    numbers = (options.hold, options.stop_timeout, options.scan_timeout, options.command_timeout)
+    for stop, command in product((False, True), (core.ZERO, FAST)):
+        for held, *ages in product(*(range(most + 1) for most in numbers)):
+            yield core.State(stop, held, command, *ages)
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        ("if s.held > 0 then s.held - 1 else 0", "if s.held > 1 then s.held - 1 else s.held"),
+        ("if requested then HOLD else s.held", "if requested then HOLD else 0"),
+        ("Passed(older, s.last)", "Passed(s, s.last)"),
+        ("0 < timeout <= age", "0 < timeout < age"),
+        ("s.(scan_age := 0)", "s.(stop_age := 0)"),
+    ],
+)
+def test_an_interceptor_that_does_something_else_is_found(
+    old: str, new: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    found = interceptor_text(TIMED[-1])
+    assert found.count(old) == 1
+    monkeypatch.setitem(globals(), "interceptor_text", lambda _: found.replace(old, new))
+    with pytest.raises(AssertionError):
+        test_the_interceptor_does_in_each_state_what_the_core_does(TIMED[-1])
+
+
 # Text ------------------------------------------------------------------------------------------
 
 _NOT_IN_BOTH = (
@@ -233,6 +326,29 @@ def test_the_numbers_of_the_bindings_are_in_the_text() -> None:
         "REACH": "1",  # one tick of latency, less the tick itself, and a lost message
         "BRAKING": "3",  # two ticks, and the one in which it began
     }
+
+
+@pytest.mark.parametrize(
+    ("requests", "reach"),
+    [
+        ('requests = "edge"\nheartbeat = "250 ms"', "6"),  # two messages, three ticks apart
+        ('requests = "level"', "2"),
+        ('requests = "edge"', None),
+    ],
+)
+def test_a_lost_message_costs_the_time_to_the_next(requests: str, reach: str | None) -> None:
+    bindings = BINDINGS.replace("lost    = 1", f"lost = 2\n{requests}")
+    found = emitted("whenever p robot shall eventually satisfy q", bindings)
+    declarations = bound(bindings)
+    told = claims(rule("whenever p robot shall eventually satisfy q", declarations), declarations)
+    if reach is None:
+        assert told[-1].unshown is not None
+        assert told[-1].unshown.endswith("([assume] requests, lost and no heartbeat)")
+    else:
+        assert f"reach = {reach} ticks ([assume] latency and lost)" in told[-1].assumptions
+        assert told[-1].sentence.endswith(f"within {int(reach) + 3} ticks, the declared delay")
+    assert ("or one from before" in told[-1].assumptions[1]) == ("edge" in requests)
+    assert "AnsweredInTime" in found
 
 
 def test_a_declared_delay_above_the_bound_is_not_claimed() -> None:
