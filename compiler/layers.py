@@ -15,9 +15,10 @@ from compiler.contracts import contracts
 from compiler.files import sha256
 from compiler.interception import ASSUMED, assumed, options
 from compiler.project import Project
-from compiler.provers import with_crosshair, with_dafny
+from compiler.provers import stated, with_crosshair, with_dafny
 from compiler.purity import head
 from compiler.rule import Rule
+from compiler.runtime import interceptor as core
 from compiler.sif import sif
 from compiler.targets import ajpf, bundle, dafny, interceptor, monitor
 from compiler.targets.target import stem
@@ -149,6 +150,11 @@ def _crosshair(gate: Named, limits: Limits, tell: Tell) -> Iterator[Evidence]:
     if isinstance(known, str):
         claim = "CrossHair confirms the contracts in the text"
         yield _unknown("interceptor", Layer.INTERCEPTOR, claim, known, gate)
+        return
+    if stated(known.text) != stated(core().text):
+        claim = "CrossHair confirms the contracts in the text"
+        reason = "its `pre:` and `post:` lines are not those of fretc, and CrossHair executes them"
+        yield _unknown("interceptor", Layer.INTERCEPTOR, claim, reason, gate)
         return
     found = with_crosshair(
         known.text,

@@ -185,6 +185,23 @@ class _Contract:
     text: str
 
 
+def stated(text: str) -> dict[str, tuple[str, ...]]:
+    """The contracts of each function of a core, to the letter: CrossHair executes them."""
+    found = {
+        node.name: (ast.get_docstring(node) or "").splitlines()
+        for node in ast.walk(ast.parse(text))
+        if isinstance(node, ast.FunctionDef)
+    }
+    return {
+        name: tuple(line.strip() for line in lines if _STATED.match(line))
+        for name, lines in found.items()
+        if any(map(_STATED.match, lines))
+    }
+
+
+_STATED = re.compile(r"\s*(pre|post|inv|raises)\b.*:")
+
+
 def with_crosshair(
     text: str,
     requirement: str = "interceptor",
