@@ -132,6 +132,12 @@ def test_a_result_that_is_told_twice_is_found(audited: Fretc) -> None:
     assert "✘ r1  differs: it is told twice\n" in audited("verify-evidence").out
 
 
+def test_the_name_of_a_run_cannot_write_on_the_terminal(audited: Fretc) -> None:
+    results = json.loads(Path("build/evidence.json").read_text())["results"]
+    changed(results=[{**one, "run": "\x1b[2K\u202e.mcap"} for one in results[:1]])
+    assert audited("verify-evidence").out.startswith("\\x1b[2K\\u202e.mcap\n  ? r1")
+
+
 def test_evidence_of_no_run_shows_nothing(audited: Fretc) -> None:
     changed(results=[])
     run = audited("verify-evidence")
