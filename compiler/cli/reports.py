@@ -170,6 +170,6 @@ def _status(whole: Report) -> int:
     from compiler.report.proofs import is_refuted
 
     words = {view.mark.word for view in whole.requirements}
-    if words & {"violated", "suspect"} or any(map(is_refuted, whole.requirements)):
+    if words & {"violated", "refuted", "suspect"} or any(map(is_refuted, whole.requirements)):
         return VIOLATION
-    return SHOWN if words <= {"satisfied", "waived", "retired"} else NOT_SHOWN
+    return SHOWN if words <= {"satisfied", "supported", "waived", "retired"} else NOT_SHOWN

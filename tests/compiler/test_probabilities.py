@@ -407,3 +407,17 @@ def test_what_all_runs_say_is_made_again_with_the_evidence(fretc: Fretc) -> None
     shutil.rmtree("runs")
     write("build/evidence.json", text)
     assert fretc("verify-evidence").status == 3
+
+
+@pytest.mark.parametrize(
+    ("answers", "status", "kinds"), [("00", 1, ["failure"]), ("01", 0, []), ("0", 3, ["skipped"])]
+)
+def test_a_report_fails_where_all_runs_refute_and_passes_where_they_support(
+    fretc: Fretc, answers: str, status: int, kinds: list[str]
+) -> None:
+    require(WITHIN.replace("0.9", "0.5"))
+    logs(8 if len(answers) > 1 else 1, "10"[: len(answers)] + "000", f"{answers}000")
+    fretc("audit", "runs")
+    assert fretc("report", "--strict", "--junit", "r.xml").status == status
+    (case,) = ElementTree.parse("r.xml").getroot().iter("testcase")
+    assert [child.tag for child in case] == kinds
