@@ -104,6 +104,9 @@ def _checked(
     read = gwendolen.read(agent)
     broken = None if mutant is None else gwendolen.read(mutant)
     artefacts = {s.name: sha256(s.text) for s in (agent, properties, mutant) if s is not None}
+    if not said:
+        claim, reason = "the agent has its properties", f"`{properties.name}` has none"
+        return (Evidence("agent", Layer.AGENT, claim, NotChecked(reason), "fretc", (), artefacts),)
     for found in (read, broken):
         if isinstance(found, Diagnostic) and found.code is not Code.BEYOND_MODEL:
             return found

@@ -9,9 +9,11 @@ only remember and tell, the form is fixed.
 from __future__ import annotations
 
 import ast
+import tokenize
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
+from io import BytesIO
 
 from compiler.program import MARKS, SIGNALS, negation
 from compiler.runtime import kernel
@@ -29,6 +31,8 @@ class _StrangeError(Exception):
 
 def strange(text: str) -> str | None:
     """Why the text may do more than it seems to; None: it does not."""
+    if not is_utf8(text):
+        return "it declares another encoding than UTF-8, so Python would read another text"
     runtime = kernel()
     head, found, own = text.partition(runtime.text)
     try:
@@ -40,6 +44,19 @@ def strange(text: str) -> str | None:
     except _StrangeError as error:
         return str(error)
     return None
+
+
+def is_utf8(text: str) -> bool:
+    """Whether Python reads a file with this text in UTF-8, as fretc does.
+
+    Another encoding can make code of what is a comment here. Source: PEP 263.
+    """
+    lines = text.replace("\r\n", "\n").replace("\r", "\n").encode()
+    try:
+        encoding, _ = tokenize.detect_encoding(BytesIO(lines).readline)
+    except SyntaxError:
+        return False
+    return encoding in ("utf-8", "utf-8-sig")
 
 
 def _is_head(head: str) -> bool:

@@ -149,7 +149,7 @@ class _Chain:
             self._link(clock, formulas)
         monitor = self._artefacts(made, formulas)
         bound = Node(BINDINGS, rule.id)
-        self._add(bound, _fingerprint(self._bound(rule)))
+        self._add(bound, _fingerprint(_normal(self._bound(rule))))
         sources = [monitor, bound, clock] if monitor else [bound, clock]
         if rule.requirement.params:
             params = Node(PARAMS, rule.id)

@@ -166,6 +166,12 @@ def beside(folder: str, name: str) -> str | None:
     return _beside([folder if os.path.isfile(folder) else str(Path(folder) / "any")], name)
 
 
+def companions(paths: Sequence[str]) -> tuple[str, ...]:
+    """What stands beside the first requirement and is read with it; no output may replace it."""
+    names = (BINDINGS, HAZARDS, "fretc.lock", "waivers.toml")
+    return tuple(path for path in (_beside(paths, name) for name in names) if path is not None)
+
+
 def _beside(paths: Sequence[str], name: str) -> str | None:
     first = next((path for path in paths if path != "-"), None)
     path = str(Path(first).parent / name) if first else None

@@ -10,6 +10,7 @@ import click
 
 from compiler.cli.output import BAD, NOT_SHOWN, SHOWN, VIOLATION, coloured, say, stop
 from fretish.diagnostic import Code, Diagnostic, Severity, has_errors
+from fretish.rendering import visible
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -148,7 +149,7 @@ def _print(found: Sequence[Rechecked], same: bool | None) -> None:
         glyph, colour = _GLYPHS["stands" if same else "differs"]
         told = "the same, byte for byte" if same else "another one is made now"
         lines.append((f"{glyph} report  {told}", colour))
-    click.echo(coloured(lines), nl=False)
+    click.echo(coloured([(visible(line), colour) for line, colour in lines]), nl=False)
 
 
 def _print_json(found: Sequence[Rechecked], same: bool | None) -> None:

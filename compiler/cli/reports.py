@@ -77,7 +77,7 @@ def report(
     All forms say the same. The same inputs give the same bytes; waivers count by the day of
     SOURCE_DATE_EPOCH, where that is set.
     """
-    from compiler.project import beside, load, requirement_files
+    from compiler.project import beside, companions, load, requirement_files
     from compiler.proven import written
     from compiler.report import make
     from compiler.report.forms import missing_reqif
@@ -103,7 +103,8 @@ def report(
         raise SystemExit(BAD)
     wanted = {"html": html, **{name: path for name, path in forms.items() if path is not None}}
     texts = _texts(made, project, evidence, strict=strict)
-    _deliver(wanted, texts, [evidence, *files, *filter(None, (verification, lock, waivers))])
+    read = filter(None, (bindings, hazards, verification, lock, waivers))
+    _deliver(wanted, texts, [evidence, *files, *companions(files), *read])
     if has_errors([*project.diagnostics, *made.diagnostics]):
         raise SystemExit(BAD)
     raise SystemExit(_status(made.report) if strict else SHOWN)
@@ -169,6 +170,6 @@ def _status(whole: Report) -> int:
     from compiler.report.proofs import is_refuted
 
     words = {view.mark.word for view in whole.requirements}
-    if words & {"violated", "suspect"} or any(map(is_refuted, whole.requirements)):
+    if words & {"violated", "refuted", "suspect"} or any(map(is_refuted, whole.requirements)):
         return VIOLATION
-    return SHOWN if words <= {"satisfied", "waived", "retired"} else NOT_SHOWN
+    return SHOWN if words <= {"satisfied", "supported", "waived", "retired"} else NOT_SHOWN

@@ -146,7 +146,7 @@ def audit(
     from compiler.logs import files_of
     from compiler.logs import logs as logs_of
     from compiler.plan import Plan, planned
-    from compiler.project import beside, load, requirement_files
+    from compiler.project import beside, companions, load, requirement_files
     from monitors.integrity import Integrity
 
     logs = logs_of(paths)
@@ -156,7 +156,8 @@ def audit(
     if isinstance(files, Diagnostic):
         stop(files)
     outputs = [Path(path) for path in (evidence, f"{evidence}.journal", parquet) if path]
-    protect(outputs, (*files_of(logs), *files))
+    inputs = (*files_of(logs), *files, *companions(files), *([bindings] if bindings else []))
+    protect(outputs, inputs)
     project = load(files, bindings or beside(requirements, "bindings.toml"))
     say(project.diagnostics)
     if has_errors(project.diagnostics):
@@ -176,7 +177,7 @@ def audit(
             forms[Path(parquet)] = _table(result)
         if {*map(os.path.realpath, forms)} & {*map(os.path.realpath, marked)}:
             stop(not_written(evidence, "two outputs would go there"))
-        deliver({**forms, **marked}, (*files_of(logs), *files))
+        deliver({**forms, **marked}, inputs)
         if journal is not None:
             journal.remove()
     click.echo(_printed(result, project, form), nl=False)

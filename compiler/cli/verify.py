@@ -101,6 +101,7 @@ def verify(
     """
     from compiler.confined import Limits
     from compiler.layers import Request
+    from compiler.project import companions
     from compiler.verification import Layer
 
     if (agent is None) != (properties is None):
@@ -122,7 +123,8 @@ def verify(
     _refused(project, asked)
     found = _evidence(project, asked)
     given = (path, interceptor, agent, properties, bindings)
-    inputs = [*files, *(name for name in given if name is not None)]
+    read = [requirement.wording.source.name for requirement in project.requirements]
+    inputs = [*read, *companions(read), *(name for name in given if name is not None)]
     _tell(found, form, output, traces, inputs)
     raise SystemExit(_status(found))
 

@@ -12,6 +12,7 @@ from compiler.rule import Rule
 from compiler.targets.target import DEFAULT, Options, Target, stem
 from compiler.templating import render
 from fretish.meaning import meaning
+from fretish.rendering import visible
 
 
 def emit(rules: Sequence[Rule], options: Options = DEFAULT) -> tuple[Artifact, ...]:
@@ -41,7 +42,7 @@ def text(rule: Rule, options: Options = DEFAULT) -> str:
     return render(
         "ltl/requirement.ltl.j2",
         id=rule.id,
-        title=rule.requirement.title,
+        title=visible(" ".join(rule.requirement.title.split())),
         sentence=wording(rule.requirement),
         lines=lines,
         width=max(map(len, lines)),

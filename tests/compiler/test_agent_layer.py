@@ -196,5 +196,7 @@ def test_a_percept_is_spelt_as_the_agent_spells_it() -> None:
     assert isinstance(main.result, Proved)
 
 
-def test_a_file_without_properties_has_no_evidence() -> None:
-    assert lines("# nothing\n", ["too_close"]) == ()
+@pytest.mark.parametrize("properties", ["", "# nothing yet\n"])
+def test_a_file_without_properties_shows_nothing(properties: str) -> None:
+    (line,) = lines(properties, ["too_close"])
+    assert line.result == NotChecked("`sif.psl` has none")

@@ -89,6 +89,62 @@ def test_another_binding_is_found(audited: Fretc) -> None:
     assert "what the bindings say has changed" in run.out
 
 
+def changed(**fields: object) -> None:
+    known = json.loads(Path("build/evidence.json").read_text())
+    write("build/evidence.json", json.dumps({**known, **fields}))
+
+
+@pytest.mark.parametrize(
+    ("field", "value", "told"),
+    [
+        ("fretc", "0.0.1", "differs: this is fretc 0.1.0"),
+        ("bindings", {"file": "x", "sha256": "0"}, "differs: what the bindings say has changed"),
+        ("requirements", [], "differs: the file does not name it among its requirements"),
+        ("requirements", [{"id": "r1", "sentence": "x", "sha256": "0"}], "sentence has changed"),
+        ("requirements", [{"id": "r2"}], "r2  differs: it is not claimed any more"),
+        ("probabilities", [], None),
+    ],
+)
+def test_what_the_file_says_before_its_results_is_compared(
+    audited: Fretc, field: str, value: object, told: str | None
+) -> None:
+    changed(**{field: value})
+    run = audited("verify-evidence")
+    assert run.status == (0 if told is None else 1)
+    assert (told or "") in run.out
+
+
+def test_a_result_that_was_taken_out_is_found(audited: Fretc) -> None:
+    write("requirements/r2.fret", "whenever p the sw shall within 3 ticks satisfy q")
+    assert audited("audit", "logs").status == 1
+    results = json.loads(Path("build/evidence.json").read_text())["results"]
+    worst = next(i for i, one in enumerate(results) if one["verdict"] == "violated")
+    del results[worst]
+    changed(results=results)
+    run = audited("verify-evidence")
+    assert run.status == 1
+    assert "✘ r1  differs: its result is left out\n" in run.out
+
+
+def test_a_result_that_is_told_twice_is_found(audited: Fretc) -> None:
+    results = json.loads(Path("build/evidence.json").read_text())["results"]
+    changed(results=[*results, results[0]])
+    assert "✘ r1  differs: it is told twice\n" in audited("verify-evidence").out
+
+
+def test_the_name_of_a_run_cannot_write_on_the_terminal(audited: Fretc) -> None:
+    results = json.loads(Path("build/evidence.json").read_text())["results"]
+    changed(results=[{**one, "run": "\x1b[2K\u202e.mcap"} for one in results[:1]])
+    assert audited("verify-evidence").out.startswith("\\x1b[2K\\u202e.mcap\n  ? r1")
+
+
+def test_evidence_of_no_run_shows_nothing(audited: Fretc) -> None:
+    changed(results=[])
+    run = audited("verify-evidence")
+    assert run.status == 3
+    assert "not checked: it tells of no run" in run.out
+
+
 def test_a_log_that_is_gone_is_not_checked(audited: Fretc) -> None:
     Path("logs/good.mcap").unlink()
     run = audited("verify-evidence")

@@ -86,6 +86,11 @@ def test_white_space_order_and_comments_change_nothing(folder: Path, text: str) 
     assert pairs(read(folder), read(folder, text)) == set()
 
 
+def test_white_space_in_an_expression_changes_nothing(folder: Path) -> None:
+    spaced = cases.BINDINGS.replace("clearance < 5 cm", "clearance  <\\t5 cm ")
+    assert pairs(read(folder), read(folder, bindings=spaced)) == set()
+
+
 def test_another_hazard_makes_everything_below_it_suspect(folder: Path) -> None:
     before = read(folder)
     after = read(folder, hazards=cases.HAZARDS.replace("A drum", "A wall"))

@@ -77,6 +77,26 @@ def test_evidence_never_replaces_what_is_read(folder: Path) -> None:
     assert (folder / "run.mcap").read_bytes() == Path(LOG).read_bytes()
 
 
+@pytest.mark.parametrize("name", ["bindings.toml", "hazards.toml", "fretc.lock"])
+@pytest.mark.parametrize(
+    "line",
+    [
+        "audit run.mcap --evidence requirements/{}",
+        "report --csv requirements/{}",
+        "verify requirements/r1.fret --monitor -o requirements/{}",
+    ],
+)
+def test_what_stands_beside_requirements_is_never_replaced(
+    folder: Path, line: str, name: str
+) -> None:
+    shutil.copy(LOG, folder / "run.mcap")
+    there = folder / "requirements" / name
+    there.touch()
+    before = there.read_bytes()
+    assert fretc(folder, line.format(name)).returncode == 2
+    assert there.read_bytes() == before
+
+
 def test_a_report_never_replaces_its_evidence_nor_its_other_form(folder: Path) -> None:
     fretc(folder, f"audit {LOG}")
     before = (folder / "build/evidence.json").read_bytes()

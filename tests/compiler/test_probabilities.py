@@ -374,3 +374,50 @@ def test_evidence_with_a_bound_that_is_none_cannot_be_read(fretc: Fretc, bound: 
     run = fretc("report")
     assert run.status == 2
     assert run.err.startswith("F503")
+
+
+def test_what_all_runs_say_is_made_again_with_the_evidence(fretc: Fretc) -> None:
+    logs(3, "10", "00")
+    assert fretc("audit", "runs", "--confidence", "0.9").status == 1
+    run = fretc("verify-evidence")
+    assert run.status == 0
+    assert run.out.endswith("all runs\n  ✔ R7  stands\n")
+    text = Path("build/evidence.json").read_text()
+    evidence = json.loads(text)
+    write("build/evidence.json", text.replace('"refuted"', '"supported"'))
+    run = fretc("verify-evidence")
+    assert run.status == 1
+    assert "✘ R7  differs: the answer is refuted, and was supported\n" in run.out
+    for field, value, told in [
+        ("confidence", 0.99, "differs: the answer is inconclusive, and was refuted"),
+        ("confidence", 0.1, "differs: its confidence is none above 0.5 and up to 0.999"),
+        ("reason", "so it is", "differs: it differs in reason"),
+    ]:
+        (said,) = evidence["probabilities"]
+        write(
+            "build/evidence.json",
+            json.dumps({**evidence, "probabilities": [{**said, field: value}]}),
+        )
+        run = fretc("verify-evidence")
+        assert run.status == 1
+        assert told in run.out
+    del evidence["probabilities"]
+    write("build/evidence.json", json.dumps(evidence))
+    assert "what all runs say of it is left out" in fretc("verify-evidence").out
+    shutil.rmtree("runs")
+    write("build/evidence.json", text)
+    assert fretc("verify-evidence").status == 3
+
+
+@pytest.mark.parametrize(
+    ("answers", "status", "kinds"), [("00", 1, ["failure"]), ("01", 0, []), ("0", 3, ["skipped"])]
+)
+def test_a_report_fails_where_all_runs_refute_and_passes_where_they_support(
+    fretc: Fretc, answers: str, status: int, kinds: list[str]
+) -> None:
+    require(WITHIN.replace("0.9", "0.5"))
+    logs(8 if len(answers) > 1 else 1, "10"[: len(answers)] + "000", f"{answers}000")
+    fretc("audit", "runs")
+    assert fretc("report", "--strict", "--junit", "r.xml").status == status
+    (case,) = ElementTree.parse("r.xml").getroot().iter("testcase")
+    assert [child.tag for child in case] == kinds

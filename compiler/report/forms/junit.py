@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from xml.etree import ElementTree
 
+from compiler.odds import REFUTED
 from compiler.outputs import as_text, counted, valid
 from compiler.report.claims import (
     NOT_EXERCISED,
@@ -21,6 +22,7 @@ from monitors import kernel
 
 _KINDS: Mapping[str, str] = {
     kernel.VIOLATED: "failure",
+    REFUTED: "failure",
     UNFORMALIZED: "error",
     kernel.NO_DATA: "error",
     SUSPECT: "skipped",
@@ -30,7 +32,7 @@ _KINDS: Mapping[str, str] = {
     WAIVED: "skipped",
     RETIRED: "skipped",
 }
-"""What JUnit has for a verdict; nothing for one that is satisfied."""
+"""What JUnit has for a verdict; nothing for one that shows the requirement."""
 
 
 def junit(report: Report, *, strict: bool) -> str:
@@ -61,7 +63,9 @@ def _case(
         time="0",
     )
     if kind is not None:
-        reasons = [*([view.waiver.reason] if view.waiver else []), *view.reasons]
+        waiver = view.waiver
+        excused = [f"{waiver.reason} (it is {waiver.covers.word})"] if waiver else []
+        reasons = [*excused, *view.reasons]
         message = valid(f"{view.mark.word}: {reasons[0]}" if reasons else view.mark.word)
         told = ElementTree.SubElement(case, kind, message=message)
         if kind != "skipped":
