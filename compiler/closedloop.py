@@ -11,7 +11,6 @@ import ast
 from collections.abc import Iterator
 from dataclasses import dataclass, fields
 from math import gcd
-from typing import Any
 
 from compiler import automata
 from compiler import confined as processes
@@ -22,6 +21,7 @@ from compiler.interception import options, ticks
 from compiler.loopmodel import Channel
 from compiler.loopsearch import Case, Found, search
 from compiler.rule import Rule
+from compiler.targets import interceptor as gates
 from compiler.targets import monitor as target
 from compiler.verification import Evidence, Layer, NotChecked, Result
 from fretish.clock import in_words
@@ -156,42 +156,26 @@ def cell_of(tick: int, interception: Interception, assumed: Assumed) -> int:
 
 
 def _otherwise(text: str, interception: Interception) -> str | None:
-    """Why the file is of another interceptor than the bindings declare; None: it is of this one."""
-    stated = _stated(text)
-    declared = settings(interception)
-    told = stated.get("OPTIONS", declared)
-    period = stated.get("PERIOD", interception.period / 1e9)
-    if told == declared and period == interception.period / 1e9:
+    """Why the file is of another interceptor than the bindings declare; None: it is of this one.
+
+    The core may be another: it is what is looked at. Its options and the node around it may not.
+    """
+    made = gates.text(interception, "bindings.toml")
+    try:
+        found, expected = _around(text), _around(made)
+    except (SyntaxError, ValueError, RecursionError) as error:
+        return f"the interceptor is no Python: {error}"
+    if found in (expected, ([], None)):
         return None
     return "the interceptor has other options than the bindings declare: emit it again"
 
 
-def _stated(text: str) -> dict[str, object]:
-    """The constants `OPTIONS` and `PERIOD` of a file, as far as they can be read."""
-    found: dict[str, object] = {}
-    try:
-        body = ast.parse(text).body
-    except (SyntaxError, ValueError, RecursionError):
-        return found
-    for statement in body:
-        match statement:
-            case ast.Assign([ast.Name("PERIOD")], ast.Constant(value)):
-                found["PERIOD"] = value
-            case ast.Assign([ast.Name("OPTIONS")], ast.Call(ast.Name("Options"), [], keywords)):
-                found["OPTIONS"] = _options(keywords)
-            case ast.Assign([ast.Name("OPTIONS" | "PERIOD" as name)]):
-                found[name] = None
-    return found
-
-
-def _options(keywords: list[ast.keyword]) -> Settings | None:
-    """None where they are not written as constants by their names."""
-    given = {k.arg: k.value.value for k in keywords if isinstance(k.value, ast.Constant)}
-    known = {field.name: given.get(field.name, field.default) for field in fields(Settings)}
-    if len(given) < len(keywords) or not set(given) <= set(known):
-        return None
-    made: dict[str, Any] = known
-    return Settings(**made)
+def _around(text: str) -> tuple[list[str], str | None]:
+    """What binds `OPTIONS`, and the node (None: there is none), to the letter but for comments."""
+    above, marked, node = text.partition(f"{gates.MARKER}\n")
+    statements = map(ast.unparse, ast.parse(above).body)
+    options = [each for each in statements if each.startswith("OPTIONS")]
+    return options, ast.dump(ast.parse(node)) if marked else None
 
 
 # Assumptions ----------------------------------------------------------------------------------
