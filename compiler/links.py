@@ -17,9 +17,10 @@ from typing import Any
 
 from compiler import printing
 from compiler.evidence import Evidence, Result
-from compiler.products import Product
+from compiler.products import Product, shared_products
 from compiler.products import products as _made
 from compiler.project import Project, bound_to_logs
+from compiler.proven import Proof
 from compiler.rule import Rule
 from fretish.documents import Requirement
 
@@ -27,6 +28,9 @@ HAZARD, PARENT = "hazard", "parent"
 TEXT, PARAMS, SENTENCE = "text", "params", "sentence"
 CLOCK, BINDINGS, FORMULAS, ARTEFACT = "clock", "bindings", "formulas", "artefact"
 LOG, VERDICT, REVIEW = "log", "verdict", "review"
+PROOF, SHARED = "proof", "shared"
+_ADDED = (LOG, VERDICT, PROOF, SHARED)
+"""What may come after a review without changing anything that was reviewed."""
 _READINGS = ("ltl", "json")
 """Targets that only show what the formulas are: those have fingerprints of their own."""
 
@@ -64,7 +68,10 @@ class Chain:
 
 
 def chains(
-    project: Project, evidence: Evidence | None, made: Mapping[int, Sequence[Product]] | None = None
+    project: Project,
+    evidence: Evidence | None,
+    made: Mapping[int, Sequence[Product]] | None = None,
+    proofs: Sequence[Proof] = (),
 ) -> tuple[Chain, ...]:
     """The chain of each requirement, in the order of the project.
 
@@ -72,6 +79,7 @@ def chains(
         project: with or without errors; a requirement without a rule has a chain that ends early.
         evidence: None where no run has been audited.
         made: what the targets make of each requirement, by its `id()`; None: it is made here.
+        proofs: what verification has found.
     """
     rules = {id(rule.requirement): rule for rule in project.rules}
     results = evidence.results if evidence else ()
@@ -82,6 +90,7 @@ def chains(
             rules.get(id(requirement)),
             _made(rules.get(id(requirement))) if made is None else made.get(id(requirement), ()),
             [result for result in results if result.requirement == requirement.id],
+            [proof for proof in proofs if proof.requirement == requirement.id],
         )
         for requirement in project.requirements
     )
@@ -103,6 +112,7 @@ class _Chain:
         rule: Rule | None,
         made: Iterable[Product],
         results: Sequence[Result],
+        proofs: Sequence[Proof],
     ) -> Chain:
         verdicts = {result.run: result.verdict for result in results}
         self._above(requirement, {requirement.id})
@@ -111,6 +121,7 @@ class _Chain:
         self._link(Node(TEXT, requirement.id), sentence)
         if rule is not None:
             self._below(rule, sentence, made, results)
+            self._proved(rule, proofs)
         review = Node(REVIEW, requirement.id)
         sources = {link.source for link in self._links}
         ends = [node for node in self._prints if node not in sources]
@@ -176,6 +187,21 @@ class _Chain:
         self._add(verdict, _fingerprint(_judgement(result)))
         for source in (*sources, log):
             self._link(source, verdict)
+
+    def _proved(self, rule: Rule, proofs: Sequence[Proof]) -> None:
+        """Each claim, with the texts and assumptions that it is about, as they are now."""
+        shared = shared_products(self._project.declarations) if proofs else ()
+        now = {product.file: product.sha256 for product in shared}
+        for proof in proofs:
+            node = Node(PROOF, f"{rule.id} {proof.layer}: {proof.claim}")
+            self._add(node, _fingerprint([proof.result, sorted(proof.assumptions)]))
+            self._link(Node(FORMULAS, rule.id), node)
+            for name in proof.artefacts:
+                if name in now:
+                    self._add(Node(SHARED, name), now[name])
+                    self._link(Node(SHARED, name), node)
+                elif Node(ARTEFACT, name) in self._prints:
+                    self._link(Node(ARTEFACT, name), node)
 
     def _bound(self, rule: Rule) -> dict[str, Any]:
         """What the bindings say of its propositions, and of the signals that these read."""
@@ -268,9 +294,7 @@ def suspects(chain: Chain, locked: Mapping[Node, str]) -> tuple[Suspect, ...]:
         locked: the fingerprints that were accepted.
     """
     wrong = {
-        node
-        for node in changed(chain.prints, locked)
-        if node in locked or node.kind not in (LOG, VERDICT)  # a new run changes no old one
+        node for node in changed(chain.prints, locked) if node in locked or node.kind not in _ADDED
     }
     upstream = _upstream(chain)
     found = []

@@ -67,6 +67,15 @@ def read(path: str) -> Proofs | Diagnostic:
         return _wrong(source, "is not JSON that fretc can read")
 
 
+def known(path: str | None) -> tuple[Proof, ...] | Diagnostic:
+    """The proofs of a file; None: of the one at its usual place, where there is one."""
+    place = path or written()
+    found = read(place) if place is not None else None
+    if found is None or isinstance(found, Diagnostic):
+        return found or ()
+    return found.proofs
+
+
 def written() -> str | None:
     """The file of `fretc verify` at its usual place, if there is one."""
     return DEFAULT if Path(DEFAULT).exists() else None

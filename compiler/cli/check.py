@@ -13,7 +13,17 @@ from fretish.diagnostic import Diagnostic, Severity, has_errors
 @click.option("--bindings", help="bindings.toml; the one in the folder if not given.")
 @click.option("--hazards", help="hazards.toml; the one in the folder if not given.")
 @click.option("--evidence", default="build/evidence.json", show_default=True)
-def check(requirements: str, bindings: str | None, hazards: str | None, evidence: str) -> None:
+@click.option(
+    "--verification",
+    help="What `fretc verify` found; build/verification.json, if it is there and none is given.",
+)
+def check(
+    requirements: str,
+    bindings: str | None,
+    hazards: str | None,
+    evidence: str,
+    verification: str | None,
+) -> None:
     """Say what is wrong or missing in a project, before any run.
 
     Mistakes in requirements, bindings, hazards, lock and waivers; numbers that have drifted apart;
@@ -27,6 +37,7 @@ def check(requirements: str, bindings: str | None, hazards: str | None, evidence
     from compiler.lock import Lock, orphaned, standings
     from compiler.lock import read as read_lock
     from compiler.project import beside, load, requirement_files
+    from compiler.proven import known as proven
     from compiler.waivers import read as read_waivers
     from compiler.waivers import today
 
@@ -39,7 +50,11 @@ def check(requirements: str, bindings: str | None, hazards: str | None, evidence
     audited = read_evidence(evidence)
     if isinstance(audited, Diagnostic) and audited.is_error:
         said.append(audited)
-    found = chains(project, None if isinstance(audited, Diagnostic) else audited)
+    proofs = proven(verification)
+    if isinstance(proofs, Diagnostic):
+        said.append(proofs)
+        proofs = ()
+    found = chains(project, None if isinstance(audited, Diagnostic) else audited, proofs=proofs)
     lock, path = None, beside(requirements, "fretc.lock")
     if path is not None:
         known = read_lock(path)

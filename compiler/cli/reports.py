@@ -104,7 +104,8 @@ def report(
     wanted = {"html": html, **{name: path for name, path in forms.items() if path is not None}}
     texts = _texts(made, project, evidence, strict=strict)
     read = filter(None, (bindings, hazards, verification, lock, waivers))
-    _deliver(wanted, texts, [evidence, *files, *companions(files), *read])
+    logs = [str(result["run"]) for result in _audited(evidence, made.report)]
+    _deliver(wanted, texts, [evidence, *files, *companions(files), *read, *dict.fromkeys(logs)])
     if has_errors([*project.diagnostics, *made.diagnostics]):
         raise SystemExit(BAD)
     raise SystemExit(_status(made.report) if strict else SHOWN)

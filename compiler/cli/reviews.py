@@ -22,6 +22,10 @@ _REQUIREMENTS = click.option(
     "--requirements", default="requirements", show_default=True, help="Folder, or one file."
 )
 _EVIDENCE = click.option("--evidence", default="build/evidence.json", show_default=True)
+_VERIFICATION = click.option(
+    "--verification",
+    help="What `fretc verify` found; build/verification.json, if it is there and none is given.",
+)
 
 
 @click.command(short_help="Accept the present state of requirements, as their reviewer.")
@@ -32,6 +36,7 @@ _EVIDENCE = click.option("--evidence", default="build/evidence.json", show_defau
 @click.option("--date", "day", help="As 2026-11-22; today, or the day of SOURCE_DATE_EPOCH.")
 @_REQUIREMENTS
 @_EVIDENCE
+@_VERIFICATION
 @click.option("--lock", "path", help="The lock; `fretc.lock` in the requirements' folder.")
 def lock(
     ids: tuple[str, ...],
@@ -41,6 +46,7 @@ def lock(
     day: str | None,
     requirements: str,
     evidence: str,
+    verification: str | None,
     path: str | None,
 ) -> None:
     """Accept the present state of requirements, as their reviewer.
@@ -58,7 +64,7 @@ def lock(
     day = day or today()
     if not is_date(day):
         stop(Diagnostic(Code.BAD_USAGE, f"`{day}` is no date", help="write it as `2026-11-22`"))
-    project, chains = _chains(requirements, evidence)
+    project, chains = _chains(requirements, evidence, verification)
     if has_errors(project.diagnostics):
         raise SystemExit(BAD)
     chosen = _chosen(chains, ids)
@@ -78,10 +84,13 @@ def lock(
 @click.argument("baseline", required=False, metavar="[BASELINE]")
 @_REQUIREMENTS
 @_EVIDENCE
+@_VERIFICATION
 @click.option(
     "--format", "form", type=click.Choice(("text", "json")), default="text", show_default=True
 )
-def diff(baseline: str | None, requirements: str, evidence: str, form: str) -> None:
+def diff(
+    baseline: str | None, requirements: str, evidence: str, verification: str | None, form: str
+) -> None:
     """Say what has changed since a review, verdicts included.
 
     BASELINE is a lock; `fretc.lock` in the requirements' folder if not given. Exit status: 0
@@ -92,7 +101,7 @@ def diff(baseline: str | None, requirements: str, evidence: str, form: str) -> N
     from compiler.templating import to_json
     from fretish.rendering import visible
 
-    project, chains = _chains(requirements, evidence)
+    project, chains = _chains(requirements, evidence, verification)
     if has_errors(project.diagnostics):
         raise SystemExit(BAD)
     known = _read(baseline or _beside(requirements), must=True)
@@ -107,14 +116,20 @@ def diff(baseline: str | None, requirements: str, evidence: str, form: str) -> N
     raise SystemExit(SHOWN if all(d.state == "same" for d in found) else NOT_SHOWN)
 
 
-def _chains(requirements: str, evidence: str) -> tuple[Project, Sequence[Chain]]:
+def _chains(
+    requirements: str, evidence: str, verification: str | None
+) -> tuple[Project, Sequence[Chain]]:
     from compiler.evidence import read
     from compiler.links import chains
     from compiler.project import beside, load, requirement_files
+    from compiler.proven import known
 
     files = requirement_files(requirements)
     if isinstance(files, Diagnostic):
         stop(files)
+    proofs = known(verification)
+    if isinstance(proofs, Diagnostic):
+        stop(proofs)
     names = [beside(requirements, name) for name in ("bindings.toml", "hazards.toml")]
     project = load(files, *names, parents=True)
     audited = read(evidence)
@@ -122,9 +137,9 @@ def _chains(requirements: str, evidence: str) -> tuple[Project, Sequence[Chain]]
         say([*project.diagnostics, audited])
         if audited.is_error:
             raise SystemExit(BAD)
-        return project, chains(project, None)
+        return project, chains(project, None, proofs=proofs)
     say(project.diagnostics)
-    return project, chains(project, audited)
+    return project, chains(project, audited, proofs=proofs)
 
 
 def _chosen(chains: Sequence[Chain], ids: tuple[str, ...]) -> Sequence[Chain]:

@@ -67,10 +67,10 @@ def report(
         proofs: None where nothing was verified.
     """
     found = runs(evidence)
-    claimed = claims(project, evidence, lock, waivers)
+    proved = proofs.proofs if proofs else ()
+    claimed = claims(project, evidence, lock, waivers, proved)
     anchors = {claim.id: claim.anchor for claim in reversed(claimed)}
     audited = evidence is not None
-    proved = proofs.proofs if proofs else ()
     sections = tuple(section(claim, project, found, anchors, audited, proved) for claim in claimed)
     plans = tuple(plan for view in sections for plan in view.planned if view.status != RETIRED)
     reservations = (

@@ -14,6 +14,7 @@ from compiler.lock import Lock, Standing, standings
 from compiler.odds import REFUTED, SUPPORTED
 from compiler.products import Product, products
 from compiler.project import Project, fingerprint
+from compiler.proven import Proof
 from compiler.report.probabilities import ANSWERS, contradictions
 from compiler.report.views import Mark
 from compiler.rule import Rule
@@ -162,6 +163,7 @@ def claims(
     evidence: Evidence | None,
     lock: Lock | None = None,
     waivers: Mapping[str, Waiver] = MappingProxyType({}),
+    proofs: Sequence[Proof] = (),
 ) -> tuple[Claim, ...]:
     """Every requirement of the project, in its order.
 
@@ -170,12 +172,13 @@ def claims(
         evidence: None where no run has been audited.
         lock: None where nothing has been reviewed.
         waivers: those that count now, by the requirement.
+        proofs: what verification has found.
     """
     rules = {id(rule.requirement): rule for rule in project.rules}
     failed = {id(each.requirement): each.diagnostic for each in project.failed}
     results = evidence.results if evidence else ()
     made = {id: products(rule) for id, rule in rules.items()}
-    standing = standings(chains(project, evidence, made), lock)
+    standing = standings(chains(project, evidence, made, proofs), lock)
     anchors: list[str] = []
     found = []
     for requirement, stands in zip(project.requirements, standing, strict=True):

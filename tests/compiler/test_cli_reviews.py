@@ -127,3 +127,61 @@ def test_requirements_with_mistakes_are_not_accepted(fretc: Fretc, folder: Path)
     write("requirements/b.fret", "the robot shal always satisfy stopped")
     assert fretc("lock", *BY, *ON).status == 2
     assert not (folder / "fretc.lock").exists()
+
+
+# Proofs -----------------------------------------------------------------------------------------
+
+
+def proved(claim: str, result: str = "proved", **artefacts: str) -> dict[str, object]:
+    return {
+        "requirement": "R1",
+        "layer": "loop",
+        "claim": claim,
+        "result": result,
+        "detail": "d",
+        "assumptions": ["a"],
+        "engine": "fretc",
+        "artefacts": artefacts,
+    }
+
+
+def verified(*records: dict[str, object]) -> None:
+    document = {"schema": "fretc-verification-1", "fretc": "0.1.0", "evidence": list(records)}
+    write("build/verification.json", json.dumps(document))
+
+
+def test_a_proof_that_turned_out_otherwise_is_told(fretc: Fretc, folder: Path) -> None:
+    verified(proved("it holds"))
+    assert fretc("lock", *BY, *ON).status == 0
+    assert fretc("diff").status == 0
+    verified(proved("it holds", "counterexample"))
+    run = fretc("diff")
+    assert run.status == 3
+    assert "  changed  proof R1 loop: it holds\n" in run.out
+    assert "  suspect  proof R1 loop: it holds → review R1 (proof R1 loop: it holds)\n" in run.out
+
+
+def test_another_assumption_makes_the_proof_below_it_suspect(fretc: Fretc, folder: Path) -> None:
+    loop = '[interceptor]\nstop = "/s"\ncommand = "/c"\noutput = "/o"\nperiod = "50 ms"\n'
+    assumed = '[assume]\nstands = "stopped"\nlatency = "100 ms"\nbraking = "200 ms"\n'
+    bindings = folder / "bindings.toml"
+    bindings.write_text(f"{bindings.read_text()}\n{loop}\n{assumed}")
+    verified(proved("it holds", **{"[interceptor] and [assume]": "", "interceptor.py": ""}))
+    assert fretc("lock", *BY, *ON).status == 0
+    assert fretc("diff").status == 0
+    bindings.write_text(bindings.read_text().replace('braking = "200 ms"', 'braking = "900 ms"'))
+    run = fretc("diff")
+    assert run.status == 3
+    known = "shared [interceptor] and [assume]"
+    assert f"  suspect  {known} → proof R1 loop: it holds ({known})\n" in run.out
+    assert "verdict" not in run.out, "what logs show does not depend on it"
+
+
+def test_a_proof_after_the_review_changes_nothing_that_was_reviewed(
+    fretc: Fretc, folder: Path
+) -> None:
+    assert fretc("lock", *BY, *ON).status == 0
+    verified(proved("it holds"))
+    run = fretc("diff")
+    assert "suspect" not in run.out
+    assert "  new      proof R1 loop: it holds\n" in run.out

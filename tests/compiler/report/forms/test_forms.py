@@ -204,3 +204,11 @@ def test_strict_exits_as_the_report_says(fretc: Fretc, verdict: str | None, stat
     write("build/evidence.json", json.dumps(evidence(known, *results)))
     assert fretc("report").status == 0
     assert fretc("report", "--strict").status == status
+
+
+def test_no_form_goes_where_a_log_is(reported: Fretc) -> None:
+    write("logs/a.mcap", "a log")
+    run = reported("report", "--html", "logs/a.mcap")
+    assert run.status == 2
+    assert "F905 `logs/a.mcap` cannot be written: it is `logs/a.mcap`, which is read" in run.err
+    assert Path("logs/a.mcap").read_text() == "a log"
