@@ -7,7 +7,7 @@ Its schema is `templates/json/evidence.schema.json`; more fields than the report
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import NoReturn
 
@@ -167,6 +167,14 @@ class Evidence:
     results: tuple[Result, ...]
     probabilities: tuple[Estimated, ...]
     """What all runs say of each requirement with a probability."""
+
+
+def by_requirement(evidence: Evidence | None) -> Mapping[str, Sequence[Result]]:
+    """The results of each requirement that has any, in the order of the evidence."""
+    found: dict[str, list[Result]] = {}
+    for result in evidence.results if evidence else ():
+        found.setdefault(result.requirement, []).append(result)
+    return found
 
 
 def read(path: str) -> Evidence | Diagnostic:

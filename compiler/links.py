@@ -16,7 +16,7 @@ from dataclasses import asdict, dataclass
 from typing import Any
 
 from compiler import printing
-from compiler.evidence import Evidence, Result
+from compiler.evidence import Evidence, Result, by_requirement
 from compiler.products import Product, shared_products
 from compiler.products import products as _made
 from compiler.project import Project, bound_to_logs
@@ -82,29 +82,48 @@ def chains(
         proofs: what verification has found.
     """
     rules = {id(rule.requirement): rule for rule in project.rules}
-    results = evidence.results if evidence else ()
-    texts = {requirement.id: requirement for requirement in project.requirements}
+    results, common = by_requirement(evidence), _common(project, proofs)
     return tuple(
-        _Chain(project, texts).of(
+        _Chain(common).of(
             requirement,
             rules.get(id(requirement)),
             _made(rules.get(id(requirement))) if made is None else made.get(id(requirement), ()),
-            [result for result in results if result.requirement == requirement.id],
+            results.get(requirement.id, ()),
             [proof for proof in proofs if proof.requirement == requirement.id],
         )
         for requirement in project.requirements
     )
 
 
+@dataclass(frozen=True, slots=True)
+class _Common:
+    """What the chains of all requirements are made of."""
+
+    project: Project
+    texts: Mapping[str, Requirement]
+    bindings: Mapping[str, Any]
+    shared: Mapping[str, str]
+    """Name of what is made of the bindings alone → its SHA-256; nothing where nothing is proved."""
+
+
+def _common(project: Project, proofs: Sequence[Proof]) -> _Common:
+    declared = project.declarations
+    shared = shared_products(declared) if proofs else ()
+    return _Common(
+        project,
+        {requirement.id: requirement for requirement in project.requirements},
+        bound_to_logs(declared) if declared is not None else {},
+        {product.file: product.sha256 for product in shared},
+    )
+
+
 class _Chain:
     """Collects nodes and links of one requirement."""
 
-    def __init__(self, project: Project, texts: Mapping[str, Requirement]) -> None:
-        self._project, self._texts = project, texts
+    def __init__(self, common: _Common) -> None:
+        self._common, self._project, self._bindings = common, common.project, common.bindings
         self._prints: dict[Node, str] = {}
         self._links: dict[Link, None] = {}
-        declared = project.declarations
-        self._bindings: Mapping[str, Any] = bound_to_logs(declared) if declared is not None else {}
 
     def of(
         self,
@@ -134,7 +153,7 @@ class _Chain:
         text = Node(TEXT, requirement.id)
         self._add(text, _fingerprint(_said(requirement)))
         for parent in requirement.parents:
-            hazard, above = self._project.hazards.get(parent), self._texts.get(parent)
+            hazard, above = self._project.hazards.get(parent), self._common.texts.get(parent)
             if hazard is not None:
                 self._add(Node(HAZARD, parent), _fingerprint(_normal(asdict(hazard))))
                 self._link(Node(HAZARD, parent), text)
@@ -190,8 +209,7 @@ class _Chain:
 
     def _proved(self, rule: Rule, proofs: Sequence[Proof]) -> None:
         """Each claim, with the texts and assumptions that it is about, as they are now."""
-        shared = shared_products(self._project.declarations) if proofs else ()
-        now = {product.file: product.sha256 for product in shared}
+        now = self._common.shared
         for proof in proofs:
             node = Node(PROOF, f"{rule.id} {proof.layer}: {proof.claim}")
             self._add(node, _fingerprint([proof.result, sorted(proof.assumptions)]))

@@ -167,15 +167,10 @@ class Standing:
     review: Review | None
     """None: it has never been reviewed, or the review has been taken back."""
 
-    @property
-    def suspects(self) -> tuple[Suspect, ...]:
-        """The links that no longer stand on what was reviewed; none where nothing was."""
-        return suspects(self.chain, self.review.prints) if self.review else ()
-
-    @property
-    def changes(self) -> tuple[Node, ...]:
-        """Everything that is not as it was reviewed."""
-        return changed(self.chain.prints, self.review.prints) if self.review else ()
+    suspects: tuple[Suspect, ...]
+    """The links that no longer stand on what was reviewed; none where nothing was."""
+    changes: tuple[Node, ...]
+    """Everything that is not as it was reviewed."""
 
     @property
     def is_suspect(self) -> bool:
@@ -186,7 +181,14 @@ class Standing:
 def standings(chains: Sequence[Chain], lock: Lock | None) -> tuple[Standing, ...]:
     """Each requirement beside its review."""
     reviews = lock.reviews if lock else {}
-    return tuple(Standing(chain, reviews.get(chain.requirement)) for chain in chains)
+    return tuple(_standing(chain, reviews.get(chain.requirement)) for chain in chains)
+
+
+def _standing(chain: Chain, review: Review | None) -> Standing:
+    if review is None:
+        return Standing(chain, None, (), ())
+    known = review.prints
+    return Standing(chain, review, suspects(chain, known), changed(chain.prints, known))
 
 
 def orphaned(chains: Sequence[Chain], lock: Lock, path: str) -> tuple[Diagnostic, ...]:

@@ -107,6 +107,27 @@ def load(
     )
 
 
+def whole(
+    folder: str, bindings: str | None = None, hazards: str | None = None
+) -> Project | Diagnostic:
+    """A requirements folder (or one file) with all that stands beside it, and parents elsewhere.
+
+    Args:
+        folder: of the requirements.
+        bindings: None: the `bindings.toml` of the folder, if there is one.
+        hazards: None: the `hazards.toml` of the folder, if there is one.
+    """
+    files = requirement_files(folder)
+    if isinstance(files, Diagnostic):
+        return files
+    return load(
+        files,
+        bindings or beside(folder, BINDINGS),
+        hazards or beside(folder, HAZARDS),
+        parents=True,
+    )
+
+
 def _above(paths: Sequence[str]) -> tuple[Mapping[str, Parent], tuple[Diagnostic, ...]]:
     """The parents that live in other tools, by the settings of the project."""
     first = next((path for path in paths if path != "-"), None)

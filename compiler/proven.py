@@ -14,12 +14,9 @@ from pathlib import Path
 from compiler.files import read as read_text
 from compiler.files import sha256
 from compiler.shapes import MisshapenError, Shape
-from compiler.verification import SCHEMA, Layer
+from compiler.verification import RESULTS, SCHEMA, Layer
 from fretish.diagnostic import Code, Diagnostic
 from fretish.source import Source
-
-PROVED, COUNTEREXAMPLE, VACUOUS, NOT_CHECKED = "proved", "counterexample", "vacuous", "not checked"
-RESULTS = (PROVED, COUNTEREXAMPLE, VACUOUS, NOT_CHECKED)
 
 
 @dataclass(frozen=True, slots=True)

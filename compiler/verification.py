@@ -100,17 +100,22 @@ class Evidence:
     """Name of a file → SHA-256 of the text that was looked at."""
 
 
+PROVED, COUNTEREXAMPLE, VACUOUS, NOT_CHECKED = "proved", "counterexample", "vacuous", "not checked"
+RESULTS = (PROVED, COUNTEREXAMPLE, VACUOUS, NOT_CHECKED)
+"""What a result is called wherever it is written."""
+
+
 def status(result: Result) -> str:
-    """One of proved, counterexample, vacuous, not checked."""
+    """One of `RESULTS`."""
     match result:
         case Proved():
-            return "proved"
+            return PROVED
         case Counterexample():
-            return "counterexample"
+            return COUNTEREXAMPLE
         case Vacuous():
-            return "vacuous"
+            return VACUOUS
         case NotChecked():
-            return "not checked"
+            return NOT_CHECKED
         case _:
             assert_never(result)
 

@@ -36,16 +36,14 @@ def check(
     from compiler.links import chains
     from compiler.lock import Lock, orphaned, standings
     from compiler.lock import read as read_lock
-    from compiler.project import beside, load, requirement_files
+    from compiler.project import beside, whole
     from compiler.proven import known as proven
     from compiler.waivers import read as read_waivers
     from compiler.waivers import today
 
-    files = requirement_files(requirements)
-    if isinstance(files, Diagnostic):
-        stop(files)
-    names = (beside(requirements, "bindings.toml"), beside(requirements, "hazards.toml"))
-    project = load(files, bindings or names[0], hazards or names[1], parents=True)
+    project = whole(requirements, bindings, hazards)
+    if isinstance(project, Diagnostic):
+        stop(project)
     said = list(project.diagnostics)
     audited = read_evidence(evidence)
     if isinstance(audited, Diagnostic) and audited.is_error:

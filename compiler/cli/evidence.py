@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -59,7 +60,9 @@ def verify_evidence(
     source = read_text(file)
     audited = read(file)
     if isinstance(source, Diagnostic) or isinstance(audited, Diagnostic):
-        stop(_error(source if isinstance(source, Diagnostic) else audited))
+        wrong = source if isinstance(source, Diagnostic) else audited
+        assert isinstance(wrong, Diagnostic)
+        stop(replace(wrong, severity=Severity.ERROR))
     project, plan = _plan(requirements, bindings)
     found = _rechecked(source.text, plan, [result.run for result in audited.results], folder, jobs)
     made_from = (file, verification or written(), requirements)
@@ -74,23 +77,13 @@ def verify_evidence(
     raise SystemExit(NOT_SHOWN if "not checked" in kinds else SHOWN)
 
 
-def _error(found: object) -> Diagnostic:
-    assert isinstance(found, Diagnostic)
-    return Diagnostic(found.code, found.message, found.span, found.help, Severity.ERROR)
-
-
 def _plan(requirements: str, bindings: str | None) -> tuple[Project, Plan]:
     from compiler.plan import Plan, planned
-    from compiler.project import beside, load, requirement_files
+    from compiler.project import whole
 
-    files = requirement_files(requirements)
-    if isinstance(files, Diagnostic):
-        stop(files)
-    names = (
-        bindings or beside(requirements, "bindings.toml"),
-        beside(requirements, "hazards.toml"),
-    )
-    project = load(files, *names, parents=True)
+    project = whole(requirements, bindings)
+    if isinstance(project, Diagnostic):
+        stop(project)
     say(project.diagnostics)
     if has_errors(project.diagnostics):
         raise SystemExit(BAD)

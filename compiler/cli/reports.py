@@ -77,7 +77,7 @@ def report(
     All forms say the same. The same inputs give the same bytes; waivers count by the day of
     SOURCE_DATE_EPOCH, where that is set.
     """
-    from compiler.project import beside, companions, load, requirement_files
+    from compiler.project import beside, companions, requirement_files, whole
     from compiler.proven import written
     from compiler.report import make
     from compiler.report.forms import missing_reqif
@@ -88,12 +88,9 @@ def report(
     files = requirement_files(requirements)
     if isinstance(files, Diagnostic):
         stop(files)
-    project = load(
-        files,
-        bindings or beside(requirements, "bindings.toml"),
-        hazards or beside(requirements, "hazards.toml"),
-        parents=True,
-    )
+    project = whole(requirements, bindings, hazards)
+    if isinstance(project, Diagnostic):
+        stop(project)
     lock = lock or beside(requirements, "fretc.lock")
     waivers = waivers or beside(requirements, "waivers.toml")
     verification = verification or written()

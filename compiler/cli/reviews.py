@@ -121,17 +121,15 @@ def _chains(
 ) -> tuple[Project, Sequence[Chain]]:
     from compiler.evidence import read
     from compiler.links import chains
-    from compiler.project import beside, load, requirement_files
+    from compiler.project import whole
     from compiler.proven import known
 
-    files = requirement_files(requirements)
-    if isinstance(files, Diagnostic):
-        stop(files)
+    project = whole(requirements)
+    if isinstance(project, Diagnostic):
+        stop(project)
     proofs = known(verification)
     if isinstance(proofs, Diagnostic):
         stop(proofs)
-    names = [beside(requirements, name) for name in ("bindings.toml", "hazards.toml")]
-    project = load(files, *names, parents=True)
     audited = read(evidence)
     if isinstance(audited, Diagnostic):
         say([*project.diagnostics, audited])

@@ -11,11 +11,11 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 
-from compiler.proven import PROVED
 from compiler.report import phrases
 from compiler.report.claims import SHOWN
 from compiler.report.proofs import is_refuted
 from compiler.report.views import Report, RequirementView
+from compiler.verification import PROVED
 
 
 class Kind(StrEnum):

@@ -71,7 +71,10 @@ def report(
     claimed = claims(project, evidence, lock, waivers, proved)
     anchors = {claim.id: claim.anchor for claim in reversed(claimed)}
     audited = evidence is not None
-    sections = tuple(section(claim, project, found, anchors, audited, proved) for claim in claimed)
+    common = shared_products(project.declarations) if proved else ()
+    sections = tuple(
+        section(claim, project, found, anchors, audited, proved, common) for claim in claimed
+    )
     plans = tuple(plan for view in sections for plan in view.planned if view.status != RETIRED)
     reservations = (
         *(line for view in sections for line in _reservations(view)),
@@ -91,10 +94,7 @@ def report(
         not_shown=tuple(_not_shown(view) for view in sections if view.reasons),
         reservations=reservations,
         planned=plans,
-        proofs=proof_views(
-            (each for each in proved if each.requirement in SHARED),
-            shared_products(project.declarations),
-        ),
+        proofs=proof_views((each for each in proved if each.requirement in SHARED), common),
         verification=phrases.place(proofs.file) if proofs else "",
         remarks=tuple(remark(diagnostic) for diagnostic in _remarks(project, claimed)),
         hazards=hazard_views(project),

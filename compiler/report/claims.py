@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from types import MappingProxyType
 
 from compiler.estimates import Estimated
-from compiler.evidence import Evidence, Result
+from compiler.evidence import Evidence, Result, by_requirement
 from compiler.files import sha256
 from compiler.links import chains
 from compiler.lock import Lock, Standing, standings
@@ -176,7 +176,8 @@ def claims(
     """
     rules = {id(rule.requirement): rule for rule in project.rules}
     failed = {id(each.requirement): each.diagnostic for each in project.failed}
-    results = evidence.results if evidence else ()
+    results = by_requirement(evidence)
+    bindings = fingerprint(project.declarations) if project.declarations else None
     made = {id: products(rule) for id, rule in rules.items()}
     standing = standings(chains(project, evidence, made, proofs), lock)
     anchors: list[str] = []
@@ -184,8 +185,8 @@ def claims(
     for requirement, stands in zip(project.requirements, standing, strict=True):
         anchors.append(_anchor(requirement.id, anchors))
         rule = rules.get(id(requirement))
-        judge = _Judge(rule, project.declarations)
-        mine = [result for result in results if result.requirement == requirement.id]
+        judge = _Judge(rule, bindings)
+        mine = results.get(requirement.id, ())
         judged = tuple(Judged(result, tuple(judge.suspicions(result))) for result in mine)
         found.append(
             Claim(
@@ -237,9 +238,8 @@ def _anchor(id: str, taken: Sequence[str]) -> str:
 class _Judge:
     """Compares evidence with what the requirement, its bindings and its monitor are now."""
 
-    def __init__(self, rule: Rule | None, declarations: Declarations | None) -> None:
-        self.sentence = rule.fingerprint if rule else None
-        self.bindings = fingerprint(declarations) if declarations else None
+    def __init__(self, rule: Rule | None, bindings: str | None) -> None:
+        self.sentence, self.bindings = rule.fingerprint if rule else None, bindings
         self.monitor = sha256(monitor.text(rule)) if rule else None
 
     def suspicions(self, result: Result) -> list[str]:

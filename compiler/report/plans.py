@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from compiler import proven
+from compiler import verification
 from compiler.report import phrases
 from compiler.report.claims import UNFORMALIZED, Claim
 from compiler.report.proofs import METHODS, covering, in_words, worst
@@ -36,8 +36,8 @@ def _planned(claim: Claim, method: str, proofs: Sequence[ProofView]) -> Planned:
 def _proved(claim: Claim, method: str, found: Sequence[ProofView]) -> Planned:
     """The worst of its proofs decides; what was not checked or says nothing is no result."""
     word = worst(found).mark.word
-    known = word in (proven.PROVED, proven.COUNTEREXAMPLE)
-    refuted = word == proven.COUNTEREXAMPLE
+    known = word in (verification.PROVED, verification.COUNTEREXAMPLE)
+    refuted = word == verification.COUNTEREXAMPLE
     return Planned(claim.id, claim.anchor, method, known, in_words(found), refuted)
 
 

@@ -4,20 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
-from compiler import proven
 from compiler.interception import ASSUMED
 from compiler.products import Product
 from compiler.proven import Proof
 from compiler.report import phrases
 from compiler.report.claims import MARKS, SUSPECT
 from compiler.report.views import Mark, ProofView, RequirementView
-from compiler.verification import Layer
+from compiler.verification import COUNTEREXAMPLE, NOT_CHECKED, PROVED, VACUOUS, Layer
 
 _MARKS: Mapping[str, Mark] = {
-    proven.COUNTEREXAMPLE: Mark(proven.COUNTEREXAMPLE, "✘", "violated"),
-    proven.NOT_CHECKED: Mark(proven.NOT_CHECKED, "?", "no-data"),
-    proven.VACUOUS: Mark(proven.VACUOUS, "∅", "vacuous"),
-    proven.PROVED: Mark(proven.PROVED, "✔", "satisfied"),
+    COUNTEREXAMPLE: Mark(COUNTEREXAMPLE, "✘", "violated"),
+    NOT_CHECKED: Mark(NOT_CHECKED, "?", "no-data"),
+    VACUOUS: Mark(VACUOUS, "∅", "vacuous"),
+    PROVED: Mark(PROVED, "✔", "satisfied"),
 }
 """The worst first, as for verdicts."""
 _ALL = ("verify", "proof")
@@ -80,14 +79,20 @@ def covering(method: str, proofs: Sequence[ProofView]) -> list[ProofView]:
 
 def worst(proofs: Iterable[ProofView]) -> ProofView:
     """The one that decides."""
-    rank = [proven.COUNTEREXAMPLE, SUSPECT, proven.NOT_CHECKED, proven.VACUOUS, proven.PROVED]
+    rank = [
+        COUNTEREXAMPLE,
+        SUSPECT,
+        NOT_CHECKED,
+        VACUOUS,
+        PROVED,
+    ]
     return min(proofs, key=lambda proof: rank.index(proof.mark.word))
 
 
 def in_words(proofs: Sequence[ProofView]) -> str:
     """`2 claims proved`; else what is in the way."""
     found = worst(proofs)
-    if found.mark.word == proven.PROVED:
+    if found.mark.word == PROVED:
         return f"{phrases.times(len(proofs), 'claim')} proved"
     why = found.suspicions[0] if found.suspicions else found.detail
     return f"{found.mark.word}: {found.claim} ({why})"
@@ -96,5 +101,5 @@ def in_words(proofs: Sequence[ProofView]) -> str:
 def is_refuted(view: RequirementView) -> bool:
     """Whether verification found a run against it, whatever the audited ones show."""
     return any(plan.refuted for plan in view.planned) or any(
-        proof.mark.word == proven.COUNTEREXAMPLE for proof in view.proofs
+        proof.mark.word == COUNTEREXAMPLE for proof in view.proofs
     )

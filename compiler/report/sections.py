@@ -8,7 +8,7 @@ from typing import Any
 
 from compiler import printing
 from compiler.diagram import diagram, words
-from compiler.products import shared_products
+from compiler.products import Product
 from compiler.project import Project
 from compiler.proven import Proof
 from compiler.record import wording
@@ -45,6 +45,7 @@ def section(
     anchors: Mapping[str, str],
     audited: bool,
     proofs: Sequence[Proof] = (),
+    common: Sequence[Product] = (),
 ) -> RequirementView:
     """The view of one requirement.
 
@@ -55,9 +56,9 @@ def section(
         anchors: where the section of each requirement is, by its id.
         audited: whether there is any evidence.
         proofs: of all requirements, and of what they share.
+        common: what is made of the bindings alone, which proofs are about too.
     """
     requirement, rule = claim.requirement, claim.rule
-    common = shared_products(project.declarations) if proofs else ()
     made = (*claim.products, *common)
     mine = proof_views((p for p in proofs if p.requirement == claim.id), made)
     shared = proof_views((p for p in proofs if p.requirement in SHARED), common)
