@@ -7,7 +7,8 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from fretish import expressions as e
-from monitors.propositions import ExpressionError, Scope, Steps, evaluate, number, truth
+from monitors.measures import ExpressionError, Scope, number
+from monitors.propositions import Steps, evaluate, truth
 from monitors.samples import Recording, Samples
 from tests.monitors.logs import declare
 
