@@ -61,6 +61,8 @@ def code(value: Truth) -> int:
     """The code of a truth value; anything else is a mistake of the caller."""
     if value is None:
         return 2
+    if value is True or value is False:
+        return int(value)
     return int(boolean(value))
 
 

@@ -61,7 +61,7 @@ def test_rows_may_be_given_by_name() -> None:
     assert first.standings() == second.standings()
 
 
-@pytest.mark.parametrize("sentence", (*SENTENCES, "whenever !p sw shall immediately satisfy !q"))
+@pytest.mark.parametrize("sentence", [*SENTENCES, "whenever !p sw shall immediately satisfy !q"])
 def test_booleans_of_numpy_are_those_of_python(sentence: str) -> None:
     python, numpy, single = (monitor(sentence) for _ in range(3))
     table = rows(python, 500, 4)
