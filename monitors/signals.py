@@ -218,8 +218,10 @@ def _array(value: object, name: str) -> Values:
         values = np.asarray(value)
     except (TypeError, ValueError):
         raise FieldError(f"`{name}` is no array of numbers") from None
-    if values.ndim == 1 and values.dtype.kind in "biu":
-        return widest(values)
+    if values.ndim == 1 and values.dtype.kind in "biuf":
+        large = np.isfinite(values) & (np.abs(values) >= WHOLE)
+        if isinstance(value, np.ndarray) or values.dtype.kind != "f" or not large.any():
+            return widest(values)
     elements = [_element(one, name) for one in value]
     whole = any(isinstance(element, int) for element in elements)
     return np.array(elements, EXACT if whole else np.float64)

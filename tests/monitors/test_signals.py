@@ -130,6 +130,13 @@ def test_whole_numbers_that_64_bit_floats_do_not_hold_stay_what_they_are(number:
     assert sample(signal(f'reduce = "{end}"\n', "/t.a[:]"), alone) == number
 
 
+def test_a_whole_number_beside_fractions_stays_what_it_is() -> None:
+    for beside in (0.5, -1, 2**64 - 1):
+        message = SimpleNamespace(a=[beside, 2**63 + 1])
+        assert sample(signal("", "/t.a[1]"), message) == 2**63 + 1
+        assert sample(signal('reduce = "min"\n', "/t.a[:]"), message) == min(beside, 2**63 + 1)
+
+
 def test_valid_tells_whole_numbers_of_64_bits_apart() -> None:
     declared = signal('valid = "x < 9007199254740993"\n', "/t.n")
     assert sample(declared, SimpleNamespace(n=2**53)) == 2**53
