@@ -43,7 +43,7 @@ class Scope:
     """What the names of an expression stand for, at `length` points.
 
     `numbers` have shape (length,), or one element for all points; NaN is unknown. Times their
-    `scales` (1 where none is given) they are in base units. Quantities are read in `unit`. `held`
+    `scales` (1 where none is given) they are in base units. Quantities are read in `unit` or its powers. `held`
     are the states of each `... for 200 ms`, as `monitors.propositions` has them.
     """
 
@@ -98,9 +98,9 @@ def term(expression: e.Expression, scope: Scope) -> Term:
     """
     match expression:
         case e.Number(digits):
-            return _constant(digits, "1")
+            return Fraction(digits)
         case e.Quantity(digits, name, _):
-            return _constant(digits, name) / scope.unit.factor
+            return _quantity(digits, name, scope.unit)
         case e.Name(id):
             if id not in scope.numbers:
                 raise ExpressionError(f"there is no `{id}`")
@@ -117,10 +117,13 @@ def term(expression: e.Expression, scope: Scope) -> Term:
 
 
 @lru_cache(1024)
-def _constant(digits: str, name: str) -> Fraction:
+def _quantity(digits: str, name: str, read_in: Unit) -> Fraction:
+    """A quantity in a unit, or in a power of it: 4 m^2 are 40 000 beside numbers in cm."""
     known = unit(name)
     assert known is not None, "the parser refuses unknown units"
-    return Fraction(digits) * known.factor
+    powers = (1, 0, 2, 3, -1, -2)
+    same = (n for n in powers if known.dimension == tuple(n * d for d in read_in.dimension))
+    return Fraction(digits) * known.factor / read_in.factor ** next(same, 0)
 
 
 def _measure(value: Term) -> Measure:

@@ -191,5 +191,6 @@ def test_constants_beyond_all_floats_are_infinite() -> None:
     scope = Scope(2, {"x": np.array([1e308, math.inf])})
     assert truth(parsed("x < 1e999"), scope).tolist() == [2, 0]
     assert truth(parsed("x > -1e999"), scope).tolist() == [2, 2]
+    assert judged("x < 1e999 and x > -1e999", 2**64 - 1, EXACT)
     assert truth(parsed("1 / 0 < 1 or 1e400 < 1e401"), scope).tolist() == [2, 2]
     assert truth(parsed("1 / 0 < 1"), scope).tolist() == [1, 1]

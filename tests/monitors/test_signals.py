@@ -101,6 +101,16 @@ def test_valid_is_read_in_the_unit_of_the_field() -> None:
     assert sample(declared, SimpleNamespace(ranges=[1.0, 1.5])) == 1.0
 
 
+@pytest.mark.parametrize(
+    ("valid", "greatest"),
+    [("x * x < 4 m^2", 199.0), ("x <= 50 % * range_max", 500.0)],
+)
+def test_valid_may_compute_in_the_unit_of_the_field(valid: str, greatest: float) -> None:
+    declared = signal(f'unit = "cm"\nvalid = "{valid}"\n', "/t.x")
+    assert sample(declared, SimpleNamespace(x=greatest, range_max=1000.0)) == greatest
+    assert math.isnan(sample(declared, SimpleNamespace(x=greatest + 1, range_max=1000.0)))
+
+
 def test_a_limit_that_is_nan_makes_no_reading_valid() -> None:
     assert math.isnan(sample(signal(SCAN), laser([1.0], range_max=NAN)))
 
