@@ -43,8 +43,8 @@ class Scope:
     """What the names of an expression stand for, at `length` points.
 
     `numbers` have shape (length,), or one element for all points; NaN is unknown. Times their
-    `scales` (1 where none is given) they are in base units. Quantities are read in `unit` or its powers. `held`
-    are the states of each `... for 200 ms`, as `monitors.propositions` has them.
+    `scales` (1 where none is given) they are in base units. Quantities are read in `unit` or its
+    powers. `held` are the states of each `... for 200 ms`, as `monitors.propositions` has them.
     """
 
     length: int

@@ -419,7 +419,7 @@ crowded = st.lists(
 ).map(lambda found: sorted(((4 * time, value) for time, value in found), key=lambda p: p[0]))
 
 
-@settings(deadline=None, max_examples=200)
+@settings(deadline=None)
 @given(
     crowded,
     crowded,
