@@ -170,7 +170,7 @@ def _take(columns: list[list[float]], topic: str, message: Any) -> None:
 
 def same(recording: Recording, columns: list[list[float]]) -> bool:
     """Whether both have read the same."""
-    mine = [recording.samples[name].values for name in ("min_range", "v", "vx", "wz")]
+    mine = [recording.samples[name].base for name in ("min_range", "v", "vx", "wz")]
     return all(np.array_equal(a, np.array(b)) for a, b in zip(mine, columns, strict=True))
 
 

@@ -163,7 +163,11 @@ class SafetyFunction:
     def _recording(self, time: int) -> Recording:
         """What is remembered, in the form of a log."""
         samples = {
-            name: Samples(np.array(times, np.int64), np.array(self._values[name], np.float64))
+            name: Samples(
+                np.array(times, np.int64),
+                np.array(self._values[name], np.float64),
+                self._declarations.signals[name].scale,
+            )
             for name, times in self._times.items()
         }
         return Recording(

@@ -419,10 +419,11 @@ class _Tick:
             bound.add(name)
             block = f"""\
 if {name} is not True and {name} is not False:
-    if {name} is not None:
-        refused({proposition!r}, {name})
-    known = False
-    {both} = doubt"""
+    if {name} is None:
+        known = False
+        {both} = doubt
+    else:
+        {name} = boolean({name}, {proposition!r})"""
             _demand(bool(rest) and _is(rest[0], block), rest[0] if rest else ast.Module([], []))
             rest.pop(0)
         return self._after(rest, frozenset(bound))
@@ -449,7 +450,7 @@ if {name} is not True and {name} is not False:
         return bound
 
     def _target(self, node: ast.expr) -> str:
-        fixed = {"self", "rows", "known", "doubt", "tick", "refused"}
+        fixed = {"self", "rows", "known", "doubt", "tick", "boolean"}
         fixed |= {*self.rail.marks, *self.rail.windows}
         _demand(isinstance(node, ast.Name) and node.id not in fixed, node)
         assert isinstance(node, ast.Name)

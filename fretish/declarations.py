@@ -10,6 +10,7 @@ import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from enum import StrEnum
+from fractions import Fraction
 from typing import Any
 
 from fretish.clock import Clock
@@ -112,6 +113,11 @@ class Signal:
     footprint: tuple[tuple[float, float], ...] = ()
     sensor: tuple[float, float, float] = (0.0, 0.0, 0.0)
     span: Span | None = field(default=None, compare=False, repr=False)
+
+    @property
+    def scale(self) -> Fraction:
+        """Times this, samples are in base units: a clearance is, whatever unit the field has."""
+        return Fraction(1) if self.reduce is Reduce.OUTLINE else self.unit.factor
 
 
 class Role(StrEnum):

@@ -58,7 +58,7 @@ _GROUPS: tuple[tuple[str, frozenset[str]], ...] = (
     ("a comparison (`<`, `>=`, ...)", frozenset({"LESS"})),
     ("an operator (`&`, `|`, `->`, ...)", frozenset({"_AMPERSAND", "_IMPLIES"})),
     ("`then`", frozenset({"THEN"})),
-    ("`TRUE` or `FALSE` in capitals", frozenset({"IS_TRUE"})),
+    ("`true` or `false`", frozenset({"IS_TRUE"})),
     ("`timepoint`", frozenset({"TIMEPOINT"})),
     ("`mode`", frozenset({"MODE"})),
     ("`probability`", frozenset({"PROBABILITY"})),

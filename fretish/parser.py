@@ -238,7 +238,7 @@ class _Build(Transformer_NonRecursive[Token, Any]):
 
     def item(self, meta: Any, children: list[Any]) -> s.Condition:
         word, expression, *truth = children[0], children[1], *children[2:]
-        negated = (word.type == "UNLESS") != any(token.type == "IS_FALSE" for token in truth)
+        negated = (word.type == "UNLESS") != any(token.lower() == "false" for token in truth)
         kind = s.ConditionKind.HOLDING if word.type == "WHENEVER" else s.ConditionKind.TRIGGER
         return s.Condition(
             kind, e.Not(expression) if negated else expression, word.lower(), _meta_span(meta)

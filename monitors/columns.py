@@ -23,7 +23,7 @@ from monitors.decoding import short_type
 from monitors.extraction import Extract, Extraction
 from monitors.messages import Messages, Stamps
 from monitors.payloads import Payloads
-from monitors.samples import Gap, Numbers, Times
+from monitors.samples import Gap, Series, Times, Values
 from monitors.stamps import JUMP
 
 _MOST, _MOST_BYTES = 4096, 2**22
@@ -68,7 +68,7 @@ class Column:
     """Those that are read of it: wanted, and nothing wrong with them."""
     logs: array[int] = field(default_factory=lambda: array("q"))
     times: array[int] = field(default_factory=lambda: array("q"))
-    values: dict[str, array[float]] = field(default_factory=dict)
+    values: dict[str, Series] = field(default_factory=dict)
     wrong: dict[str, Diagnostic] = field(default_factory=dict)
     """Why there are no samples of a signal."""
     pending: Pending | None = None
@@ -219,9 +219,9 @@ class Columns:
         column.times.frombytes(times[kept].tobytes())
         column.unset.extend(unset[kept].tobytes())
         for signal in column.signals:
-            values = column.values.setdefault(signal.name, array("d"))
-            found = np.where(unset, np.nan, extract.values[signal.name])
-            values.frombytes(found[kept].tobytes())
+            values = extract.values[signal.name]
+            values[unset] = np.nan
+            column.values.setdefault(signal.name, Series()).add(values[kept])
 
     def _extract(self, column: Column, stream: Stream, payloads: Payloads) -> Extract:
         """What the signals ask for; one with something wrong gets no samples."""
@@ -270,14 +270,14 @@ class Columns:
 
     # The results
 
-    def samples(self, signal: Signal) -> tuple[Times, Numbers]:
+    def samples(self, signal: Signal) -> tuple[Times, Values]:
         """Times and values of one signal, in order of time; none where something is wrong."""
         column = self.topics.get(signal.path.topic)
         if column is None or signal.name not in column.values:
             return np.zeros(0, np.int64), np.zeros(0)
         times = np.array(column.times, np.int64)
         order = np.argsort(times, kind="stable")
-        return times[order], np.array(column.values[signal.name], np.float64)[order]
+        return times[order], column.values[signal.name].values()[order]
 
     def ticks(self) -> Times:
         """Times of the clock's topic, where the clock ticks by message."""

@@ -91,6 +91,20 @@ def shape(stream: Stream) -> Shape | None:
     return _shape(schema.encoding, schema.name, schema.data)
 
 
+def is_single(stream: Stream, where: Sequence[str]) -> bool:
+    """Whether the numbers at that place of each message are 32-bit floats.
+
+    Args:
+        stream: of messages that can be decoded.
+        where: the names of fields from the message down.
+    """
+    if stream.channel.message_encoding == "protobuf":
+        return protobuf.is_single(stream, where)
+    known = shape(stream)
+    found = known.number(tuple(where)) if known is not None else None
+    return found is not None and found.type == "float32"
+
+
 _MOST = 256
 """Definitions that are kept: all logs of a robot have the same ones."""
 

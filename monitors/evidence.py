@@ -245,5 +245,5 @@ def _window(window: Window) -> dict[str, Any]:
 
 
 def _samples(samples: Samples) -> dict[str, Any]:
-    values = [_reading(value) for value in samples.values.tolist()]
+    values = [_reading(value) for value in samples.base.tolist()]
     return {"times_ns": samples.times.tolist(), "values": values}

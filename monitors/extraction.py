@@ -7,7 +7,7 @@ it is slower, and the reference.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Container, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -18,12 +18,12 @@ from fretish.diagnostic import Diagnostic
 from monitors import findings
 from monitors.container import Stream
 from monitors.damage import LATEST
-from monitors.decoding import Decode, decoder, shape, stamp
+from monitors.decoding import Decode, decoder, is_single, shape, stamp
 from monitors.layouts import Found, Group, Layout, Layouts, Shape, Where
 from monitors.payloads import Payloads, Places
 from monitors.probes import trusted
 from monitors.readings import nearest, samples, siblings
-from monitors.samples import Numbers, Times
+from monitors.samples import EXACT, Numbers, Times, Values, widest
 from monitors.signals import RANGE_MIN, FieldError, sample
 from monitors.signals import nearest as nearest_of_one
 
@@ -44,27 +44,40 @@ _STAMPS = (("sec", "nanosec"), ("secs", "nsecs"))
 class Extract:
     """What some messages of a stream hold, all in their order."""
 
-    values: dict[str, Numbers]
-    """Of each signal, shape (messages,); NaN where unknown, or not decoded."""
+    values: dict[str, Values]
+    """Of each signal, shape (messages,), as recorded; NaN where unknown, or not decoded."""
     decoded: NDArray[np.bool_]
     stamps: Times
     stamped: NDArray[np.bool_]
     nearest: dict[str, float] = field(default_factory=dict)
 
     @classmethod
-    def empty(cls, count: int, signals: Iterable[Signal]) -> Extract:
-        """Of messages that are still to be read."""
+    def empty(cls, count: int, signals: Iterable[Signal], single: Container[str] = ()) -> Extract:
+        """Of messages that are still to be read; `single` are signals of 32-bit floats."""
+        kinds = {one.name: "f4" if one.name in single and _chosen(one) else "f8" for one in signals}
         return cls(
-            {signal.name: np.full(count, np.nan) for signal in signals},
+            {name: np.full(count, np.nan, kind) for name, kind in kinds.items()},
             np.zeros(count, bool),
             np.zeros(count, np.int64),
             np.zeros(count, bool),
         )
 
+    def put(self, signal: Signal, at: int | Places, found: float | Values) -> None:
+        """What the signal is in some messages."""
+        wide = isinstance(found, int) or (isinstance(found, np.ndarray) and found.dtype == EXACT)
+        if wide:
+            self.values[signal.name] = self.values[signal.name].astype(EXACT, copy=False)
+        self.values[signal.name][at] = found
+
     def near(self, signal: Signal, least: float | None) -> None:
         """Some messages state a least distance."""
         if least is not None:
             self.nearest[signal.name] = min(least, self.nearest.get(signal.name, least))
+
+
+def _chosen(signal: Signal) -> bool:
+    """Whether its samples are numbers of the log, and not computed of them."""
+    return signal.reduce not in (Reduce.MEAN, Reduce.OUTLINE)
 
 
 class Extraction:
@@ -77,6 +90,10 @@ class Extraction:
         self._checks = _CHECKED
         found = decoder(stream)
         self._decode: Decode | None = None if isinstance(found, str) else found
+        self._single: frozenset[str] = frozenset()
+        """Signals of 32-bit floats."""
+        if self._decode is not None:
+            self._single = frozenset(s.name for s in signals if is_single(stream, s.path.fields))
         self._shape = _shape(stream, self._decode)
         self._sought: tuple[Where, ...] | None = None
         """What the layouts were made for: less, once a signal was refused."""
@@ -91,7 +108,7 @@ class Extraction:
 
     def extract(self, payloads: Payloads) -> Extract:
         """What the messages hold."""
-        extract = Extract.empty(len(payloads), self.signals)
+        extract = Extract.empty(len(payloads), self.signals, self._single)
         if self._decode is None:
             return extract
         slow: Sequence[int] = range(len(payloads))
@@ -122,7 +139,9 @@ class Extraction:
             extract.stamped[row] = True
         for signal in tuple(self.signals):
             try:
-                extract.values[signal.name][row] = sample(signal, message)
+                extract.put(
+                    signal, row, sample(signal, message, single=signal.name in self._single)
+                )
             except FieldError as error:
                 self._refuse(signal, findings.no_field(signal, error))
                 continue
@@ -182,7 +201,7 @@ class Extraction:
 
     def _agrees(self, row: int, payloads: Payloads, layout: Layout) -> bool:
         """Whether both ways read the same of one message."""
-        slow, fast = (Extract.empty(1, self.signals) for _ in range(2))
+        slow, fast = (Extract.empty(1, self.signals, self._single) for _ in range(2))
         before = len(self.wrong)
         self._one_by_one(0, bytes(payloads.payload(row)), slow)
         if len(self.wrong) != before or not slow.decoded[0]:
@@ -214,10 +233,9 @@ class Extraction:
             field = found[signal.path.fields]
             if field.count is None:
                 values = _matrix(single[signal.path.fields])
-                extract.values[signal.name][to] = samples(signal, values, beside)
+                extract.put(signal, to, samples(signal, values, beside))
             else:
-                values = self._reduced(signal, payloads, rows, field, beside)
-                extract.values[signal.name][to] = values
+                extract.put(signal, to, self._reduced(signal, payloads, rows, field, beside))
             if (RANGE_MIN,) in single and signal.reduce in (Reduce.MIN, Reduce.OUTLINE):
                 extract.near(signal, nearest(signal, _numbers(single[RANGE_MIN,])))
         places = _stamp_places(self._shape) if self._shape is not None else ()
@@ -233,16 +251,16 @@ class Extraction:
         rows: Places,
         field: Found,
         beside: Mapping[str, Numbers],
-    ) -> Numbers:
+    ) -> Values:
         """A signal of an array, block by block; shape (rows,)."""
-        values = np.empty(len(rows))
+        values: list[Values] = [np.zeros(0, np.float32)]
         step = max(1, _BLOCK // max(1, field.count or 0))
         for first in range(0, len(rows), step):
             block = slice(first, first + step)
             taken = payloads.gathered(rows[block], field.at, field.dtype, field.count)
             some = {name: numbers[block] for name, numbers in beside.items()}
-            values[block] = samples(signal, _matrix(taken), some)
-        return values
+            values.append(samples(signal, _matrix(taken), some))
+        return np.concatenate(values)
 
 
 def _shape(stream: Stream, decode: Decode | None) -> Shape | None:
@@ -261,13 +279,9 @@ def _reads(shape: Shape, signal: Signal) -> bool:
     )
 
 
-def _matrix(numbers: NDArray[np.generic]) -> NDArray[np.floating]:
-    """One row for each message; 32-bit floats stay what they are."""
-    rows = numbers.reshape(len(numbers), numbers[:1].size)
-    if rows.dtype == np.float32:
-        return rows.astype(np.float32, copy=False)
-    with np.errstate(invalid="ignore"):  # signalling NaN
-        return rows.astype(np.float64)
+def _matrix(numbers: NDArray[np.generic]) -> Values:
+    """One row for each message."""
+    return widest(numbers.reshape(len(numbers), numbers[:1].size))
 
 
 def _numbers(numbers: NDArray[np.generic]) -> Numbers:

@@ -11,7 +11,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from fretish.declarations import Declarations, Proposition
-from monitors.propositions import COMPARE, History, Scope, history_of, number
+from monitors.measures import Measure, term, together
+from monitors.propositions import TRUE, UNKNOWN, History, history_of, truth
 from monitors.samples import Recording, Times
 from monitors.thresholds import Threshold, thresholds
 
@@ -89,18 +90,20 @@ def _audited(times: Times, ticks: Times, begin: int | None) -> slice:
 
 
 def _margin(threshold: Threshold, history: History, audited: slice) -> Margin:
-    scope = Scope(len(history.times), history.numbers)
-    values = number(threshold.term, scope)[audited]
-    known = ~np.isnan(values)
-    values, times = values[known], history.times[audited][known]
-    if not len(values):
+    scope = history.scope()
+    states = truth(threshold.comparison, scope)[audited]
+    known = states != UNKNOWN
+    held, times = states[known] == TRUE, history.times[audited][known]
+    if not len(times):
         return Margin(threshold, None, None, None, None, None)
+    measured, bound, scale = together(term(threshold.term, scope), term(threshold.limit, scope))
+    measured = measured[audited][known]
+    values = Measure(measured, scale).base
     least, greatest = float(values.min()), float(values.max())
-    held = COMPARE[threshold.operator](values, np.array([threshold.bound]))
     if held.any() and not held.all():
         changed = int(times[np.argmax(held != held[0])])
         return Margin(threshold, CROSSED, least, greatest, None, changed)
-    apart = np.abs(values - threshold.bound)
+    apart = Measure(np.abs(measured - bound), scale).base
     at = int(np.argmin(apart))
     if not np.isfinite(apart[at]):  # it never came out of infinity
         return Margin(threshold, bool(held[0]), least, greatest, None, None)

@@ -1,23 +1,24 @@
 """Propositions over samples: three-valued step functions of time.
 
 Kleene's logic: a proposition is true, false or unknown, and what is unknown stays unknown until
-the rest decides. Times are nanoseconds, numbers are in the base unit of their dimension.
+the rest decides. Times are nanoseconds.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from fractions import Fraction
 from functools import reduce
-from typing import Literal
+from types import MappingProxyType
 
 import numpy as np
 from numpy.typing import NDArray
 
 from fretish import expressions as e
 from fretish.declarations import Declarations, Proposition, Signal
-from fretish.units import ONE, Unit, unit
-from monitors.samples import Numbers, Recording, Times
+from monitors.measures import ExpressionError, Scope, Term, compared, term
+from monitors.samples import Recording, Samples, Times, Values
 
 States = NDArray[np.int8]
 """One of `FALSE`, `UNKNOWN`, `TRUE` each: `and` is the least of them, `or` the greatest."""
@@ -26,23 +27,6 @@ FALSE, UNKNOWN, TRUE = 0, 1, 2
 _VALUES: tuple[bool | None, ...] = (False, None, True)
 _FOREVER = 2**62
 """Later than any time of a log, and far enough from the end of int64 to add a duration."""
-
-COMPARE: dict[str, Callable[..., NDArray[np.bool_]]] = {
-    "<": np.less,
-    "<=": np.less_equal,
-    ">": np.greater,
-    ">=": np.greater_equal,
-    "=": np.equal,
-    "!=": np.not_equal,
-}
-"""The operators of comparisons; NaN is equal to nothing."""
-Order = Literal["<", "<=", ">", ">="]
-MIRRORED: Mapping[str, Order] = {"<": ">", "<=": ">=", ">": "<", ">=": "<="}
-"""What says the same when both sides are exchanged."""
-
-
-class ExpressionError(ValueError):
-    """The expression cannot be evaluated where it stands; the text says why."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,8 +60,9 @@ def evaluate(proposition: Proposition, declarations: Declarations, recording: Re
     the same time are taken in their order: the first of each signal together, then the second.
 
     A signal is unknown before its first sample, after its last one has grown too old, within a
-    gap and from there to the next sample, and where a sample is unknown. Numbers are compared
-    as they were recorded: 0.9 as a 32-bit float is 0.89999998, and that is below 0.9.
+    gap and from there to the next sample, and where a sample is unknown. Samples are compared as
+    they were recorded, in their own unit, with the nearest number of their kind: 0.9 as a 32-bit
+    float is 0.9, and not below it.
 
     Returns:
         Steps from `recording.start_ns` on; the later ones up to `recording.end_ns`.
@@ -89,22 +74,7 @@ def evaluate(proposition: Proposition, declarations: Declarations, recording: Re
     return Steps(steps.times[kept], steps.states[kept])
 
 
-# Numbers and truth at given points
-
-
-@dataclass(frozen=True, slots=True)
-class Scope:
-    """What the names of an expression stand for, at `length` points.
-
-    `numbers` have shape (length,), or one element for all points; NaN is unknown. Quantities are
-    read in `unit`; `single` says that numbers are compared as 32-bit floats.
-    """
-
-    length: int
-    numbers: Mapping[str, Numbers]
-    unit: Unit = ONE
-    single: bool = False
-    held: Mapping[e.Held, States] = field(default_factory=dict)
+# Truth at given points
 
 
 def truth(expression: e.Expression, scope: Scope) -> States:
@@ -117,7 +87,7 @@ def truth(expression: e.Expression, scope: Scope) -> States:
         case e.Truth(value):
             return np.full(scope.length, TRUE if value else FALSE, np.int8)
         case e.Comparison(op, left, right):
-            return _compared(op, number(left, scope), number(right, scope), scope)
+            return _compared(op, term(left, scope), term(right, scope), scope.length)
         case e.Not(arg):
             return _not(truth(arg, scope))
         case e.And(args):
@@ -138,73 +108,13 @@ def truth(expression: e.Expression, scope: Scope) -> States:
             raise ExpressionError("a truth value is needed, and this is a number")
 
 
-def number(expression: e.Expression, scope: Scope) -> Numbers:
-    """The number at each point, shape (scope.length,) or (1,); NaN where it is unknown.
-
-    What divides by zero is unknown. Infinity is a number: `1 / inf` is 0, `inf - inf` unknown.
-
-    Raises:
-        ExpressionError: the expression is a truth value, or names what the scope does not hold.
-    """
-    match expression:
-        case e.Number(digits):
-            return _constant(float(digits), scope)
-        case e.Quantity(digits, name, _):
-            known = unit(name)
-            assert known is not None, "the parser refuses unknown units"
-            return _constant(float(digits) * float(known.factor / scope.unit.factor), scope)
-        case e.Name(id):
-            if id not in scope.numbers:
-                raise ExpressionError(f"there is no `{id}`")
-            return scope.numbers[id]
-        case e.Negation(arg):
-            return -number(arg, scope)
-        case e.Arithmetic(op, left, right):
-            return _arithmetic(op, number(left, scope), number(right, scope))
-        case e.Call(name, args, _):
-            return _call(name, [number(arg, scope) for arg in args])
-        case _:
-            raise ExpressionError("a number is needed, and this is a truth value")
-
-
-def _constant(value: float, scope: Scope) -> Numbers:
-    return np.array([np.float32(value) if scope.single else value], np.float64)
-
-
-def _arithmetic(op: e.ArithmeticOperator, left: Numbers, right: Numbers) -> Numbers:
-    with np.errstate(all="ignore"):
-        match op:
-            case "+":
-                return left + right
-            case "-":
-                return left - right
-            case "*":
-                return left * right
-            case "/":
-                return np.where(right == 0, np.nan, left / right)
-            case _:
-                raise ExpressionError(f"bindings have no `{op}`")
-
-
-def _call(name: str, args: Sequence[Numbers]) -> Numbers:
-    match name, len(args):
-        case "abs", 1:
-            return np.abs(args[0])
-        case "min", _:
-            return reduce(np.minimum, args)
-        case "max", _:
-            return reduce(np.maximum, args)
-        case _:
-            raise ExpressionError(f"bindings have no `{name}` of {len(args)} numbers")
-
-
-def _compared(op: str, left: Numbers, right: Numbers, scope: Scope) -> States:
-    states = COMPARE[op](left, right).astype(np.int8)
+def _compared(op: str, left: Term, right: Term, length: int) -> States:
+    held, unknown = compared(op, left, right)
+    states = held.astype(np.int8)
     states *= TRUE  # and what is not true is FALSE, which is 0
-    unknown = np.isnan(left) | np.isnan(right)
     if unknown.any():
         states[unknown] = UNKNOWN
-    return states if len(states) == scope.length else np.repeat(states, scope.length)
+    return states if len(states) == length else np.repeat(states, length)
 
 
 def _not(states: States) -> States:
@@ -221,38 +131,51 @@ def _same(left: States, right: States) -> States:
 
 @dataclass(frozen=True, slots=True)
 class History:
-    """The signals of a proposition at all its events; times have shape (n,)."""
+    """The signals of a proposition at all its events, as `Samples` has them; shape (n,)."""
 
     times: Times
-    numbers: Mapping[str, Numbers]
+    numbers: Mapping[str, Values]
+    scales: Mapping[str, Fraction]
 
-    def at(self, chosen: NDArray[np.intp], times: Times) -> History:
-        """The same at other times, each with the event that is in force there."""
-        return History(times, {name: values[chosen] for name, values in self.numbers.items()})
+    def with_times(self, times: Sequence[Times]) -> History:
+        """The same with an event at each of the times that has none; those there are stay."""
+        extra = np.setdiff1d(np.concatenate([self.times[:0], *times]), self.times)
+        if not len(extra):
+            return self
+        in_force = np.searchsorted(self.times, extra, "right") - 1
+        chosen = np.concatenate([np.arange(len(self.times)), in_force])
+        every = np.concatenate([self.times, extra])
+        order = np.argsort(every, kind="stable")
+        numbers = {name: values[chosen[order]] for name, values in self.numbers.items()}
+        return replace(self, times=every[order], numbers=numbers)
+
+    def scope(self, held: Mapping[e.Held, States] = MappingProxyType({})) -> Scope:
+        """What the names stand for at the events."""
+        return Scope(len(self.times), self.numbers, scales=self.scales, held=held)
 
 
 def history_of(signals: Mapping[str, Signal], recording: Recording) -> History:
     """What the signals are at each time at which `evaluate` looks at them."""
-    samples = {name: _samples(recording, name) for name in signals}
+    samples = {name: recording.samples.get(name, _NONE) for name in signals}
     gaps = _merged(recording.gaps)
     fixed = [recording.start_ns, *(edge for gap in gaps for edge in gap)]
     sources = [np.unique(np.array(fixed, np.int64))]
     for name, signal in signals.items():
-        sources += [samples[name][0], _expiries(samples[name][0], signal.max_age)]
+        sources += [samples[name].times, _expiries(samples[name].times, signal.max_age)]
     times, places = _events(sources)
     numbers = {
-        name: _held_values(*samples[name], places[1 + 2 * i], times, signal.max_age, gaps)
+        name: _held_values(samples[name], places[1 + 2 * i], times, signal.max_age, gaps)
         for i, (name, signal) in enumerate(signals.items())
     }
     first = int(np.searchsorted(times, recording.start_ns))
-    return History(times[first:], {name: values[first:] for name, values in numbers.items()})
+    return History(
+        times[first:],
+        {name: values[first:] for name, values in numbers.items()},
+        {name: samples[name].scale for name in signals},
+    )
 
 
-def _samples(recording: Recording, name: str) -> tuple[Times, Numbers]:
-    samples = recording.samples.get(name)
-    if samples is None:
-        return np.zeros(0, np.int64), np.zeros(0)
-    return samples.times, samples.values
+_NONE = Samples(np.zeros(0, np.int64), np.zeros(0))
 
 
 def _merged(gaps: Sequence[tuple[int, int]]) -> list[tuple[int, int]]:
@@ -298,14 +221,14 @@ def _ranks(times: Times) -> NDArray[np.intp]:
 
 
 def _held_values(
-    taken: Times,
-    values: Numbers,
+    samples: Samples,
     places: NDArray[np.intp],
     times: Times,
     max_age: int | None,
     gaps: Sequence[tuple[int, int]],
-) -> Numbers:
+) -> Values:
     """The value of one signal at each event; NaN where it is unknown."""
+    taken, values = samples.times, samples.values
     if not len(taken):
         return np.full(len(times), np.nan)
     last = np.searchsorted(places, np.arange(len(times)), "right") - 1
@@ -317,7 +240,8 @@ def _held_values(
         starts, ends = np.array(gaps, np.int64).T
         gap = np.searchsorted(starts, times, "right") - 1
         unknown |= (gap >= 0) & ((times <= ends[gap]) | (taken <= ends[gap]))
-    return np.where(unknown, np.nan, values)
+    held: Values = np.where(unknown, values.dtype.type(np.nan), values)
+    return held
 
 
 # Durations
@@ -327,17 +251,9 @@ def _steps(expression: e.Expression, history: History) -> Steps:
     held = {
         part: _held(_steps(part.arg, history), part.duration) for part in _durations(expression)
     }
-    changes = [steps.times for steps in held.values()]
-    extra = np.setdiff1d(np.concatenate(changes), history.times) if changes else history.times[:0]
-    times = np.sort(np.concatenate([history.times, extra]), kind="stable")
-    history = (
-        history.at(np.searchsorted(history.times, times, "right") - 1, times)
-        if len(extra)
-        else history
-    )
+    history = history.with_times([steps.times for steps in held.values()])
     states = {part: _at(steps, history.times) for part, steps in held.items()}
-    scope = Scope(len(times), history.numbers, held=states)
-    return Steps(history.times, truth(expression, scope))
+    return Steps(history.times, truth(expression, history.scope(states)))
 
 
 def _durations(expression: e.Expression) -> Iterator[e.Held]:

@@ -9,7 +9,7 @@ Source: https://protobuf.dev/programming-guides/field_presence/.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from typing import Any
 
 from monitors.container import Stream
@@ -65,6 +65,15 @@ def numbers(stream: Stream) -> tuple[str, ...]:
             break
         paths.append(path)
     return tuple(paths)
+
+
+def is_single(stream: Stream, where: Sequence[str]) -> bool:
+    """Whether there are 32-bit floats at that place of each message."""
+    descriptor, found = _official(stream)(b"").DESCRIPTOR, None
+    for name in where:
+        found = descriptor.fields_by_name.get(name) if descriptor is not None else None
+        descriptor = found.message_type if found is not None else None
+    return found is not None and bool(found.type == found.TYPE_FLOAT)
 
 
 def _official(stream: Stream) -> Callable[[bytes], Any]:

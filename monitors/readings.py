@@ -1,6 +1,6 @@
 """Signals of many messages at once: what `monitors.signals.sample` says of each of them.
 
-Numbers are in the base unit of the signal's dimension; NaN is unknown.
+Numbers are in the unit of the field, clearances in metres; NaN is unknown.
 """
 
 from __future__ import annotations
@@ -12,17 +12,16 @@ from numpy.typing import NDArray
 
 from fretish import expressions as e
 from fretish.declarations import Invalid, Reading, Reduce, Signal
+from monitors.measures import COMPARE, MIRRORED, Measure, Scope, term, together
 from monitors.outline import distances, places
 from monitors.payloads import Places
-from monitors.propositions import COMPARE, MIRRORED, TRUE, Scope, number, truth
-from monitors.samples import Numbers
-from monitors.signals import clearance
+from monitors.propositions import TRUE, truth
+from monitors.samples import EXACT, Numbers, Values, scaled
+from monitors.signals import clearance, unrounded
 
 Truths = NDArray[np.bool_]
-Between = Callable[["Fields", slice | NDArray[np.intp]], Truths]
+Between = Callable[["Values", slice | NDArray[np.intp]], Truths]
 """Which elements are measurements; told with the values are the messages that they are of."""
-Fields = NDArray[np.floating]
-"""What stands in messages: 32-bit floats, or 64-bit floats that hold any other number."""
 
 
 def siblings(signal: Signal) -> tuple[str, ...]:
@@ -33,35 +32,35 @@ def siblings(signal: Signal) -> tuple[str, ...]:
     return tuple(sorted(names))
 
 
-def samples(signal: Signal, values: Fields, beside: Mapping[str, Numbers]) -> Numbers:
+def samples(signal: Signal, values: Values, beside: Mapping[str, Numbers]) -> Values:
     """The signal's value in each message.
 
     Args:
         signal: what to read, and how.
-        values: shape (messages, elements), in the unit of the field; one element for a number.
+        values: shape (messages, elements), as they were recorded; one element for a number.
         beside: each of `siblings`, shape (messages,).
 
     Returns:
-        Shape (messages,).
+        Shape (messages,); times `signal.scale` it is in base units.
     """
     index = signal.path.index
     if index is not None:
         values = values[:, index : index + 1]
     if not values.shape[1]:
         return np.full(len(values), np.nan)
-    found = np.empty(len(values))
+    found = np.empty(len(values), EXACT if values.dtype == EXACT else np.float64)
     with np.errstate(all="ignore"):  # what is too large is infinite, and a NaN may signal
         if signal.reduce is None and signal.valid is None and np.isfinite(values).all():
-            return values[:, 0].astype(np.float64) * float(signal.unit.factor)
+            return values[:, 0]
         plain = _plain(signal, values, beside, found)
         if not plain.all():
             rows = ~plain
             some = {name: numbers[rows] for name, numbers in beside.items()}
-            found[rows] = _samples(signal, values[rows].astype(np.float64), some)
+            found[rows] = _samples(signal, values[rows], some)
     return found
 
 
-def _plain(signal: Signal, values: Fields, beside: Mapping[str, Numbers], found: Numbers) -> Truths:
+def _plain(signal: Signal, values: Values, beside: Mapping[str, Numbers], found: Values) -> Truths:
     """Fill in the messages of which the least or the greatest measurement is soon seen.
 
     These are most: one of their elements makes them unknown, or they hold a measurement and
@@ -81,12 +80,11 @@ def _plain(signal: Signal, values: Fields, beside: Mapping[str, Numbers], found:
             stronger |= chosen().any(axis=1)
     ends, measured = _ends(signal.reduce, values, between)
     plain: Truths = unknown | (measured & ~stronger)
-    numbers = (ends.astype(np.float64) + 0.0) * float(signal.unit.factor)
-    found[plain] = np.where(unknown, np.nan, numbers)[plain]
+    found[plain] = np.where(unknown, np.nan, ends.astype(found.dtype) + 0.0)[plain]
     return plain
 
 
-def _ends(reduce: Reduce, values: Fields, between: Between) -> tuple[Fields, Truths]:
+def _ends(reduce: Reduce, values: Values, between: Between) -> tuple[Values, Truths]:
     """The least or the greatest measurement of each message, and whether there is one."""
     least = reduce is Reduce.MIN
     # Where the least of all numbers is a measurement, no other element has to be looked at.
@@ -107,7 +105,7 @@ _WEAKER = {Reduce.MIN: Reading.FAR, Reduce.MAX: Reading.NEAR}
 
 
 def _classes(
-    invalid: Invalid, values: Fields, between: Between
+    invalid: Invalid, values: Values, between: Between
 ) -> Iterator[tuple[Reading, Callable[[], Truths]]]:
     """What each kind of element that is no measurement means, and which elements are of it."""
     yield invalid.nan, lambda: np.isnan(values)
@@ -124,17 +122,18 @@ def _between(signal: Signal, beside: Mapping[str, Numbers], count: int) -> Betwe
     bounds = [] if signal.valid is None else _bounds(signal.valid)
     if bounds is None:
         return None
-    scope = Scope(count, beside, signal.unit, single=True)
+    scope = Scope(count, beside, signal.unit)
+    field = Measure(np.zeros(1, np.float32))
     compared: list[tuple[str, NDArray[np.float32]]] = []
     for op, side in bounds:
-        numbers = number(side, scope)
+        _, numbers, _ = together(field, term(side, scope))
         narrow = numbers.astype(np.float32)
         if not np.array_equal(narrow, numbers, equal_nan=True):
             return None
         same = bool((narrow == narrow[:1]).all())
         compared.append((op, narrow[:1, None] if same else narrow[:, None]))
 
-    def between(values: Fields, rows: slice | NDArray[np.intp]) -> Truths:
+    def between(values: Values, rows: slice | NDArray[np.intp]) -> Truths:
         accepted: Truths = np.isfinite(values)
         for op, bound in compared:
             accepted &= COMPARE[op](values, bound if len(bound) == 1 else bound[rows])
@@ -168,44 +167,31 @@ def _without_x(part: e.Expression) -> bool:
     return all(name.id != "x" for name in e.names(part))
 
 
-def _samples(signal: Signal, values: Numbers, beside: Mapping[str, Numbers]) -> Numbers:
+def _samples(signal: Signal, values: Values, beside: Mapping[str, Numbers]) -> Values:
     """`samples`, whatever the elements are."""
-    readings, unknown = _readings(signal, values, _valid(signal, values, beside))
-    factor = 1.0 if signal.reduce is Reduce.OUTLINE else float(signal.unit.factor)
-    found = _reduced(signal, readings, beside) * factor
+    valid = _valid(signal, values, beside)
+    readings, unknown = _readings(signal, unrounded(signal, values), valid)
+    found = _reduced(signal, readings, beside)
     return np.where(unknown | np.isnan(readings).all(axis=1), np.nan, found)
 
 
 def nearest(signal: Signal, stated: Numbers) -> float | None:
     """The least distance that the sensor can report, of `range_min` in each message."""
     finite = stated[np.isfinite(stated)]
-    return float(finite.min()) * float(signal.unit.factor) if len(finite) else None
+    return scaled(float(finite.min()), signal.unit.factor) if len(finite) else None
 
 
-def _valid(signal: Signal, values: Numbers, beside: Mapping[str, Numbers]) -> Truths:
+def _valid(signal: Signal, values: Values, beside: Mapping[str, Numbers]) -> Truths:
     """Which elements are measurements."""
     finite = np.isfinite(values)
     if signal.valid is None:
         return finite
-    single = ((values.astype(np.float32) == values) | ~finite).all(axis=1)
-    accepted = np.zeros(values.shape, bool)
-    for rounded in (True, False):
-        rows = single == rounded
-        if rows.any():
-            accepted[rows] = _accepted(signal, values[rows], beside, rows, single=rounded)
-    return finite & accepted
-
-
-def _accepted(
-    signal: Signal, values: Numbers, beside: Mapping[str, Numbers], rows: Truths, *, single: bool
-) -> Truths:
-    assert signal.valid is not None
     count, width = values.shape
     names = {name.id for name in e.names(signal.valid)} - {"x"}
-    numbers = {name: _spread(beside[name][rows], width) for name in names}
-    scope = Scope(count * width, {"x": values.reshape(-1), **numbers}, signal.unit, single)
+    numbers = {name: _spread(beside[name], width) for name in names}
+    scope = Scope(count * width, {"x": values.reshape(-1), **numbers}, signal.unit)
     accepted: Truths = (truth(signal.valid, scope) == TRUE).reshape(count, width)
-    return accepted
+    return finite & accepted
 
 
 def _spread(numbers: Numbers, width: int) -> Numbers:
@@ -214,7 +200,7 @@ def _spread(numbers: Numbers, width: int) -> Numbers:
     return numbers[:1] if same else np.repeat(numbers, width)
 
 
-def _readings(signal: Signal, values: Numbers, valid: Truths) -> tuple[Numbers, Truths]:
+def _readings(signal: Signal, values: Values, valid: Truths) -> tuple[Values, Truths]:
     """The elements with what is far or near put in; and which messages are unknown."""
     invalid = signal.invalid
     readings, unknown = values.copy(), np.zeros(len(values), bool)
@@ -229,21 +215,23 @@ def _readings(signal: Signal, values: Numbers, valid: Truths) -> tuple[Numbers, 
 _PUT = {Reading.DROP: np.nan, Reading.FAR: np.inf, Reading.NEAR: -np.inf}
 
 
-def _reduced(signal: Signal, readings: Numbers, beside: Mapping[str, Numbers]) -> Numbers:
+def _reduced(signal: Signal, readings: Values, beside: Mapping[str, Numbers]) -> Values:
     match signal.reduce:
         case None:
             return readings[:, 0]
         case Reduce.MIN:
-            return np.asarray(np.fmin.reduce(readings, axis=1) + 0.0, np.float64)
+            return np.asarray(np.fmin.reduce(readings, axis=1) + 0.0)
         case Reduce.MAX:
-            return np.asarray(np.fmax.reduce(readings, axis=1) + 0.0, np.float64)
+            return np.asarray(np.fmax.reduce(readings, axis=1) + 0.0)
         case Reduce.MEAN:
             return np.array([_mean(row) for row in readings])
         case Reduce.OUTLINE:
-            return _clearances(signal, readings, beside["angle_min"], beside["angle_increment"])
+            return _clearances(
+                signal, readings.astype(np.float64), beside["angle_min"], beside["angle_increment"]
+            )
 
 
-def _mean(readings: Numbers) -> float:
+def _mean(readings: Values) -> float:
     measured = readings[~np.isnan(readings)]
     return float(measured.mean()) if len(measured) else float("nan")
 
@@ -270,7 +258,7 @@ def _clearances(signal: Signal, readings: Numbers, starts: Numbers, increments: 
     for rows in _of_one_kind(np.flatnonzero(usual), starts, increments):
         beams = np.arange(readings.shape[1], dtype=float)
         angles = starts[rows[0]] + increments[rows[0]] * beams
-        found[rows] = _least(signal, readings[rows] * float(signal.unit.factor), angles)
+        found[rows] = _least(signal, scaled(readings[rows], signal.unit.factor), angles)
     return found
 
 
@@ -279,7 +267,7 @@ def _usual(signal: Signal, readings: Numbers, starts: Numbers, increments: Numbe
     last = starts + increments * readings.shape[1]
     most = np.where(np.isfinite(readings), np.abs(readings), -1.0).max(axis=1)
     sound: Truths = np.isfinite(starts) & np.isfinite(increments) & np.isfinite(last)
-    sound &= (most >= 0) & (most * float(signal.unit.factor) < _TOO_FAR)
+    sound &= (most >= 0) & (scaled(most, signal.unit.factor) < _TOO_FAR)
     return sound & ~np.isneginf(readings).any(axis=1)
 
 

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,8 +19,60 @@ Times = NDArray[np.int64]
 Numbers = NDArray[np.float64]
 """NaN is unknown."""
 
+Values = NDArray[np.floating[Any]]
+"""As they were recorded, NaN is unknown: 32-bit floats, 64-bit floats, or `EXACT` numbers."""
+
+EXACT = np.dtype(np.longdouble)
+"""What holds each whole number of 64 bits as well as each float: 80-bit floats. Taken where whole
+numbers of 2^53 and more were recorded."""
+
+WHOLE = 2**53
+"""From here on 64-bit floats do not hold every whole number."""
+
 Gap = tuple[int, int]
 """First and last nanosecond of a time whose messages are lost."""
+
+
+_Number = TypeVar("_Number", float, Numbers)
+
+
+def scaled(value: _Number, scale: Fraction) -> _Number:
+    """`value * scale`, rounded once where a division or a multiplication alone does it."""
+    with np.errstate(over="ignore"):  # what is too large is infinite
+        if scale.numerator == 1:
+            return value / float(scale.denominator)
+        return value * float(scale.numerator) / float(scale.denominator)
+
+
+def widest(values: NDArray[Any]) -> Values:
+    """Numbers of any kind as floats that hold them; 32-bit floats stay what they are."""
+    if values.dtype == np.float32:
+        return values.astype(np.float32, copy=False)
+    whole = values.dtype.kind in "iu" and values.dtype.itemsize == 8 and values.size > 0
+    if whole and (int(values.max()) >= WHOLE or int(values.min()) <= -WHOLE):
+        return values.astype(EXACT)
+    with np.errstate(invalid="ignore"):  # signalling NaN
+        return values.astype(EXACT if values.dtype == EXACT else np.float64)
+
+
+class Series:
+    """Numbers that grow in number: of the narrowest kind that holds all of them."""
+
+    def __init__(self) -> None:
+        self._kind = np.dtype(np.float32)
+        self._data = bytearray()
+
+    def add(self, values: Values) -> None:
+        """Some more."""
+        kind = np.promote_types(self._kind, values.dtype)
+        if kind != self._kind:
+            self._data = bytearray(self.values().astype(kind).tobytes())
+            self._kind = kind
+        self._data += values.astype(kind, copy=False).tobytes()
+
+    def values(self) -> Values:
+        """All of them."""
+        return np.frombuffer(bytes(self._data), self._kind)
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,11 +80,18 @@ class Samples:
     """One signal.
 
     `times` has shape (n,), nanoseconds that do not decrease; equal times stand in the order of
-    the file. `values` has shape (n,), in the signal's base unit; NaN is unknown.
+    the file. `values` has shape (n,), as they were recorded; times `scale` they are in the base
+    unit of the signal's dimension. NaN is unknown.
     """
 
     times: Times
-    values: Numbers
+    values: Values
+    scale: Fraction = Fraction(1)
+
+    @property
+    def base(self) -> Numbers:
+        """The values in the signal's base unit, as 64-bit floats."""
+        return scaled(self.values.astype(np.float64), self.scale)
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,6 +1,6 @@
 """Signals: from a decoded message to one number.
 
-Numbers are in the base unit of the signal's dimension; NaN is unknown. What no measurement is
+Numbers are in the unit of the field, clearances in metres; NaN is unknown. What no measurement is
 (NaN, an infinity, a number outside of `valid`) never passes for a number: `Invalid` says what it
 means.
 """
@@ -11,7 +11,7 @@ from collections.abc import Mapping
 from contextlib import suppress
 from math import isfinite
 from numbers import Real
-from typing import assert_never
+from typing import Any, assert_never
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,9 +19,10 @@ from numpy.typing import NDArray
 from fretish import expressions as e
 from fretish.declarations import Declarations, Proposition, Reading, Reduce, Signal
 from fretish.diagnostic import Code, Diagnostic, Severity, suggestion
+from monitors.measures import ExpressionError, Scope
 from monitors.outline import blind_share, distances, places
-from monitors.propositions import TRUE, ExpressionError, Scope, truth
-from monitors.samples import Numbers
+from monitors.propositions import TRUE, truth
+from monitors.samples import EXACT, WHOLE, Values, scaled, widest
 from monitors.thresholds import thresholds
 
 RANGE_MIN = "range_min"
@@ -61,14 +62,14 @@ class Sparse:
         raise NotImplementedError
 
 
-def sample(signal: Signal, message: object) -> float:
+def sample(signal: Signal, message: object, *, single: bool = False) -> float:
     """The signal's value in one message.
 
     Elements are told apart first: NaN, +inf, -inf, a finite number for which `valid` is not
     true, and a valid number. `signal.invalid` then says for each of the first four: it is
     dropped; it is far (+inf); it is near (-inf, and for `outline` a clearance of 0); or it makes
-    the whole sample unknown. `valid` is read in the unit of the field. Where all elements are
-    32-bit floats its numbers are rounded to 32 bits too, so that `x <= 0.3` keeps a 0.3.
+    the whole sample unknown. `valid` is read in the unit of the field. Beside 32-bit floats its
+    numbers are rounded to 32 bits too, so that `x <= 0.3` keeps a 0.3.
 
     `outline` takes each element for a beam, as sensor_msgs/LaserScan defines them, and gives the
     least distance from `signal.footprint` to their end points. A valid beam that ends inside of
@@ -77,36 +78,42 @@ def sample(signal: Signal, message: object) -> float:
     Args:
         signal: what to read, and how.
         message: an object with the message's fields as attributes, arrays as sequences.
+        single: whether the field was recorded as 32-bit floats.
 
     Returns:
-        In the base unit of `signal.unit`. NaN, unknown, where nothing was measured: an index past
-        the end, an empty array, an element that is unknown, nothing left after the drops, a field
-        that a `Sparse` message leaves out.
+        Times `signal.scale` it is in base units; an `int` where a whole number of 64 bits is
+        beyond those that a 64-bit float holds. NaN, unknown, where nothing was measured: an index
+        past the end, an empty array, an element that is unknown, nothing left after the drops, a
+        field that a `Sparse` message leaves out.
 
     Raises:
         FieldError: the message has no such field, or something else than numbers is in it.
     """
-    factor = float(signal.unit.factor)
     try:
         value = _field(signal, message)
-        if isinstance(value, float) and signal.valid is None and isfinite(value):
-            return value * factor  # most signals are so, and most of the time is spent on them
-        values = np.array([value]) if isinstance(value, float) else value
+        if isinstance(value, float | int) and signal.valid is None and isfinite(value):
+            return value  # most signals are so, and most of the time is spent on them
+        values = np.array([value], _kind(value)) if isinstance(value, float | int) else value
         with np.errstate(all="ignore"):  # what is too large is infinite, and a NaN may signal
-            return _sample(signal, message, values, factor)
+            return _sample(signal, message, values.astype(np.float32) if single else values)
     except UnstatedError:
         return float("nan")
 
 
-def _sample(signal: Signal, message: object, values: Numbers, factor: float) -> float:
-    readings = _readings(signal, values, _valid(signal, message, values))
+def _kind(value: float) -> np.dtype[Any]:
+    return EXACT if isinstance(value, int) else np.dtype(np.float64)
+
+
+def _sample(signal: Signal, message: object, values: Values) -> float:
+    valid = _valid(signal, message, values)
+    readings = _readings(signal, unrounded(signal, values), valid)
     if readings is None or np.isnan(readings).all():
         return float("nan")
     if signal.reduce is Reduce.OUTLINE:
         start, step = _sibling(message, "angle_min"), _sibling(message, "angle_increment")
         return clearance(signal, readings, start, step)
     measured = readings[~np.isnan(readings)]
-    return _reduced(signal.reduce, measured) * factor
+    return _reduced(signal.reduce, measured)
 
 
 def nearest(signal: Signal, message: object) -> float | None:
@@ -121,13 +128,13 @@ def nearest(signal: Signal, message: object) -> float | None:
     stated = stated_field(message, RANGE_MIN)
     if not isinstance(stated, Real) or not np.isfinite(float(stated)):
         return None
-    return float(stated) * float(signal.unit.factor)
+    return scaled(float(stated), signal.unit.factor)
 
 
 # Elements
 
 
-def _field(signal: Signal, message: object) -> float | Numbers:
+def _field(signal: Signal, message: object) -> float | Values:
     """A number, or the chosen elements of an array, shape (n,), in the unit of the field."""
     path = signal.path
     value = message
@@ -182,7 +189,7 @@ def stated_field(message: object, name: str) -> object | None:
 
 def _number(value: object, name: str) -> float:
     if isinstance(value, float | int | Real | np.bool_):  # the frequent ones first
-        return float(value)
+        return _exact(value)
     inner = fields(value)
     if inner:
         raise FieldError(f"`{name}` is no number", f"it has {', '.join(inner)}")
@@ -193,7 +200,16 @@ def _number(value: object, name: str) -> float:
     raise FieldError(f"`{name}` is no number")
 
 
-def _array(value: object, name: str) -> Numbers:
+def _exact(value: float | Real | np.bool_) -> float:
+    """As a float; a whole number of 64 bits that a 64-bit float may not hold stays what it is."""
+    if isinstance(value, int | np.integer):
+        whole = int(value)
+        if WHOLE <= whole < 2**64 or -(2**63) <= whole <= -WHOLE:
+            return whole
+    return float(value)
+
+
+def _array(value: object, name: str) -> Values:
     if isinstance(value, bytes | bytearray):
         return np.frombuffer(value, np.uint8).astype(np.float64)
     if isinstance(value, str) or not isinstance(value, list | tuple | np.ndarray):
@@ -203,8 +219,12 @@ def _array(value: object, name: str) -> Numbers:
     except (TypeError, ValueError):
         raise FieldError(f"`{name}` is no array of numbers") from None
     if values.ndim == 1 and values.dtype.kind in "biuf":
-        return values.astype(np.float64)
-    return np.array([_element(one, name) for one in value])
+        large = np.isfinite(values) & (np.abs(values) >= WHOLE)
+        if isinstance(value, np.ndarray) or values.dtype.kind != "f" or not large.any():
+            return widest(values)
+    elements = [_element(one, name) for one in value]
+    whole = any(isinstance(element, int) for element in elements)
+    return np.array(elements, EXACT if whole else np.float64)
 
 
 def _element(value: object, name: str) -> float:
@@ -213,21 +233,20 @@ def _element(value: object, name: str) -> float:
         raise UnstatedError
     if not isinstance(value, Real | np.bool_):
         raise FieldError(f"`{name}` is no array of numbers")
-    return float(value)
+    return _exact(value)
 
 
 # What the elements mean
 
 
-def _valid(signal: Signal, message: object, values: Numbers) -> NDArray[np.bool_]:
+def _valid(signal: Signal, message: object, values: Values) -> NDArray[np.bool_]:
     """Which elements are measurements."""
     finite = np.isfinite(values)
     if signal.valid is None:
         return finite
     names = {name.id for name in e.names(signal.valid)} - {"x"}
     siblings = {name: np.array([_sibling(message, name)]) for name in names}
-    single = bool(np.all(values.astype(np.float32) == values, where=finite))
-    scope = Scope(len(values), {"x": values, **siblings}, signal.unit, single)
+    scope = Scope(len(values), {"x": values, **siblings}, signal.unit)
     try:
         accepted: NDArray[np.bool_] = truth(signal.valid, scope) == TRUE
     except ExpressionError as error:
@@ -236,10 +255,16 @@ def _valid(signal: Signal, message: object, values: Numbers) -> NDArray[np.bool_
 
 
 def _sibling(message: object, name: str) -> float:
-    return _number(_attribute(message, name, ""), name)
+    return float(_number(_attribute(message, name, ""), name))
 
 
-def _readings(signal: Signal, values: Numbers, valid: NDArray[np.bool_]) -> Numbers | None:
+def unrounded(signal: Signal, values: Values) -> Values:
+    """The elements as 64-bit floats; as they are where those would not do, and one is chosen."""
+    chosen = signal.reduce not in (Reduce.MEAN, Reduce.OUTLINE)
+    return values if chosen and values.dtype == EXACT else values.astype(np.float64)
+
+
+def _readings(signal: Signal, values: Values, valid: NDArray[np.bool_]) -> Values | None:
     """The elements with what is far or near put in; NaN where one is dropped.
 
     None when an element makes the whole sample unknown.
@@ -268,21 +293,26 @@ def _readings(signal: Signal, values: Numbers, valid: NDArray[np.bool_]) -> Numb
     return readings
 
 
-def _reduced(reduce: Reduce | None, readings: Numbers) -> float:
+def _reduced(reduce: Reduce | None, readings: Values) -> float:
     match reduce:
         case None:
-            return float(readings[0])
+            return _python(readings[0])
         case Reduce.MIN:
-            return float(readings.min()) + 0.0  # never -0.0: which zero is first depends on NumPy
+            return _python(readings.min()) + 0  # never -0.0: which zero is first depends on NumPy
         case Reduce.MAX:
-            return float(readings.max()) + 0.0
+            return _python(readings.max()) + 0
         case Reduce.MEAN:
             return float(readings.mean())
         case _:
             raise AssertionError(f"{reduce} takes more than the numbers")
 
 
-def clearance(signal: Signal, readings: Numbers, start: float, step: float) -> float:
+def _python(value: np.floating[Any]) -> float:
+    number = float(value)
+    return int(value) if value.dtype == EXACT and WHOLE <= abs(number) < np.inf else number
+
+
+def clearance(signal: Signal, readings: Values, start: float, step: float) -> float:
     """Metres from the footprint to the nearest end of a beam; inf where all are far.
 
     Args:
@@ -297,7 +327,7 @@ def clearance(signal: Signal, readings: Numbers, start: float, step: float) -> f
     if not beams.any():
         return float("inf")
     angles = start + step * np.arange(len(readings), dtype=float)
-    ranges = readings[beams] * float(signal.unit.factor)
+    ranges = scaled(readings[beams].astype(np.float64), signal.unit.factor)
     ends = places(ranges, angles[beams], signal.sensor)
     return float(distances(ends, signal.footprint).min())
 
@@ -357,4 +387,4 @@ def _blind_zone(
 
 
 def _written(value: float, signal: Signal) -> str:
-    return f"{value / float(signal.unit.factor):.4g} {signal.unit_name}".rstrip()
+    return f"{scaled(value, 1 / signal.unit.factor):.4g} {signal.unit_name}".rstrip()

@@ -16,7 +16,7 @@ from fretish.diagnostic import Diagnostic
 from fretish.printer import expression
 from fretish.source import Source
 from fretish.units import base_name
-from monitors.propositions import MIRRORED, Order, Scope, number
+from monitors.measures import MIRRORED, Order, Scope, number
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,6 +30,13 @@ class Threshold:
     bound: float
     unit: str
     """The base unit of both sides; empty for a plain number."""
+    limit: e.Expression
+    """What the bound was written as."""
+
+    @property
+    def comparison(self) -> e.Comparison:
+        """The whole, with the term on the left."""
+        return e.Comparison(self.operator, self.term, self.limit)
 
     @property
     def text(self) -> str:
@@ -75,7 +82,7 @@ def _threshold(
             bound = float(number(other, Scope(1, {}))[0])
             unit = _unit(term, signals)
             return (
-                Threshold(proposition.name, term, operator, bound, unit)
+                Threshold(proposition.name, term, operator, bound, unit, other)
                 if isfinite(bound)
                 else None
             )

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from monitors.kernel import Outcome
-from monitors.samples import Numbers, Recording, Samples
+from monitors.samples import Recording, Samples, Values, scaled
 
 SURROUNDINGS = 10**9
 """Nanoseconds before the trigger and after the deadline that are shown with a violation."""
@@ -137,7 +137,7 @@ def value_at(recording: Recording, signal: str, ns: int) -> float | None:
     if samples is None:
         return None
     i = int(np.searchsorted(samples.times, ns, "right")) - 1
-    value = float(samples.values[i]) if i >= 0 else float("nan")
+    value = scaled(float(samples.values[i]), samples.scale) if i >= 0 else float("nan")
     return value if np.isfinite(value) else None
 
 
@@ -160,10 +160,10 @@ def _around(samples: Samples, start: int, end: int) -> Samples:
     upto = int(np.searchsorted(samples.times, end, "right"))
     times, values = samples.times[first:upto], samples.values[first:upto]
     kept = _thinned(values)
-    return Samples(times[kept], values[kept])
+    return Samples(times[kept], values[kept], samples.scale)
 
 
-def _thinned(values: Numbers) -> NDArray[np.intp]:
+def _thinned(values: Values) -> NDArray[np.intp]:
     """The places of at most `MOST_SAMPLES` values: evenly, with the least and the greatest."""
     count = len(values)
     if count <= MOST_SAMPLES:

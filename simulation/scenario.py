@@ -203,7 +203,7 @@ def load(name: str) -> Scenario:
             raise ScenarioError(f"there is no scenario `{name}`; there are {', '.join(names())}")
         path = Path(str(files("simulation"))) / "scenarios" / f"{name}.toml"
     try:
-        data = tomllib.loads(path.read_text(encoding="utf-8"))
+        data = tomllib.loads(path.read_text(encoding="utf-8-sig"))
     except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
         raise ScenarioError(f"`{name}` is no TOML: {error}") from None
     if "name" in data:

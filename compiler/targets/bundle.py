@@ -28,7 +28,7 @@ from fretish import expressions as e
 from fretish.declarations import Declarations, Modality
 from fretish.depth import deep
 from fretish.diagnostic import Code, Diagnostic
-from monitors.propositions import MIRRORED
+from monitors.measures import MIRRORED
 
 SCHEMA = "fretc-ajpf-bundle-1"
 _WEAKEN = Options(weaken=True)

@@ -216,7 +216,7 @@ def _prefixes(ids: Iterable[str]) -> dict[str, str]:
 _MOST_LEVELS = 60
 _SPOKEN = {"<=": "_le_", ">=": "_ge_", "!=": "_ne_", "<": "_lt_", ">": "_gt_", "=": "_eq_"}
 _TAKEN = frozenset(
-    "self every known doubt tick rows row must may first kept_first refused Signals Marks previous "
+    "self every known doubt tick rows row must may first kept_first boolean Signals Marks previous "
     "weak_previous once historically since released since_from since_between released_between "
     "SATISFIED VIOLATED PENDING".split()
 )

@@ -12,7 +12,7 @@ import re
 from collections.abc import Iterable, Iterator, Sequence
 from typing import NamedTuple
 
-from monitors.kernel.verdicts import Truth
+from monitors.kernel.verdicts import Truth, boolean
 
 LARGE = 1 << 19
 """Ticks from which on a column is a block that the C library treats in another way."""
@@ -63,7 +63,7 @@ def code(value: Truth) -> int:
         return 2
     if value is True or value is False:
         return int(value)
-    raise TypeError(f"a truth value is True, False or None (unknown), not {value!r}")
+    return int(boolean(value))
 
 
 def columns_of(rows: Iterable[Sequence[Truth]], count: int) -> tuple[int, tuple[Column, ...]]:

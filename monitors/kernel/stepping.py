@@ -15,7 +15,7 @@ import json
 from collections import deque
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from operator import itemgetter
-from typing import Any, ClassVar, NamedTuple, NoReturn, Protocol
+from typing import Any, ClassVar, NamedTuple, Protocol
 
 from monitors.kernel.columns import Column
 from monitors.kernel.verdicts import (
@@ -292,11 +292,6 @@ def finite_verdict(broken: Truth, fails: Truth) -> Truth:
     if broken or fails:
         return False
     return True if broken is False and fails is False else None
-
-
-def refused(name: str, value: object) -> NoReturn:
-    """A value that is no truth value came in."""
-    raise TypeError(f"`{name}` is True, False or None (unknown), not {value!r}")
 
 
 def literals_of(

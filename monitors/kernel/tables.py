@@ -31,11 +31,12 @@ def read_rows(
         InputError: a column is missing, a value is no truth value, ticks jump.
     """
     lines = iter(text)
+    lines = itertools.chain([next(lines, "").removeprefix("\ufeff")], lines)
     number, first = next(((i, line) for i, line in enumerate(lines, 1) if line.strip()), (0, ""))
     if not number:
         raise InputError(f"{source}: the trace is empty")
-    lines = itertools.chain([first.removeprefix("\ufeff")], lines)
-    is_json = re.match(r'\s*\{\s*["}]', first.removeprefix("\ufeff")) is not None
+    lines = itertools.chain([first], lines)
+    is_json = re.match(r'\s*\{\s*["}]', first) is not None
     read = _json_rows if is_json else _csv_rows
     tick: int | None = None
     counted: bool | None = None

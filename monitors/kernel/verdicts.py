@@ -9,6 +9,18 @@ Truth = bool | None
 """True, False, or None: unknown."""
 
 
+def boolean(value: object, name: str = "") -> bool:
+    """A truth value that is not unknown, as Python has it: NumPy's Boolean, too.
+
+    Raises:
+        TypeError: it is something else.
+    """
+    if type(value).__name__ in ("bool", "bool_"):
+        return bool(value)
+    what = f"`{name}`" if name else "a truth value"
+    raise TypeError(f"{what} is True, False or None (unknown), not {value!r}")
+
+
 class Verdict(StrEnum):
     """What a trace says of a requirement.
 

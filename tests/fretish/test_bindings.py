@@ -112,6 +112,20 @@ def test_a_proposition_is_read() -> None:
     assert (stopped.role, stopped.kind) == (Role.OUTPUT, "physical")
 
 
+@pytest.mark.parametrize("digits", ["1", "15", "1.5", "1e9", "15e12", "1.5E+3", "1e-5", "2e-10"])
+@pytest.mark.parametrize("unit", ["m/s", "mm/s", "km/h"])
+def test_a_number_may_have_an_exponent_with_and_without_a_unit(digits: str, unit: str) -> None:
+    plain = read(GOOD.replace('unit = "m/s"\n', "").replace("0.01 m/s", digits))
+    assert plain.propositions["stopped"].expression == e.Held(
+        e.Comparison("<", e.Call("abs", (e.Name("vx"),)), e.Number(digits)), 200_000_000
+    )
+    for space in ("", " "):
+        found = read(changed("0.01 m/s", f"{digits}{space}{unit}")).propositions["stopped"]
+        assert found.expression == e.Held(
+            e.Comparison("<", e.Call("abs", (e.Name("vx"),)), e.Quantity(digits, unit)), 200_000_000
+        )
+
+
 @pytest.mark.parametrize("modality", Modality)
 def test_a_modality_is_read_of_propositions_and_variables(modality: Modality) -> None:
     assert read(GOOD).propositions["too_close"].modality is Modality.BELIEF

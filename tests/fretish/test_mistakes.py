@@ -269,12 +269,12 @@ def said(text: str) -> Diagnostic:
             "help: expected the end of the sentence",
         ),
         (
-            "when p is true the sw shall satisfy q",
-            "F101 `true` does not fit here\n"
+            "when p is on the sw shall satisfy q",
+            "F101 `on` does not fit here\n"
             "  --> r.fret:1:11\n"
-            "   | when p is true the sw shall satisfy q\n"
-            "   |           ^^^^\n"
-            "help: expected `TRUE` or `FALSE` in capitals",
+            "   | when p is on the sw shall satisfy q\n"
+            "   |           ^^\n"
+            "help: expected `true` or `false`",
         ),
         (
             "except before m the sw shall satisfy q",
@@ -410,7 +410,7 @@ def test_a_unit_of_other_tools_has_its_word_here(written: str, near: str) -> Non
         ("the sw shall satisfy 3 < x < 5", "the sw shall satisfy 3 < x & x < 5"),
         ("the sw shall eventually stopped", "the sw shall eventually satisfy stopped"),
         ("the sw shall satisfy mode", 'the sw shall satisfy "mode"'),
-        ("when p is true the sw shall satisfy q", "when p is TRUE the sw shall satisfy q"),
+        ("when p is on the sw shall satisfy q", "when p is true the sw shall satisfy q"),
         ("the sw shall satisfy a[3]", 'the sw shall satisfy "a[3]"'),
     ],
 )

@@ -207,7 +207,7 @@ def recorded(path: Path, declarations: Declarations) -> Recording:
 
 
 def values(recording: Recording, signal: str) -> list[float]:
-    return [float(value) for value in recording.samples[signal].values]
+    return [float(value) for value in recording.samples[signal].base]
 
 
 def times(recording: Recording, signal: str) -> list[int]:

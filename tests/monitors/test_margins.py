@@ -1,6 +1,8 @@
 """How near a run came to a bound: written out, and against every nanosecond looked at alone."""
 
 from collections.abc import Sequence
+from dataclasses import replace
+from fractions import Fraction
 from math import inf, isnan, nan
 
 import numpy as np
@@ -74,6 +76,18 @@ def test_one_that_is_crossed_has_none_and_the_time_of_the_first_change() -> None
 def test_at_the_bound_itself_the_margin_is_zero(operator: str, kept: bool) -> None:
     (margin,) = found(f"x {operator} 1 m", recorded([(0, 1.0)], end=10))
     assert (margin.comparison, margin.distance) == (kept, 0.0)
+
+
+def test_a_margin_is_judged_as_the_proposition_is() -> None:
+    """35.7 / 100 is not the float nearest to 0.357."""
+    assert 35.7 / 100 != 0.357
+    log = recorded([(0, 35.7)], end=10)
+    x = Samples(log.samples["x"].times, log.samples["x"].values, Fraction(1, 100))
+    (margin,) = found("x < 0.357 m", replace(log, samples={"x": x}))
+    assert (margin.comparison, margin.distance) == (False, 0.0)
+    single = Samples(x.times, x.values.astype(np.float32), x.scale)
+    (margin,) = found("x >= 0.357 m", replace(log, samples={"x": single}))
+    assert (margin.comparison, margin.distance, margin.threshold.bound) == (True, 0.0, 0.357)
 
 
 def test_the_constant_may_stand_on_the_left_and_the_number_be_computed() -> None:

@@ -6,8 +6,12 @@ import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
+from fretish import binding
 from fretish import expressions as e
-from monitors.propositions import ExpressionError, Scope, Steps, evaluate, number, truth
+from fretish.diagnostic import Diagnostic
+from fretish.source import Source
+from monitors.measures import ExpressionError, Scope, number
+from monitors.propositions import Steps, evaluate, truth
 from monitors.samples import Recording, Samples
 from tests.monitors.logs import declare
 
@@ -52,6 +56,12 @@ def steps(expression: str, log: Recording, max_age: str = "", unit: str = "1") -
     text = f'[clock]\ntick = "10 ns"\n{signals}[proposition.p]\nexpr = "{expression}"\n'
     declarations = declare(text)
     return evaluate(declarations.propositions["p"], declarations, log)
+
+
+def proposition(expression: str) -> e.Expression:
+    found = binding.parse(Source("b", expression).span())
+    assert not isinstance(found, Diagnostic)
+    return found
 
 
 def pairs(found: Steps) -> list[tuple[int, Value]]:
@@ -354,3 +364,88 @@ def test_held_agrees_with_looking_at_every_nanosecond(
     assert [found.values[i] for i in at] == expected
     changes = [t for t in range(1, 81) if expected[t] != expected[t - 1]]
     assert set(changes) <= set(found.times.tolist())
+
+
+# Several samples at one instant: the definition, moment by moment
+
+Moment = tuple[int, int]
+"""A nanosecond, and the place among the steps of that nanosecond."""
+LAST = 40
+
+
+class Slowly:
+    """Expressions of two signals by their definition; a log from 0 to `LAST` without gaps."""
+
+    def __init__(self, samples: Mapping[str, Pairs]) -> None:
+        self.samples = samples
+
+    def count(self, time: int) -> int:
+        """How many steps there are at a nanosecond: as many as samples of one signal, or one."""
+        return max(1, *(sum(t == time for t, _ in pairs) for pairs in self.samples.values()))
+
+    def value(self, name: str, moment: Moment) -> float:
+        time, place = moment
+        now = [value for t, value in self.samples[name] if t == time]
+        before = [value for t, value in self.samples[name] if t < time]
+        return now[min(place, len(now) - 1)] if now else before[-1] if before else NAN
+
+    def truth(self, expression: e.Expression, moment: Moment) -> Value:
+        match expression:
+            case e.Comparison(_, e.Name(name), _):
+                value = self.value(name, moment)
+                return None if math.isnan(value) else value < 5
+            case e.Not(arg):
+                found = self.truth(arg, moment)
+                return None if found is None else not found
+            case e.And(args):
+                each = [self.truth(arg, moment) for arg in args]
+                return False if False in each else None if None in each else True
+            case e.Held(arg, duration):
+                return self.held(arg, moment[0], duration)
+            case _:
+                raise AssertionError(expression)
+
+    def held(self, arg: e.Expression, time: int, duration: int) -> Value:
+        """What was in force `duration` ago, and all steps after that up to now, now's included."""
+        begin = time - duration
+        seen = [None if begin < 0 else self.truth(arg, (begin, self.count(begin) - 1))]
+        for t in range(max(0, begin + 1), time + 1):
+            seen += [self.truth(arg, (t, place)) for place in range(self.count(t))]
+        return False if False in seen else None if None in seen else True
+
+
+crowded = st.lists(
+    st.tuples(st.integers(0, LAST // 4), st.sampled_from([1.0, 9.0, 9.0, NAN])), max_size=9
+).map(lambda found: sorted(((4 * time, value) for time, value in found), key=lambda p: p[0]))
+
+
+@settings(deadline=None)
+@given(
+    crowded,
+    crowded,
+    st.sampled_from(
+        [
+            "x < 5 and not (y < 5 for {} ns)",
+            "(x < 5 for {} ns) and y < 5",
+            "(x < 5 and y < 5) for {} ns",
+            "not ((x < 5 for {} ns) and not (y < 5 for {} ns))",
+            "(not (x < 5 for {} ns) and y < 5) for {} ns",
+        ]
+    ),
+    st.integers(1, 18),
+    st.integers(1, 18),
+)
+@example([(0, 9.0), (20, 1.0), (20, 9.0)], [(0, 9.0)], "x < 5 and not (y < 5 for {} ns)", 7, 1)
+@example([(0, 1.0), (20, 9.0), (20, 1.0)], [(0, 1.0)], "(x < 5 for {} ns) and y < 5", 8, 1)
+def test_each_sample_of_an_instant_is_a_step_beside_any_duration(
+    x: Pairs, y: Pairs, text: str, first: int, second: int
+) -> None:
+    log = recording({"x": x, "y": y}, end=LAST)
+    whole = text.format(first, second)
+    found = steps(whole, log)
+    slowly, expression = Slowly({"x": x, "y": y}), proposition(whole)
+    for time in range(LAST + 1):
+        expected = [slowly.truth(expression, (time, n)) for n in range(slowly.count(time))]
+        here = [value for at, value in pairs(found) if at == time]
+        before = [value for at, value in pairs(found) if at < time]
+        assert (here or before[-1:]) == expected

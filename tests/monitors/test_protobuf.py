@@ -3,6 +3,7 @@
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 from google.protobuf.descriptor_pb2 import (
     DescriptorProto,
@@ -132,6 +133,17 @@ def test_numbers_are_read_through_messages_arrays_and_enums(tmp_path: Path) -> N
     assert found(tmp_path, "ranges[1]", [one, two]) == [0.5, None]
     assert found(tmp_path, "mode", [one, two]) == [2.0, 1.0]
     assert found(tmp_path, "raw[:]", [one], 'reduce = "max"') == [9.0]
+
+
+def test_floats_are_compared_as_32_bit_floats_and_doubles_as_64_bit_floats(tmp_path: Path) -> None:
+    one = STATE(plain=float(np.float32(0.9)), ranges=[0.9], left=2**53 + 1)
+    recording = reading(tmp_path, "ranges[0]", [one])
+    assert recording.samples["s"].values.tolist() == [np.float32(0.9)]
+    assert recording.samples["s"].values.dtype == np.float32
+    assert reading(tmp_path, "plain", [one]).samples["s"].values.dtype == np.float64
+    mean = reading(tmp_path, "ranges[:]", [one], 'reduce = "mean"')
+    assert mean.samples["s"].values.dtype == np.float64
+    assert int(reading(tmp_path, "left", [one]).samples["s"].values[0]) == 2**53 + 1
 
 
 def test_what_is_left_out_is_unknown_and_not_zero(tmp_path: Path) -> None:

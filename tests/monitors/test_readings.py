@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 
 from fretish.declarations import Signal
 from monitors.readings import nearest, samples, siblings
+from monitors.samples import widest
 from monitors.signals import nearest as nearest_of_one
 from monitors.signals import sample
 from tests.monitors.logs import declare
@@ -30,16 +31,20 @@ def bits(value: float) -> bytes:
 def both(signal: Signal, rows: list[list[float]], beside: list[dict[str, float]]) -> None:
     """The signal of many messages at once is that of each of them, bit by bit."""
     array = signal.path.each or signal.path.index is not None
-    one_by_one = [
-        sample(signal, SimpleNamespace(a=row if array else row[0], **names))
-        for row, names in zip(rows, beside, strict=True)
-    ]
     columns = {name: np.array([names[name] for names in beside]) for name in siblings(signal)}
     matrix = np.array(rows, np.float64).reshape(len(rows), -1)
     with np.errstate(all="ignore"):
         narrow = matrix.astype(np.float32)
     same = np.array_equal(narrow, matrix, equal_nan=True)
     for numbers in (matrix, narrow) if same else (matrix,):
+        one_by_one = [
+            sample(
+                signal,
+                SimpleNamespace(a=row if array else row[0], **names),
+                single=numbers is narrow,
+            )
+            for row, names in zip(rows, beside, strict=True)
+        ]
         at_once = samples(signal, numbers, columns)
         assert [bits(value) for value in at_once] == [bits(value) for value in one_by_one]
 
@@ -155,8 +160,36 @@ def test_messages_of_32_and_of_64_bits_are_each_compared_as_what_they_are() -> N
     assert rounded > 0.3
     declared = signal('valid = "x <= 0.3"\n', "/t.a")
     both(declared, [[rounded], [math.nextafter(rounded, 1)], [0.3]], [{}] * 3)
-    found = samples(declared, np.array([[rounded], [math.nextafter(rounded, 1)], [0.3]]), {})
-    assert np.isnan(found).tolist() == [False, True, False]
+    found = samples(declared, np.array([[rounded], [math.nextafter(0.3, 1)], [0.3]]), {})
+    assert np.isnan(found).tolist() == [True, True, False]
+    after = np.nextafter(np.float32(0.3), np.float32(1))
+    found = samples(declared, np.array([[rounded], [after]], np.float32), {})
+    assert np.isnan(found).tolist() == [False, True]
+
+
+WHOLE = st.one_of(
+    st.integers(-(2**63), 2**63 - 1), st.integers(2**53 - 2, 2**53 + 5), st.integers(-9, 9)
+)
+
+
+@pytest.mark.parametrize(
+    "fields", ["", 'reduce = "min"\n', 'reduce = "max"\n', 'reduce = "mean"\n']
+)
+@pytest.mark.parametrize(
+    "valid", ["", "x > 9007199254740993", "x != 9007199254740993", "abs(x) < 9"]
+)
+@given(st.lists(st.lists(WHOLE, min_size=3, max_size=3), min_size=1, max_size=4))
+def test_whole_numbers_of_64_bits_are_read_alike_at_once_and_one_by_one(
+    fields: str, valid: str, rows: list[list[int]]
+) -> None:
+    declared = signal(
+        fields + (f'valid = "{valid}"\ninvalid = {{ other = "drop" }}\n' if valid else ""),
+        "/t.a[:]" if fields else "/t.a[1]",
+    )
+    at_once = samples(declared, widest(np.array(rows, np.int64)), {})
+    each = [sample(declared, SimpleNamespace(a=row)) for row in rows]
+    for one, other in zip(at_once, each, strict=True):
+        assert one == other or (np.isnan(one) and math.isnan(other))
 
 
 def test_an_empty_array_and_an_index_past_the_end_are_unknown() -> None:

@@ -91,14 +91,24 @@ def test_the_limits_of_a_sensor_belong_to_the_range_as_32_bit_floats() -> None:
 def test_a_number_in_valid_is_compared_with_32_bit_floats_as_one_of_them() -> None:
     declared = signal(SCAN.replace("range_max", "0.3"))
     assert float(np.float32(0.3)) > 0.3
-    assert sample(declared, laser([0.3])) == float(np.float32(0.3))
+    assert sample(declared, laser([0.3]), single=True) == float(np.float32(0.3))
 
 
 def test_valid_is_read_in_the_unit_of_the_field() -> None:
     declared = signal('reduce = "min"\nunit = "cm"\nvalid = "x < 20 mm"\n')
     message = SimpleNamespace(ranges=[1.0, 3.0])
     assert math.isnan(sample(declared, message))  # 3 cm is unknown, and so is the sample
-    assert sample(declared, SimpleNamespace(ranges=[1.0, 1.5])) == 0.01
+    assert sample(declared, SimpleNamespace(ranges=[1.0, 1.5])) == 1.0
+
+
+@pytest.mark.parametrize(
+    ("valid", "greatest"),
+    [("x * x < 4 m^2", 199.0), ("x <= 50 % * range_max", 500.0)],
+)
+def test_valid_may_compute_in_the_unit_of_the_field(valid: str, greatest: float) -> None:
+    declared = signal(f'unit = "cm"\nvalid = "{valid}"\n', "/t.x")
+    assert sample(declared, SimpleNamespace(x=greatest, range_max=1000.0)) == greatest
+    assert math.isnan(sample(declared, SimpleNamespace(x=greatest + 1, range_max=1000.0)))
 
 
 def test_a_limit_that_is_nan_makes_no_reading_valid() -> None:
@@ -108,16 +118,44 @@ def test_a_limit_that_is_nan_makes_no_reading_valid() -> None:
 # Paths
 
 
-def test_the_mean_and_an_index_are_in_the_base_unit() -> None:
+def test_the_mean_and_an_index_are_in_the_unit_of_the_field() -> None:
     message = SimpleNamespace(position=[10.0, 20.0, 60.0])
-    assert sample(signal('reduce = "mean"\nunit = "cm"\n', "/j.position[:]"), message) == 0.3
-    assert sample(signal('unit = "cm"\n', "/j.position[2]"), message) == 0.6
+    assert sample(signal('reduce = "mean"\nunit = "cm"\n', "/j.position[:]"), message) == 30.0
+    assert sample(signal('unit = "cm"\n', "/j.position[2]"), message) == 60.0
     assert math.isnan(sample(signal("", "/j.position[3]"), message))
 
 
 def test_truth_values_are_one_and_zero() -> None:
     assert sample(signal("", "/stop.data"), SimpleNamespace(data=True)) == 1.0
     assert sample(signal("", "/stop.data"), SimpleNamespace(data=False)) == 0.0
+
+
+@pytest.mark.parametrize("number", [2**53, 2**53 + 1, 2**64 - 1, -(2**53) - 1, -(2**63)])
+def test_whole_numbers_that_64_bit_floats_do_not_hold_stay_what_they_are(number: int) -> None:
+    alone = SimpleNamespace(n=number, a=[1, number, 0])
+    assert sample(signal("", "/t.n"), alone) == number
+    assert sample(signal('valid = "x != 7"\n', "/t.n"), alone) == number
+    assert sample(signal("", "/t.a[1]"), alone) == number
+    end = "max" if number > 0 else "min"
+    assert sample(signal(f'reduce = "{end}"\n', "/t.a[:]"), alone) == number
+
+
+def test_a_whole_number_beside_fractions_stays_what_it_is() -> None:
+    for beside in (0.5, -1, 2**64 - 1):
+        message = SimpleNamespace(a=[beside, 2**63 + 1])
+        assert sample(signal("", "/t.a[1]"), message) == 2**63 + 1
+        assert sample(signal('reduce = "min"\n', "/t.a[:]"), message) == min(beside, 2**63 + 1)
+
+
+def test_valid_tells_whole_numbers_of_64_bits_apart() -> None:
+    declared = signal('valid = "x < 9007199254740993"\n', "/t.n")
+    assert sample(declared, SimpleNamespace(n=2**53)) == 2**53
+    assert math.isnan(sample(declared, SimpleNamespace(n=2**53 + 1)))
+
+
+def test_whole_numbers_in_valid_are_not_rounded_to_32_bits() -> None:
+    declared = signal('valid = "x < 16777217"\n', "/t.n")
+    assert sample(declared, SimpleNamespace(n=16777216)) == 16777216
 
 
 def test_bytes_are_numbers() -> None:

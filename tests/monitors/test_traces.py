@@ -208,6 +208,20 @@ def test_ten_minutes_are_a_column_of_6001_ticks(expression: str) -> None:
     assert len(values(trace(declarations, log, ["p"]))) == 6001
 
 
+@pytest.mark.parametrize("hold", ["", " for 10 ns", " for 15 ns", " for 3 ns"])
+@pytest.mark.parametrize(("aggregate", "seen"), [("any", True), ("last", False)])
+def test_a_pulse_of_no_length_is_seen_by_any_whatever_stands_beside_it(
+    hold: str, aggregate: str, seen: bool
+) -> None:
+    """x is low only for an instant, at 50 ns; y, which is high then, is low up to 30 ns."""
+    log = recording([(0, HIGH), (50, LOW), (50, HIGH), (90, HIGH)], end=90)
+    y = np.arange(0, 91, 10, dtype=np.int64)
+    log = replace(log, samples={**log.samples, "y": Samples(y, np.where(y < 30, LOW, HIGH))})
+    text = with_y(bindings(aggregate)).replace("x < 5", f"x < 5 and not (y < 5{hold})")
+    found = values(trace(declare(text), log, ["p"]))
+    assert found == [False] * 5 + [seen] + [False] * 4
+
+
 def two_topics(second_begins: int) -> Recording:
     """/x from 0 on, /y from later on; both have a sample every 10 ns."""
     log = recording([(t, LOW) for t in range(0, 60, 10)], end=55)

@@ -1,3 +1,4 @@
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -88,6 +89,13 @@ def test_what_is_no_scenario_is_refused_with_the_place(tmp_path: Path, text: str
 def test_a_name_that_is_none_tells_those_that_are() -> None:
     with pytest.raises(ScenarioError, match="there is no scenario `nominul`; there are blind"):
         load("nominul")
+
+
+def test_lines_may_end_and_files_may_begin_as_on_windows(tmp_path: Path) -> None:
+    text = 'title = "A"\ntext = "B"\n'
+    plain = load(write(tmp_path / "one.toml", text))
+    (tmp_path / "other.toml").write_bytes(b"\xef\xbb\xbf" + text.replace("\n", "\r\n").encode())
+    assert replace(load(str(tmp_path / "other.toml")), name="one") == plain
 
 
 def test_no_toml_and_no_file_are_refused(tmp_path: Path) -> None:

@@ -25,19 +25,22 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 from operator import itemgetter
-from typing import (
-    Any,
-    ClassVar,
-    Generic,
-    NamedTuple,
-    NoReturn,
-    Protocol,
-    TextIO,
-    TypeVar,
-)
+from typing import Any, ClassVar, Generic, NamedTuple, Protocol, TextIO, TypeVar
 
 Truth = bool | None
 """True, False, or None: unknown."""
+
+
+def boolean(value: object, name: str = "") -> bool:
+    """A truth value that is not unknown, as Python has it: NumPy's Boolean, too.
+
+    Raises:
+        TypeError: it is something else.
+    """
+    if type(value).__name__ in ("bool", "bool_"):
+        return bool(value)
+    what = f"`{name}`" if name else "a truth value"
+    raise TypeError(f"{what} is True, False or None (unknown), not {value!r}")
 
 
 class Verdict(StrEnum):
@@ -158,7 +161,7 @@ def code(value: Truth) -> int:
         return 2
     if value is True or value is False:
         return int(value)
-    raise TypeError(f"a truth value is True, False or None (unknown), not {value!r}")
+    return int(boolean(value))
 
 
 def columns_of(rows: Iterable[Sequence[Truth]], count: int) -> tuple[int, tuple[Column, ...]]:
@@ -553,11 +556,6 @@ def finite_verdict(broken: Truth, fails: Truth) -> Truth:
     return True if broken is False and fails is False else None
 
 
-def refused(name: str, value: object) -> NoReturn:
-    """A value that is no truth value came in."""
-    raise TypeError(f"`{name}` is True, False or None (unknown), not {value!r}")
-
-
 def literals_of(
     monitor: Monitor | type[Monitor], columns: Mapping[str, Column], every: int, doubt: bool
 ) -> dict[str, int]:
@@ -780,11 +778,12 @@ def read_rows(
         InputError: a column is missing, a value is no truth value, ticks jump.
     """
     lines = iter(text)
+    lines = itertools.chain([next(lines, "").removeprefix("\ufeff")], lines)
     number, first = next(((i, line) for i, line in enumerate(lines, 1) if line.strip()), (0, ""))
     if not number:
         raise InputError(f"{source}: the trace is empty")
-    lines = itertools.chain([first.removeprefix("\ufeff")], lines)
-    is_json = re.match(r'\s*\{\s*["}]', first.removeprefix("\ufeff")) is not None
+    lines = itertools.chain([first], lines)
+    is_json = re.match(r'\s*\{\s*["}]', first) is not None
     read = _json_rows if is_json else _csv_rows
     tick: int | None = None
     counted: bool | None = None
@@ -1061,16 +1060,18 @@ class R1Rail:
         for (too_close, stopped) in rows:
             tick += 1
             if too_close is not True and too_close is not False:
-                if too_close is not None:
-                    refused("too_close", too_close)
-                known = False
-                too_close = doubt
+                if too_close is None:
+                    known = False
+                    too_close = doubt
+                else:
+                    too_close = boolean(too_close, "too_close")
             not_stopped = not stopped
             if stopped is not True and stopped is not False:
-                if stopped is not None:
-                    refused("stopped", stopped)
-                known = False
-                stopped = not_stopped = doubt
+                if stopped is None:
+                    known = False
+                    stopped = not_stopped = doubt
+                else:
+                    stopped = boolean(stopped, "stopped")
             # !stopped S (too_close & !stopped)
             since_1 = too_close and not_stopped or not_stopped and since_1
             # R1: trigger, open demand

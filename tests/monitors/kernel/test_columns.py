@@ -2,7 +2,9 @@
 
 from collections.abc import Sequence
 from itertools import pairwise, product
+from typing import Any
 
+import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -143,7 +145,16 @@ def test_a_column_can_be_followed_by_one_more_value(value: Truth) -> None:
     assert c.truths(column.followed(value, 3), 4) == [True, None, False, value]
 
 
-@pytest.mark.parametrize("value", [0, 1, 2, "1", "", float("nan"), 1.0, "true"])
+def test_booleans_of_numpy_are_truth_values() -> None:
+    rows: Any = [(np.True_,), (np.False_,), (None,), (np.array([3]) > 2)]
+    ticks, (column,) = c.columns_of(rows, 1)
+    assert c.truths(column, ticks) == [True, False, None, True]
+
+
+@pytest.mark.parametrize(
+    "value",
+    [np.int64(1), np.float64(1), np.array([True]), 0, 1, 2, "1", "", float("nan"), 1.0, "true"],
+)
 def test_nothing_else_is_a_truth_value(value: object) -> None:
     with pytest.raises(TypeError, match="a truth value is True, False or None"):
         c.columns_of([(value,)], 1)  # type: ignore[list-item]

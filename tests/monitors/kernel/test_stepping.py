@@ -5,6 +5,7 @@ import random
 from collections.abc import Callable, Iterator, Mapping
 from typing import Any
 
+import numpy as np
 import pytest
 
 from compiler.targets import monitor as target
@@ -58,6 +59,20 @@ def test_rows_may_be_given_by_name() -> None:
     first.advance(table)
     second.advance([dict(zip(second.PROPOSITIONS, row, strict=True)) for row in table])
     assert first.standings() == second.standings()
+
+
+@pytest.mark.parametrize("sentence", [*SENTENCES, "whenever !p sw shall immediately satisfy !q"])
+def test_booleans_of_numpy_are_those_of_python(sentence: str) -> None:
+    python, numpy, single = (monitor(sentence) for _ in range(3))
+    table = rows(python, 500, 4)
+    same: Any = [tuple(one if one is None else np.bool_(one) for one in row) for row in table]
+    python.advance(table)
+    numpy.advance(same)
+    stepped: Any = single
+    for row in same:
+        stepped.step(**dict(zip(single.PROPOSITIONS.values(), row, strict=True)))
+    assert told(python) == told(numpy) == told(single)
+    assert type(numpy.must.signals()[0].trigger) is bool
 
 
 @pytest.mark.parametrize("sentence", SENTENCES)

@@ -24,6 +24,7 @@ PQ: list[tuple[Truth, ...]] = [(True, False), (None, True)]
         "p,q\ntrue,FALSE\n,True",
         "q,p\r\n0,1\r\n1,\r\n",
         "\ufeffp,q\n1,0\n,1\n",
+        "\ufeff\r\np,q\r\n1,0\r\n,1\r\n",
         "tick,p,q\n0,1,0\n1,,1\n",
         "tick,p,q\n7,1,0\n8,,1\n",
         " p , q \n 1 , 0 \n , 1 \n",
