@@ -9,7 +9,7 @@ from __future__ import annotations
 import errno
 from collections.abc import Collection
 
-from fretish.clock import Clock
+from fretish.clock import Clock, TimeSource
 from fretish.declarations import Signal
 from fretish.diagnostic import Code, Diagnostic, Severity, suggestion
 from fretish.source import Span
@@ -18,6 +18,7 @@ from monitors.decoding import MissingExtra, short_type
 from monitors.refusals import install
 from monitors.samples import Gap
 from monitors.signals import FieldError
+from monitors.stamps import STILL
 
 _SECOND = 10**9
 _MOST_TOLD = 20
@@ -282,16 +283,38 @@ def unstamped(signal: Signal, shift: int) -> Diagnostic:
     )
 
 
-def zero_stamps(signal: Signal, zero: int, count: int) -> Diagnostic:
-    """F416: the publisher never set the time of some messages."""
+def zero_stamps(
+    topic: str, place: Span | None, zero: int, count: int, time: TimeSource
+) -> Diagnostic:
+    """F416: the publisher, or the recorder, never set the time of some messages."""
     return Diagnostic(
         Code.ZERO_STAMP,
-        f"{zero} of {count} messages of `{signal.path.topic}` have a zero for a time: their "
-        "samples are unknown",
-        signal.span,
-        'let the publisher set it, or use `time = "log_time"` under `[clock]`',
+        f"{zero} of {count} messages of `{topic}` have a zero for a time: their samples are "
+        "unknown",
+        place,
+        _other_time(time),
         Severity.WARNING,
     )
+
+
+def still_clock(
+    topic: str, place: Span | None, same: int, count: int, time: TimeSource
+) -> Diagnostic:
+    """F420: many messages in a row have one time."""
+    return Diagnostic(
+        Code.STILL_CLOCK,
+        f"the clock of `{topic}` stands still: {same} of {count} messages have the {time} of "
+        f"{STILL - 1} or more beside them",
+        place,
+        f"{_other_time(time)}; what happened between them is taken for one instant",
+        Severity.WARNING,
+    )
+
+
+def _other_time(time: TimeSource) -> str:
+    if time is TimeSource.LOG_TIME:
+        return 'check the clock of the recorder, or use `time = "header.stamp"` under `[clock]`'
+    return 'let the publisher set it, or use `time = "log_time"` under `[clock]`'
 
 
 def clock_jumps(signal: Signal, jumps: int, largest: int) -> Diagnostic:

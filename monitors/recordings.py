@@ -36,7 +36,7 @@ from monitors.jsontext import held as stated_fields
 from monitors.messages import Sink
 from monitors.parts import Numbered, Part, around, widened
 from monitors.samples import Gap, Recording, Samples, Topic
-from monitors.stamps import JUMP, Stamps, stamps
+from monitors.stamps import JUMP, Stamps, stamps, still
 
 _MOST_TICKS = 20_000_000
 
@@ -329,15 +329,13 @@ def _never_stated(
 
 def _clocks(columns: Columns, wanted: Sequence[Signal]) -> list[Diagnostic]:
     """What is odd about the clocks of the topics that the signals read."""
-    found: list[Diagnostic] = []
+    found = list(_unmoved(columns))
     ahead: dict[str, int] = {}
     signals = {
         signal.path.topic: signal for signal in wanted if signal.path.topic in columns.topics
     }
     for topic, signal in signals.items():
         column = columns.topics[topic]
-        if zero := sum(column.unset):
-            found.append(findings.zero_stamps(signal, zero, len(column.logs)))
         clock = _stamps(column)
         if clock is not None and clock.jumps:
             found.append(findings.clock_jumps(signal, clock.jumps, clock.largest))
@@ -351,11 +349,20 @@ def _clocks(columns: Columns, wanted: Sequence[Signal]) -> list[Diagnostic]:
     return found
 
 
+def _unmoved(columns: Columns) -> Iterator[Diagnostic]:
+    """About clocks that were never set, or that stand still."""
+    for topic, place in columns.readers().items():
+        column, time = columns.topics[topic], columns.clock.time
+        if zero := int(column.unset.sum()):
+            yield findings.zero_stamps(topic, place, zero, column.count, time)
+        if same := still(column.stamps()[~column.unset]):
+            yield findings.still_clock(topic, place, same, column.count, time)
+
+
 def _stamps(column: Column) -> Stamps | None:
     """Of the messages that the declared clock has a time for."""
-    known = np.frombuffer(bytes(column.unset), np.uint8) == 0
-    logs, times = np.array(column.logs, np.int64), np.array(column.times, np.int64)
-    return stamps(logs[known], times[known])
+    known = ~column.unset
+    return stamps(np.array(column.logs, np.int64)[known], column.stamps()[known])
 
 
 def _topic(column: Column) -> Topic:
@@ -376,7 +383,7 @@ def _topic(column: Column) -> Topic:
         equal_stamps=int((steps == 0).sum()),
         median_period_ns=int(np.median(steps)) if len(steps) else None,
         unstamped=column.unstamped,
-        zero_stamps=sum(column.unset),
+        zero_stamps=int(column.unset.sum()),
         clock_jumps=clock.jumps if clock is not None else 0,
     )
 
