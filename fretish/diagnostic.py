@@ -101,6 +101,7 @@ class Code(Enum):
     MIXED_CLOCKS = ("F418", "the stamps of two topics are of different clocks")
     PROCESS_KILLED = ("F419", "the process that audited the log was killed")
     STILL_CLOCK = ("F420", "the clock of a topic stands still")
+    SEVERAL_TYPES = ("F421", "a topic has messages of several types")
 
     UNKNOWN_PARENT = ("F501", "a parent is not declared")
     BAD_HAZARDS = ("F502", "the hazards cannot be read")

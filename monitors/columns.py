@@ -74,6 +74,8 @@ class Column:
     values: dict[str, array[float]] = field(default_factory=dict)
     wrong: dict[str, Diagnostic] = field(default_factory=dict)
     """Why there are no samples of a signal."""
+    types: dict[str, None] = field(default_factory=dict)
+    """Of its messages, in the order in which they came."""
     pending: Pending | None = None
     undecoded: int = 0
     unstamped: int = 0
@@ -239,6 +241,7 @@ class Columns:
         self, column: Column, stream: Stream, logs: Times, publishes: Stamps, payloads: Payloads
     ) -> None:
         """Keep what messages of one stream say."""
+        column.types[short_type(stream.schema.name) if stream.schema else ""] = None
         extract = self._extract(column, stream, payloads)
         times, dated = self._times(column, extract, logs, publishes)
         kept = times < LATEST
@@ -356,6 +359,8 @@ class Columns:
 
     def _oddities(self, column: Column, signal: Signal) -> list[Diagnostic]:
         found, count = [], len(column.logs)
+        if len(column.types) > 1 and signal.type is None:
+            found.append(findings.several_types(signal, list(column.types)))
         if column.undecoded:
             found.append(findings.bad_messages(signal, column.undecoded, count))
         if late := column.late():

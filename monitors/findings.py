@@ -7,7 +7,7 @@ nanoseconds.
 from __future__ import annotations
 
 import errno
-from collections.abc import Collection
+from collections.abc import Collection, Sequence
 
 from fretish.clock import Clock, TimeSource
 from fretish.declarations import Signal
@@ -225,6 +225,20 @@ def wrong_type(signal: Signal, found: str) -> Diagnostic:
         f"not `{short_type(signal.type or '')}`",
         signal.span,
         f'write `type = "{short_type(found)}"`, and check that `path` still fits',
+    )
+
+
+def several_types(signal: Signal, types: Sequence[str]) -> Diagnostic:
+    """F421: the topic has messages of more than one type, and the signal names none."""
+    *some, last = [f"`{name}`" if name else "no type" for name in types]
+    return Diagnostic(
+        Code.SEVERAL_TYPES,
+        f"`{signal.path.topic}` has messages of {', '.join(some)} and {last}: "
+        f"`{signal.name}` is read of all of them",
+        signal.span,
+        "a field of the same name may mean something else there; "
+        f'with `type = "{types[0] or types[-1]}"` a log with any other is refused',
+        Severity.WARNING,
     )
 
 
