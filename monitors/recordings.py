@@ -213,7 +213,8 @@ def _taken(log: Input, sink: Sink, integrity: Integrity, place: Span) -> Part | 
     held = contents(log.stream, log.size, sink, integrity)
     if held.span is not None:
         digest = log.sha256() if held.checked.hashed else held.summary_sha256
-        return Part(digest, log.size, held.span, held.damages, (), held.checked)
+        notes = (refusals.without_crc(place),) if held.unprotected else ()
+        return Part(digest, log.size, held.span, held.damages, notes, held.checked)
     if held.cut is not None:
         return findings.truncated(held.cut, place)
     if held.damages:

@@ -107,6 +107,17 @@ def unchecked(place: Span, assumed: Collection[str]) -> Diagnostic:
     )
 
 
+def without_crc(place: Span) -> Diagnostic:
+    """What an MCAP file cannot show that states no CRC of its messages."""
+    return Diagnostic(
+        Code.BAG_FORMAT,
+        "no CRC covers its messages: a changed byte within one of them cannot be seen",
+        place,
+        "record with `noChunkCRC: false` in rosbag2's `--storage-config-file`",
+        Severity.NOTE,
+    )
+
+
 def bad_metadata(place: Span) -> Diagnostic:
     """What describes a run in several files is not as rosbag2 writes it."""
     return Diagnostic(
