@@ -36,6 +36,7 @@ from monitors.jsontext import held as stated_fields
 from monitors.messages import Sink
 from monitors.parts import Numbered, Part, around, widened
 from monitors.samples import Gap, Recording, Samples, Topic
+from monitors.splits import ACTIVE, named, split, unclosed_backup
 from monitors.stamps import JUMP, Stamps, stamps, still
 
 _MOST_TICKS = 20_000_000
@@ -134,7 +135,9 @@ def _opened(path: str, new: Callable[[], Columns], integrity: Integrity) -> _Rea
     place = Source(shown(path), "").span()
     try:
         if is_folder(path):
-            return _tried(partial(_folder, path), place, new, integrity)
+            return _tried(partial(_folder, folder(path)), place, new, integrity)
+        if not os.path.lexists(path) and (run := split(path)) is not None:
+            return _tried(partial(_folder, run), place, new, integrity)
         with opened(path, whole=integrity is not Integrity.INDEX) as log:
             if isinstance(log, Diagnostic):
                 return log
@@ -178,10 +181,16 @@ def _alone(path: str, place: Span) -> Iterator[Diagnostic]:
     parent, name = os.path.split(path)
     try:
         about = folder(parent or ".") if is_folder(parent or ".") else None
+        bags_of_run = split(path) if name.endswith((".bag", ACTIVE)) else None
     except OSError:
         return
     if isinstance(about, Folder) and len(about.files) > 1 and name in about.files:
-        yield refusals.part_of_a_run(about.files.index(name), len(about.files), parent, place)
+        whole = f"the folder `{parent or '.'}`"
+    elif bags_of_run is not None:
+        about, whole = bags_of_run, f"'{named(bags_of_run)}'"
+    else:
+        return
+    yield refusals.part_of_a_run(about.files.index(name), len(about.files), whole, place)
 
 
 def _part(log: Input, sink: Sink, integrity: Integrity, place: Span) -> Part | Diagnostic:
@@ -207,7 +216,8 @@ def _taken(log: Input, sink: Sink, integrity: Integrity, place: Span) -> Part | 
         found = bags.read(log.file, start, sink, place)
         if isinstance(found, Diagnostic):
             return found
-        return Part(log.sha256(), log.size, found.span, found.damages, found.notes)
+        damages = (*found.damages, *_reindexed(log.file, found.span))
+        return Part(log.sha256(), log.size, found.span, damages, found.notes)
     if not start.startswith(MAGIC):
         return findings.not_a_log(start, place)
     held = contents(log.stream, log.size, sink, integrity)
@@ -222,15 +232,27 @@ def _taken(log: Input, sink: Sink, integrity: Integrity, place: Span) -> Part | 
     return Part(log.sha256(), log.size, None, ())
 
 
-def _folder(path: str, one: Sink, integrity: Integrity, place: Span) -> _Run | Diagnostic:
+def _reindexed(file: str, span: Gap | None) -> Iterator[tuple[Damage, Gap | None]]:
+    """What a bag has lost that was mended by `rosbag reindex`."""
+    backup = unclosed_backup(file)
+    if backup is not None and span is not None:
+        what = (
+            f"it was reindexed (`{backup}` is beside it): the chunk that was being written when "
+            "its recording broke off is not in it"
+        )
+        yield Damage(NOWHERE, what, code=Code.REINDEXED), (span[1], span[1])
+
+
+def _folder(
+    about: Folder | Diagnostic, one: Sink, integrity: Integrity, place: Span
+) -> _Run | Diagnostic:
     """The files of one run, in the order that its description gives."""
     sink = Numbered(one)
-    about = folder(path)
     if isinstance(about, Diagnostic):
         return about
     if about.compressed:
         return refusals.compressed_folder(about.compressed, place)
-    places = [Source(os.path.join(path, name), "").span() for name in about.files]
+    places = [Source(os.path.join(about.path, name), "").span() for name in about.files]
     found: list[Part | Diagnostic] = []
     for file in places:
         sink.next_file()
