@@ -139,11 +139,12 @@ def too_long(length: int, ticks: int, clock: Clock, place: Span) -> Diagnostic:
 
 def damaged(damage: Damage, gap: Gap | None, origin: int, place: Span) -> Diagnostic:
     """One place; the gap that it has left is told in seconds from `origin`."""
-    if damage.code is Code.TRUNCATED_LOG and gap is not None:
+    if damage.code in (Code.TRUNCATED_LOG, Code.REINDEXED) and gap is not None:
+        what = damage.what if damage.at < 0 else f"the log breaks off after byte {damage.at}"
         return Diagnostic(
             damage.code,
-            f"the log breaks off after byte {damage.at}: whole messages go "
-            f"{_seconds(gap[0] - origin)} far, and what came then is unknown",
+            f"{what}: whole messages go {_seconds(gap[0] - origin)} far, and what came then is "
+            "unknown",
             place,
             "what it shows up to there counts, and nothing counts as satisfied",
             Severity.WARNING,

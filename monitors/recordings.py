@@ -237,8 +237,8 @@ def _reindexed(file: str, span: Gap | None) -> Iterator[tuple[Damage, Gap | None
     backup = unclosed_backup(file)
     if backup is not None and span is not None:
         what = (
-            f"it was reindexed (`{backup}` is beside it): the chunk that was being written when "
-            "its recording broke off is not in it"
+            f"it was reindexed, and the chunk that was being written when its recording broke off "
+            f"is not in it (`{backup}` is beside it)"
         )
         yield Damage(NOWHERE, what, code=Code.REINDEXED), (span[1], span[1])
 

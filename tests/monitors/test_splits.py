@@ -129,9 +129,9 @@ def test_a_bag_that_was_reindexed_has_lost_its_end(tmp_path: Path, name: str, ba
     assert (codes(recording), recording.intact) == (["F422", "F415"], False)
     assert recording.gaps == ((SIX[5].time, SIX[5].time),)
     assert recording.findings[0].message == (
-        f"it was reindexed (`{backup}` is beside it): the chunk that was being written when its "
-        "recording broke off is not in it; what was recorded from 0.500 s to 0.500 s counts as "
-        "unknown"
+        "it was reindexed, and the chunk that was being written when its recording broke off is "
+        f"not in it (`{backup}` is beside it): whole messages go 0.500 s far, and what came then "
+        "is unknown"
     )
 
 
