@@ -12,8 +12,9 @@ from fretish.diagnostic import Code, Diagnostic
 from fretish.source import Source
 from monitors.folders import METADATA, Folder, folder, is_folder
 from monitors.inputs import STDIN, is_url
+from monitors.splits import ACTIVE, is_backup, named, split
 
-_LOGS = (".mcap", ".bag", ".db3")
+_LOGS = (".mcap", ".bag", ".db3", ACTIVE, ".bag.orig.active")
 """How the names of logs end; below a folder, other files are passed by."""
 ANNOTATIONS = ".fretc.mcap"
 """How the names of annotations end: below a folder of logs, they are no logs."""
@@ -23,7 +24,7 @@ def logs(paths: Sequence[str]) -> list[str] | Diagnostic:
     """The logs, with those below a folder in its place; each once, folders in order of names.
 
     A folder of rosbag2 with several files is one log, and so are these files when all of them are
-    named.
+    named. So are the files of `rosbag record --split`.
 
     Args:
         paths: as the user names them; what is no folder and no pattern is taken for a file.
@@ -48,8 +49,11 @@ def files_of(logs: Iterable[str]) -> list[str]:
     """All files that the logs are made of."""
     files: list[str] = []
     for log in logs:
+        run = None if _elsewhere(log) or os.path.lexists(log) else split(log)
         if not _elsewhere(log) and os.path.isdir(log):
             files += [entry.path for entry in os.scandir(log)]
+        elif run is not None:
+            files += [os.path.join(run.path, name) for name in run.files]
         else:
             files.append(log)
     return files
@@ -93,7 +97,11 @@ def _below(path: Path, seen: set[str] | None = None) -> Iterator[str | Diagnosti
     seen.add(real)
     entries = sorted(path.iterdir())
     logs = [entry for entry in entries if not entry.name.endswith(ANNOTATIONS)]
-    files = [entry for entry in logs if entry.suffix in _LOGS and not entry.is_dir()]
+    files = [
+        entry
+        for entry in logs
+        if entry.name.endswith(_LOGS) and not entry.is_dir() and not is_backup(str(entry))
+    ]
     run = folder(str(path)) if is_folder(str(path)) else None
     if isinstance(run, Diagnostic) and len(files) > 1:
         yield run
@@ -120,7 +128,22 @@ def _whole(found: dict[str, str]) -> list[str]:
             found = {real if key == parts[0] else key: log for key, log in found.items()}
             found[real] = path
             found = {key: log for key, log in found.items() if key not in parts}
-    return list(found.values())
+    return list(_joined(found))
+
+
+def _joined(found: dict[str, str]) -> Iterator[str]:
+    """The logs, with the run in place of its bags where all of them are there."""
+    passed: set[str] = set()
+    for real, log in found.items():
+        if real in passed:
+            continue
+        run = split(log) if log.endswith((".bag", ACTIVE)) and not _elsewhere(log) else None
+        parts = run and {os.path.realpath(os.path.join(run.path, name)) for name in run.files}
+        if run and parts and parts <= found.keys():
+            passed |= parts
+            yield named(run)
+        else:
+            yield log
 
 
 def _empty(path: str) -> Diagnostic:

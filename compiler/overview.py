@@ -84,6 +84,8 @@ def _oddities(topic: Topic) -> Iterator[str]:
         yield f", {topic.out_of_order} out of order"
     if topic.equal_stamps:
         yield f", {topic.equal_stamps} with the time of another"
+    if topic.zero_stamps:
+        yield f", {topic.zero_stamps} with a zero for a time"
 
 
 def _fields(overview: Overview, name: str, *, whole: bool) -> Iterator[str]:

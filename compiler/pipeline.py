@@ -43,7 +43,7 @@ def formalize(
     sentence = parse(requirement.wording)
     if isinstance(sentence, Diagnostic):
         return None, (sentence,)
-    ticks = in_ticks(sentence.timing, _clock(declarations))
+    ticks = in_ticks(sentence, _clock(declarations))
     if isinstance(ticks, Diagnostic):
         return None, (ticks,)
     try:

@@ -32,6 +32,8 @@ from fretish.source import Source, Span
 from fretish.tables import Tables, read
 
 _TABLES = ("clock", "signal", "proposition", "variable", "interceptor", "assume")
+_TOPIC = re.compile(r"[A-Za-z_~/]\S*")
+"""A topic, and no duration: a duration begins with a digit."""
 _CLOCK = ("time", "tick", "end", "rounding")
 _SIGNAL = (
     "path", "type", "reduce", "unit", "valid", "invalid", "max_age", "footprint", "sensor",
@@ -155,7 +157,7 @@ class _Reader(Fields):
 
     def _tick(self, table: Mapping[str, Any]) -> tuple[int | None, str | None]:
         tick = table.get("tick")
-        if isinstance(tick, str) and tick.startswith("/"):
+        if isinstance(tick, str) and _TOPIC.fullmatch(tick):
             return None, tick
         period = units.nanoseconds(tick) if isinstance(tick, str) else None
         if not period:

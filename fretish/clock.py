@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import StrEnum
 from fractions import Fraction
 
 from fretish.diagnostic import Code, Diagnostic, Severity
-from fretish.syntax import Duration, Sentence, TimeUnit, Timing, Within, duration
+from fretish.syntax import After, Duration, Sentence, TimeUnit, Within, duration
 
 NANOSECONDS: dict[TimeUnit, int] = {
     "microsecond": 10**3,
@@ -39,7 +39,7 @@ class Rounding(StrEnum):
     EXACT = "exact"
     """It is an error."""
     CONSERVATIVE = "conservative"
-    """It is rounded to the stricter side: `within` down, `for` and `after` up; never to 0."""
+    """It is rounded to the stricter side, never to 0; where neither side is, it is an error."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,8 +81,8 @@ def _exactly(value: Fraction) -> str:
     return str(value)
 
 
-def in_ticks(timing: Timing, clock: Clock | None) -> int | Diagnostic | None:
-    """How many ticks the timing counts.
+def in_ticks(sentence: Sentence, clock: Clock | None) -> int | Diagnostic | None:
+    """How many ticks the sentence's timing counts.
 
     Without a clock a unit counts ticks, whatever its name: that is how FRET reads it
     (`assumed_ticks` then has a warning to give).
@@ -91,7 +91,7 @@ def in_ticks(timing: Timing, clock: Clock | None) -> int | Diagnostic | None:
         Ticks, or None for a timing that counts none, or what keeps the duration from being
         a whole number of ticks.
     """
-    counted = duration(timing)
+    counted = duration(sentence.timing)
     if counted is None or clock is None or counted.unit == "tick":
         return counted.amount if counted else None
     if clock.period is None:
@@ -101,8 +101,26 @@ def in_ticks(timing: Timing, clock: Clock | None) -> int | Diagnostic | None:
         return int(exact)
     if clock.rounding is Rounding.EXACT:
         return _inexact(counted, clock, exact)
-    ticks = int(exact) if isinstance(timing, Within) else int(exact) + 1
+    fewer = _fewer_is_stricter(sentence)
+    if fewer is None:
+        return _no_stricter_side(sentence, counted, clock, exact)
+    ticks = int(exact) if fewer else int(exact) + 1
     return ticks or _inexact(counted, clock, exact)
+
+
+def _fewer_is_stricter(sentence: Sentence) -> bool | None:
+    """Whether the sentence asks for more when its timing counts fewer ticks; None: for neither.
+
+    `within` asks for more then, and `for` for less. An `only` scope demands the opposite outside
+    of itself, and so does a probability that is bounded from above. `after` asks for the response
+    at one tick, and another number of ticks is another tick.
+    """
+    odds = sentence.probability
+    if isinstance(sentence.timing, After) or (odds and odds.op in ("=", "!=")):
+        return None
+    negated = sentence.scope is not None and sentence.scope.kind.negates
+    rarely = odds is not None and odds.op in ("<", "<=")
+    return isinstance(sentence.timing, Within) != (negated != rarely)
 
 
 def assumed_ticks(sentence: Sentence, clock: Clock | None) -> Diagnostic | None:
@@ -136,6 +154,15 @@ def _inexact(counted: Duration, clock: Clock, exact: Fraction) -> Diagnostic:
         else "use a whole number of ticks, a finer `tick`, or "
         '`rounding = "conservative"` under `[clock]`',
     )
+
+
+def _no_stricter_side(
+    sentence: Sentence, counted: Duration, clock: Clock, exact: Fraction
+) -> Diagnostic:
+    odds = sentence.probability
+    what = "`after`" if isinstance(sentence.timing, After) or odds is None else f"`{odds.op}`"
+    found = _inexact(counted, clock, exact)
+    return replace(found, message=f"{found.message}, and {what} has no stricter side to round to")
 
 
 def _no_time(counted: Duration, clock: Clock) -> Diagnostic:

@@ -100,6 +100,9 @@ class Code(Enum):
     CLOCK_JUMP = ("F417", "the clock of a topic jumps")
     MIXED_CLOCKS = ("F418", "the stamps of two topics are of different clocks")
     PROCESS_KILLED = ("F419", "the process that audited the log was killed")
+    STILL_CLOCK = ("F420", "the clock of a topic stands still")
+    SEVERAL_TYPES = ("F421", "a topic has messages of several types")
+    REINDEXED = ("F422", "a bag was reindexed, and has lost what was being written")
 
     UNKNOWN_PARENT = ("F501", "a parent is not declared")
     BAD_HAZARDS = ("F502", "the hazards cannot be read")

@@ -81,6 +81,19 @@ def read(file: str, start: bytes, sink: Sink, place: Span) -> Found | Diagnostic
     return Found(way.span, damages, (refusals.unchecked(place, way.assumed),))
 
 
+def ends(file: str) -> Gap | None:
+    """The first and the last message of a ROS 1 bag, by its index; None where that cannot be."""
+    try:
+        reader = _bag(file)
+        reader.open()
+    except Exception:  # the reader trusts each byte, and each may be wrong; or it is not installed
+        return None
+    try:
+        return (reader.start_time, reader.end_time - 1) if reader.message_count else None
+    finally:
+        reader.close()
+
+
 def _bag(file: str) -> Any:
     from rosbags.rosbag1 import Reader
 

@@ -24,7 +24,7 @@ from monitors.extraction import Extract, Extraction
 from monitors.messages import Messages, Stamps
 from monitors.payloads import Payloads
 from monitors.samples import Gap, Series, Times, Values
-from monitors.stamps import JUMP
+from monitors.stamps import JUMP, placed, unset
 
 _MOST, _MOST_BYTES = 4096, 2**22
 """Messages, and bytes of them, that are read at once."""
@@ -57,13 +57,16 @@ class Pending:
 
 @dataclass(slots=True)
 class Column:
-    """What is read of one topic; `logs` are the log times, `times` those of the declared clock."""
+    """What is read of one topic; `logs` are the log times, `times` those of the declared clock.
+
+    Until all messages are there, `times` are as they stand in them.
+    """
 
     name: str
     type: str
     encoding: str
     bound: bool
-    """Whether the bindings name it; of another topic there are only `logs`."""
+    """Whether the bindings name it; of another topic only log times are read."""
     signals: list[Signal]
     """Those that are read of it: wanted, and nothing wrong with them."""
     logs: array[int] = field(default_factory=lambda: array("q"))
@@ -71,13 +74,17 @@ class Column:
     values: dict[str, Series] = field(default_factory=dict)
     wrong: dict[str, Diagnostic] = field(default_factory=dict)
     """Why there are no samples of a signal."""
+    types: dict[str, None] = field(default_factory=dict)
+    """Of its messages, in the order in which they came."""
     pending: Pending | None = None
     undecoded: int = 0
     unstamped: int = 0
-    unset: bytearray = field(default_factory=bytearray)
-    """For each message 1 where its time was never set: it is zero, and its samples are unknown."""
-    adrift: bool = True
-    """Whether the declared clock has not told the time of any of its messages yet."""
+    timeless: bytearray = field(default_factory=bytearray)
+    """For each message 1 where the declared clock does not tell its time."""
+    unset: NDArray[np.bool_] = field(default_factory=lambda: np.zeros(0, bool))
+    """For each message whether its time was never set: it is zero, and its samples are unknown."""
+    placed: bool = False
+    """Whether the declared clock tells the time of any of its messages."""
     stated: int = 0
     """How many messages the log says it holds of it that were not read."""
 
@@ -92,14 +99,29 @@ class Column:
         self.wrong[signal.name] = diagnostic
         self.values.pop(signal.name, None)
 
-    @property
-    def placed(self) -> bool:
-        """Whether the declared clock tells the time of any of its messages."""
-        return 0 in self.unset
+    def raw(self) -> tuple[Times, Times]:
+        """Log times, and the times as they stand in the messages; in the order of the file."""
+        logs = np.array(self.logs, np.int64)
+        return logs, np.array(self.times, np.int64) if self.bound else logs
+
+    def place(self, *, from_zero: bool) -> None:
+        """Find the times that were never set; each such message is put where the one before is."""
+        logs, times = self.raw()
+        timeless = np.frombuffer(bytes(self.timeless), np.bool_) if self.bound else logs < 0
+        self.unset = ~timeless & unset(logs, times, from_zero=from_zero)
+        lost = timeless | self.unset
+        self.placed = not lost.all()
+        self.times = array("q", (placed(times, lost) if self.placed else logs).tobytes())
 
     def stamps(self) -> Times:
         """In the order of the file: by the declared clock, or log times where no signal reads."""
-        return np.array(self.times if self.bound else self.logs, np.int64)
+        return np.array(self.times, np.int64)
+
+    def numbers(self, signal: Signal) -> Values:
+        """What a signal reads of the messages: nothing of one whose time was never set."""
+        numbers = self.values[signal.name].values().copy()
+        numbers[self.unset] = np.nan
+        return numbers
 
     def late(self) -> int:
         """How many messages are earlier than one before them."""
@@ -199,6 +221,16 @@ class Columns:
         """Read the messages that wait: no other follows."""
         for column in self.topics.values():
             self._settle(column)
+        from_zero = self._begins_at_zero()
+        for column in self.topics.values():
+            column.place(from_zero=from_zero)
+
+    def _begins_at_zero(self) -> bool:
+        """Whether the declared clock does: a bound topic has a time soon after; else any topic."""
+        columns = self.topics.values()
+        of_all = [c for c in columns if c.bound and c.logs] or list(columns)
+        times = (column.raw()[1] for column in of_all)
+        return any(((some > 0) & (some <= JUMP)).any() for some in times)
 
     def _settle(self, column: Column) -> None:
         pending, column.pending = column.pending, None
@@ -211,17 +243,16 @@ class Columns:
         self, column: Column, stream: Stream, logs: Times, publishes: Stamps, payloads: Payloads
     ) -> None:
         """Keep what messages of one stream say."""
+        column.types[short_type(stream.schema.name) if stream.schema else ""] = None
         extract = self._extract(column, stream, payloads)
-        times, unset = self._times(column, extract, logs, publishes)
+        times, dated = self._times(column, extract, logs, publishes)
         kept = times < LATEST
         column.undecoded += int((~kept).sum())
         column.logs.frombytes(logs[kept].tobytes())
         column.times.frombytes(times[kept].tobytes())
-        column.unset.extend(unset[kept].tobytes())
+        column.timeless.extend((~dated[kept]).tobytes())
         for signal in column.signals:
-            values = extract.values[signal.name]
-            values[unset] = np.nan
-            column.values.setdefault(signal.name, Series()).add(values[kept])
+            column.values.setdefault(signal.name, Series()).add(extract.values[signal.name][kept])
 
     def _extract(self, column: Column, stream: Stream, payloads: Payloads) -> Extract:
         """What the signals ask for; one with something wrong gets no samples."""
@@ -244,29 +275,17 @@ class Columns:
     def _times(
         self, column: Column, extract: Extract, logs: Times, publishes: Stamps
     ) -> tuple[Times, NDArray[np.bool_]]:
-        """When the messages were, on the declared clock; and which of them it does not place."""
-        known = np.ones(len(logs), bool)
+        """When the messages were, on the declared clock; and of which of them it tells that."""
+        every = np.ones(len(logs), bool)
         match self.clock.time:
             case TimeSource.LOG_TIME:
-                return logs, ~known
+                return logs, every
             case TimeSource.PUBLISH_TIME:
-                times = publishes.clip(max=LATEST).astype(np.int64)
+                return publishes.clip(max=LATEST).astype(np.int64), every
             case TimeSource.HEADER_STAMP:
-                column.unstamped += int((extract.decoded & ~extract.stamped).sum())
-                times, known = np.where(extract.stamped, extract.stamps, logs), extract.decoded
-        unset = known & (times == 0) & (logs >= JUMP)  # a log may begin at zero itself
-        lost, placed = ~known | unset, known & ~unset & (times < LATEST)
-        first = times[placed][:1]
-        if column.adrift and len(first):  # those so far are as the first one that has a time
-            column.adrift = False
-            column.times = array("q", first.tolist()) * len(column.times)
-        if column.adrift:
-            times[lost] = logs[lost]
-            return times, unset
-        before = column.times[-1] if column.times else first[0]
-        rows = np.maximum.accumulate(np.where(placed, np.arange(len(times)), -1))
-        times[lost] = np.where(rows < 0, before, times[rows])[lost]  # as the message before it
-        return times, unset
+                stamped = extract.decoded & extract.stamped
+                column.unstamped += int((extract.decoded & ~stamped).sum())
+                return np.where(stamped, extract.stamps, logs), extract.decoded
 
     # The results
 
@@ -277,7 +296,7 @@ class Columns:
             return np.zeros(0, np.int64), np.zeros(0)
         times = np.array(column.times, np.int64)
         order = np.argsort(times, kind="stable")
-        return times[order], column.values[signal.name].values()[order]
+        return times[order], column.numbers(signal)[order]
 
     def ticks(self) -> Times:
         """Times of the clock's topic, where the clock ticks by message."""
@@ -285,15 +304,20 @@ class Columns:
         return np.sort(np.array(column.times if column else [], np.int64))
 
     def span(self, whole: Gap) -> Gap:
-        """First and last message of the bound topics; without any, those of the `whole` log."""
-        bound = [column.times for column in self.topics.values() if column.placed]
-        return (min(map(min, bound)), max(map(max, bound))) if bound else whole
+        """First and last message of the bound topics, else of all; else those of the `whole` log.
+
+        A topic counts if the declared clock tells the time of any of its messages.
+        """
+        known = [column for column in self.topics.values() if column.placed]
+        times = [c.times for c in known if c.bound] or [c.times for c in known]
+        return (min(map(min, times)), max(map(max, times))) if times else whole
 
     def on_clock(self, gap: Gap) -> Gap:
         """A span of log times, on the declared clock: between the messages around it."""
-        columns = [column for column in self.topics.values() if column.placed]
+        columns = [column for column in self.topics.values() if column.bound and column.placed]
         if self.clock.time is TimeSource.LOG_TIME or not columns:
-            return gap
+            zeros = any(column.unset.any() for column in self.topics.values())
+            return gap if gap[0] or not zeros else (min(self.span(gap)[0], gap[1]), gap[1])
         logs = np.concatenate([np.array(column.logs, np.int64) for column in columns])
         times = np.concatenate([np.array(column.times, np.int64) for column in columns])
         before, after = times[logs < gap[0]], times[logs > gap[1]]
@@ -324,12 +348,20 @@ class Columns:
             return findings.no_message(topic, span)
         return findings.no_topic(topic, self.topics, span)
 
+    def readers(self) -> dict[str, Span | None]:
+        """The bound topics that are asked for, each with the place that binds it."""
+        places = {self.clock.topic: self._clock_place(self.clock.topic)} if self.clock.topic else {}
+        places |= {signal.path.topic: signal.span for signal in self._wanted}
+        return {topic: place for topic, place in places.items() if topic in self.topics}
+
     def _clock_place(self, topic: str) -> Span | None:
         start = self._source.text.find(f'"{topic}"')
         return self._source.span(start, start + len(topic) + 2) if start >= 0 else None
 
     def _oddities(self, column: Column, signal: Signal) -> list[Diagnostic]:
         found, count = [], len(column.logs)
+        if len(column.types) > 1 and signal.type is None:
+            found.append(findings.several_types(signal, list(column.types)))
         if column.undecoded:
             found.append(findings.bad_messages(signal, column.undecoded, count))
         if late := column.late():
@@ -340,7 +372,7 @@ class Columns:
 
     def _shift(self) -> int:
         """By how many nanoseconds header stamps are away from log times, in the middle."""
-        stamped = [c for c in self.topics.values() if c.placed and not c.unstamped]
+        stamped = [c for c in self.topics.values() if c.bound and c.placed and not c.unstamped]
         if self.clock.time is not TimeSource.HEADER_STAMP or not stamped:
             return 0
         shifts = [np.array(c.logs, np.int64) - np.array(c.times, np.int64) for c in stamped]

@@ -32,6 +32,8 @@ class Contents:
     cut: int | None
     """Up to which byte there are whole records, in a file without an end."""
     checked: Checked
+    unprotected: bool = False
+    """Whether messages were read that no CRC covers."""
     summary_sha256: str = ""
     """Of all that follows the data; only where nothing else tells one log from another."""
 
@@ -58,7 +60,8 @@ def contents(stream: BufferedReader, size: int, sink: Sink, integrity: Integrity
     if walk.damages.span is None:
         kept = tuple((damage, None) for damage in walk.damages.kept)
         return Contents(kept, None, walk.cut, walk.checked)
-    return Contents(tuple(walk.settled()), walk.damages.span, walk.cut, walk.checked)
+    damages, span = tuple(walk.settled()), walk.damages.span
+    return Contents(damages, span, walk.cut, walk.checked, walk.unprotected)
 
 
 def _by_index(stream: BufferedReader, index: Index, sink: Sink, integrity: Integrity) -> Contents:
@@ -67,13 +70,15 @@ def _by_index(stream: BufferedReader, index: Index, sink: Sink, integrity: Integ
     known = index.data_crc if integrity is Integrity.HASH else 0
     if known and _crc32(stream, index.data_end) != known:
         raise BrokenError("its data has another CRC than it states")
+    unprotected = projection.checked.without_crc > 0 and not known
     statistics = index.statistics
     span = statistics.message_start_time, statistics.message_end_time
     if integrity is Integrity.HASH:
-        return Contents((), span, None, projection.checked)
+        return Contents((), span, None, projection.checked, unprotected)
     stream.seek(index.summary)
     digest = hashlib.file_digest(stream, "sha256").hexdigest()
-    return Contents((), span, None, replace(projection.checked, hashed=False), digest)
+    checked = replace(projection.checked, hashed=False)
+    return Contents((), span, None, checked, unprotected, digest)
 
 
 def _crc32(stream: BufferedReader, size: int) -> int:

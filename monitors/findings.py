@@ -7,9 +7,9 @@ nanoseconds.
 from __future__ import annotations
 
 import errno
-from collections.abc import Collection
+from collections.abc import Collection, Sequence
 
-from fretish.clock import Clock
+from fretish.clock import Clock, TimeSource
 from fretish.declarations import Signal
 from fretish.diagnostic import Code, Diagnostic, Severity, suggestion
 from fretish.source import Span
@@ -18,6 +18,7 @@ from monitors.decoding import MissingExtra, short_type
 from monitors.refusals import install
 from monitors.samples import Gap
 from monitors.signals import FieldError
+from monitors.stamps import STILL
 
 _SECOND = 10**9
 _MOST_TOLD = 20
@@ -138,11 +139,12 @@ def too_long(length: int, ticks: int, clock: Clock, place: Span) -> Diagnostic:
 
 def damaged(damage: Damage, gap: Gap | None, origin: int, place: Span) -> Diagnostic:
     """One place; the gap that it has left is told in seconds from `origin`."""
-    if damage.code is Code.TRUNCATED_LOG and gap is not None:
+    if damage.code in (Code.TRUNCATED_LOG, Code.REINDEXED) and gap is not None:
+        what = damage.what if damage.at < 0 else f"the log breaks off after byte {damage.at}"
         return Diagnostic(
             damage.code,
-            f"the log breaks off after byte {damage.at}: whole messages go "
-            f"{_seconds(gap[0] - origin)} far, and what came then is unknown",
+            f"{what}: whole messages go {_seconds(gap[0] - origin)} far, and what came then is "
+            "unknown",
             place,
             "what it shows up to there counts, and nothing counts as satisfied",
             Severity.WARNING,
@@ -227,6 +229,20 @@ def wrong_type(signal: Signal, found: str) -> Diagnostic:
     )
 
 
+def several_types(signal: Signal, types: Sequence[str]) -> Diagnostic:
+    """F421: the topic has messages of more than one type, and the signal names none."""
+    *some, last = [f"`{name}`" if name else "no type" for name in types]
+    return Diagnostic(
+        Code.SEVERAL_TYPES,
+        f"`{signal.path.topic}` has messages of {', '.join(some)} and {last}: "
+        f"`{signal.name}` is read of all of them",
+        signal.span,
+        "a field of the same name may mean something else there; "
+        f'with `type = "{types[0] or types[-1]}"` a log with any other is refused',
+        Severity.WARNING,
+    )
+
+
 def unknown_encoding(signal: Signal, why: str) -> Diagnostic:
     """No message of the topic can be decoded; or only by a part of fretc that is not installed."""
     if isinstance(why, MissingExtra):
@@ -282,16 +298,38 @@ def unstamped(signal: Signal, shift: int) -> Diagnostic:
     )
 
 
-def zero_stamps(signal: Signal, zero: int, count: int) -> Diagnostic:
-    """F416: the publisher never set the time of some messages."""
+def zero_stamps(
+    topic: str, place: Span | None, zero: int, count: int, time: TimeSource
+) -> Diagnostic:
+    """F416: the publisher, or the recorder, never set the time of some messages."""
     return Diagnostic(
         Code.ZERO_STAMP,
-        f"{zero} of {count} messages of `{signal.path.topic}` have a zero for a time: their "
-        "samples are unknown",
-        signal.span,
-        'let the publisher set it, or use `time = "log_time"` under `[clock]`',
+        f"{zero} of {count} messages of `{topic}` have a zero for a time: their samples are "
+        "unknown",
+        place,
+        _other_time(time),
         Severity.WARNING,
     )
+
+
+def still_clock(
+    topic: str, place: Span | None, same: int, count: int, time: TimeSource
+) -> Diagnostic:
+    """F420: many messages in a row have one time."""
+    return Diagnostic(
+        Code.STILL_CLOCK,
+        f"the clock of `{topic}` stands still: {same} of {count} messages have the {time} of "
+        f"{STILL - 1} or more beside them",
+        place,
+        f"{_other_time(time)}; what happened between them is taken for one instant",
+        Severity.WARNING,
+    )
+
+
+def _other_time(time: TimeSource) -> str:
+    if time is TimeSource.LOG_TIME:
+        return 'check the clock of the recorder, or use `time = "header.stamp"` under `[clock]`'
+    return 'let the publisher set it, or use `time = "log_time"` under `[clock]`'
 
 
 def clock_jumps(signal: Signal, jumps: int, largest: int) -> Diagnostic:

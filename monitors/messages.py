@@ -30,23 +30,19 @@ class Messages:
     channels: NDArray[np.uint16]
     logs: Stamps
     publishes: Stamps
-    strange: bool
-    """Whether records of other kinds stand among them."""
 
     HEAD: ClassVar[int] = _HEAD.itemsize
     """Bytes that each message begins with, before its payload."""
 
     @classmethod
-    def of(
-        cls, data: bytes, starts: Sequence[int], ends: Sequence[int], *, strange: bool
-    ) -> Messages:
+    def of(cls, data: bytes, starts: Sequence[int], ends: Sequence[int]) -> Messages:
         """With the heads of the messages; what is too short for one reads as zeros."""
         first = np.array(starts, np.int64)
         padded = np.frombuffer(data + b"\0" * _HEAD.itemsize, np.uint8)
-        return cls.at(padded, first, np.array(ends, np.int64), strange=strange)
+        return cls.at(padded, first, np.array(ends, np.int64))
 
     @classmethod
-    def at(cls, data: Bytes, starts: Places, ends: Places, *, strange: bool) -> Messages:
+    def at(cls, data: Bytes, starts: Places, ends: Places) -> Messages:
         """With the heads of the messages, which lie within the data."""
         places = len(data) - _HEAD.itemsize + 1
         heads = np.ndarray((places,), _HEAD, data.data, 0, (1,))[starts]
@@ -57,7 +53,6 @@ class Messages:
             heads["channel"],
             heads["log"],
             heads["publish"],
-            strange,
         )
 
     def of_channel(self, id: int) -> Messages:
@@ -73,7 +68,6 @@ class Messages:
             self.channels[chosen],
             self.logs[chosen],
             self.publishes[chosen],
-            self.strange,
         )
 
     def __len__(self) -> int:

@@ -2,7 +2,8 @@
 
 A chunk is unpacked up to the last message that is wanted, where that saves much; otherwise it is
 unpacked whole, and its CRC is checked. What the index says of a message is held against the
-message itself. Whatever does not fit is a `BrokenError`: then each record has to be looked at.
+message itself, and the records of a chunk without CRC have to follow each other as its index says.
+Whatever does not fit is a `BrokenError`: then each record has to be looked at.
 
 Source: MCAP specification, Message Index (op=0x07), Chunk Index (op=0x08).
 """
@@ -11,6 +12,7 @@ from __future__ import annotations
 
 import zlib
 from collections import Counter, defaultdict
+from collections.abc import Container
 from dataclasses import dataclass, field
 from io import BufferedReader
 
@@ -25,6 +27,7 @@ from monitors.damage import LATEST
 from monitors.index import Index, is_known
 from monitors.integrity import Checked
 from monitors.messages import Messages, Sink
+from monitors.payloads import Places
 
 _SLACK = 4096
 """Bytes that the last message of a chunk is taken to have until a longer one was seen."""
@@ -34,6 +37,7 @@ _BLOCK = 2**17
 """Bytes that a codec unpacks at once."""
 
 
+_NOWHERE: Places = np.zeros(0, np.int64)
 Entries = NDArray[np.uint64]
 """Of a message index: time, place, time, place, ..."""
 
@@ -105,18 +109,22 @@ class Projection:
     # One chunk
 
     def _chunk(self, chunk: ChunkIndex) -> None:
-        entries = self._entries(chunk)
+        entries = self._entries(chunk, self._wanted)
         if not entries:
             return
         crc = self._head(chunk)
         size, base = chunk.uncompressed_size, self._arena.used
         last, final = max((last, id) for id, _, last in entries)
+        places = _NOWHERE if crc else self._places(chunk)
         needed = last + HEAD.size + self._longest[final]
         while True:
             whole = needed > size // 2
             needed = size if whole else needed
             self._unpack(chunk, needed, whole=whole)
             end = self._end(final, base, last, needed)
+            if end <= needed and not crc:
+                wall = int(min(places[places > last], default=size))
+                end = end if end == wall else max(end, wall)
             if end <= needed:
                 break
             if end > size:
@@ -128,9 +136,12 @@ class Projection:
             self._crc_checked += 1
         self._without_crc += not crc
         self._unpacked += 1
-        firsts = [int(some[1::2].min()) for id, some, _ in entries if id not in self._met]
-        self._met.update(id for id, _, _ in entries)
-        self._declared(base, needed, max(firsts, default=0))
+        if crc:
+            firsts = [int(some[1::2].min()) for id, some, _ in entries if id not in self._met]
+            self._met.update(id for id, _, _ in entries)
+            self._declared(base, needed, max(firsts, default=0))
+        else:
+            self._tiled(base, needed, size, places)
         span = chunk.message_start_time, chunk.message_end_time
         for id, some, _ in entries:
             found = self._found[id]
@@ -152,19 +163,60 @@ class Projection:
                     return
             elif at > end:
                 return
-            elif (record := (opcode, bytes(data[start:at]))) not in self._known:
-                if not is_known(*record, self._schemas, self._channels):
-                    raise BrokenError("a chunk declares what its summary does not")
-                self._known.add(record)
+            else:
+                self._as_declared(opcode, bytes(data[start:at]))
 
-    def _entries(self, chunk: ChunkIndex) -> list[tuple[int, Entries, int]]:
-        """Of each wanted channel in the chunk: its number, its index, and its last place."""
+    def _as_declared(self, opcode: int, content: bytes) -> None:
+        """Hold a record that declares something against the summary."""
+        if (opcode, content) not in self._known:
+            if not is_known(opcode, content, self._schemas, self._channels):
+                raise BrokenError("a chunk declares what its summary does not")
+            self._known.add((opcode, content))
+
+    def _places(self, chunk: ChunkIndex) -> Places:
+        """Where the messages of a chunk begin, by its index, in the order of the file."""
+        found = self._entries(chunk, chunk.message_index_offsets.keys())
+        return np.sort(np.concatenate([some[1::2] for _, some, _ in found]).astype(np.int64))
+
+    def _tiled(self, base: int, needed: int, size: int, places: Places) -> None:
+        """Hold the records of a chunk that no CRC protects against its index, as far as unpacked.
+
+        Where one message ends the next one begins, but for definitions between them.
+
+        Args:
+            base: where the chunk stands in the arena.
+            needed: how much of it is there.
+            size: its size.
+            places: where its messages begin.
+        """
+        there = places[places + HEAD.size <= needed]
+        data = self._arena.data
+        lengths = np.ndarray((len(data) - 8,), "<u8", data.data, 1, (1,))[there + base]
+        if (data[there + base] != Opcode.MESSAGE).any() or (lengths > size).any():
+            raise BrokenError("the index of a chunk names what is no message")
+        ends = np.append(0, there + HEAD.size + lengths.astype(np.int64))
+        walls = np.append(places, size)[: len(ends)]
+        for row in np.flatnonzero((ends != walls) & (walls <= needed)).tolist():
+            self._between(base + int(ends[row]), base + int(walls[row]))
+
+    def _between(self, at: int, wall: int) -> None:
+        """What stands between two messages, in the arena: definitions, and nothing else."""
+        data = self._arena.data.data
+        while at != wall:
+            opcode, length = HEAD.unpack_from(data, at) if at + HEAD.size <= wall else (0, 0)
+            start, at = at + HEAD.size, at + HEAD.size + length
+            if at > wall:
+                raise BrokenError("the records of a chunk are not where its index says")
+            self._as_declared(opcode, bytes(data[start:at]))
+
+    def _entries(self, chunk: ChunkIndex, ids: Container[int]) -> list[tuple[int, Entries, int]]:
+        """Of each of the channels in the chunk: its number, its index, and its last place."""
         begin = chunk.chunk_start_offset + chunk.chunk_length
         self._stream.seek(begin)
         data = self._stream.read(chunk.message_index_length)
         entries = []
         for id, place in chunk.message_index_offsets.items():
-            if id not in self._wanted:
+            if id not in ids:
                 continue
             at = place - begin
             if at + HEAD.size + INDEX.size > len(data):
@@ -281,7 +333,7 @@ class Projection:
             or (lengths < Messages.HEAD).any()
         ):
             raise BrokenError("the index of a chunk names what is no message")
-        messages = Messages.at(data, contents, contents + lengths.astype(np.int64), strange=False)
+        messages = Messages.at(data, contents, contents + lengths.astype(np.int64))
         if (
             (messages.channels != id).any()
             or (messages.logs != times).any()

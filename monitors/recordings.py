@@ -36,7 +36,8 @@ from monitors.jsontext import held as stated_fields
 from monitors.messages import Sink
 from monitors.parts import Numbered, Part, around, widened
 from monitors.samples import Gap, Recording, Samples, Topic
-from monitors.stamps import JUMP, Stamps, stamps
+from monitors.splits import ACTIVE, named, split, unclosed_backup
+from monitors.stamps import JUMP, Stamps, stamps, still
 
 _MOST_TICKS = 20_000_000
 
@@ -134,7 +135,9 @@ def _opened(path: str, new: Callable[[], Columns], integrity: Integrity) -> _Rea
     place = Source(shown(path), "").span()
     try:
         if is_folder(path):
-            return _tried(partial(_folder, path), place, new, integrity)
+            return _tried(partial(_folder, folder(path)), place, new, integrity)
+        if not os.path.lexists(path) and (run := split(path)) is not None:
+            return _tried(partial(_folder, run), place, new, integrity)
         with opened(path, whole=integrity is not Integrity.INDEX) as log:
             if isinstance(log, Diagnostic):
                 return log
@@ -178,10 +181,16 @@ def _alone(path: str, place: Span) -> Iterator[Diagnostic]:
     parent, name = os.path.split(path)
     try:
         about = folder(parent or ".") if is_folder(parent or ".") else None
+        bags_of_run = split(path) if name.endswith((".bag", ACTIVE)) else None
     except OSError:
         return
     if isinstance(about, Folder) and len(about.files) > 1 and name in about.files:
-        yield refusals.part_of_a_run(about.files.index(name), len(about.files), parent, place)
+        whole = f"the folder `{parent or '.'}`"
+    elif bags_of_run is not None:
+        about, whole = bags_of_run, f"'{named(bags_of_run)}'"
+    else:
+        return
+    yield refusals.part_of_a_run(about.files.index(name), len(about.files), whole, place)
 
 
 def _part(log: Input, sink: Sink, integrity: Integrity, place: Span) -> Part | Diagnostic:
@@ -207,13 +216,15 @@ def _taken(log: Input, sink: Sink, integrity: Integrity, place: Span) -> Part | 
         found = bags.read(log.file, start, sink, place)
         if isinstance(found, Diagnostic):
             return found
-        return Part(log.sha256(), log.size, found.span, found.damages, found.notes)
+        damages = (*found.damages, *_reindexed(log.file, found.span))
+        return Part(log.sha256(), log.size, found.span, damages, found.notes)
     if not start.startswith(MAGIC):
         return findings.not_a_log(start, place)
     held = contents(log.stream, log.size, sink, integrity)
     if held.span is not None:
         digest = log.sha256() if held.checked.hashed else held.summary_sha256
-        return Part(digest, log.size, held.span, held.damages, (), held.checked)
+        notes = (refusals.without_crc(place),) if held.unprotected else ()
+        return Part(digest, log.size, held.span, held.damages, notes, held.checked)
     if held.cut is not None:
         return findings.truncated(held.cut, place)
     if held.damages:
@@ -221,15 +232,27 @@ def _taken(log: Input, sink: Sink, integrity: Integrity, place: Span) -> Part | 
     return Part(log.sha256(), log.size, None, ())
 
 
-def _folder(path: str, one: Sink, integrity: Integrity, place: Span) -> _Run | Diagnostic:
+def _reindexed(file: str, span: Gap | None) -> Iterator[tuple[Damage, Gap | None]]:
+    """What a bag has lost that was mended by `rosbag reindex`."""
+    backup = unclosed_backup(file)
+    if backup is not None and span is not None:
+        what = (
+            f"it was reindexed, and the chunk that was being written when its recording broke off "
+            f"is not in it (`{backup}` is beside it)"
+        )
+        yield Damage(NOWHERE, what, code=Code.REINDEXED), (span[1], span[1])
+
+
+def _folder(
+    about: Folder | Diagnostic, one: Sink, integrity: Integrity, place: Span
+) -> _Run | Diagnostic:
     """The files of one run, in the order that its description gives."""
     sink = Numbered(one)
-    about = folder(path)
     if isinstance(about, Diagnostic):
         return about
     if about.compressed:
         return refusals.compressed_folder(about.compressed, place)
-    places = [Source(os.path.join(path, name), "").span() for name in about.files]
+    places = [Source(os.path.join(about.path, name), "").span() for name in about.files]
     found: list[Part | Diagnostic] = []
     for file in places:
         sink.next_file()
@@ -329,15 +352,13 @@ def _never_stated(
 
 def _clocks(columns: Columns, wanted: Sequence[Signal]) -> list[Diagnostic]:
     """What is odd about the clocks of the topics that the signals read."""
-    found: list[Diagnostic] = []
+    found = list(_unmoved(columns))
     ahead: dict[str, int] = {}
     signals = {
         signal.path.topic: signal for signal in wanted if signal.path.topic in columns.topics
     }
     for topic, signal in signals.items():
         column = columns.topics[topic]
-        if zero := sum(column.unset):
-            found.append(findings.zero_stamps(signal, zero, len(column.logs)))
         clock = _stamps(column)
         if clock is not None and clock.jumps:
             found.append(findings.clock_jumps(signal, clock.jumps, clock.largest))
@@ -351,11 +372,20 @@ def _clocks(columns: Columns, wanted: Sequence[Signal]) -> list[Diagnostic]:
     return found
 
 
+def _unmoved(columns: Columns) -> Iterator[Diagnostic]:
+    """About clocks that were never set, or that stand still."""
+    for topic, place in columns.readers().items():
+        column, time = columns.topics[topic], columns.clock.time
+        if zero := int(column.unset.sum()):
+            yield findings.zero_stamps(topic, place, zero, column.count, time)
+        if same := still(column.stamps()[~column.unset]):
+            yield findings.still_clock(topic, place, same, column.count, time)
+
+
 def _stamps(column: Column) -> Stamps | None:
     """Of the messages that the declared clock has a time for."""
-    known = np.frombuffer(bytes(column.unset), np.uint8) == 0
-    logs, times = np.array(column.logs, np.int64), np.array(column.times, np.int64)
-    return stamps(logs[known], times[known])
+    known = ~column.unset
+    return stamps(np.array(column.logs, np.int64)[known], column.stamps()[known])
 
 
 def _topic(column: Column) -> Topic:
@@ -376,7 +406,7 @@ def _topic(column: Column) -> Topic:
         equal_stamps=int((steps == 0).sum()),
         median_period_ns=int(np.median(steps)) if len(steps) else None,
         unstamped=column.unstamped,
-        zero_stamps=sum(column.unset),
+        zero_stamps=int(column.unset.sum()),
         clock_jumps=clock.jumps if clock is not None else 0,
     )
 

@@ -74,7 +74,8 @@ def bad_bag(why: str, place: Span, *, indexed: bool) -> Diagnostic:
         Code.UNREADABLE_LOG,
         f"the bag cannot be read: {why}",
         place,
-        "mend it first: `rosbag reindex`; or copy it again from where it was recorded"
+        "mend it first: `rosbag reindex`, which loses the chunk that was being written (keep the "
+        "`.orig` file beside it, and audits say so); or copy it again from where it was recorded"
         if indexed
         else "copy it again from where it was recorded",
     )
@@ -107,6 +108,17 @@ def unchecked(place: Span, assumed: Collection[str]) -> Diagnostic:
     )
 
 
+def without_crc(place: Span) -> Diagnostic:
+    """What an MCAP file cannot show that states no CRC of its messages."""
+    return Diagnostic(
+        Code.BAG_FORMAT,
+        "no CRC covers its messages: a changed byte within one of them cannot be seen",
+        place,
+        "record with `noChunkCRC: false` in rosbag2's `--storage-config-file`",
+        Severity.NOTE,
+    )
+
+
 def bad_metadata(place: Span) -> Diagnostic:
     """What describes a run in several files is not as rosbag2 writes it."""
     return Diagnostic(
@@ -117,13 +129,13 @@ def bad_metadata(place: Span) -> Diagnostic:
     )
 
 
-def part_of_a_run(i: int, count: int, folder: str, place: Span) -> Diagnostic:
-    """One file of several is read as if it were a run of its own."""
+def part_of_a_run(i: int, count: int, whole: str, place: Span) -> Diagnostic:
+    """One file of several is read as if it were a run of its own; `whole` is what to name."""
     return Diagnostic(
         Code.SPLIT_LOG,
         f"it is file {i + 1} of {count} of one run, and judged alone",
         place,
-        f"name the folder `{folder or '.'}`: its files are one log",
+        f"name {whole}: its files are one log",
         Severity.NOTE,
     )
 

@@ -1,4 +1,4 @@
-"""The clocks of a log, topic by topic: where one jumps, and how far it is from the recorder's.
+"""The clocks of a log, topic by topic: where one was never set, stands still, or jumps.
 
 Times are nanoseconds.
 """
@@ -8,11 +8,55 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from monitors.samples import Times
 
 JUMP = 10**9
 """By so much from one message to the next, a clock is set anew and not only late."""
+STILL = 10
+"""So many messages with one time are no burst: their clock stands still."""
+
+
+def unset(logs: Times, times: Times, *, from_zero: bool) -> NDArray[np.bool_]:
+    """Which messages of one topic have a zero for a time, one that was never set.
+
+    A clock may begin at zero, as those of simulations do: then a few messages of that time may
+    come first, as long as they were recorded at the beginning too.
+
+    Args:
+        logs: when they were recorded, in the order of the file.
+        times: when they were, on the declared clock.
+        from_zero: whether the clock is known to begin there: it goes on within `JUMP`.
+    """
+    zero: NDArray[np.bool_] = times == 0
+    if not from_zero or np.count_nonzero(zero) >= STILL:
+        return zero
+    first: NDArray[np.bool_] = np.logical_and.accumulate(zero) & (logs < JUMP)
+    return zero & ~first
+
+
+def placed(times: Times, lost: NDArray[np.bool_]) -> Times:
+    """The times, with the one before it for each that is lost; the first one where none is before.
+
+    As they are where all are lost.
+    """
+    known = np.flatnonzero(~lost)
+    if not len(known):
+        return times
+    before = np.searchsorted(known, np.arange(len(times)), "right") - 1
+    found: Times = times[known[before.clip(0)]]
+    return found
+
+
+def still(times: Times) -> int:
+    """How many of the messages, in the order of the file, follow each other at one time.
+
+    Those of fewer than `STILL` are not counted.
+    """
+    starts = np.flatnonzero(np.append(True, times[1:] != times[:-1]))
+    lengths = np.diff(np.append(starts, len(times)))
+    return int(lengths[lengths >= STILL].sum())
 
 
 @dataclass(frozen=True, slots=True)

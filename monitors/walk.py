@@ -54,12 +54,13 @@ _PASSED_BY: dict[int, Callable[[ReadDataStream], object]] = {
 
 
 @dataclass(frozen=True, slots=True)
-class _Unchecked:
-    """A chunk without CRC."""
+class _Chunk:
+    """A chunk whose messages were handed on, and whose index may follow."""
 
     at: int
     span: Gap
     messages: Messages
+    has_crc: bool
 
     def entries(self, channel: int) -> NDArray[np.void]:
         """Time and place of each message of a channel."""
@@ -83,9 +84,13 @@ class Walk:
         self._counts: Counter[int] = Counter()
         self._whole: set[int] = set()
         self._with_crc = 0
-        self._unchecked: _Unchecked | None = None
+        self._broken: set[int] = set()
+        """Chunks of which the messages before a broken record were read."""
+        self._before: _Chunk | None = None
         self._unprotected = False
         """Whether messages were read that no CRC covers but that of the whole data section."""
+        self._all_covered = False
+        """Whether the whole data section has the CRC that it states."""
         self._crc: int | None = 0
         """Of the data up to here; None once a part was jumped over."""
 
@@ -109,7 +114,13 @@ class Walk:
 
     def settled(self) -> list[tuple[Damage, Gap | None]]:
         """All damages, with the time that each has cost; None where it cost nothing."""
-        return self.damages.settled(self._summary, self._whole, self._counts, self._size)
+        read = self._whole | self._broken
+        return self.damages.settled(self._summary, read, self._counts, self._size)
+
+    @property
+    def unprotected(self) -> bool:
+        """Whether no CRC covers some of the messages: a changed byte in them cannot be seen."""
+        return self._unprotected and not self._all_covered
 
     @property
     def checked(self) -> Checked:
@@ -230,6 +241,7 @@ class Walk:
         if self._summary.sound and stop != self._summary.end:
             raise BrokenError("the end of the data stands among the data")
         stated = parse(DataEnd.read, self._take(length)).data_section_crc
+        self._all_covered = bool(stated) and crc == stated
         if stated and crc is not None and crc != stated and not self.damages.kept:
             what = "its data has another CRC than it states"
             self.damages.add(stop, what, lossless=not self._unprotected, anywhere=True)
@@ -252,51 +264,79 @@ class Walk:
     # Messages
 
     def _chunk(self, at: int, chunk: Chunk) -> None:
-        self._unchecked = None
-        span = chunk.message_start_time, chunk.message_end_time
+        self._before = None
+        span, has_crc = (
+            (chunk.message_start_time, chunk.message_end_time),
+            bool(chunk.uncompressed_crc),
+        )
         try:
             data = unpacked(chunk)
-            messages = self._inside(at, data)
-            if not chunk.uncompressed_crc:
+            messages, wrong = self._inside(at, data, has_crc=has_crc)
+            if not has_crc:
                 self._check(messages, span)
         except BrokenError as error:
             self.damages.add(at, str(error), span)
             return
-        self._whole.add(at)
-        self._with_crc += bool(chunk.uncompressed_crc)
+        self._unprotected |= not has_crc
+        if wrong:
+            messages = messages.chosen(np.arange(len(messages) - 1))
         if not self._at_once(messages):
             for start, end in zip(messages.starts.tolist(), messages.ends.tolist(), strict=True):
                 self._message(at, data, start, end)
-        if not chunk.uncompressed_crc:
-            self._unprotected = True
-            self._unchecked = _Unchecked(at, span, messages)
+        if wrong:
+            self._broken.add(at)
+            self.damages.add(at, wrong, self._rest(at, messages, span))
+            return
+        self._whole.add(at)
+        self._with_crc += has_crc
+        self._before = _Chunk(at, span, messages, has_crc)
 
-    def _inside(self, at: int, data: bytes) -> Messages:
-        """The messages of a chunk; its definitions are noted."""
+    def _rest(self, at: int, messages: Messages, span: Gap) -> Gap:
+        """The time of what follows the messages of a broken chunk: from the last of them on.
+
+        From its beginning on, where it is not in order of time.
+        """
+        start, end = span
+        index = self._summary.chunks.get(at)
+        if index is not None:
+            start = min(start, index.message_start_time)
+            end = max(end, index.message_end_time)
+        times = messages.logs
+        if len(times) and (times[1:] >= times[:-1]).all():
+            start = int(times[-1])
+        return min(start, end), end
+
+    def _inside(self, at: int, data: bytes, *, has_crc: bool) -> tuple[Messages, str]:
+        """The messages of a chunk, and what is wrong with the record after the last of them.
+
+        The length of the last one may be what is wrong: then that is not all of it. The chunk's
+        definitions are noted.
+        """
         starts: list[int] = []
         ends: list[int] = []
-        strange, message = False, Opcode.MESSAGE.value
-        for opcode, start, end in frames(data):
-            if opcode == message:
-                starts.append(start)
-                ends.append(end)
-            elif opcode == Opcode.SCHEMA:
-                self._define(parse(Schema.read, data[start:end]), at)
-            elif opcode == Opcode.CHANNEL:
-                self._declare(parse(Channel.read, data[start:end]), at)
-            elif opcode == 0:
-                raise BrokenError("a record has no kind")
-            else:
-                strange = True
-        messages = Messages.of(data, starts, ends, strange=strange)
-        if (messages.ends - messages.starts < _MESSAGE.size).any():
-            raise BrokenError("a message is cut off")
-        return messages
+        message = Opcode.MESSAGE.value
+        wrong = ""
+        try:
+            for opcode, start, end in frames(data):
+                if opcode == message:
+                    if end - start < _MESSAGE.size:
+                        raise BrokenError("a message is cut off")
+                    starts.append(start)
+                    ends.append(end)
+                elif opcode == Opcode.SCHEMA:
+                    self._define(parse(Schema.read, data[start:end]), at)
+                elif opcode == Opcode.CHANNEL:
+                    self._declare(parse(Channel.read, data[start:end]), at)
+                elif opcode == 0:
+                    raise BrokenError("a record has no kind")
+                elif not has_crc:
+                    raise BrokenError("a chunk holds a record that does not belong there")
+        except BrokenError as error:
+            wrong = str(error)
+        return Messages.of(data, starts, ends), wrong
 
     def _check(self, messages: Messages, span: Gap) -> None:
         """What a CRC does not protect is held against the `span` that the chunk states."""
-        if messages.strange:
-            raise BrokenError("a chunk holds a record that does not belong there")
         times = messages.logs
         if ((times < span[0]) | (times > span[1])).any():
             raise BrokenError("a message is of another time than its chunk states")
@@ -321,19 +361,23 @@ class Walk:
         return True
 
     def _index(self, content: bytes) -> None:
-        """Hold the index of a chunk without CRC against the messages in it."""
+        """Hold the index of a chunk against the messages in it; its CRC tells which is right."""
         if len(content) < INDEX.size:
             raise BrokenError("a record cannot be read")
         channel, length = INDEX.unpack_from(content)
         padding = len(content) - INDEX.size - length
         if length % ENTRY.itemsize or not 0 <= padding < PADDING:
             raise BrokenError("a record cannot be read")
-        if self._unchecked is None or not length:
+        chunk = self._before
+        if chunk is None or not length:
             return
         listed = np.frombuffer(content, ENTRY, length // ENTRY.itemsize, INDEX.size)
-        if not np.array_equal(np.sort(listed), np.sort(self._unchecked.entries(channel))):
+        if not np.array_equal(np.sort(listed), np.sort(chunk.entries(channel))):
             what = "the index of a chunk names other messages than are in it"
-            self.damages.add(self._unchecked.at, what, self._unchecked.span)
+            if chunk.has_crc:
+                self.damages.add(chunk.at, what, lossless=True)
+            else:
+                self.damages.add(chunk.at, what, chunk.span)
 
     def _message(self, at: int, data: bytes, start: int, end: int) -> None:
         if end - start < _MESSAGE.size:

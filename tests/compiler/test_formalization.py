@@ -4,6 +4,7 @@ import json
 import random
 import re
 from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -18,6 +19,8 @@ from compiler.formula import Formula, children, endless
 from compiler.future import future
 from compiler.past import past, watch
 from compiler.semantics import holds
+from fretish.clock import Clock, Rounding, in_ticks
+from fretish.diagnostic import Diagnostic
 from fretish.parser import parse
 from fretish.source import Source
 from fretish.syntax import Sentence, duration
@@ -341,3 +344,35 @@ def test_a_long_duration_makes_no_longer_formula(scope: str, timing: str) -> Non
 )
 def test_a_sentence_has_the_expected_formula(sentence: str, formula: str) -> None:
     assert same_language(printing.future(endless(future(read(sentence)))), formula)
+
+
+# Rounding -------------------------------------------------------------------------------------
+
+
+def rounded(template: Template) -> int | Diagnostic | None:
+    """How many ticks of 100 ms the template counts where it says 250 milliseconds."""
+    text = template.sentence.replace(f" {template.n} ticks ", " 250 milliseconds ").strip()
+    sentence = parse(Source("r.fret", text).span())
+    assert isinstance(sentence, Sentence), sentence
+    return in_ticks(sentence, Clock(10**8, rounding=Rounding.CONSERVATIVE))
+
+
+def implied(strict: Template, lax: Template) -> bool:
+    """Whether Spot knows no endless trace of the one that is none of the other."""
+    one, two = (
+        printing.future(endless(future(read(template.sentence)))) for template in (strict, lax)
+    )
+    return same_language(f"({one}) & ({two})", one)
+
+
+@pytest.mark.parametrize("template", [t for t in templates((2,)) if t.n], ids=str)
+def test_the_chosen_rounding_implies_the_other_one(template: Template) -> None:
+    down, up = template, replace(template, n=3)
+    if template.timing == "after":
+        assert not implied(down, up)
+        assert not implied(up, down)
+        assert isinstance(rounded(template), Diagnostic)
+        return
+    strict, lax = (down, up) if rounded(template) == 2 else (up, down)
+    assert implied(strict, lax)
+    assert not implied(lax, strict)

@@ -90,6 +90,11 @@ def test_a_clock_may_tick_with_the_messages_of_a_topic() -> None:
     assert read(changed('"100 ms"\nend', '"/scan"\nend')).clock == Clock(None, "/scan")
 
 
+@pytest.mark.parametrize("topic", ["scan", "robot/scan", "_hidden", "~scan"])
+def test_the_topic_of_a_clock_needs_no_leading_slash(topic: str) -> None:
+    assert read(changed('"100 ms"\nend', f'"{topic}"\nend')).clock == Clock(None, topic)
+
+
 def test_a_signal_is_read() -> None:
     signal = read(GOOD).signals["min_range"]
     assert signal.path == Path("/scan", ("ranges",), None, each=True)

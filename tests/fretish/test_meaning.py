@@ -12,7 +12,7 @@ from fretish.source import Source
 def english(text: str, clock: Clock | None = None) -> str:
     sentence = parse(Source("r.fret", text).span())
     assert isinstance(sentence, s.Sentence)
-    ticks = in_ticks(sentence.timing, clock)
+    ticks = in_ticks(sentence, clock)
     assert ticks is None or isinstance(ticks, int)
     return meaning(sentence, ticks, clock)
 

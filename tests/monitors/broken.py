@@ -251,7 +251,11 @@ DAMAGED = [
 SOUND = [
     Broken("sound", lambda s: s.data, EVERY, intact=True),
     Broken(
-        "no chunk CRC", lambda s: s.poked(s.content(CHUNK, 1) + CRC, bytes(4)), EVERY, intact=True
+        "no chunk CRC",
+        lambda s: s.poked(s.content(CHUNK, 1) + CRC, bytes(4)),
+        EVERY,
+        codes=("F415",),
+        intact=True,
     ),
     Broken("no summary", lambda s: ended(s.cut(s.at(DATA_END))), EVERY, intact=True),
     Broken("no message index", lambda s: ended(_without(s, INDEX)), EVERY, intact=True),
@@ -263,13 +267,15 @@ SOUND = [
 NAN = float("nan")
 ODD = [
     Odd("unchunked", made(FLOAT, TOPIC, message(1, 0.5), message(2, 1.5), chunked=False),
-        [(1, 0.5), (2, 1.5)]),
+        [(1, 0.5), (2, 1.5)], ("F415",)),
     Odd("out of order", made(FLOAT, TOPIC, *(message(t, t / 2) for t in (5, 3, 9, 1))),
         [(1, 0.5), (3, 1.5), (5, 2.5), (9, 4.5)], ("F411",)),
     Odd("equal times", made(FLOAT, TOPIC, *(message(5, v) for v in (2.0, 3.0, 1.0))),
         [(5, 2.0), (5, 3.0), (5, 1.0)]),
     Odd("time 0 and the largest", made(FLOAT, TOPIC, message(0, 0.5), message(2**64 - 1, 1.5)),
-        [(0, 0.5)], ("F404",), ((0, 0),), intact=False),
+        [(0, NAN)], ("F416", "F404"), ((0, 0),), intact=False),
+    Odd("a log that begins at time 0", made(FLOAT, TOPIC, message(0, 0.5), message(9, 1.5)),
+        [(0, 0.5), (9, 1.5)]),
     Odd("empty payload", made(FLOAT, TOPIC, message(1, 0.5), raw(2, b"")),
         [(1, 0.5), (2, NAN)], ("F412",)),
     Odd("short payload", made(FLOAT, TOPIC, message(1, 0.5), raw(2, LITTLE)),

@@ -4,6 +4,9 @@ import numpy as np
 import pytest
 
 from fretish.diagnostic import Code, Severity
+from monitors.integrity import Integrity
+from monitors.recordings import read
+from monitors.samples import Recording
 from tests.monitors.logs import (
     MS,
     NONE,
@@ -47,7 +50,7 @@ def test_equal_times_keep_the_order_of_the_file(tmp_path: Path) -> None:
 
 
 def test_many_equal_times_keep_the_order_of_the_file(tmp_path: Path) -> None:
-    sent = [number(float(i), (i % 3) * S) for i in range(90)]
+    sent = [number(float(i), (i % 3 + 1) * S) for i in range(90)]
     recording = recorded(write(tmp_path / "log.mcap", sent), X)
     assert values(recording, "x") == [float(i) for first in range(3) for i in range(first, 90, 3)]
 
@@ -148,6 +151,52 @@ def test_another_type_than_declared_is_an_error(tmp_path: Path) -> None:
         "`/x` is of type `std_msgs/Float64` in the log, not `std_msgs/Float32`"
     )
     assert values(recording, "x") == []
+
+
+def both(first: str, second: str) -> list[Sent]:
+    """Messages of two types on one topic, by turns."""
+    types = {
+        "std_msgs/msg/Float64": b"\0\1\0\0" + b"\0" * 8,
+        "std_msgs/msg/Int64": b"\0\1\0\0" + b"\0" * 8,
+    }
+    return [
+        Sent("/x", type_, types[type_], i * S) for i, type_ in enumerate([first, second] * 3, 1)
+    ]
+
+
+@pytest.mark.parametrize("integrity", list(Integrity))
+def test_messages_of_two_types_on_one_topic_are_told_with_both(
+    tmp_path: Path, integrity: Integrity
+) -> None:
+    path = write(tmp_path / "log.mcap", both("std_msgs/msg/Float64", "std_msgs/msg/Int64"))
+    recording = read(str(path), X, ["x"], integrity)
+    assert isinstance(recording, Recording)
+    (finding,) = recording.findings
+    assert (finding.code, finding.severity) == (Code.SEVERAL_TYPES, Severity.WARNING)
+    assert finding.message == (
+        "`/x` has messages of `std_msgs/Float64` and `std_msgs/Int64`: `x` is read of all of them"
+    )
+    assert values(recording, "x") == [0.0] * 6
+
+
+def test_two_types_are_refused_where_the_binding_names_one(tmp_path: Path) -> None:
+    path = write(tmp_path / "log.mcap", both("std_msgs/msg/Float64", "std_msgs/msg/Int64"))
+    text = X_TEXT.replace('path = "/x.data"', 'path = "/x.data"\ntype = "std_msgs/Float64"')
+    recording = recorded(path, declare(text))
+    assert codes(recording) == ["F409"]
+    assert values(recording, "x") == []
+
+
+def test_one_type_on_two_channels_is_nothing_to_tell(tmp_path: Path) -> None:
+    sent = [number(1.0, i * S, encoding=encoding) for i, encoding in ((1, "cdr"), (2, "ros1"))]
+    assert codes(recorded(write(tmp_path / "log.mcap", sent), X)) == []
+
+
+def test_a_clock_may_tick_with_a_topic_without_a_leading_slash(tmp_path: Path) -> None:
+    text = X_TEXT.replace('"100 ms"', '"beat"')
+    sent = [number(0.0, 5, topic="beat"), number(1.0, 7), number(0.0, 9, topic="beat")]
+    recording = recorded(write(tmp_path / "log.mcap", sent), declare(text))
+    assert (recording.ticks.tolist(), codes(recording)) == ([5, 9], [])
 
 
 def test_the_types_of_both_ros_are_the_same_type(tmp_path: Path) -> None:

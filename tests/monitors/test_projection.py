@@ -15,7 +15,7 @@ from monitors import columns, extraction, projection
 from monitors.integrity import Integrity
 from monitors.recordings import read
 from monitors.samples import Recording
-from tests.monitors.logs import MS, S, declare, scan
+from tests.monitors.logs import MS, NONE, S, Sent, declare, scan, write
 from tests.monitors.pieces import BETWEEN, PACK, Piece, built
 
 CLOCKS = ("log_time", "publish_time", "header.stamp")
@@ -290,3 +290,20 @@ def test_no_changed_byte_that_a_crc_covers_changes_what_is_read_unseen(
         assert told(found)["samples"] == sound["samples"], at
         assert (found.start_ns, found.end_ns, found.gaps) == (*sound["span"], ()), at
     assert seen
+
+
+def test_a_changed_length_in_a_chunk_without_crc_is_seen_by_the_index(tmp_path: Path) -> None:
+    """Protobuf and JSON may be read in part, and CDR with more behind it: no decoder complains."""
+    data = b'{"v": 1} ' + bytes(8).replace(b"\0", b" ")
+    sent = [Sent("/j", "J", data, i * S, encoding="json") for i in range(1, 9)]
+    bound = declare(bindings() + '[signal.v]\npath = "/j.v"\n')
+    for last in range(8):
+        path = write(tmp_path / "log.mcap", sent, per_chunk=4, compression=NONE, crcs=False)
+        log = bytearray(path.read_bytes())
+        at = log.index(struct.pack("<HIQ", 1, 0, sent[last].time)) - 8
+        log[at] -= 1
+        path.write_bytes(log)
+        found = read(str(path), bound, ["v"])
+        assert isinstance(found, Recording)
+        assert any(finding.code.number == "F404" for finding in found.findings), last
+        assert not found.intact

@@ -1,24 +1,35 @@
 """The clocks of topics: counted, told, and never silently believed."""
 
 from collections.abc import Sequence
+from itertools import groupby
 from pathlib import Path
 
 import numpy as np
 import pytest
+from hypothesis import example, given, settings
+from hypothesis import strategies as st
+from mcap.records import Channel, Schema
 
+from fretish.clock import TimeSource
 from fretish.diagnostic import Severity
+from monitors.columns import Columns
+from monitors.container import Stream
 from monitors.integrity import Integrity
 from monitors.recordings import read
 from monitors.samples import Recording
-from monitors.stamps import Stamps, stamps
+from monitors.stamps import Stamps, stamps, still
 from tests.monitors.logs import (
     MS,
+    NONE,
     SCAN,
     X_TEXT,
     S,
     Sent,
+    chunk_starts,
     codes,
+    damaged,
     declare,
+    definition,
     number,
     recorded,
     scan,
@@ -181,3 +192,144 @@ def test_many_messages_before_the_first_stamp_are_as_that_one(
     assert np.isnan(values(found, "x")[:-1]).all()
     assert values(found, "x")[-1] == 1.5
     assert found.topics["/x"].zero_stamps == unset
+
+
+# Times that were never set ---------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("zeros", [range(100), range(50, 54), [99]])
+@pytest.mark.parametrize("source", ["log_time", "publish_time"])
+def test_samples_with_a_zero_for_a_time_are_unknown_and_the_others_count(
+    tmp_path: Path, source: str, zeros: Sequence[int]
+) -> None:
+    sent = []
+    for i in range(100):
+        at = 1000 * S + i * 100 * MS
+        one, time = number(1.0, at), 0 if i in zeros else at
+        log, published = (time, at) if source == "log_time" else (at, time)
+        sent.append(Sent(one.topic, one.type, one.payload, log, published))
+    text = X_TEXT.replace("log_time", source)
+    recording = recorded(write(tmp_path / "log.mcap", sent), declare(text))
+    assert np.isnan(recording.samples["x"].values).sum() == len(zeros)
+    assert codes(recording) == ["F416"]
+    if len(zeros) < 100:
+        assert recording.start_ns == 1000 * S
+
+
+def test_a_damaged_log_with_zeros_is_no_longer_than_its_other_times(tmp_path: Path) -> None:
+    sent = [number(float(i), (1000 + i) * S if i % 3 else 0) for i in range(12)]
+    path = write(tmp_path / "log.mcap", sent, per_chunk=3, compression=NONE)
+    damaged(path, chunk_starts(path)[2] + 100)
+    recording = recorded(path, declare(X_TEXT))
+    assert recording.gaps == ((1001 * S, 1008 * S),)
+    assert (recording.start_ns, recording.end_ns) == (1001 * S, 1011 * S)
+
+
+def test_a_topic_without_any_time_is_unknown_in_a_log_that_begins_at_zero(tmp_path: Path) -> None:
+    sent = [number(1.0, 0) for _ in range(200)]
+    sent += [number(1.0, i * MS, topic="/y") for i in range(1, 2000)]
+    recording = recorded(write(tmp_path / "log.mcap", sent), declare(X_TEXT))
+    assert np.isnan(recording.samples["x"].values).all()
+    assert (recording.start_ns, recording.end_ns) == (0, 1999 * MS)
+    (finding,) = recording.findings
+    assert (finding.code.number, finding.help) == (
+        "F416",
+        'check the clock of the recorder, or use `time = "header.stamp"` under `[clock]`',
+    )
+
+
+def test_a_clock_topic_that_no_signal_reads_is_looked_at_too(tmp_path: Path) -> None:
+    sent = [number(1.0, 0, topic="/beat")]
+    sent += [number(1.0, 1000 * S + i * MS) for i in range(3)]
+    text = X_TEXT.replace('"100 ms"', '"/beat"')
+    recording = recorded(write(tmp_path / "log.mcap", sent), declare(text))
+    (finding,) = recording.findings
+    assert finding.message == (
+        "1 of 1 messages of `/beat` have a zero for a time: their samples are unknown"
+    )
+    assert finding.span is not None
+    assert finding.span.text == '"/beat"'
+
+
+_TIMES = st.one_of(
+    st.just(0),
+    st.sampled_from([1, 2, S // 2, S - 1, S, 2 * S, 5 * S]),
+)
+_ROWS = st.lists(
+    st.tuples(st.sampled_from(["/scan", "/back"]), _TIMES, _TIMES, st.integers(1, 12)),
+    max_size=8,
+)
+"""Topic, log time, declared time, and how many messages are like that."""
+
+
+def naive(rows: Sequence[tuple[str, int, int]], topic: str) -> list[tuple[int, bool]]:
+    """Of each message of a topic its time, and whether it is unknown, one message at a time."""
+    begins_at_zero = any(0 < time <= S for _, _, time in rows)
+    mine = [(log, time) for name, log, time in rows if name == topic]
+    zeros = sum(time == 0 for _, time in mine)
+    found: list[tuple[int, bool]] = []
+    for i, (log, time) in enumerate(mine):
+        begins = begins_at_zero and zeros < 10 and log < S and not any(t for _, t in mine[:i])
+        unknown = time == 0 and not begins
+        before = [t for t, lost in found if not lost][-1:]
+        found.append((before[0] if unknown and before else time, unknown))
+    known = [time for time, lost in found if not lost]
+    if not known:
+        return [(log, True) for log, _ in mine]
+    first = next(i for i, (_, lost) in enumerate(found) if not lost)
+    return [(known[0], True)] * first + found[first:]
+
+
+@pytest.mark.parametrize("source", list(TimeSource))
+@given(_ROWS)
+@example([("/scan", 0, 0, 9), ("/scan", 5, 5, 1)])
+@example([("/scan", 0, 0, 10), ("/scan", 5, 5, 1)])
+@example([("/scan", 5 * S, 0, 1), ("/scan", 5 * S, 5, 1)])
+@settings(max_examples=200)
+def test_each_zero_is_read_as_the_definition_says(
+    source: TimeSource, drawn: list[tuple[str, int, int, int]]
+) -> None:
+    if source is TimeSource.LOG_TIME:
+        drawn = [(topic, time, time, count) for topic, _, time, count in drawn]
+    rows = [(topic, log, time) for topic, log, time, count in drawn for _ in range(count)]
+    declarations = declare(TWO.replace("header.stamp", source))
+    columns = Columns(declarations, list(declarations.signals.values()))
+    streams = {}
+    for id, topic in enumerate(("/scan", "/back"), 1):
+        schema = Schema(
+            id, definition("sensor_msgs/msg/LaserScan", "cdr"), "ros2msg", "sensor_msgs/LaserScan"
+        )
+        channel = Channel(id, topic, "cdr", {}, id)
+        streams[topic] = Stream(channel, schema)
+        columns.declare(streams[topic])
+    for topic, log, time in rows:
+        message = scan([1.0], log, stamp=time)
+        columns.add(streams[topic], log, time, memoryview(message.payload))
+    columns.settle()
+    for signal in declarations.signals.values():
+        found, values_ = columns.samples(signal)
+        expected = sorted(naive(rows, signal.path.topic), key=lambda row: row[0])
+        assert list(zip(found.tolist(), np.isnan(values_).tolist(), strict=True)) == expected
+
+
+# Clocks that stand still -----------------------------------------------------------------------
+
+
+@given(st.lists(st.tuples(st.integers(0, 3), st.integers(1, 14)), max_size=6))
+def test_messages_that_stand_still_are_those_of_long_runs(runs: list[tuple[int, int]]) -> None:
+    times = [time for time, count in runs for _ in range(count)]
+    lengths = [len(list(group)) for _, group in groupby(times)]
+    assert still(np.array(times, np.int64)) == sum(n for n in lengths if n >= 10)
+
+
+@pytest.mark.parametrize(("count", "told"), [(9, []), (10, ["F420"]), (60, ["F420"])])
+def test_a_clock_that_stands_still_is_told(tmp_path: Path, count: int, told: list[str]) -> None:
+    stood = [1000 * S + 200 * MS] * count
+    recording = scans(tmp_path, [None, None, *stood, None])
+    assert [code for code in codes(recording) if code == "F420"] == told
+    for finding in recording.findings:
+        if finding.code.number == "F420":
+            assert finding.message == (
+                f"the clock of `/scan` stands still: {count} of {count + 3} messages have the "
+                "header.stamp of 9 or more beside them"
+            )

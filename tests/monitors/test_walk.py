@@ -7,7 +7,7 @@ import pytest
 from mcap.writer import IndexType
 
 from fretish.diagnostic import Code, Diagnostic
-from monitors.recordings import read
+from monitors.recordings import look, read
 from tests.monitors.logs import (
     LZ4,
     MS,
@@ -17,6 +17,7 @@ from tests.monitors.logs import (
     S,
     X,
     chunk_starts,
+    codes,
     damaged,
     recorded,
     times,
@@ -41,7 +42,8 @@ def test_of_a_log_cut_anywhere_the_whole_messages_are_read(tmp_path: Path, chunk
         counts.append(len(seen))
         assert seen == whole[: len(seen)], length
         assert not found.intact, length
-        assert [finding.code for finding in found.findings] == [Code.TRUNCATED_LOG], length
+        unprotected = [] if chunked else ["F415"]
+        assert codes(found) == ["F403", *unprotected], length
         assert found.gaps == ((found.end_ns, found.end_ns),), length
     assert counts == sorted(counts)
     assert counts[-1] == len(whole)
@@ -172,3 +174,63 @@ def test_no_flipped_byte_changes_the_samples_unseen(
         assert times(result, "x") == times(sound, "x"), at
         assert values(result, "x") == values(sound, "x"), at
     assert found > len(data) / 2
+
+
+def message_starts(path: Path) -> list[int]:
+    """Where the messages of /x begin in a log whose chunks are not compressed."""
+    data = path.read_bytes()
+    return [data.index(struct.pack("<BQHIQ", 5, 34, 1, 0, sent.time)) for sent in TWELVE]
+
+
+@pytest.mark.parametrize("crcs", [False, True])
+@pytest.mark.parametrize(
+    ("offset", "byte", "kept", "what"),
+    [
+        (0, 0x85, 7, "a chunk holds a record that does not belong there"),
+        (0, 0, 7, "a record has no kind"),
+        (1, 8, 7, "a message is cut off"),
+        (3, 255, 7, "a record is cut off"),
+        (1, 50, 8, "a record is cut off"),  # told by what then stands where the next should begin
+    ],
+)
+def test_whole_messages_before_a_broken_record_of_a_chunk_without_crc_are_kept(
+    tmp_path: Path, crcs: bool, offset: int, byte: int, kept: int, what: str
+) -> None:
+    path = write(tmp_path / "log.mcap", TWELVE, compression=NONE, crcs=crcs)
+    damaged(path, message_starts(path)[8] + offset, byte)
+    if crcs:  # nothing in it is to be trusted
+        assert isinstance(read(str(path), X, ["x"]), Diagnostic)
+        return
+    recording = recorded(path, X)
+    # The last one before is not trusted: its length may be what is wrong.
+    assert times(recording, "x") == [sent.time for sent in TWELVE[:kept]]
+    assert recording.gaps == ((TWELVE[kept - 1].time, TWELVE[11].time),)
+    assert what in recording.findings[0].message
+    assert not recording.intact
+
+
+def test_of_a_chunk_out_of_order_all_of_its_time_is_lost_with_one_record(tmp_path: Path) -> None:
+    sent = [*TWELVE[:3], TWELVE[5], TWELVE[4], *TWELVE[6:]]
+    path = write(tmp_path / "log.mcap", sent, compression=NONE, crcs=False)
+    at = path.read_bytes().index(struct.pack("<BQHIQ", 5, 34, 1, 0, TWELVE[8].time))
+    damaged(path, at, 0)
+    assert recorded(path, X).gaps == ((TWELVE[0].time, TWELVE[11].time),)
+
+
+@pytest.mark.parametrize("crcs", [False, True])
+def test_a_damaged_message_index_is_told_and_costs_nothing_where_a_crc_shows_the_messages(
+    tmp_path: Path, crcs: bool
+) -> None:
+    path = write(tmp_path / "log.mcap", TWELVE, per_chunk=4, compression=NONE, crcs=crcs)
+    data = path.read_bytes()
+    entry = data.rindex(struct.pack("<Q", TWELVE[5].time))
+    damaged(path, entry, data[entry] ^ 1)
+    overview = look(str(path))
+    assert not isinstance(overview, Diagnostic)
+    recording = overview.recording
+    assert "F404" in codes(recording)
+    assert "the index of a chunk names other messages than are in it" in (
+        recording.findings[0].message
+    )
+    assert not recording.intact
+    assert recording.gaps == (() if crcs else ((TWELVE[4].time, TWELVE[7].time),))
