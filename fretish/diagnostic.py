@@ -81,6 +81,8 @@ class Code(Enum):
     NO_TIMER = ("F322", "an interceptor without a timer is asked to measure time")
     NO_INTERCEPTOR = ("F323", "the bindings declare no interceptor")
 
+    BAD_PHASE = ("F337", "the phase of the clock is not within a tick")
+
     UNREADABLE_LOG = ("F401", "the log cannot be read")
     NOT_A_LOG = ("F402", "the file is not an MCAP log")
     TRUNCATED_LOG = ("F403", "the log ends in the middle")
@@ -100,6 +102,10 @@ class Code(Enum):
     CLOCK_JUMP = ("F417", "the clock of a topic jumps")
     MIXED_CLOCKS = ("F418", "the stamps of two topics are of different clocks")
     PROCESS_KILLED = ("F419", "the process that audited the log was killed")
+
+    PHASE_DEPENDENT = ("F425", "a verdict depends on where the grid of ticks begins")
+    PHASES_NOT_JUDGED = ("F426", "a verdict was not computed for all phases of the ticks")
+    PHASE_PROPOSED = ("F427", "another phase of the ticks keeps its verdicts more firmly")
 
     UNKNOWN_PARENT = ("F501", "a parent is not declared")
     BAD_HAZARDS = ("F502", "the hazards cannot be read")
