@@ -6,6 +6,7 @@ from functools import cache
 from itertools import pairwise
 
 import numpy as np
+import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
@@ -19,7 +20,7 @@ from monitors import kernel
 from monitors.judgement import judged
 from monitors.kernel import Monitor
 from monitors.loading import load
-from monitors.phases import Phases, phases
+from monitors.phases import Phases, Stretch, phases
 from monitors.samples import Recording, Samples, Topic
 from monitors.traces import trace
 
@@ -195,3 +196,78 @@ def test_a_last_tick_that_changes_divides_the_phases() -> None:
 def test_a_cut_tick_whose_demand_depends_on_the_phase_divides_them() -> None:
     told = found(declared(), CUT_TICK_DEPENDS, monitor(SENTENCES[-1]))
     assert each(told)[5:] == ["vacuous"] * 3 + ["inconclusive"] * 4
+
+
+# Where not all phases are judged
+
+
+@pytest.fixture
+def few(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("monitors.phases.MOST", 0)
+    monkeypatch.setattr("monitors.phases.FEWEST", 3)
+
+
+BUSY = recorded(
+    [(t, 1.0 if t % 7 < 3 else 9.0) for t in range(0, 200, 2)],
+    [(t, 1.0 if t % 5 < 3 else 9.0) for t in range(0, 200, 3)],
+    199,
+)
+
+
+@pytest.mark.usefixtures("few")
+@pytest.mark.parametrize("phase", range(12))
+@pytest.mark.parametrize("sentence", SENTENCES)
+def test_what_is_not_judged_is_left_out_and_the_rest_is_right(sentence: str, phase: int) -> None:
+    clock = replace(declared().clock, phase=phase)
+    declarations = replace(declared(), clock=clock)
+    told = found(declarations, BUSY, monitor(sentence))
+    expected = [at(s, declarations, BUSY, monitor(sentence)) for s in range(12)]
+    assert each(told)[phase] == told.verdict == expected[phase]
+    for one, other in zip(each(told), expected, strict=True):
+        assert one in (other, None)
+
+
+@pytest.mark.usefixtures("few")
+def test_a_search_that_ends_early_says_so() -> None:
+    told = found(declared(), BUSY, monitor(SENTENCES[2]))
+    assert not told.exact
+    assert "not computed at " in told.text
+    assert "no change within " in told.text
+    assert "nearest change" not in told.text
+
+
+# What is told
+
+
+def told_of(*stretches: Stretch, declared: int = 0, period: int = 100) -> Phases:
+    return Phases(period, declared, stretches)
+
+
+def test_one_verdict_at_all_phases_is_not_told() -> None:
+    told = told_of(Stretch(0, 99, "satisfied"))
+    assert (told.text, told.nearest, told.exact, told.varies) == ("", None, True, False)
+
+
+def test_the_nearest_change_is_found_around_the_end_of_the_tick() -> None:
+    stretches = Stretch(0, 39, "satisfied"), Stretch(40, 90, "violated"), Stretch(91, 99, "vacuous")
+    assert [told_of(*stretches, declared=d).nearest for d in (0, 8, 20, 39, 90, 91)] == [
+        1, 9, 20, 1, 1, 1,
+    ]  # fmt: skip
+
+
+def test_a_share_is_never_rounded_to_nothing_or_to_all() -> None:
+    told = told_of(Stretch(0, 0, "violated"), Stretch(1, 999, "satisfied"), period=1000)
+    assert told.text == (
+        "by phase of the ticks violated at less than 1 %, satisfied at 99 %, the nearest change is "
+        "1 ns away"
+    )
+
+
+def test_a_clock_that_ticks_by_message_has_no_phases() -> None:
+    clock = replace(declared().clock, period=None, topic="/x")
+    assert phases(replace(declared(), clock=clock), BUSY, [monitor(SENTENCES[0])]) == {}
+
+
+def test_a_log_shorter_than_a_tick_has_no_tick_at_the_later_phases() -> None:
+    told = found(declared(), recorded([(0, 1.0)], [(0, 1.0)], 4), monitor(SENTENCES[0]))
+    assert told.stretches == (Stretch(0, 4, "satisfied"), Stretch(5, 11, "no data"))
