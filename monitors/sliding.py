@@ -155,9 +155,12 @@ def _later(
 
 
 def _within(times: Times, first: int, last: int) -> Times:
-    """The first time, and those after it up to the last one; none where that is before it."""
+    """The first time, and those after it up to the last one; none where that is before it.
+
+    They are in order; equal ones are no harm, and to find them costs more than to keep them.
+    """
     inside = times[(times > first) & (times <= last)]
-    return np.unique(np.append(inside, first)) if first <= last else inside
+    return np.sort(np.append(inside, first), kind="stable") if first <= last else inside
 
 
 def _changes(
@@ -177,7 +180,7 @@ def _cut(
     end = start + length
     lasts = _within(steps.times, end - period + 1, end)
     whole = np.array([0, (length + 1) % period], np.int64)
-    phases = np.unique(np.append((lasts - start) % period, whole))
+    phases = np.sort(np.append((lasts - start) % period, whole))
     last = end - (length - phases) % period
     before, upto = (np.searchsorted(steps.times, at, "right") for at in (last, end))
     states = combined(steps, before, np.full(len(last), upto), proposition)
