@@ -15,17 +15,18 @@ from compiler.estimates import GLYPHS as ANSWERS
 from compiler.estimates import Estimated, estimates, warnings
 from compiler.files import Stamp, file_sha256, stamp
 from compiler.odds import REFUTED, SUPPORTED
+from compiler.phasing import findings
 from compiler.plan import Plan, watched
 from compiler.templating import to_json
 from compiler.workers import Killed, each, was_killed
 from fretish.diagnostic import Diagnostic
 from fretish.rendering import visible
 from monitors import kernel
-from monitors.audit import Engine as Evaluation
 from monitors.audit import audit, examined, signals_of
 from monitors.evidence import SCHEMA, as_record, unread
 from monitors.inputs import STDIN
 from monitors.inputs import shown as called
+from monitors.judgement import Engine as Evaluation
 from monitors.recordings import read
 
 GLYPHS: Mapping[str, tuple[str, str]] = {
@@ -221,9 +222,10 @@ def audited(plan: Plan, log: str) -> Audited:
         return _unread(plan, log, recording)
     recording = examined(recording, declarations, names)
     evidence = audit(recording, declarations, monitors, EVALUATIONS[plan.evaluation])
+    phased = {e.requirement: e.phases for e in evidence if e.phases is not None}
     return Audited(
         tuple(as_record(e) for e in evidence),
-        tuple(recording.findings),
+        (*recording.findings, *findings(phased, declarations)),
         read=True,
         stamp=before if before == stamp(log) else None,
     )

@@ -5,16 +5,19 @@ from __future__ import annotations
 import json
 import tomllib
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, field
 from functools import partial
 from typing import Any
 
 from compiler.constancy import never_changed
+from compiler.phasing import Runs, proposal
+from compiler.plan import Plan, watched
 from compiler.workers import Killed, each, was_killed
 from fretish.declarations import Declarations, Signal
 from fretish.diagnostic import Code, Diagnostic
 from fretish.rendering import as_json, visible
 from monitors.audit import examined, signals_of
+from monitors.phases import Phases, phases
 from monitors.recordings import read
 from monitors.tallies import NOTHING, Tally, tally
 from monitors.traces import trace
@@ -28,6 +31,8 @@ class Seen:
     ticks: int
     tallies: Mapping[str, Tally] | None
     findings: tuple[Diagnostic, ...]
+    phases: Mapping[str, Phases] = field(default_factory=dict)
+    """Of each requirement the verdict at each phase of the ticks; empty where there are none."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,7 +45,16 @@ class Coverage:
     @property
     def diagnostics(self) -> tuple[Diagnostic, ...]:
         """What there is to say: of each log, and then of all of them."""
-        return (*self._told, *self._constant)
+        return (*self._told, *self._of_all)
+
+    @property
+    def _of_all(self) -> tuple[Diagnostic, ...]:
+        proposed = proposal(self._phased, self.declarations)
+        return (*self._constant, *([proposed] if proposed else []))
+
+    @property
+    def _phased(self) -> Runs:
+        return [(log.run, log.phases) for log in self.logs if log.phases]
 
     @property
     def _told(self) -> tuple[Diagnostic, ...]:
@@ -64,9 +78,8 @@ class Coverage:
     def text(self) -> tuple[tuple[str, str | None], ...]:
         """Lines for a person, each with its colour."""
         names = self.declarations.propositions
-        return tuple(
-            (visible(line), colour) for name in names for line, colour in self._lines(name)
-        )
+        lines = [line for name in names for line in self._lines(name)]
+        return tuple((visible(line), colour) for line, colour in (*lines, *self._phase_lines()))
 
     @property
     def _tallies(self) -> dict[str, list[Tally]]:
@@ -89,6 +102,19 @@ class Coverage:
         if len(self.logs) > 1:
             yield f"  {'all logs':<{width}}  {_counted(sum(self._tallies[name], NOTHING))}", None
 
+    def _phase_lines(self) -> Iterator[tuple[str, str | None]]:
+        told = [
+            f"  {run}  {id} {phases.verdict}, {phases.text}"
+            for run, found in self._phased
+            for id, phases in found.items()
+            if phases.text
+        ]
+        if told:
+            yield "? phase of the ticks: verdicts depend on it", "magenta"
+            yield from ((line, None) for line in told)
+        elif self._phased:
+            yield "✔ phase of the ticks: no verdict depends on it", "green"
+
     def _record(self) -> dict[str, Any]:
         return {
             "bindings": self.declarations.source.name,
@@ -98,11 +124,12 @@ class Coverage:
                     "read": log.tallies is not None,
                     "ticks": log.ticks,
                     "findings": [as_json(finding) for finding in log.findings],
+                    "phases": {id: phases.as_record for id, phases in log.phases.items()},
                 }
                 for log in self.logs
             ],
             "propositions": [self._proposition(name) for name in self.declarations.propositions],
-            "findings": [as_json(finding) for finding in self._constant],
+            "findings": [as_json(finding) for finding in self._of_all],
         }
 
     def _proposition(self, name: str) -> dict[str, Any]:
@@ -140,13 +167,16 @@ def _counted(counted: Tally) -> str:
     )
 
 
-def coverage(declarations: Declarations, logs: Sequence[str], jobs: int) -> Coverage | Diagnostic:
+def coverage(
+    declarations: Declarations, logs: Sequence[str], jobs: int, plan: Plan | None = None
+) -> Coverage | Diagnostic:
     """Look at every proposition in every log.
 
     Args:
         declarations: clock, signals and propositions.
         logs: paths.
         jobs: how many processes share the logs.
+        plan: of the requirements; None where they cannot be audited.
     """
     if not declarations.clock.declared or not declarations.propositions:
         what = "clock" if not declarations.clock.declared else "proposition"
@@ -157,7 +187,7 @@ def coverage(declarations: Declarations, logs: Sequence[str], jobs: int) -> Cove
             declarations.source.span(0, 0),
             help=f"add `{mend}`; `fretc bind --from LOG` drafts it",
         )
-    look = partial(_seen, declarations=declarations)
+    look = partial(_seen, declarations=declarations, plan=plan)
     logs = tuple(dict.fromkeys(logs))
     seen = {
         place: Seen(logs[place], 0, None, (was_killed(logs[place], str(found)),))
@@ -168,7 +198,7 @@ def coverage(declarations: Declarations, logs: Sequence[str], jobs: int) -> Cove
     return Coverage(declarations, tuple(seen[place] for place in range(len(logs))))
 
 
-def _seen(log: str, declarations: Declarations) -> Seen:
+def _seen(log: str, declarations: Declarations, plan: Plan | None) -> Seen:
     names = tuple(declarations.propositions)
     recording = read(log, declarations, signals_of(declarations, names))
     if isinstance(recording, Diagnostic):
@@ -177,4 +207,6 @@ def _seen(log: str, declarations: Declarations) -> Seen:
     seen = trace(declarations, recording, names)
     ticks = len(seen.timeline.times)
     tallies = {name: tally(column, ticks) for name, column in seen.columns.items()}
-    return Seen(log, ticks, tallies, recording.findings)
+    monitors = [w.monitor for w in watched(plan)] if plan is not None else []
+    found = phases(declarations, recording, monitors)
+    return Seen(log, ticks, tallies, recording.findings, found)

@@ -34,7 +34,7 @@ from fretish.tables import Tables, read
 _TABLES = ("clock", "signal", "proposition", "variable", "interceptor", "assume")
 _TOPIC = re.compile(r"[A-Za-z_~/]\S*")
 """A topic, and no duration: a duration begins with a digit."""
-_CLOCK = ("time", "tick", "end", "rounding")
+_CLOCK = ("time", "tick", "phase", "end", "rounding")
 _SIGNAL = (
     "path", "type", "reduce", "unit", "valid", "invalid", "max_age", "footprint", "sensor",
 )  # fmt: skip
@@ -153,6 +153,7 @@ class _Reader(Fields):
             self._choice(table, ("clock", "time"), TimeSource, TimeSource.LOG_TIME),
             self._choice(table, ("clock", "end"), End, End.INCONCLUSIVE),
             self._choice(table, ("clock", "rounding"), Rounding, Rounding.EXACT),
+            self._phase(table, period),
         )
 
     def _tick(self, table: Mapping[str, Any]) -> tuple[int | None, str | None]:
@@ -169,6 +170,19 @@ class _Reader(Fields):
             )
             return 10**9, None
         return period, None
+
+    def _phase(self, table: Mapping[str, Any], period: int | None) -> int:
+        written = table.get("phase", "0 ns")
+        phase = units.nanoseconds(written) if isinstance(written, str) else None
+        if period is None and "phase" in table:
+            wrong, mend = "a clock that ticks by message has no `phase`", "take it out"
+        elif phase is None or (period is not None and not 0 <= phase < period):
+            wrong = "`phase` must be a duration from 0 on, and less than a tick"
+            mend = 'half a tick of 100 ms is `phase = "50 ms"`'
+        else:
+            return phase
+        self._say(Code.BAD_PHASE, wrong, self.tables.value("clock", "phase"), mend)
+        return 0
 
     # Signals
 

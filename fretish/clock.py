@@ -51,6 +51,8 @@ class Clock:
     time: TimeSource = TimeSource.LOG_TIME
     end: End = End.INCONCLUSIVE
     rounding: Rounding = Rounding.EXACT
+    phase: int = 0
+    """Nanoseconds from where the grid of ticks would begin to where it does, less than a tick."""
 
     @property
     def declared(self) -> bool:
@@ -58,8 +60,11 @@ class Clock:
         return self.period is not None or self.topic is not None
 
     def __str__(self) -> str:
-        """`100 ms` or `each message of /scan`."""
-        return f"each message of {self.topic}" if self.period is None else in_words(self.period)
+        """`100 ms`, `100 ms at phase 50 ms` or `each message of /scan`."""
+        if self.period is None:
+            return f"each message of {self.topic}"
+        shifted = f" at phase {in_words(self.phase)}" if self.phase else ""
+        return f"{in_words(self.period)}{shifted}"
 
 
 def in_words(period: int) -> str:

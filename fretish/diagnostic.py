@@ -81,6 +81,8 @@ class Code(Enum):
     NO_TIMER = ("F322", "an interceptor without a timer is asked to measure time")
     NO_INTERCEPTOR = ("F323", "the bindings declare no interceptor")
 
+    BAD_PHASE = ("F337", "the phase of the clock is not within a tick")
+
     UNREADABLE_LOG = ("F401", "the log cannot be read")
     NOT_A_LOG = ("F402", "the file is not an MCAP log")
     TRUNCATED_LOG = ("F403", "the log ends in the middle")
@@ -103,6 +105,10 @@ class Code(Enum):
     STILL_CLOCK = ("F420", "the clock of a topic stands still")
     SEVERAL_TYPES = ("F421", "a topic has messages of several types")
     REINDEXED = ("F422", "a bag was reindexed, and has lost what was being written")
+
+    PHASE_DEPENDENT = ("F425", "a verdict depends on where the grid of ticks begins")
+    PHASES_NOT_JUDGED = ("F426", "a verdict was not computed for all phases of the ticks")
+    PHASE_PROPOSED = ("F427", "another phase of the ticks keeps its verdicts more firmly")
 
     UNKNOWN_PARENT = ("F501", "a parent is not declared")
     BAD_HAZARDS = ("F502", "the hazards cannot be read")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
 from statistics import median
@@ -11,8 +11,10 @@ from fretish.declarations import Declarations
 from fretish.units import base_name
 from monitors import kernel
 from monitors.evidence import Evidence, health
-from monitors.kernel import Column, Monitor, Outcome
+from monitors.judgement import SHOWN, Engine, judged
+from monitors.kernel import Column, Monitor
 from monitors.margins import Margin, margins, worst
+from monitors.phases import Phases, phases
 from monitors.rates import slow_topics
 from monitors.samples import Recording
 from monitors.signals import blind_zones
@@ -21,9 +23,6 @@ from monitors.tallies import tally
 from monitors.traces import Timeline, Trace, trace
 from monitors.trials import Count, Trials
 from monitors.violations import Demand, Moment, violations
-
-Engine = Callable[[Monitor, Mapping[str, Column], int, str], tuple[Outcome, ...]]
-"""Monitor, columns, ticks and the verdict on what is open at the end → what was shown."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,7 +80,19 @@ def audit(
         name: margins(declarations.propositions[name], declarations, recording, seen.timeline.times)
         for name in names
     }
-    return tuple(_evidence(recording, declarations, seen, found, w, engine) for w in watched)
+    shifted = phases(declarations, recording, [w.monitor for w in watched])
+    evidence = [_evidence(recording, declarations, seen, found, w, engine) for w in watched]
+    return tuple(_phased(each, shifted.get(each.requirement)) for each in evidence)
+
+
+def _phased(evidence: Evidence, found: Phases | None) -> Evidence:
+    """The evidence, with what other phases of the ticks make of the run."""
+    if found is None:
+        return evidence
+    alone = evidence.trials is not None
+    assert alone or found.verdict == evidence.verdict, "two verdicts at one phase"
+    told = f"; {'this run alone ' if alone else ''}{found.text}" if found.text else ""
+    return replace(evidence, phases=found, reason=f"{evidence.reason}{told}")
 
 
 def _evidence(
@@ -95,16 +106,23 @@ def _evidence(
     monitor = watched.monitor
     columns = {name: seen.columns[name] for name in monitor.PROPOSITIONS}
     ticks = len(seen.timeline.times)
-    (outcome,) = engine(monitor, columns, ticks, str(declarations.clock.end))
-    undone = _undone(monitor, columns, seen, outcome, engine)
+    judgement = judged(
+        monitor,
+        columns,
+        seen.cut,
+        ticks,
+        intact=recording.intact,
+        end=str(declarations.clock.end),
+        engine=engine,
+    )
+    outcome = judgement.outcome
     at = partial(_moment, seen.timeline)
     signals = signals_of(declarations, tuple(monitor.PROPOSITIONS))
-    verdict = _weakened(outcome.verdict, recording, undone=undone)
     latencies = tuple(at(k).seconds - at(t).seconds for t, k in outcome.answers)
     evidence = Evidence(
         run=recording.name,
         requirement=monitor.REQUIREMENTS[0].id,
-        verdict=verdict,
+        verdict=judgement.verdict,
         reason="",
         outcome=outcome,
         start_ns=recording.start_ns,
@@ -153,41 +171,9 @@ def _trials(count: Count, columns: Mapping[str, Column], seen: Trace) -> Trials:
     return whole.before(count(longer, ticks + 1))
 
 
-_SHOWN = (kernel.SATISFIED, kernel.VACUOUS)
-
-
 def _hashed(recording: Recording) -> str:
     """What the SHA-256 is of."""
     return "log" if recording.checked.hashed else "log_summary"
-
-
-def _undone(
-    monitor: Monitor,
-    columns: Mapping[str, Column],
-    seen: Trace,
-    outcome: Outcome,
-    engine: Engine,
-) -> bool:
-    """Whether what came after the last whole tick makes another verdict of a shown one.
-
-    What that is cannot be said: the tick is cut short, and no duration counts it.
-    """
-    if outcome.verdict not in _SHOWN or seen.cut is None:
-        return False
-    ticks = len(seen.timeline.times)
-    cut = {name: seen.cut[name] for name in columns}
-    if not ticks or cut == {name: column.at(ticks - 1) for name, column in columns.items()}:
-        return False
-    longer = {name: column.followed(cut[name], ticks) for name, column in columns.items()}
-    (then,) = engine(monitor, longer, ticks + 1, kernel.INCONCLUSIVE)
-    return then.verdict != outcome.verdict
-
-
-def _weakened(verdict: str, recording: Recording, *, undone: bool) -> str:
-    """A damaged log can show a violation, and nothing else; a cut tick leaves things open."""
-    if verdict in _SHOWN and not recording.intact:
-        return kernel.NO_DATA
-    return kernel.INCONCLUSIVE if undone else verdict
 
 
 def _moment(timeline: Timeline, tick: int) -> Moment:
@@ -203,7 +189,7 @@ def _reason(evidence: Evidence, recording: Recording) -> str:
             return _broken(evidence)
         case kernel.NO_DATA:
             return _unknown(evidence, recording)
-        case kernel.INCONCLUSIVE if evidence.outcome.verdict in _SHOWN:
+        case kernel.INCONCLUSIVE if evidence.outcome.verdict in SHOWN:
             return "what came after the last whole tick leaves it open"
         case kernel.INCONCLUSIVE:
             last = evidence.open[-1] if evidence.open else None
@@ -239,6 +225,8 @@ def _unknown(evidence: Evidence, recording: Recording) -> str:
         return "the log is damaged: what is lost could hold a violation"
     runs = evidence.outcome.unknown
     ticks = sum(last - first + 1 for first, last in runs)
+    if not evidence.outcome.ticks:
+        return "no whole tick of the clock lies within the log"
     if not runs:
         return f"unknown where it matters{_of_whom(evidence)}"
     return f"unknown at {_times(ticks, 'tick')}, first at tick {runs[0][0]}"

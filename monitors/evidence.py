@@ -16,6 +16,7 @@ from fretish.rendering import as_json
 from monitors.integrity import Checked
 from monitors.kernel import NO_DATA, Outcome
 from monitors.margins import CROSSED, Margin
+from monitors.phases import Phases
 from monitors.samples import Recording, Samples
 from monitors.tallies import Tally
 from monitors.trials import Trials
@@ -60,6 +61,9 @@ class Evidence:
     assumptions: tuple[str, ...]
     trials: Trials | None = None
     """Of a requirement with a probability: what its triggers came to."""
+    phases: Phases | None = None
+    """The verdict at each phase of the ticks, of one with a probability that of the run alone; None
+    where the clock ticks by message."""
 
 
 def health(recording: Recording) -> dict[str, Any]:
@@ -127,6 +131,7 @@ def as_record(evidence: Evidence) -> dict[str, Any]:
         "health": dict(evidence.health),
         "assumptions": list(evidence.assumptions),
         **_trials(evidence.trials),
+        **({} if evidence.phases is None else {"phases": evidence.phases.as_record}),
     }
 
 

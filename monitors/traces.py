@@ -61,12 +61,12 @@ def trace(declarations: Declarations, recording: Recording, names: Collection[st
     is_cut = len(ticks.times) > 0 and recording.end_ns > ticks.times[-1]
     times = np.append(ticks.times, recording.end_ns) if is_cut else ticks.times
     first = recording.start_ns if ticks.period is not None else None
-    seen = {name: _states(name, declarations, recording, times, first) for name in names}
+    states = {name: _states(name, declarations, recording, times, first) for name in names}
     count = len(ticks.times)
-    columns = {name: packed(states[:count]) for name, states in seen.items()}
+    columns = {name: packed(found[:count]) for name, found in states.items()}
     if not is_cut:
         return Trace(ticks, columns, None)
-    return Trace(ticks, columns, {name: truth_values(s[-1:])[0] for name, s in seen.items()})
+    return Trace(ticks, columns, {name: truth_values(s[-1:])[0] for name, s in states.items()})
 
 
 def packed(states: States) -> Column:
@@ -85,17 +85,19 @@ def timeline(declarations: Declarations, recording: Recording) -> Timeline:
     Every `period` from the start on, not later than the last bound message; or one for each
     message of the clock's topic, and messages with the same time are a tick each. The start is
     the first bound message, or the first of the last topic to begin, where that is less than a
-    tick later: recorders hear no two topics at once, and the first tick shall know all of them.
+    tick later: recorders hear no two topics at once, and the first tick shall know all of them. The
+    clock's phase is added to it.
     """
     period = declarations.clock.period
     if period is None:
         return Timeline(recording.ticks, None)
-    start = _start(declarations, recording, period)
-    count = max(0, recording.end_ns - start) // period + 1
-    return Timeline(start + np.arange(count, dtype=np.int64) * period, period)
+    start, phase = origin(declarations, recording, period), declarations.clock.phase
+    count = (max(0, recording.end_ns - start) - phase) // period + 1
+    return Timeline(start + phase + np.arange(count, dtype=np.int64) * period, period)
 
 
-def _start(declarations: Declarations, recording: Recording, period: int) -> int:
+def origin(declarations: Declarations, recording: Recording, period: int) -> int:
+    """Where the grid of ticks begins at phase 0."""
     topics = {signal.path.topic for signal in declarations.signals.values()}
     found = (recording.topics[name].first_ns for name in topics if name in recording.topics)
     last = max((first for first in found if first is not None), default=recording.start_ns)
@@ -107,14 +109,11 @@ def _states(
 ) -> States:
     proposition = declarations.propositions[name]
     steps = evaluate(proposition, declarations, recording)
-    begun = None if first is None else (first, _heard(proposition, recording))
-    states = _seen(steps, ticks, proposition.aggregate, begun)
-    if proposition.on_unknown is not None:
-        states[states == UNKNOWN] = TRUE if proposition.on_unknown else FALSE
-    return states
+    begun = None if first is None else (first, heard(proposition, recording))
+    return seen(steps, ticks, proposition, begun)
 
 
-def _heard(proposition: Proposition, recording: Recording) -> int:
+def heard(proposition: Proposition, recording: Recording) -> int:
     """From when on what is unknown of it is told by the log, not by a topic yet to begin."""
     samples = [recording.samples.get(name) for name in proposition.signals]
     begins = [
@@ -125,8 +124,8 @@ def _heard(proposition: Proposition, recording: Recording) -> int:
     return min(max(begins, default=recording.start_ns), lost)
 
 
-def _seen(
-    steps: Steps, ticks: Times, aggregate: Aggregate, begun: tuple[int, int] | None
+def seen(
+    steps: Steps, ticks: Times, proposition: Proposition, begun: tuple[int, int] | None
 ) -> States:
     """The state of each tick, shape (ticks,).
 
@@ -135,30 +134,50 @@ def _seen(
     """
     before, upto = _windows(steps.times, ticks)
     if begun is not None and len(ticks):
-        first = int(np.searchsorted(steps.times, begun[0], "left"))
-        inside = slice(first, int(upto[0]))
-        told = (steps.states[inside] != UNKNOWN) | (steps.times[inside] >= begun[1])
-        found = np.flatnonzero(told)
-        before[0] = first + int(found[0]) if len(found) else max(first, int(upto[0]) - 1)
-    held = np.where(before > 0, steps.states[before - 1], UNKNOWN).astype(np.int8)
-    filled = upto > before
-    if not filled.any():
-        return held
-    match aggregate:
-        case Aggregate.ANY:
-            held[filled] = _each(np.maximum, steps.states, before[filled], upto[filled])
-        case Aggregate.ALL:
-            held[filled] = _each(np.minimum, steps.states, before[filled], upto[filled])
-        case Aggregate.LAST:
-            held[filled] = steps.states[upto[filled] - 1]
-    return held
+        before[:1] = first_before(steps, begun, upto[:1])
+    return combined(steps, before, upto, proposition)
 
 
-def _each(
-    function: np.ufunc, states: States, before: NDArray[np.intp], upto: NDArray[np.intp]
+def first_before(steps: Steps, begun: tuple[int, int], upto: NDArray[np.intp]) -> NDArray[np.intp]:
+    """From which step on the first tick sees, where it sees those below `upto`; `begun` as above.
+
+    From the first one that tells something; where none does, the last one alone.
+    """
+    first = int(np.searchsorted(steps.times, begun[0], "left"))
+    told = (steps.states[first:] != UNKNOWN) | (steps.times[first:] >= begun[1])
+    found = first + int(np.argmax(told)) if told.any() else len(steps.times)
+    return np.where(found < upto, found, np.maximum(first, upto - 1))
+
+
+def combined(
+    steps: Steps, before: NDArray[np.intp], upto: NDArray[np.intp], proposition: Proposition
 ) -> States:
-    """The function over each of the windows; they are not empty and follow each other."""
-    return np.asarray(function.reduceat(states[: upto[-1]], before), np.int8)
+    """What ticks see of the steps `before <= i < upto`, each of shape (ticks,)."""
+    states = steps.states
+    found = np.where(before > 0, states[before - 1], UNKNOWN).astype(np.int8)
+    filled = upto > before
+    match proposition.aggregate:
+        case Aggregate.ANY:
+            found[filled] = FALSE
+            found[filled & _some(states == UNKNOWN, before, upto)] = UNKNOWN
+            found[filled & _some(states == TRUE, before, upto)] = TRUE
+        case Aggregate.ALL:
+            found[filled] = TRUE
+            found[filled & _some(states == UNKNOWN, before, upto)] = UNKNOWN
+            found[filled & _some(states == FALSE, before, upto)] = FALSE
+        case Aggregate.LAST:
+            found[filled] = states[upto[filled] - 1]
+    if proposition.on_unknown is not None:
+        found[found == UNKNOWN] = TRUE if proposition.on_unknown else FALSE
+    return found
+
+
+def _some(
+    chosen: NDArray[np.bool_], before: NDArray[np.intp], upto: NDArray[np.intp]
+) -> NDArray[np.bool_]:
+    """Whether any of the steps `before <= i < upto` is chosen."""
+    counts = np.concatenate([[0], np.cumsum(chosen)])
+    return np.asarray(counts[upto] > counts[before])
 
 
 def _windows(times: Times, ticks: Times) -> tuple[NDArray[np.intp], NDArray[np.intp]]:

@@ -148,13 +148,15 @@ def _one_log(path: str) -> Diagnostic:
 def _check(paths: tuple[str, ...], project: Project, form: str, jobs: int) -> None:
     from compiler.coverage import coverage
     from compiler.logs import logs as logs_of
+    from compiler.plan import Plan, planned
 
     logs = logs_of(paths)
     if isinstance(logs, Diagnostic):
         stop(logs)
     if project.declarations is None:
         stop(_no_bindings())
-    found = coverage(project.declarations, logs, jobs)
+    plan = planned(project)
+    found = coverage(project.declarations, logs, jobs, plan if isinstance(plan, Plan) else None)
     if isinstance(found, Diagnostic):
         stop(found)
     said = [*_unbound(project), *project.diagnostics, *found.diagnostics]

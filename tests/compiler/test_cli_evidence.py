@@ -55,7 +55,8 @@ def test_a_verdict_that_was_changed_by_hand_is_found(audited: Fretc) -> None:
     assert run.status == 1
     assert run.out == (
         "logs/bad.mcap\n"
-        "  ✘ r1  differs: the verdict is violated, and was satisfied; it differs in states\n"
+        "  ✘ r1  differs: the verdict is violated, and was satisfied; "
+        "it differs in phases, states\n"
         "logs/good.mcap\n"
         "  ✔ r1  stands\n"
     )

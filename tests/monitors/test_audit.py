@@ -78,7 +78,10 @@ WITHIN = "whenever near the rover shall within 2 seconds satisfy still"
 def test_a_demand_that_is_answered_is_satisfied_with_its_latency() -> None:
     evidence = audited(EVENTUALLY, recorded([FAR, NEAR, FAR, FAR], [MOVING, MOVING, MOVING, STILL]))
     assert (evidence.verdict, evidence.latencies) == ("satisfied", (2.0,))
-    assert evidence.reason == ("held, 1 trigger, answered after 2.00 s (median), 2.00 s (longest)")
+    assert evidence.reason == (
+        "held, 1 trigger, answered after 2.00 s (median), 2.00 s (longest); by phase of the ticks "
+        "satisfied at less than 1 %, inconclusive at 99 %, the nearest change is 1 ns away"
+    )
     assert [moment.seconds for moment in evidence.triggers] == [1.0]
 
 
@@ -122,7 +125,7 @@ def test_a_stale_response_is_no_data_and_never_a_pass() -> None:
     sentence = "whenever near the rover shall immediately satisfy still"
     evidence = audited(sentence, recorded([FAR] * 5 + [NEAR], speeds))
     assert evidence.verdict == "no data"
-    assert evidence.reason == "unknown at 1 tick, first at tick 5"
+    assert evidence.reason.startswith("unknown at 1 tick, first at tick 5; by phase")
 
 
 def test_a_damaged_log_shows_no_pass_but_a_violation() -> None:

@@ -67,6 +67,24 @@ def cut(pairs: list[tuple[int, float]], aggregate: str, end: int) -> Value:
     return found["p"]
 
 
+@pytest.mark.parametrize(
+    ("phase", "ticks"), [(0, [7, 17, 27]), (1, [8, 18]), (9, [16, 26]), (3, [10, 20])]
+)
+def test_a_phase_shifts_the_grid_and_the_first_tick_sees_all_since_the_log_began(
+    phase: int, ticks: list[int]
+) -> None:
+    declarations = declare(bindings("any", extra="").replace("[sig", f'phase = "{phase} ns"\n[sig'))
+    found = trace(declarations, recording([(7, LOW), (8, HIGH)], start=7, end=27), ["p"])
+    assert found.timeline.times.tolist() == ticks
+    assert values(found)[0] is True
+
+
+def test_a_phase_behind_the_end_of_the_log_leaves_no_tick() -> None:
+    declarations = declare(bindings().replace("[sig", 'phase = "5 ns"\n[sig'))
+    found = trace(declarations, recording([(0, LOW)], end=4), ["p"])
+    assert (values(found), found.cut) == ([], None)
+
+
 def test_a_log_whose_end_is_on_the_grid_has_no_cut_tick() -> None:
     log = recording([(0, HIGH), (20, LOW)], end=20)
     assert trace(declare(bindings("last")), log, ["p"]).cut is None
@@ -175,26 +193,32 @@ def slow_tick(times: list[int], values: list[Value], low: int, high: int, how: s
     st.sampled_from(["any", "all", "last"]),
     st.integers(1, 25),
     st.integers(0, 20),
+    st.integers(0, 24),
 )
-@example([(0, LOW), (0, HIGH)], "any", 10, 0)
-@example([(0, NAN), (0, LOW)], "all", 1, 0)
-@example([(0, NAN), (0, HIGH)], "any", 1, 0)
+@example([(0, LOW), (0, HIGH)], "any", 10, 0, 0)
+@example([(0, NAN), (0, LOW)], "all", 1, 0, 0)
+@example([(0, NAN), (0, HIGH)], "any", 1, 0, 0)
 def test_aggregation_agrees_with_the_definition(
-    pairs: list[tuple[int, float]], aggregate: str, period: int, start: int
+    pairs: list[tuple[int, float]], aggregate: str, period: int, start: int, phase: int
 ) -> None:
+    phase %= period
     pairs = sorted(pairs, key=lambda pair: pair[0])
-    declarations = declare(bindings(aggregate, tick=f"{period} ns"))
+    tick = f'{period} ns"\nphase = "{phase} ns'
+    declarations = declare(bindings(aggregate, tick=tick))
     log = replace(recording(pairs, end=61), start_ns=min(start, pairs[0][0] if pairs else 0))
     steps = evaluate(declarations.propositions["p"], declarations, log)
-    ticks = sorted({*range(log.start_ns, 62, period), 61})
-    expected = [
-        slow_tick(steps.times.tolist(), steps.values, low, high, aggregate)
+    ticks = sorted({*range(log.start_ns + phase, 62, period), 61})
+    begun = pairs[0][0] if pairs else 61
+    yet = sum(time < begun and time <= ticks[0] for time in steps.times.tolist())
+    unheard = min(yet, sum(time <= ticks[0] for time in steps.times.tolist()) - 1)
+    expected = [  # of the first tick, what is unknown because no sample has come yet is left out
+        slow_tick(steps.times.tolist()[unheard:], steps.values[unheard:], low, high, aggregate)
         for low, high in zip([log.start_ns - 1, *ticks], ticks, strict=False)
     ]
     found = trace(declarations, log, ["p"])
     whole = found.timeline.times.tolist()
     seen = [*values(found), *(found.cut.values() if found.cut is not None else ())]
-    assert whole == list(range(log.start_ns, 62, period))
+    assert whole == list(range(log.start_ns + phase, 62, period))
     assert seen == expected
 
 

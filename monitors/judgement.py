@@ -1,0 +1,87 @@
+"""The verdict on one trace: what its monitor shows, and what the log takes back of it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
+from monitors import kernel
+from monitors.kernel import Column, Monitor, Outcome
+
+Engine = Callable[[Monitor, Mapping[str, Column], int, str], tuple[Outcome, ...]]
+"""Monitor, columns, ticks and the verdict on what is open at the end → what was shown."""
+
+SHOWN = (kernel.SATISFIED, kernel.VACUOUS)
+
+
+@dataclass(frozen=True, slots=True)
+class Judgement:
+    """What was shown of one requirement."""
+
+    outcome: Outcome
+    longer: str | None
+    """The verdict where what came after the last whole tick is one more tick; None where that is
+    nothing, or changes nothing."""
+    intact: bool
+    """Whether the log is whole."""
+
+    @property
+    def verdict(self) -> str:
+        """A damaged log can show a violation, and nothing else; a cut tick leaves things open."""
+        if self.outcome.verdict not in SHOWN:
+            return self.outcome.verdict
+        if not self.intact:
+            return kernel.NO_DATA
+        undone = self.longer is not None and self.longer != self.outcome.verdict
+        return kernel.INCONCLUSIVE if undone else self.outcome.verdict
+
+    @property
+    def certain(self) -> bool:
+        """Whether the verdict is the same whatever the unknown values of the columns were."""
+        return kernel.NO_DATA not in (self.outcome.verdict, self.longer)
+
+
+def judged(
+    monitor: Monitor,
+    columns: Mapping[str, Column],
+    cut: Mapping[str, bool | None] | None,
+    ticks: int,
+    *,
+    intact: bool,
+    end: str,
+    engine: Engine = kernel.evaluate,
+) -> Judgement:
+    """Judge one trace.
+
+    Args:
+        monitor: of one requirement.
+        columns: one for each of its propositions.
+        cut: what a tick would see that the end of the log cuts short; None where there is none.
+        ticks: the length of the trace.
+        intact: whether the log is whole.
+        end: what a demand is that is open at the end.
+        engine: how the monitor is run.
+    """
+    (outcome,) = engine(monitor, columns, ticks, end)
+    asked = outcome.verdict in SHOWN and intact and cut is not None
+    longer = _longer(monitor, columns, cut, ticks, engine) if asked and cut is not None else None
+    return Judgement(outcome, longer, intact)
+
+
+def _longer(
+    monitor: Monitor,
+    columns: Mapping[str, Column],
+    cut: Mapping[str, bool | None],
+    ticks: int,
+    engine: Engine,
+) -> str | None:
+    """The verdict with the cut tick as one more.
+
+    What that shows is no verdict: the tick is cut short, and no duration counts it.
+    """
+    cut = {name: cut[name] for name in columns}
+    if not ticks or cut == {name: column.at(ticks - 1) for name, column in columns.items()}:
+        return None
+    longer = {name: column.followed(cut[name], ticks) for name, column in columns.items()}
+    (then,) = engine(monitor, longer, ticks + 1, kernel.INCONCLUSIVE)
+    return then.verdict
