@@ -136,6 +136,7 @@ def watched(plan: Plan) -> tuple[Watched, ...]:
             claim.hashes(plan.bindings),
             claim.demand,
             partial(trials, claim.chance.obligation) if claim.chance else None,
+            claim.chance.obligation.atoms if claim.chance else (),
         )
         for claim in plan.claims
     )

@@ -12,6 +12,7 @@ import jsonschema  # type: ignore[import-untyped]
 import pytest
 
 from tests.command import Fretc, write
+from tests.compiler.test_trials import fillings
 from tests.monitors.logs import MS, S, number
 from tests.monitors.logs import write as write_log
 
@@ -158,6 +159,46 @@ def test_the_counts_are_those_of_the_truth_columns(fretc: Fretc) -> None:
     fretc("audit", "runs")
     assert counts() == tuple(expected)
     assert min(expected) > 0
+
+
+NAMES = [f"{part}{i}" for part in "mpqs" for i in (1, 2)]
+
+
+def test_no_sentence_with_a_probability_ends_an_audit_and_each_is_counted(fretc: Fretc) -> None:
+    """Every template with any expressions, constants among them, each a requirement of its own."""
+    chance = random.Random("audits")
+    expected = {}
+    columns = {name: [chance.random() < 0.5 for _ in range(6)] for name in NAMES}
+    for i, filled in enumerate([*fillings(chance)][::8]):
+        require(filled.sentence, f"P{i}")
+        expected[f"P{i}"] = filled.naive({name: columns[name] for name in filled.names})
+    Path("requirements/R7.fret").unlink()
+    signals = [f'[signal.v{name}]\npath = "/{name}.data"\n' for name in NAMES]
+    bound = [f'[proposition.{name}]\nexpr = "v{name} > 0.5"\n' for name in NAMES]
+    clock = '[clock]\ntime = "log_time"\ntick = "100 ms"\n'
+    write("requirements/bindings.toml", "".join([clock, *signals, *bound]))
+    sent = [
+        number(float(columns[name][tick]), 1000 * S + tick * 100 * MS, f"/{name}")
+        for tick in range(6)
+        for name in NAMES
+    ]
+    write_log(Path("run.mcap"), sent)
+    run = fretc("audit", "run.mcap")
+    assert run.status == 3
+    found = {one["requirement"]: one["triggers"] for one in evidence()["probabilities"]}
+    assert len(found) == len(expected) == 108
+    for id, counted in expected.items():
+        told = {name: getattr(counted, name) for name in ("answered", "failed", "open")}
+        assert found[id] == told, id
+
+
+def test_what_no_run_can_meet_is_failed_at_each_trigger(fretc: Fretc) -> None:
+    require("whenever c the robot shall with probability >= 0.9 finally satisfy false")
+    logs(3, "1010", "0000")
+    run = fretc("audit", "runs")
+    assert run.status == 1
+    assert "◔ R7  inconclusive  0 of 2 triggers answered, 2 failed: judged over all runs" in run.out
+    assert counts() == (0, 6, 0)
 
 
 def test_what_is_unknown_in_the_middle_is_open_and_damage_withholds_support(fretc: Fretc) -> None:
