@@ -216,7 +216,7 @@ def audited(plan: Plan, log: str) -> Audited:
     """Audit one log; all that is needed for it is in the plan."""
     declarations, monitors = plan.declarations, watched(plan)
     before = stamp(log)
-    names = tuple(dict.fromkeys(name for w in monitors for name in w.monitor.PROPOSITIONS))
+    names = tuple(dict.fromkeys(name for w in monitors for name in w.propositions))
     recording = read(log, declarations, signals_of(declarations, names), plan.integrity)
     if isinstance(recording, Diagnostic):
         return _unread(plan, log, recording)

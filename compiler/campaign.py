@@ -11,9 +11,9 @@ from pathlib import Path
 
 from compiler import __version__
 from compiler.auditing import audited
+from compiler.binomial import highest, lowest
 from compiler.experiment import interceptor, plan, safety_function
 from compiler.interception import ticks
-from compiler.odds import highest, lowest
 from compiler.plan import watched
 from compiler.workers import Killed, each
 from monitors import kernel

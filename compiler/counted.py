@@ -31,8 +31,7 @@ def probability(at: Shape) -> Estimated:
         damaged=logs.field("damaged").count(),
         copies=logs.field("copies").count(),
         estimate=at.field("estimate").or_none(_share),
-        exact=_bounds(at.field("exact")),
-        resampled=at.field("resampled").or_none(_bounds),
+        bounds=_bounds(at.field("bounds")),
         needed=at.field("needed").or_none(Shape.count),
     )
 

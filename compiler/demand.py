@@ -60,6 +60,12 @@ class Obligation:
     trigger: f.Formula
     demand: Demand
 
+    @property
+    def atoms(self) -> tuple[str, ...]:
+        """Of all its parts, each once."""
+        parts = (self.mode, self.trigger, self.demand.response, self.demand.stop)
+        return tuple(dict.fromkeys(name for part in parts for name in f.atoms(part)))
+
 
 Expand = Callable[[str, tuple[e.Expression, ...], "Read"], f.Formula | None]
 """A call (name, arguments, how to read them) as a formula; None leaves it a proposition."""

@@ -52,11 +52,11 @@ class Estimated:
     """That have the content of another one: they are not counted again."""
     estimate: float | None
     """Answered ones of those that are decided."""
-    exact: Bounds
-    resampled: Bounds | None
-    """None: there are too few logs."""
+    bounds: Bounds
+    """By whole logs."""
     needed: int | None
-    """Further triggers, all as they should be, that `exact` needs; None: that does not help."""
+    """Further logs, all of whose triggers are as they should be, that would support it; None: that
+    does not help."""
 
     @property
     def text(self) -> str:
@@ -81,8 +81,7 @@ class Estimated:
                 "copies": self.copies,
             },
             "estimate": self.estimate,
-            "exact": _interval(self.exact),
-            "resampled": _interval(self.resampled),
+            "bounds": {"low": self.bounds.low, "high": self.bounds.high},
             "needed": self.needed,
             "meaning": AVERAGE,
         }
@@ -98,17 +97,12 @@ class Estimated:
         told = f"{self.answered} of {count} triggers answered, {self.failed} failed"
         yield f"{told}, {self.open} open, in {_times(self.logs, 'log')}{self._others}"
         known = "not known" if self.estimate is None else f"{self.estimate:.4f}"
-        drawn = "too few logs" if self.resampled is None else shown(self.resampled)
         each = odds.both_sides(self.operator, self.confidence)
-        yield (
-            f"estimate {known}; bounds, at {_percent(each)} each: {shown(self.exact)} "
-            f"(Clopper-Pearson), {drawn} (logs resampled)"
-        )
+        stretch = f"bounds, by whole logs, at {_percent(each)} each: {shown(self.bounds)}"
+        yield f"estimate {known}; {stretch}"
         if self.needed is not None:
-            how = "without an answer" if self.operator in ("<", "<=") else "answered"
-            yield f"at least {_times(self.needed, 'more trigger')}, all {how}, would be needed"
-        if self.logs < odds.FEW:
-            yield f"fewer than {odds.FEW} logs: how logs differ is not known well"
+            how = "no trigger" if self.operator in ("<", "<=") else "all triggers"
+            yield f"at least {_times(self.needed, 'more log')}, {how} answered, would be needed"
         yield AVERAGE
 
     @property
@@ -139,14 +133,16 @@ def estimates(
 
 
 def warnings(found: Sequence[Estimated]) -> Iterator[Diagnostic]:
-    """F506 for each that few runs tell of."""
+    """F506 for each that so few logs cannot support, whatever their triggers came to."""
     for one in found:
-        if one.logs < odds.FEW:
+        least = odds.fewest(one.operator, Fraction(one.bound), one.confidence)
+        if one.answer == INCONCLUSIVE and one.logs < least:
             yield Diagnostic(
                 Code.FEW_RUNS,
                 f"the probability of {one.requirement} is estimated from "
                 f"{_times(one.logs, 'log')} with a trigger",
-                help=f"audit {odds.FEW} or more: triggers of one log depend on each other",
+                help=f"audit {least} or more: triggers of one log may depend on each other, so "
+                "logs count",
                 severity=Severity.WARNING,
             )
 
@@ -175,8 +171,7 @@ def _estimated(claim: Claim, results: Sequence[Mapping[str, Any]], level: float)
         damaged=damaged,
         copies=len(results) - len(distinct),
         estimate=None if found.share is None else round(found.share, 9),
-        exact=found.exact,
-        resampled=None if found.runs < 2 else found.resampled,
+        bounds=found.bounds,
         needed=odds.needed(found, op, bound) if answer == INCONCLUSIVE else None,
     )
 
@@ -217,10 +212,6 @@ def _reason(found: odds.Estimate, answer: str, text: str) -> str:
 def _damaged(count: int) -> str:
     what = "log is" if count == 1 else "logs are"
     return f"{count} {what} damaged or could not be read: what is lost could speak against it"
-
-
-def _interval(bounds: Bounds | None) -> dict[str, float] | None:
-    return None if bounds is None else {"low": bounds.low, "high": bounds.high}
 
 
 def shown(bounds: Bounds) -> str:

@@ -18,6 +18,7 @@ import tomli_w
 from compiler.files import read as read_text
 from compiler.links import REVIEW, Chain, Node, Suspect, changed, suspects
 from fretish.diagnostic import Code, Diagnostic, Severity, suggestion
+from fretish.ordering import natural
 from fretish.source import Source
 from fretish.tables import Tables
 from fretish.tables import read as read_tables
@@ -60,7 +61,8 @@ def accepted(chain: Chain, reviewer: str, role: str, date: str, comment: str) ->
 def text(lock: Lock) -> str:
     """The file."""
     tables: dict[str, Any] = {"schema": SCHEMA}
-    for id, review in sorted(lock.reviews.items()):
+    for id in sorted(lock.reviews, key=natural):
+        review = lock.reviews[id]
         tables[id] = {
             **{name: getattr(review, name) for name in _TEXTS},
             "fingerprints": {str(n): sha for n, sha in sorted(review.prints.items())},

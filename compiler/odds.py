@@ -1,15 +1,23 @@
 """From the trials of many runs to what is known of a probability.
 
-Two intervals are made of the same counts, one-sided at the stated confidence:
+The unit of chance is the run: triggers of one run may depend on each other in any way. What is
+bounded is the share of answered triggers that is to be expected of runs with these numbers of
+triggers, sum(E[answered]) / sum(triggers). Of the runs it is only asked that they are independent.
 
-- Clopper-Pearson's, exact where trials are independent (Biometrika 26, 1934);
-- one by resampling whole runs (Davison, Hinkley, Bootstrap Methods and their Application, 1997,
-  section 3.8): triggers of one run are not independent, and how runs differ shows in it.
+Each bound is a test of every smaller share m by a bet that is fair if m is true (Waudby-Smith,
+Ramdas, Estimating means of bounded random variables by betting, Journal of the Royal Statistical
+Society B 86, 2024, section 4; with bets that are fixed beforehand). With at most B triggers in a
+run, a stake of 1 and a part u of what is at hand as the bet, the runs leave
 
-What is open counts both ways: as failed for the lower bound, as answered for the upper one. The
-answer is read off the interval that holds both, so it is no stronger than either of them.
+    K_u(m) = product over runs of (1 + u * (answered / m - triggers) / B),
 
-The only module that imports scipy.
+no factor of which is negative. If the share is at most m, the factors' expectations have a mean of
+at most 1, so their product is at most 1 (the geometric mean is not above the arithmetic one), and
+by Markov's inequality a mean of K_u(m) over several u reaches 1 / (1 - confidence) with a
+probability of at most 1 - confidence. That holds for any number of runs and any dependence within
+them, and K falls with m: the lower bound is the largest m at which it reaches that.
+
+What is open counts both ways: as failed for the lower bound, as answered for the upper one.
 """
 
 from __future__ import annotations
@@ -17,27 +25,26 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from importlib.util import find_spec
-from math import ceil, floor
+from math import ceil, log
 
 import numpy as np
 from numpy.typing import NDArray
 
-from fretish.diagnostic import Code, Diagnostic
 from fretish.expressions import ComparisonOperator
 from monitors.trials import Trials
 
 SUPPORTED, REFUTED, INCONCLUSIVE = "supported", "refuted", "inconclusive"
 """What runs say of a probability."""
 CONFIDENCE = 0.95
-FEW = 30
-"""Runs with a trigger below which resampling them is not to be relied on."""
-RESAMPLES = 4000
-_SEED = 20_240_229
-_AT_ONCE = 1 << 22
-"""Numbers that are drawn at a time."""
 _GRAIN = 10**9
 """Bounds are rounded outwards to this part of 1: the same on every machine."""
+_BETS = np.array([1, 7 / 8, 3 / 4, *(2.0**-k for k in range(1, 17))])
+"""Parts of what is at hand. All of it is best where no trigger failed, as with Clopper-Pearson's
+bound of so many runs; small parts are best where runs differ little and there are many."""
+_STAKES = np.array([1 / 2, 1 / 8, 1 / 8, *(2.0 ** -min(k + 2, 17) for k in range(1, 17))])
+"""What each begins with: 1 in all."""
+_SLACK = 1e-9
+"""Of a logarithm: more than what rounding adds to it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,10 +53,6 @@ class Bounds:
 
     low: float
     high: float
-
-    def around(self, other: Bounds) -> Bounds:
-        """The least that holds both."""
-        return Bounds(min(self.low, other.low), max(self.high, other.high))
 
 
 NOTHING_KNOWN = Bounds(0.0, 1.0)
@@ -64,10 +67,10 @@ class Estimate:
     runs: int
     """Those with a trigger."""
     confidence: float
-    exact: Bounds
-    """Clopper-Pearson's."""
-    resampled: Bounds
-    """By whole runs; it says nothing where there are fewer than two."""
+    bounds: Bounds
+    """By whole runs; they say nothing where there are fewer than two."""
+    counted: tuple[Trials, ...] = ()
+    """Those of each run with a trigger."""
 
     @property
     def share(self) -> float | None:
@@ -75,113 +78,81 @@ class Estimate:
         decided = self.trials.answered + self.trials.failed
         return self.trials.answered / decided if decided else None
 
-    @property
-    def bounds(self) -> Bounds:
-        """Those that the answer is read off."""
-        return self.exact.around(self.resampled)
-
-
-def missing() -> Diagnostic | None:
-    """F908, where what statistics need is not installed."""
-    if find_spec("scipy") is not None:
-        return None
-    return Diagnostic(
-        Code.MISSING_EXTRA,
-        "a requirement with a probability needs `scipy`",
-        help="install the extra: pip install 'fretc[stats]' "
-        "(in a checkout: .venv/bin/pip install '.[stats]')",
-    )
-
 
 def estimated(runs: Iterable[Trials], confidence: float = CONFIDENCE) -> Estimate:
-    """The share of triggers that are answered, with both intervals.
+    """The share of triggers that are answered, with its bounds.
 
     Args:
         runs: the trials of each run; their order does not matter.
         confidence: of each bound, between 0.5 and 1.
     """
-    counted = [run for run in runs if run.count]
+    counted = tuple(run for run in runs if run.count)
     answered, failed, open_ = (
         sum(getattr(run, name) for run in counted) for name in ("answered", "failed", "open")
     )
-    whole = Trials(answered, failed, open_)
     return Estimate(
-        whole,
+        Trials(answered, failed, open_),
         len(counted),
         confidence,
-        Bounds(
-            lowest(answered, whole.count, confidence),
-            highest(answered + open_, whole.count, confidence),
-        ),
-        resampled(counted, confidence),
+        bounds(counted, confidence),
+        counted,
     )
-
-
-# Clopper-Pearson -------------------------------------------------------------------------------
-
-
-def lowest(answered: int, count: int, confidence: float) -> float:
-    """The largest p with which so many answers, or more, are no likelier than 1 - confidence.
-
-    Rounded down.
-    """
-    from scipy.special import betaincinv
-
-    if not answered:
-        return 0.0
-    found = float(betaincinv(answered, count - answered + 1, 1 - confidence))
-    return max(0.0, floor(found * _GRAIN) / _GRAIN)
-
-
-def highest(answered: int, count: int, confidence: float) -> float:
-    """The smallest p with which so many answers, or fewer, are no likelier than 1 - confidence.
-
-    Rounded up.
-    """
-    from scipy.special import betaincinv
-
-    if answered == count:
-        return 1.0
-    found = float(betaincinv(answered + 1, count - answered, confidence))
-    return min(1.0, ceil(found * _GRAIN) / _GRAIN)
 
 
 # Whole runs ------------------------------------------------------------------------------------
 
 
-def resampled(runs: Sequence[Trials], confidence: float) -> Bounds:
-    """The percentile bounds of the share over runs drawn anew; the same runs give the same.
+def bounds(runs: Sequence[Trials], confidence: float) -> Bounds:
+    """Between which the share of answered triggers lies, each bound with the confidence.
+
+    One run does not show how runs differ, and bounds nothing.
 
     Args:
         runs: with a trigger each.
-        confidence: of each bound.
+        confidence: of each bound, between 0.5 and 1.
     """
     if len(runs) < 2:
         return NOTHING_KNOWN
-    table = np.array(sorted((r.answered, r.answered + r.open, r.count) for r in runs), np.int64)
-    sums = np.concatenate([table[places].sum(1) for places in _draws(len(runs))])
-    low, high = (np.sort(sums[:, column] / sums[:, 2]) for column in (0, 1))
-    tail = floor((1 - confidence) * (RESAMPLES + 1))
-    if not tail:
-        return NOTHING_KNOWN
-    return Bounds(
-        floor(float(low[tail - 1]) * _GRAIN) / _GRAIN,
-        min(1.0, ceil(float(high[-tail]) * _GRAIN) / _GRAIN),
-    )
+    low = _least([(run.answered, run.count) for run in runs], confidence)
+    other = _least([(run.failed, run.count) for run in runs], confidence)
+    return Bounds(low, round(1 - other, 9))
 
 
-def _draws(runs: int) -> Iterable[NDArray[np.int64]]:
-    """Shape (some, runs), so often that there are `RESAMPLES` rows: places of runs.
+Tally = Sequence[tuple[int, int]]
+"""Of each run, the triggers that came to something, and all of its triggers."""
+Table = NDArray[np.float64]
+"""Shape (3, n): both, as parts of the most triggers of a run; and how many runs are alike."""
 
-    Of the bits of PCG64, whose stream NumPy promises not to change; of 64 bits the remainder is as
-    good as uniform.
-    """
-    bits = np.random.PCG64(_SEED)
-    rows = max(1, _AT_ONCE // runs)
-    for first in range(0, RESAMPLES, rows):
-        size = min(rows, RESAMPLES - first)
-        drawn = bits.random_raw(size * runs) % np.uint64(runs)
-        yield drawn.astype(np.int64).reshape(size, runs)
+
+def _table(runs: Tally) -> Table:
+    if not runs:
+        return np.empty((3, 0))
+    rows, times = np.unique(np.array(runs, np.int64), axis=0, return_counts=True)
+    return np.array([*(rows.T / rows[:, 1].max()), times])
+
+
+def _least(runs: Tally, confidence: float) -> float:
+    """The largest share that no fair bet leaves room for, rounded down."""
+    table, below, above = _table(runs), 0, _GRAIN
+    while above - below > 1:
+        middle = (below + above) // 2
+        enough = _reaches(_worths(table, middle / _GRAIN), confidence)
+        below, above = (middle, above) if enough else (below, middle)
+    return below / _GRAIN
+
+
+def _worths(table: Table, share: float) -> NDArray[np.float64]:
+    """The logarithm of what each bet against the share has become."""
+    good, count, times = table
+    with np.errstate(divide="ignore"):  # who bets everything may lose everything
+        return np.asarray(np.log1p(np.outer(_BETS, good / share - count)) @ times)
+
+
+def _reaches(worths: NDArray[np.float64], confidence: float) -> bool:
+    """Whether all bets together are worth more than a fair game gives but rarely."""
+    each = worths + np.log(_STAKES)
+    most = float(each.max())
+    return most + log(float(np.exp(each - most).sum())) >= _SLACK - log(1 - confidence)
 
 
 # Answers ---------------------------------------------------------------------------------------
@@ -216,20 +187,22 @@ def both_sides(op: ComparisonOperator, confidence: float) -> float:
 
 
 def needed(estimate: Estimate, op: ComparisonOperator, bound: Fraction) -> int | None:
-    """How many further triggers, all as they should be, the exact interval needs for `op bound`.
+    """How many further runs, all as they should be, it takes to support `op bound`.
 
-    All are answered for `>=` and `>`, none for `<=` and `<`. Without failures these are
-    ln(1 - confidence) / ln(bound) in all. None: no number is enough, or none is needed.
+    All triggers of each are answered for `>=` and `>`, none for `<=` and `<`, and each has as many
+    as the run with most. None: no number is enough, or none is needed.
     """
     down = op in ("<", "<=")
-    goal = float(1 - bound if down else bound)
+    goal = ceil((1 - bound if down else bound) * _GRAIN) / _GRAIN
     if op in ("=", "!=") or goal >= 1 or answer(estimate, op, bound) == SUPPORTED:
         return None
-    whole = estimate.trials
-    good, count = whole.failed if down else whole.answered, whole.count
+    if not goal:
+        return 1
+    runs = [(r.failed if down else r.answered, r.count) for r in estimate.counted]
+    before, gain = _worths(_table(runs), goal), np.log1p(_BETS * (1 / goal - 1))
 
     def enough(more: int) -> bool:
-        return more + good > 0 and lowest(good + more, count + more, estimate.confidence) >= goal
+        return len(runs) + more > 1 and _reaches(before + more * gain, estimate.confidence)
 
     upper = 1
     while not enough(upper):
@@ -240,7 +213,12 @@ def needed(estimate: Estimate, op: ComparisonOperator, bound: Fraction) -> int |
     while upper - lower > 1:
         middle = (lower + upper) // 2
         lower, upper = (lower, middle) if enough(middle) else (middle, upper)
-    return upper if upper > 1 or not enough(0) else None
+    return upper
+
+
+def fewest(op: ComparisonOperator, bound: Fraction, confidence: float) -> int:
+    """With fewer runs `op bound` is never supported, whatever their triggers come to."""
+    return needed(estimated((), both_sides(op, confidence)), op, bound) or 2
 
 
 _MOST = 1 << 40

@@ -136,6 +136,7 @@ def watched(plan: Plan) -> tuple[Watched, ...]:
             claim.hashes(plan.bindings),
             claim.demand,
             partial(trials, claim.chance.obligation) if claim.chance else None,
+            claim.chance.obligation.atoms if claim.chance else (),
         )
         for claim in plan.claims
     )
@@ -163,7 +164,5 @@ def _not_auditable(rules: Sequence[Rule], declarations: Declarations | None) -> 
             )
         ]
     refused = [monitors.refuse(replace(rule, pctl=None)) for rule in rules]
-    if any(rule.sentence.probability for rule in rules):
-        refused.append(odds.missing())
     missing = [diagnostic for rule in rules for diagnostic in unbound(rule, declarations)]
     return [*(diagnostic for diagnostic in refused if diagnostic), *missing]

@@ -55,6 +55,7 @@ class Past:
                 "occurred": lambda lo, hi, p: once(p, Interval(lo, hi)),
             },
             {"prevOcc": previous_occurrence},
+            FIRST,
         )
 
     def inside(self, scope: ScopeKind | None, mode: Formula) -> Expand:

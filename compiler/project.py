@@ -21,6 +21,7 @@ from fretish.bindings import read_bindings
 from fretish.declarations import Declarations
 from fretish.diagnostic import Code, Diagnostic, Severity, has_errors, suggestion
 from fretish.documents import Requirement, requirements
+from fretish.ordering import natural
 from fretish.source import Source
 from fretish.tables import Tables
 from fretish.tables import read as read_tables
@@ -143,11 +144,12 @@ def _reason(remarks: Sequence[Diagnostic]) -> Diagnostic:
 
 
 def requirement_files(folder: str) -> list[str] | Diagnostic:
-    """The `.fret` files of a folder, sorted; or the one file, where it is a file."""
+    """The `.fret` files of a folder, `r2` before `r10`; or the one file, where it is a file."""
     try:
         if not _is_folder(folder):
             return [folder] if Path(folder).is_file() else _absent(folder, "there is no folder")
-        names = sorted(name for name in os.listdir(folder) if name.endswith(".fret"))
+        listed = (name for name in os.listdir(folder) if name.endswith(".fret"))
+        names = sorted(listed, key=natural)
     except OSError as error:
         return unreadable(folder, error)
     found = [str(Path(folder) / name) for name in names]
@@ -267,7 +269,7 @@ def _hazard_mistakes(tables: Tables, id: str, fields: Any) -> list[Diagnostic]:
 
 def _unknown_parents(written: Sequence[Requirement], above: Collection[str]) -> list[Diagnostic]:
     """F501: a parent is neither a hazard, nor a requirement, here or in another tool."""
-    known = [*sorted(above), *(requirement.id for requirement in written)]
+    known = [*sorted(above, key=natural), *(requirement.id for requirement in written)]
     found = []
     for requirement in written:
         for parent in requirement.parents:

@@ -20,6 +20,7 @@ from compiler.estimates import estimates
 from compiler.files import file_sha256
 from compiler.plan import Claim, Plan
 from fretish.diagnostic import Diagnostic
+from fretish.ordering import natural
 from monitors.inputs import shown as called
 
 
@@ -133,7 +134,7 @@ def _left_out(whole: Mapping[str, Any]) -> Iterator[Rechecked]:
     found = Counter((result["run"], result["requirement"]) for result in whole["results"])
     named = {str(told.get("id")) for told in _objects(whole.get("requirements"))}
     for run in dict.fromkeys(run for run, _ in found):
-        for requirement in sorted(named | {id for other, id in found if other == run}):
+        for requirement in sorted(named | {id for other, id in found if other == run}, key=natural):
             count = found[run, requirement]
             if count > 1:
                 yield Rechecked(run, requirement, Finding.DIFFERS, ("it is told twice",))

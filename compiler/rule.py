@@ -6,8 +6,10 @@ import hashlib
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+from compiler.demand import obligation
 from compiler.formula import Formula, atoms
 from compiler.past import Watch
+from compiler.predicates import Past
 from fretish.checking import conditions
 from fretish.clock import Clock
 from fretish.declarations import Declarations, Variable
@@ -57,9 +59,16 @@ class Rule:
 
     @property
     def watched(self) -> tuple[str, ...]:
-        """The propositions that a monitor needs: predicates that look back are none of them."""
+        """The propositions that a monitor needs: predicates that look back are none of them.
+
+        Where triggers are counted, each on its own, those of all parts of the sentence are needed.
+        """
         needed = {name for signal in self.watch.signals for name in atoms(signal)}
-        return tuple(name for name in self.propositions if name in needed)
+        counted: tuple[str, ...] = ()
+        if self.sentence.probability is not None:
+            counted = obligation(self.sentence, self.ticks or 0, Past()).atoms
+        known = dict.fromkeys((*self.propositions, *counted))
+        return tuple(name for name in known if name in needed or name in counted)
 
     @property
     def variables(self) -> tuple[str, ...]:

@@ -12,7 +12,8 @@ from dataclasses import dataclass, replace
 
 from compiler import predicates
 from compiler.columns import evaluate_unknown
-from compiler.demand import Kind, Obligation, obligation
+from compiler.demand import Demand, Kind, Obligation, obligation
+from compiler.formula import FALSE, Formula
 from compiler.future import demanded_at, end_marker
 from compiler.past import staged
 from compiler.rule import Rule
@@ -61,7 +62,7 @@ def trials(told: Obligation, columns: Mapping[str, Column], ticks: int) -> Trial
 
     Args:
         told: what is demanded.
-        columns: one for each proposition.
+        columns: one for each proposition of the obligation.
         ticks: the length of the run.
     """
     if not ticks:
@@ -69,7 +70,7 @@ def trials(told: Obligation, columns: Mapping[str, Column], ticks: int) -> Trial
     triggers = evaluate_unknown(staged(told).trigger, columns, ticks)
     # A deadline that no trigger of the run can reach is as far as any other one.
     demand = replace(told.demand, ticks=min(told.demand.ticks, ticks))
-    met = demanded_at(demand, end_marker(told.scope, told.mode))
+    met = _met(demand, end_marker(told.scope, told.mode))
     longer = ticks + demand.ticks + _BEYOND
     ahead = (1 << longer) - (1 << ticks)
     unending = {name: Column(c.true, c.unknown | ahead) for name, c in columns.items()}
@@ -83,6 +84,13 @@ def trials(told: Obligation, columns: Mapping[str, Column], ticks: int) -> Trial
         open=((triggers.true | triggers.unknown) & ~(answered | failed)).bit_count(),
         kept=(answered & ~shown.true).bit_count(),
     )
+
+
+def _met(demand: Demand, end: Formula) -> Formula:
+    """The formula at a trigger; where the end of its interval is unknown, it still comes."""
+    if demand.kind is Kind.FINALLY and demand.response == FALSE:
+        return FALSE
+    return demanded_at(demand, end)
 
 
 _BEYOND = 3

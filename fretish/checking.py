@@ -110,6 +110,8 @@ def _check_kinds(whole: e.Expression, place: Span | None) -> Diagnostic | None:
 
 def _is_boolean(part: e.Expression, expected: bool) -> bool:
     match part:
+        case e.Name("FTP"):
+            return True
         case e.Name():
             return expected
         case e.Call(name):

@@ -34,6 +34,13 @@ class Watched:
     demand: Demand = field(default_factory=Demand)
     count: Count | None = None
     """Of a requirement with a probability: what its triggers came to."""
+    counted: tuple[str, ...] = ()
+    """The propositions that `count` needs; the monitor may do without some of them."""
+
+    @property
+    def propositions(self) -> tuple[str, ...]:
+        """All that are needed, each once."""
+        return tuple(dict.fromkeys((*self.monitor.PROPOSITIONS, *self.counted)))
 
 
 def signals_of(declarations: Declarations, propositions: Sequence[str]) -> tuple[str, ...]:
@@ -74,7 +81,7 @@ def audit(
         watched: the monitors, each of one requirement.
         engine: how the monitors are run; what they show is the same.
     """
-    names = dict.fromkeys(name for w in watched for name in w.monitor.PROPOSITIONS)
+    names = dict.fromkeys(name for w in watched for name in w.propositions)
     seen = trace(declarations, recording, tuple(names))
     found = {
         name: margins(declarations.propositions[name], declarations, recording, seen.timeline.times)
@@ -104,7 +111,7 @@ def _evidence(
     engine: Engine,
 ) -> Evidence:
     monitor = watched.monitor
-    columns = {name: seen.columns[name] for name in monitor.PROPOSITIONS}
+    columns = {name: seen.columns[name] for name in watched.propositions}
     ticks = len(seen.timeline.times)
     judgement = judged(
         monitor,
@@ -117,7 +124,7 @@ def _evidence(
     )
     outcome = judgement.outcome
     at = partial(_moment, seen.timeline)
-    signals = signals_of(declarations, tuple(monitor.PROPOSITIONS))
+    signals = signals_of(declarations, watched.propositions)
     latencies = tuple(at(k).seconds - at(t).seconds for t, k in outcome.answers)
     evidence = Evidence(
         run=recording.name,
@@ -151,9 +158,11 @@ def _evidence(
 
 
 def _counted(evidence: Evidence, trials: Trials) -> Evidence:
-    """The evidence, where one run decides nothing: what was shown of it is counted."""
-    broken = (kernel.VIOLATED, kernel.NO_DATA)
-    assert not trials.failed or evidence.outcome.verdict in broken, "the monitor saw no failure"
+    """The evidence, where one run decides nothing: what was shown of it is counted.
+
+    A trigger may have failed where the monitor still waits: `finally` asks nothing of an endless
+    run, so its monitor gives up at the end only, even what no end can meet.
+    """
     if evidence.verdict == kernel.VACUOUS:
         return replace(evidence, trials=trials)
     if evidence.verdict == kernel.NO_DATA:

@@ -51,7 +51,7 @@ DOORS = {
     "dask": {"compiler/fleet.py"},
     "mujoco": {"simulation/robot.py"},
     "matplotlib": {"simulation/picture.py"},
-    "scipy": {"compiler/odds.py"},
+    "scipy": {"compiler/binomial.py"},
     "rosbags": {
         "simulation/messages.py",
         "simulation/recording.py",

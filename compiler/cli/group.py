@@ -11,6 +11,8 @@ import click
 from compiler.cli.output import stop
 from fretish.diagnostic import Code, Diagnostic, suggestion
 
+_OWN = ("-h", "--help", "--version")
+"""Options of `fretc` itself."""
 DEFAULT = "compile"
 """The command that `fretc FILE...` stands for."""
 
@@ -20,7 +22,7 @@ class Commands(click.Group):
 
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
         """Put the default command before a file."""
-        if args and args[0] not in self.commands and args[0] not in ("--help", "--version"):
+        if args and args[0] not in self.commands and args[0] not in _OWN:
             if not args[0].startswith("-") and not _is_path(args[0]):
                 stop(_unknown_command(args[0], [*self.commands]))
             args = [DEFAULT, *args]

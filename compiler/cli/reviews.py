@@ -10,6 +10,7 @@ import click
 
 from compiler.cli.output import BAD, NOT_SHOWN, SHOWN, deliver, say, say_line, stop
 from fretish.diagnostic import Code, Diagnostic, Severity, has_errors, suggestion
+from fretish.ordering import natural
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -76,7 +77,7 @@ def lock(
     reviews |= {c.requirement: accepted(c, reviewer, role, day, comment) for c in chosen}
     deliver({Path(where): text(Lock(reviews))})
     say_line(f"accepted {', '.join(chain.requirement for chain in chosen)}")
-    for id in sorted(kept.keys() - known):
+    for id in sorted(kept.keys() - known, key=natural):
         say_line(f"left out {id}: it is not among the requirements")
 
 

@@ -12,6 +12,7 @@ from compiler.report.claims import MARKS, RETIRED, Claim
 from compiler.report.results import result_anchor
 from compiler.report.runs import Key, Run, key
 from compiler.report.views import Cell, HazardView, Orphans, RequirementView, Row
+from fretish.ordering import natural
 
 _SINGLE = 6
 """More runs of one verdict than these share one cell."""
@@ -126,7 +127,8 @@ def _uncovered(project: Project, claims: Sequence[Claim]) -> Iterable[str]:
     for claim in claims:
         for above in _chains(claim.id, parents, project):
             covered.setdefault(above, set()).add(claim.requirement.status)
-    for id, hazard in sorted(project.hazards.items()):
+    for id in sorted(project.hazards, key=natural):
+        hazard = project.hazards[id]
         if id not in covered:
             yield f"{id} ({hazard.title}) has no requirement"
         elif covered[id] == {RETIRED}:
@@ -145,4 +147,4 @@ def strangers(claims: Sequence[Claim], evidence: Evidence | None) -> tuple[str, 
     """Ids that the evidence is about and the project does not have."""
     known = {claim.id for claim in claims}
     results = evidence.results if evidence else ()
-    return tuple(sorted({result.requirement for result in results} - known))
+    return tuple(sorted({result.requirement for result in results} - known, key=natural))

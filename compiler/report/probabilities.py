@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from compiler.estimates import GLYPHS, Estimated, shown
-from compiler.odds import INCONCLUSIVE, REFUTED, SUPPORTED, Bounds
+from compiler.odds import INCONCLUSIVE, REFUTED, SUPPORTED
 from compiler.report.views import BoundsView, Mark, ProbabilityView
 from fretish import syntax
 from monitors import kernel
@@ -48,10 +48,7 @@ def contradictions(
 
 def probability_view(told: Estimated, suspicions: Sequence[str]) -> ProbabilityView:
     """What is shown in the section of the requirement."""
-    bars = [BoundsView("Clopper-Pearson", told.exact.low, told.exact.high)]
-    if told.resampled is not None:
-        bars.append(BoundsView("logs resampled", told.resampled.low, told.resampled.high))
-    stretches = " and ".join(f"{shown(Bounds(b.low, b.high))} ({b.name})" for b in bars)
+    bars = (BoundsView("by whole logs", told.bounds.low, told.bounds.high),)
     share = "not known" if told.estimate is None else f"{told.estimate:.4f}"
     return ProbabilityView(
         mark=ANSWERS[told.answer],
@@ -61,6 +58,7 @@ def probability_view(told: Estimated, suspicions: Sequence[str]) -> ProbabilityV
         reason=told.reason,
         lines=told.lines[1:],
         estimate=told.estimate,
-        bars=tuple(bars),
-        text=f"Estimate {share}; bounds {stretches}; the bound of the sentence is {told.bound}.",
+        bars=bars,
+        text=f"Estimate {share}; bounds, by whole logs, {shown(told.bounds)}; "
+        f"the bound of the sentence is {told.bound}.",
     )

@@ -47,6 +47,14 @@ def refuse(rule: Rule) -> Diagnostic | None:
         return not_expressible(
             "a monitor", rule, f"`{ahead}`", "it looks ahead: state it by a timing, or look back"
         )
+    first = next((name for name in rule.watched if _ASKS_FOR_FIRST.search(name)), None)
+    if first is not None:
+        return not_expressible(
+            "a monitor",
+            rule,
+            f"`FTP` within `{first}`",
+            "nothing is known of what is made of it there: state it outside",
+        )
     if rule.pctl is not None:
         return not_expressible(
             "a monitor",
@@ -62,6 +70,10 @@ def refuse(rule: Rule) -> Diagnostic | None:
         rule.sentence.timing_span,
         help='declare `[clock]` with `tick = "100 ms"` in bindings.toml, or write ticks',
     )
+
+
+_ASKS_FOR_FIRST = re.compile(r'^[^"].*\bFTP\b')
+"""An atom whose text has the first tick in it; a quoted name only looks like one."""
 
 
 def remark(rule: Rule) -> Diagnostic | None:

@@ -7,6 +7,8 @@ from pathlib import Path
 
 import pytest
 
+from compiler.cli import cli
+from compiler.cli.group import DEFAULT
 from monitors.loading import load
 from tests.command import Fretc, Run, runner, write
 
@@ -380,4 +382,25 @@ def test_the_options_of_an_audit_stand_under_headings(fretc: Fretc) -> None:
         "Other:",
     ]
     assert text.index("--requirements") < text.index("--format") < text.index("--jobs")
-    assert text.endswith("Other:\n  --help  Show this message and exit.\n")
+    assert text.endswith("Other:\n  -h, --help  Show this message and exit.\n")
+
+
+def test_requirements_come_as_people_count(fretc: Fretc) -> None:
+    """In listings, and in what `step` of the monitor of all of them takes and gives."""
+    for number in (1, 10, 2):
+        header = f'+++\nid = "R{number}"\n+++\n'
+        write(f"r{number}.fret", f"{header}the sw shall always satisfy p{number}\n")
+    told = fretc(".").out
+    assert [line for line in told.splitlines() if line.startswith("R")] == ["R1", "R2", "R10"]
+    text = fretc(".", "--emit", "monitor", "--one-file", "-o", "-").out
+    assert text.startswith("# Runtime monitor of R1, R2, R10\n")
+    assert "def step(self, *, p1: Truth, p2: Truth, p10: Truth)" in text
+    assert [r.id for r in load("monitors.py", text).REQUIREMENTS] == ["R1", "R2", "R10"]
+
+
+@pytest.mark.parametrize("command", [*cli.commands, ""])
+def test_h_is_help_everywhere(fretc: Fretc, command: str) -> None:
+    name = [] if not command else ["x.fret"] if command == DEFAULT else [command]
+    short, long = fretc(*name, "-h"), fretc(*name, "--help")
+    assert (short.status, short.out, short.err) == (0, long.out, long.err)
+    assert "-h, --help" in short.out

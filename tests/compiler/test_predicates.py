@@ -15,10 +15,13 @@ from compiler.automata import same_language
 from compiler.pipeline import formalize
 from compiler.rule import Rule
 from compiler.semantics import holds
+from compiler.targets import monitor as target
+from fretish.diagnostic import Code
 from fretish.documents import requirements
 from fretish.source import Source
 from tests import fret_notation as fret
-from tests import meaning
+from tests import meaning, monitoring
+from tests.strategies import templates
 
 TABLE = Path(__file__).parents[1] / "data/fret_templates.json"
 
@@ -173,6 +176,10 @@ def first_tick(x: Trace, k: int, left: int, right: int) -> bool:
     return k == 0
 
 
+def previous_other_than_first(x: Trace, k: int, left: int, right: int) -> bool:
+    return [j for j in range(left, k) if x["p"][j]][-1:] != [0]
+
+
 def persisted_after_occurred(x: Trace, k: int, left: int, right: int) -> bool:
     return k - 2 >= left and all(occurred(0, 3)(x, j, left, right) for j in range(k - 2, k + 1))
 
@@ -212,6 +219,12 @@ BACK: dict[str, Predicate] = {
     "preBool(true,p)": previous_value(lambda x: True),
     "preBool(r,p)": previous_value(lambda x: x["r"][0]),
     "FTP": first_tick,
+    "occurred(2,FTP)": lambda x, k, left, right: left == 0 and k <= 2,
+    "persisted(1,!FTP)": lambda x, k, left, right: k - 1 >= max(left, 1),
+    "prevOcc(FTP,r)": lambda x, k, left, right: left > 0 or k == 0 or x["r"][0],
+    "prevOcc(p,!FTP)": previous_other_than_first,
+    "preBool(FTP,p)": previous_value(lambda x: True),
+    "preBool(r,FTP)": lambda x, k, left, right: k == 1 or (k == 0 and x["r"][0]),
     "persisted(2,occurred(3,p))": persisted_after_occurred,
 }
 AHEAD: dict[str, Predicate] = {
@@ -313,6 +326,114 @@ def test_the_meaning_tells_traces_apart(place: str) -> None:
             for trace in traces()
         )
         assert min(verdicts.values()) > 0.05 * verdicts.total()
+
+
+# The first tick of the run ---------------------------------------------------------------------
+
+WHILE = {
+    "in": "while ({})",
+    "notin": "except while ({})",
+    "before": "before ({})",
+    "after": "after ({})",
+    "onlyIn": "only while ({})",
+    "onlyBefore": "only before ({})",
+    "onlyAfter": "only after ({})",
+}
+OF_THE_RUN: dict[str, Callable[[Sequence[bool], int], bool]] = {
+    "FTP": lambda m, k: k == 0,
+    "!FTP": lambda m, k: k > 0,
+    "FTP | m": lambda m, k: k == 0 or m[k],
+    "m & !FTP": lambda m, k: k > 0 and m[k],
+    "occurred(1,FTP)": lambda m, k: k <= 1,
+    "persisted(1,!FTP)": lambda m, k: k > 1,
+    "prevOcc(FTP,m)": lambda m, k: k > 0 and m[0],
+}
+"""Within the expression of a scope, which knows no interval yet."""
+
+
+@pytest.mark.parametrize("text", OF_THE_RUN)
+@pytest.mark.parametrize("scope", WHILE)
+def test_the_first_tick_within_a_scope_is_that_of_the_run(scope: str, text: str) -> None:
+    """Formula and monitor, at the end of each prefix, against the definition."""
+    number = list(OF_THE_RUN).index(text)
+    of_scope = [template for template in templates((1,)) if template.scope == scope]
+    for place, template in enumerate(of_scope[number % 3 :: 3]):
+        begun = template.sentence.index("mode") + len("mode")
+        sentence = f"{WHILE[scope].format(text)}{template.sentence[begun:]}"
+        made = rule(sentence)
+        machine = monitoring.monitor(sentence) if place % 4 == 0 else None
+        names = {*template.columns, "m"}
+        for trace in traces()[place % 10 :: 10]:
+            word = {n: trace[{"s": "r"}.get(n, n)] for n in sorted(names)}
+            told = {n: [*column] for n, column in word.items()}
+            found = monitoring.steps(machine, told) if machine else []
+            for length in range(1, len(trace["q"]) + 1):
+                prefix = {name: list(column[:length]) for name, column in word.items()}
+                mode = [OF_THE_RUN[text](prefix["m"], k) for k in range(length)]
+                right = template.satisfied({**prefix, "m": mode})
+                state = [{name: prefix[name][k] for name in prefix} for k in range(length)]
+                assert holds(made.pt, state, length - 1) == right, (sentence, prefix)
+                assert not found or found[length - 1].finite == right, (sentence, prefix)
+
+
+POSITIONS = [
+    *(f"{words} sw shall always satisfy q" for words in WHILE.values()),
+    "when ({}) sw shall within 2 ticks satisfy q",
+    "whenever ({}) sw shall immediately satisfy q",
+    "in m mode whenever ({}) sw shall at the next timepoint satisfy q",
+    "sw shall until ({}) satisfy q",
+    "sw shall before ({}) satisfy q",
+    "after m mode sw shall always satisfy ({}) -> q",
+    "sw shall eventually satisfy q & !({})",
+]
+
+
+@pytest.mark.parametrize("sentence", POSITIONS)
+def test_no_monitor_asks_whether_it_is_the_first_tick(sentence: str) -> None:
+    """It tells what it would, were it told by a proposition that holds at that tick alone."""
+    for text in ("FTP", "!FTP & p", "FTP xor p", "occurred(2, FTP)", "prevOcc(FTP, p)"):
+        itself = monitoring.monitor(sentence.format(text))
+        told = monitoring.monitor(sentence.format(text.replace("FTP", "z")))
+        assert [*itself.PROPOSITIONS] == [name for name in told.PROPOSITIONS if name != "z"]
+        for trace in traces()[:8]:
+            word = {**trace, "z": [k == 0 for k in range(len(trace["q"]))]}
+            columns = {name: [*column] for name, column in word.items()}
+            pairs = zip(
+                monitoring.steps(itself, columns), monitoring.steps(told, columns), strict=True
+            )
+            for one, other in pairs:
+                assert (one.trigger, one.breach, one.finite, one.first_violation) == (
+                    other.trigger,
+                    other.breach,
+                    other.finite,
+                    other.first_violation,
+                ), (sentence, text, trace)
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["f(FTP)", "persisted(n, FTP)", "occurred(FTP & p)", "persisted(FTP, p)", "f(p, g(!FTP))"],
+)
+def test_a_monitor_refuses_what_would_be_asked_of_the_first_tick(text: str) -> None:
+    for sentence in ("whenever {} sw shall satisfy q", "while {} sw shall satisfy q"):
+        refused = target.refuse(rule(sentence.format(text)))
+        assert refused is not None
+        assert refused.code is Code.NOT_EXPRESSIBLE
+        assert "`FTP`" in refused.message
+
+
+def test_within_a_scope_a_previous_value_of_the_first_tick_is_refused_too() -> None:
+    refused = target.refuse(rule("while preBool(false, FTP) sw shall satisfy q"))
+    assert refused is not None
+    assert "`FTP`" in refused.message
+
+
+@pytest.mark.parametrize("text", ["FTP = 1", "x + FTP > 2", "absReal(FTP) > 1"])
+def test_the_first_tick_is_no_number(text: str) -> None:
+    ((requirement,), _) = requirements(Source("r.fret", f"whenever {text} sw shall satisfy q"))
+    made, said = formalize(requirement, None)
+    assert made is None
+    assert [one.code for one in said] == [Code.WRONG_KIND]
 
 
 # What stays a proposition ---------------------------------------------------------------------

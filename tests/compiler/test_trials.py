@@ -1,7 +1,9 @@
 """What each trigger came to, against the meaning of FRETish and all continuations of a log."""
 
 import random
-from collections.abc import Iterator
+import re
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
 from itertools import product
 
 import pytest
@@ -58,14 +60,21 @@ def begun(template: Template, columns: Columns) -> Iterator[int]:
         yield from meaning.triggers(template.condition, p, left, right)
 
 
-def naive(template: Template, columns: Columns) -> Trials:
-    """Each trigger, over every way in which the run could go on past its deadline."""
+def naive(
+    template: Template, columns: Columns, constants: Mapping[str, bool] | None = None
+) -> Trials:
+    """Each trigger, over every way in which the run could go on past its deadline.
+
+    Those of the columns that are constants stay what they are.
+    """
     found = {"answered": 0, "failed": 0, "open": 0, "kept": 0}
     more = template.n + 2
+    fixed = {name: value for name, value in (constants or {}).items() if name != "p"}
     futures = [
         {name: [*columns[name], *tail] for name, tail in zip(columns, tails, strict=True)}
         for tails in product(product((False, True), repeat=more), repeat=len(columns))
         if "p" not in columns or not any(tails[list(columns).index("p")])
+        if all(set(tails[list(columns).index(name)]) == {value} for name, value in fixed.items())
     ]
     for trigger in begun(template, columns):
         told = {met(template, future, trigger) for future in futures}
@@ -141,6 +150,87 @@ def test_what_is_unknown_is_never_decided_against_what_it_may_be(scope: str) -> 
             assert found.answered <= really.answered, (template, told)
             assert found.failed <= really.failed, (template, told)
             assert found.count >= really.count, (template, told)
+
+
+# Any expressions, constants among them ----------------------------------------------------------
+
+SHAPES: dict[str, Callable[[bool, bool], bool]] = {
+    "true": lambda a, b: True,
+    "false": lambda a, b: False,
+    "{0}": lambda a, b: a,
+    "!{0}": lambda a, b: not a,
+    "({0} & true)": lambda a, b: a,
+    "({0} & false)": lambda a, b: False,
+    "({0} -> {1})": lambda a, b: not a or b,
+    "({0} xor true)": lambda a, b: not a,
+    "({0} | !{1})": lambda a, b: a or not b,
+}
+"""Each of two propositions of its own, and what it is of them."""
+
+
+@dataclass(frozen=True)
+class Filled:
+    """A template with an expression in place of each of its propositions."""
+
+    template: Template
+    shapes: Mapping[str, str]
+
+    @property
+    def sentence(self) -> str:
+        words = self.template.sentence.replace("shall", "shall with probability >= 0.9")
+        for name, shape in self.shapes.items():
+            words = re.sub(rf"\b{name}\b( mode)?", shape.format(f"{name}1", f"{name}2"), words)
+        return re.sub(r"^(when not in|only in|in)\b", of_an_expression, words)
+
+    @property
+    def names(self) -> list[str]:
+        """Of all the propositions that it may have."""
+        return [f"{name}{i}" for name in self.shapes for i in (1, 2)]
+
+    def naive(self, columns: Columns) -> Trials:
+        """The naive count; constants stay what they are, however the run goes on."""
+        always = {
+            name: values.pop()
+            for name, shape in self.shapes.items()
+            for values in [{SHAPES[shape](a, b) for a in (False, True) for b in (False, True)}]
+            if len(values) == 1
+        }
+        return naive(self.template, self.parts(columns), always)
+
+    def parts(self, columns: Columns) -> Columns:
+        """What the expressions are at each tick."""
+        return {
+            name: [
+                SHAPES[shape](*values)
+                for values in zip(columns[f"{name}1"], columns[f"{name}2"], strict=True)
+            ]
+            for name, shape in self.shapes.items()
+        }
+
+
+def of_an_expression(match: re.Match[str]) -> str:
+    """A scope of an expression, for that of a mode."""
+    return {"when not in": "except while", "only in": "only while", "in": "while"}[match[1]]
+
+
+def fillings(chance_: random.Random) -> Iterator[Filled]:
+    """Each template some times; half of all expressions are constants."""
+    for template in templates((1,)):
+        for _ in range(3):
+            shapes = {
+                name: chance_.choice(("true", "false") * 3 + tuple(SHAPES))
+                for name in template.columns
+            }
+            yield Filled(template, shapes)
+
+
+def test_any_expressions_are_counted_as_their_meaning_says() -> None:
+    chance_ = random.Random("expressions")
+    for filled in fillings(chance_):
+        columns = {name: [chance_.random() < 0.5 for _ in range(5)] for name in filled.names}
+        told: dict[str, list[Truth]] = {"other": [None] * 5}
+        told |= {name: [*columns[name]] for name in rule(filled.sentence).watched}
+        assert counted(filled.sentence, told) == filled.naive(columns), (filled.sentence, columns)
 
 
 # Written out ----------------------------------------------------------------------------------
