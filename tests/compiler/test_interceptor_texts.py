@@ -10,9 +10,9 @@ from pathlib import Path
 
 import pytest
 
-from compiler.closedloop import _otherwise
 from compiler.contracts import contracts
 from compiler.gate import Gate, Heard, NotAnInterceptorError, Settings
+from compiler.purity import otherwise
 from compiler.targets import interceptor
 from compiler.verification import Proved
 from fretish.declarations import Interception
@@ -200,5 +200,4 @@ def test_the_contracts_are_not_proved_of_it(name: str) -> None:
     ],
 )
 def test_a_file_with_other_options_or_another_period_is_told(old: str, new: str) -> None:
-    """`closedloop._otherwise` says that the file is of another interceptor."""
-    assert _otherwise(sub(old, new), DECLARED) is not None
+    assert otherwise(sub(old, new), DECLARED) is not None

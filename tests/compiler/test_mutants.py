@@ -277,14 +277,10 @@ HARMLESS = {
     "__init__: bound",
     "__init__: constant",
     "__init__: operands swapped",
-    "columns: and, or",
-    "columns: bound",
-    "columns: negation",
-    "columns: operand left out",
-    "columns: operands swapped",
 }
 """Mistakes in a text that may change nothing: a counter that saturates later, a value that was
-never read, an operand that follows from the other, a bound of the trace that cuts nothing off."""
+never read, an operand that follows from the other. In columns none is taken: no exploration shows
+that it changes nothing at all lengths."""
 
 
 @pytest.mark.parametrize("sentence", SENTENCES)
@@ -298,6 +294,7 @@ def test_a_mistake_in_a_text_is_found_or_changes_nothing(sentence: str) -> None:
         if result == SAME:
             assert kind in HARMLESS, text[text.index(MARK) :]
     assert judge.found(target.text(made)) == SAME
+    assert found[TOLD] == 0, "what is proved tells the same as the right one"
     assert found[SAME] <= 0.17 * found.total(), found
     assert found[REFUTED] >= 5, found
     assert found[DIFFERS] >= 10, found
