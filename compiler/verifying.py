@@ -100,8 +100,8 @@ def _shown(rule: Rule, text: str, monitor: Monitor, limit: int, others: Sequence
     result = prove(machine, rule.sentence, rule.ticks or 0, atoms, limit)
     if not isinstance(result, Proved):
         return Verified(rule.id, atoms, result)
-    stated = monitor.REQUIREMENTS[place]
-    if (stated.fingerprint, stated.horizon) != (rule.fingerprint, rule.watch.horizon):
+    (stated,) = load("written", target.text(rule)).REQUIREMENTS
+    if tuple(monitor.REQUIREMENTS[place]) != tuple(stated):
         reason = "it decides the same, but states another sentence or deadline"
         return Verified(rule.id, atoms, NotChecked(reason))
     compared, word = _columns_compared(monitor, place, atoms, rule.ticks or 0)
