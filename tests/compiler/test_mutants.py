@@ -105,6 +105,7 @@ def of_text(text: str) -> Iterator[tuple[str, str]]:
     """All mistakes in the logic of a text: in its cells, its tick, its signals and its columns."""
     place = text.index("\n", text.index(MARK))
     head, module = text[: place + 1], ast.parse(text[place:])
+    right = ast.unparse(module)
     functions = [
         node
         for node in ast.walk(module)
@@ -125,7 +126,8 @@ def of_text(text: str) -> Iterator[tuple[str, str]]:
                         _put(parent, field, i if several else None, other)
                         changed = ast.unparse(ast.fix_missing_locations(copy.deepcopy(module)))
                         _put(parent, field, i if several else None, node)
-                        yield f"{function.name}: {kind}", f"{head}\n{changed}\n"
+                        if changed != right:
+                            yield f"{function.name}: {kind}", f"{head}\n{changed}\n"
 
 
 def _put(parent: ast.AST, field: str, place: int | None, node: ast.AST) -> None:
