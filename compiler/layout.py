@@ -27,6 +27,8 @@ _COLUMNS = frozenset(
 """What a column program calls."""
 _FIXED = frozenset({"self", "rows", "known", "doubt", "tick", "refused"})
 """What a tick calls its own, and what it calls."""
+_OF_RAILS = frozenset({"CELLS", "advance", "signals", "marks"})
+"""What else a rail has."""
 
 
 class _StrangeError(Exception):
@@ -164,8 +166,9 @@ def _check_module(module: ast.Module) -> None:
     _demand(_is(run, 'if __name__ == "__main__":\n    sys.exit(main(MONITOR))'), run)
     names, advance = _rail(rail)
     inputs = _monitor(monitor, rail.name, names)
-    reserved = {*_FIXED, *locals_of(inputs.values())}
+    reserved = {*_FIXED, *_OF_RAILS, *locals_of(inputs.values())}
     _demand(reserved.isdisjoint(names.cells), rail)
+    _demand(not any(cell.startswith("_") for cell in names.cells), rail)
     _check_advance(advance, names, inputs)
 
 

@@ -162,3 +162,16 @@ def test_a_parameter_of_another_name_than_its_proposition_has_is_refused(name: s
     own = own.replace('("longname", "longname", True)', f'("{name}", "longname", True)')
     assert load("renamed", text[:place] + own).PROPOSITIONS["longname"] == name
     assert isinstance(verified(made, text[:place] + own).result, NotChecked)
+
+
+@pytest.mark.parametrize(
+    "name",
+    "known rows refused tick doubt self advance signals marks CELLS p not_q r1_last __hidden".split(),
+)
+def test_a_cell_has_no_name_that_something_else_has(name: str) -> None:
+    """`known`, put back into the rail, would say that nothing was unknown."""
+    text, judged = judge(WITHIN)
+    place = text.index(MARK)
+    assert judged.found(text[:place] + re.sub(r"\boldest_1\b", name, text[place:])) == REFUSED
+    renamed = re.sub(r"\boldest_1\b", "count", text[place:])
+    assert judged.found(text[:place] + renamed) == SAME
