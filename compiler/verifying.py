@@ -38,6 +38,9 @@ _FEWEST, _TICKS = 4, 40_000
 """At least so many traces; at most so many ticks in all, if there are more traces than that."""
 
 
+MOST_STATES = 10**6
+
+
 class NotAMonitorError(Exception):
     """The text cannot be executed as a generated monitor; it says why."""
 
@@ -65,7 +68,9 @@ class Verified:
     """States in which it was compared with the text that fretc writes; 0: it is that text."""
 
 
-def verified(rule: Rule, text: str, limit: int = 10**6, others: Sequence[Rule] = ()) -> Verified:
+def verified(
+    rule: Rule, text: str, limit: int = MOST_STATES, others: Sequence[Rule] = ()
+) -> Verified:
     """Compare the text of a monitor with its rule.
 
     Args:
