@@ -7,7 +7,6 @@ model between them is `compiler.loopmodel`, and its durations are whole cells, r
 
 from __future__ import annotations
 
-import ast
 from collections.abc import Iterator
 from dataclasses import dataclass, fields
 from math import gcd
@@ -20,8 +19,8 @@ from compiler.gate import Settings
 from compiler.interception import options, ticks
 from compiler.loopmodel import Channel
 from compiler.loopsearch import Case, Found, search
+from compiler.purity import otherwise
 from compiler.rule import Rule
-from compiler.targets import interceptor as gates
 from compiler.targets import monitor as target
 from compiler.verification import Evidence, Layer, NotChecked, Result
 from fretish.clock import in_words
@@ -100,7 +99,7 @@ def case(rule: Rule, setup: Setup) -> Case | str:
         return "the bindings assume nothing of the loop (`[assume]`)"
     if assumed.stands not in {name.id for name in names(rule.sentence.response)}:
         return f"its response does not speak of `{assumed.stands}`, which is what the loop decides"
-    wrong = _otherwise(setup.interceptor.text, interception)
+    wrong = otherwise(setup.interceptor.text, interception)
     if wrong is not None:
         return wrong
     known = channel(rule, interception, assumed)
@@ -153,29 +152,6 @@ def cell_of(tick: int, interception: Interception, assumed: Assumed) -> int:
         return interception.period
     exact = gcd(tick, assumed.latency, assumed.braking)
     return exact if tick // exact <= _FINEST else tick
-
-
-def _otherwise(text: str, interception: Interception) -> str | None:
-    """Why the file is of another interceptor than the bindings declare; None: it is of this one.
-
-    The core may be another: it is what is looked at. Its options and the node around it may not.
-    """
-    made = gates.text(interception, "bindings.toml")
-    try:
-        found, expected = _around(text), _around(made)
-    except (SyntaxError, ValueError, RecursionError) as error:
-        return f"the interceptor is no Python: {error}"
-    if found in (expected, ([], None)):
-        return None
-    return "the interceptor has other options than the bindings declare: emit it again"
-
-
-def _around(text: str) -> tuple[list[str], str | None]:
-    """What binds `OPTIONS`, and the node (None: there is none), to the letter but for comments."""
-    above, marked, node = text.partition(f"{gates.MARKER}\n")
-    statements = map(ast.unparse, ast.parse(above).body)
-    options = [each for each in statements if each.startswith("OPTIONS")]
-    return options, ast.dump(ast.parse(node)) if marked else None
 
 
 # Assumptions ----------------------------------------------------------------------------------

@@ -7,7 +7,7 @@ Its schema is `templates/json/evidence.schema.json`; more fields than the report
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import NoReturn
 
@@ -149,6 +149,8 @@ class Result:
     assumptions: tuple[str, ...]
     trials: Trials | None = None
     """Of a requirement with a probability, where the log could be read."""
+    uncertain: frozenset[int] = frozenset()
+    """Ticks of triggers whose answer, or whose open demand, depends on unknown values."""
 
     @property
     def content(self) -> str:
@@ -273,7 +275,14 @@ def _result(at: Shape) -> Result:
         health=_health(at.field("health")),
         assumptions=tuple(text.text() for text in at.field("assumptions").items()),
         trials=trials(at.field("trials")) if at.has("trials") else None,
+        uncertain=frozenset(_uncertain(at)),
     )
+
+
+def _uncertain(at: Shape) -> Iterator[int]:
+    """Earlier versions did not say it."""
+    if at.has("uncertain"):
+        yield from (tick.count() for tick in at.field("uncertain").items())
 
 
 def _hashes(at: Shape) -> dict[str, str]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 from collections.abc import Callable, Collection, Iterator
 from dataclasses import dataclass, replace
 from pathlib import PurePath
@@ -16,16 +17,16 @@ from compiler.files import sha256
 from compiler.interception import ASSUMED, assumed, options
 from compiler.project import Project
 from compiler.provers import stated, with_crosshair, with_dafny
-from compiler.purity import head
+from compiler.purity import head, otherwise
 from compiler.rule import Rule
 from compiler.runtime import interceptor as core
 from compiler.sif import sif
 from compiler.targets import ajpf, bundle, dafny, interceptor, monitor
 from compiler.targets.target import stem
 from compiler.verification import Evidence, Layer, NotChecked
+from fretish.declarations import Interception
 from fretish.diagnostic import Diagnostic
 from fretish.source import Source
-from monitors.interceptor import Options
 
 DAFNY, CROSSHAIR = "dafny", "crosshair"
 
@@ -63,7 +64,7 @@ def evidence(
     """
     found: list[Evidence] = []
     for rule in project.rules:
-        found.extend(_of_rule(rule, _setup(rule, project, asked), asked, tell))
+        found.extend(_of_rule(rule, project, asked, tell))
         if DAFNY in asked.provers:
             tell(f"{rule.id}: Dafny")
             found.extend(_dafny(rule, project, asked.limits))
@@ -75,10 +76,12 @@ def evidence(
     return agent if isinstance(agent, Diagnostic) else (*found, *agent)
 
 
-def _of_rule(rule: Rule, setup: Setup, asked: Request, tell: Tell) -> Iterator[Evidence]:
+def _of_rule(rule: Rule, project: Project, asked: Request, tell: Tell) -> Iterator[Evidence]:
+    setup = _setup(rule, project, asked)
     if Layer.MONITOR in asked.layers:
         tell(f"{rule.id}: monitor")
-        yield proofs.evidence(rule, setup.monitor.name, setup.monitor.text, asked.limits)
+        made = setup.monitor
+        yield proofs.evidence(rule, made.name, made.text, asked.limits, project.rules)
     found: list[Evidence] = []
     if Layer.LOOP in asked.layers:
         tell(f"{rule.id}: loop")
@@ -130,13 +133,19 @@ def _interceptor(project: Project, asked: Request, tell: Tell) -> Iterator[Evide
             )
         else:
             tell("interceptor: its contracts")
-            yield from _contracts(gate, options(declared), asked.limits)
+            yield from _contracts(gate, declared, asked.limits)
     if CROSSHAIR in asked.provers and gate is not None:
         yield from _crosshair(gate, asked.limits, tell)
 
 
-def _contracts(gate: Named, declared: Options, limits: Limits) -> Iterator[Evidence]:
-    found = processes.confined(limits, contracts, gate.text, declared)
+def _contracts(gate: Named, declared: Interception, limits: Limits) -> Iterator[Evidence]:
+    """Of the module that flies: its core may be any, the rest is what fretc writes."""
+    wrong = otherwise(gate.text, declared)
+    found: Stopped | tuple[Evidence, ...]
+    if wrong is not None:
+        found = Stopped(wrong)
+    else:
+        found = processes.confined(limits, contracts, gate.text, options(declared))
     if isinstance(found, Stopped):
         claim = "the interceptor keeps its contracts"
         yield _unknown("interceptor", Layer.INTERCEPTOR, claim, found.reason, gate)
@@ -157,7 +166,7 @@ def _crosshair(gate: Named, limits: Limits, tell: Tell) -> Iterator[Evidence]:
         yield _unknown("interceptor", Layer.INTERCEPTOR, claim, reason, gate)
         return
     found = with_crosshair(
-        known.text,
+        ast.unparse(ast.parse(known.text)),  # CrossHair takes orders from comments
         seconds=float(limits.seconds),
         tell=lambda name: tell(f"interceptor: CrossHair, `{name}`"),
     )

@@ -2,8 +2,9 @@
 
 A proof stops a monitor, puts it back and steps it: that is sound only where a step depends on its
 cells and propositions and on nothing else. So every statement of the text must be one that the
-generator writes. Names, constants and the logic of a tick may be any; of marks and signals, which
-only remember and tell, the form is fixed.
+generator writes. The names of cells, constants and the logic of a tick may be any; of marks and
+signals, which only remember and tell, the form is fixed, and parameters and literals have the names
+that the generator gives to their propositions.
 """
 
 from __future__ import annotations
@@ -15,14 +16,19 @@ from dataclasses import dataclass
 from functools import cache
 from io import BytesIO
 
-from compiler.program import MARKS, SIGNALS, negation
+from compiler.program import MARKS, SIGNALS, locals_of, negation
 from compiler.runtime import kernel
+from compiler.targets.monitor import parameters_of, prefixes_of
 
 _COLUMNS = frozenset(
     "previous weak_previous once historically since released since_from since_between "
     "released_between".split()
 )
 """What a column program calls."""
+_FIXED = frozenset({"self", "rows", "known", "doubt", "tick", "boolean"})
+"""What a tick calls its own, and what it calls."""
+_OF_RAILS = frozenset({"CELLS", "advance", "signals", "marks"})
+"""What else a rail has."""
 
 
 class _StrangeError(Exception):
@@ -33,8 +39,7 @@ def strange(text: str) -> str | None:
     """Why the text may do more than it seems to; None: it does not."""
     if not is_utf8(text):
         return "it declares another encoding than UTF-8, so Python would read another text"
-    runtime = kernel()
-    head, found, own = text.partition(runtime.text)
+    head, found, own = text.partition(kernel().text)
     try:
         if not found or not head.endswith("\n") or not own.startswith("\n") or not _is_head(head):
             return "the run time in it is not the one of this version of fretc"
@@ -44,6 +49,11 @@ def strange(text: str) -> str | None:
     except _StrangeError as error:
         return str(error)
     return None
+
+
+def own(text: str) -> ast.Module:
+    """What of a monitor's text stands below the run time; it is laid out as fretc writes it."""
+    return ast.parse(text.partition(kernel().text)[2])
 
 
 def is_utf8(text: str) -> bool:
@@ -95,14 +105,18 @@ def _constants(node: ast.AST | None) -> tuple[object, ...]:
 
 
 def _names(node: ast.AST | None) -> tuple[str, ...]:
-    return tuple(str(value) for value in _constants(node))
+    found = _constants(node)
+    names = tuple(value for value in found if isinstance(value, str))
+    if node is not None:
+        _demand(names == found, node)
+    return names
 
 
 def _function(node: ast.stmt, name: str, arguments: str, *decorators: str) -> list[ast.stmt]:
     """The statements of a function below its docstring."""
     _demand(isinstance(node, ast.FunctionDef), node)
     assert isinstance(node, ast.FunctionDef)
-    _demand(node.name == name, node)
+    _demand(node.name == name and not getattr(node, "type_params", ()), node)
     _demand(ast.unparse(node.args) == ast.unparse(_arguments(arguments)), node.args)
     _demand([ast.unparse(d) for d in node.decorator_list] == [*decorators], node)
     return _below_docstring(node)
@@ -152,11 +166,15 @@ def _check_module(module: ast.Module) -> None:
     _demand(_is(run, 'if __name__ == "__main__":\n    sys.exit(main(MONITOR))'), run)
     names, advance = _rail(rail)
     inputs = _monitor(monitor, rail.name, names)
+    reserved = {*_FIXED, *_OF_RAILS, *locals_of(inputs.values())}
+    _demand(reserved.isdisjoint(names.cells), rail)
+    _demand(not any(cell.startswith("_") for cell in names.cells), rail)
     _check_advance(advance, names, inputs)
 
 
 def _is_plain(node: ast.ClassDef) -> bool:
-    return not node.keywords and not node.decorator_list
+    plain = not node.keywords and not node.decorator_list
+    return plain and not getattr(node, "type_params", ())
 
 
 def _rail(node: ast.ClassDef) -> tuple[_Rail, ast.stmt]:
@@ -237,9 +255,9 @@ def _monitor(node: ast.ClassDef, rail: str, names: _Rail) -> Mapping[str, str]:
     _demand(len(body) == 10, node)
     program, requirements, propositions, literals, named, must, may, step, run, columns = body
     _demand(isinstance(program, ast.Assign) and _is_text(program, "PROGRAM"), program)
-    _check_requirements(requirements, len(names.prefixes))
-    inputs = _inputs(propositions)
-    given = _literals(literals)
+    _check_requirements(requirements, names.prefixes)
+    inputs = _inputs(propositions, names.prefixes)
+    given = _literals(literals, inputs)
     _demand(_is(named, f"RAIL = {rail}"), named)
     _demand(_is(must, f"must: {rail}") and _is(may, f"may: {rail}"), must)
     alone = names.prefixes[0] if len(names.prefixes) == 1 else None
@@ -254,36 +272,50 @@ def _monitor(node: ast.ClassDef, rail: str, names: _Rail) -> Mapping[str, str]:
     return inputs
 
 
-def _check_requirements(node: ast.stmt, count: int) -> None:
+def _check_requirements(node: ast.stmt, prefixes: Sequence[str]) -> None:
+    ids: list[str] = []
     match node:
-        case ast.Assign([ast.Name("REQUIREMENTS")], ast.Tuple(told)) if len(told) == count:
+        case ast.Assign([ast.Name("REQUIREMENTS")], ast.Tuple(told)):
             for one in told:
                 match one:
-                    case ast.Call(ast.Name("Requirement"), values, []):
-                        _demand(all(isinstance(v, ast.Constant) for v in values), one)
+                    case ast.Call(ast.Name("Requirement"), [ast.Constant(str(id)), *rest], []):
+                        _demand(len(rest) == 3, one)
+                        _demand(all(isinstance(value, ast.Constant) for value in rest), one)
+                        ids.append(id)
                     case _:
                         _demand(False, one)
         case _:
             _demand(False, node)
+    _demand(bool(ids) and "" not in ids and len({*ids}) == len(ids), node)
+    _demand(tuple(prefixes_of(ids).values()) == tuple(prefixes), node)
 
 
-def _inputs(node: ast.stmt) -> Mapping[str, str]:
+def _inputs(node: ast.stmt, prefixes: Sequence[str]) -> Mapping[str, str]:
+    """The parameter of each proposition: the one that the generator makes of its name."""
     match node:
         case ast.AnnAssign(ast.Name("PROPOSITIONS"), _, ast.Dict(keys, values)):
             names = _names(ast.Tuple([key for key in keys if key is not None]))
-            inputs = dict(zip(names, _names(ast.Tuple(values)), strict=False))
-            _demand(len(set(inputs.values())) == len(keys) == len(values), node)
-            _demand(all(name.isidentifier() for name in inputs.values()), node)
+            _demand(len({*names}) == len(keys) and all(names), node)
+            inputs = parameters_of(names, prefixes)
+            _demand(tuple(inputs.values()) == _names(ast.Tuple(values)), node)
             return inputs
         case _:
             _demand(False, node)
             return {}
 
 
-def _literals(node: ast.stmt) -> tuple[str, ...]:
+def _literals(node: ast.stmt, inputs: Mapping[str, str]) -> tuple[str, ...]:
+    """The names of literals: a proposition's parameter, or that of its negation."""
     match node:
         case ast.Assign([ast.Name("LITERALS")], ast.Tuple(told)):
-            return tuple(str(_constants(one)[0]) for one in told)
+            names: list[str] = []
+            for one in told:
+                name, proposition, positive = (*_constants(one), None, None, None)[:3]
+                parameter = inputs.get(str(proposition), "")
+                right = parameter if positive is True else negation(parameter)
+                _demand(parameter != "" and isinstance(positive, bool) and name == right, one)
+                names.append(right)
+            return tuple(names)
         case _:
             _demand(False, node)
             return ()
@@ -379,7 +411,8 @@ def _check_end(
 ) -> None:
     """What is done after the last row: cells and marks go back, signals are told."""
     kept = {f"self.{name} = {name}" for name in ("tick", *carried)}
-    opened = {f"{p}_open = {p}_last if self.{p}_owed else -1" for p in rail.prefixes}
+    opened = {f"{p}_open = {p}_last if self.{p}_owed else -1": p for p in rail.prefixes}
+    told: set[str] = set()
     (first, *rest, last) = statements if len(statements) > 1 else (*statements, *statements)
     _demand(_is(first, "if tick == self.tick:\n    return True"), first)
     _demand(_is(last, "return known"), last)
@@ -388,12 +421,15 @@ def _check_end(
         if text in kept:
             kept.remove(text)
             continue
-        if text in opened:
+        if text in opened:  # of the last tick, and not yet put back
+            _demand(f"{opened[text]}_owed" in told, statement)
+            _demand(f"self.{opened[text]}_open = {opened[text]}_open" in kept, statement)
             continue
         match statement:
             case ast.Assign([ast.Attribute(ast.Name("self"), name)], value):
-                _demand(name in rail.signals, statement)
+                _demand(name in rail.signals and name not in told, statement)
                 _check_value(value, bound - rail.windows, frozenset())
+                told.add(name)
             case _:
                 _demand(False, statement)
     _demand(not kept, first)
@@ -450,8 +486,7 @@ if {name} is not True and {name} is not False:
         return bound
 
     def _target(self, node: ast.expr) -> str:
-        fixed = {"self", "rows", "known", "doubt", "tick", "boolean"}
-        fixed |= {*self.rail.marks, *self.rail.windows}
+        fixed = {*_FIXED, *self.rail.marks, *self.rail.windows}
         _demand(isinstance(node, ast.Name) and node.id not in fixed, node)
         assert isinstance(node, ast.Name)
         return node.id
@@ -531,6 +566,7 @@ def _check_columns(node: ast.stmt, literals: Sequence[str]) -> None:
     for statement in body:
         match statement:
             case ast.Assign([ast.Name(name)], value):
+                _demand(name not in bound and name not in {*_COLUMNS, "Signals"}, statement)
                 _check_column(value, bound)
                 bound.add(name)
             case _:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import assert_never
 
 from compiler import confined as processes
@@ -10,13 +11,15 @@ from compiler.confined import Limits, Stopped
 from compiler.files import sha256
 from compiler.proving import NotChecked, Proved, Refuted
 from compiler.rule import Rule
-from compiler.verifying import Disagreement, Verified, verified
+from compiler.verifying import MOST_STATES, Disagreement, Verified, verified
 
 CLAIM = "the monitor means what the sentence says"
 ENGINE = "fretc, lock step with the counter automaton of the sentence"
 
 
-def evidence(rule: Rule, name: str, text: str, limits: Limits) -> v.Evidence:
+def evidence(
+    rule: Rule, name: str, text: str, limits: Limits, others: Sequence[Rule] = ()
+) -> v.Evidence:
     """What can be shown of a monitor's text.
 
     Args:
@@ -24,11 +27,12 @@ def evidence(rule: Rule, name: str, text: str, limits: Limits) -> v.Evidence:
         name: of the file.
         text: what says to be its monitor, maybe beside others.
         limits: of the process that it is executed in.
+        others: rules that the text may be of, too.
 
     Raises:
         NotAMonitorError: the text is no generated monitor.
     """
-    found = processes.confined(limits, verified, rule, text)
+    found = processes.confined(limits, verified, rule, text, MOST_STATES, tuple(others))
     result = v.NotChecked(found.reason) if isinstance(found, Stopped) else as_result(found)
     return v.Evidence(rule.id, v.Layer.MONITOR, CLAIM, result, ENGINE, (), {name: sha256(text)})
 
@@ -39,7 +43,7 @@ def as_result(found: Verified) -> v.Result:
         case Proved(states, steps):
             return v.Proved(
                 f"the same at every tick of every trace ({states} states, {steps} steps); "
-                f"columns agree on {found.compared} drawn ticks"
+                f"columns agree on {found.compared} drawn ticks{_beside(found)}"
             )
         case Refuted(word, expected, told, shortest):
             length = f"{len(word)} tick{'' if len(word) == 1 else 's'}"
@@ -49,13 +53,23 @@ def as_result(found: Verified) -> v.Result:
                 f"{_judged(*expected)}"
             )
             return v.Counterexample(detail, v.Trace(found.atoms, word))
-        case Disagreement(word):
-            detail = "its column program and its steps differ on a trace"
+        case Disagreement(word, what):
+            detail = f"{what} on a trace"
             return v.Counterexample(detail, v.Trace(found.atoms, word))
         case NotChecked(reason):
             return v.NotChecked(reason)
         case _:
             assert_never(found.result)
+
+
+def _beside(found: Verified) -> str:
+    """What else was compared of a text that is not the one that fretc writes."""
+    if not found.beside:
+        return ""
+    return (
+        "; triggers, answers, open demands and unknown values as in the text that fretc writes "
+        f"({found.beside} states)"
+    )
 
 
 def _judged(verdict: str, finite: bool) -> str:

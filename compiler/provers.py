@@ -185,21 +185,18 @@ class _Contract:
     text: str
 
 
-def stated(text: str) -> dict[str, tuple[str, ...]]:
-    """The contracts of each function of a core, to the letter: CrossHair executes them."""
+def stated(text: str) -> dict[str, str]:
+    """The docstrings of functions and classes with a contract in them: CrossHair executes it."""
     found = {
-        node.name: (ast.get_docstring(node) or "").splitlines()
+        node.name: ast.get_docstring(node) or ""
         for node in ast.walk(ast.parse(text))
-        if isinstance(node, ast.FunctionDef)
+        if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef)
     }
-    return {
-        name: tuple(line.strip() for line in lines if _STATED.match(line))
-        for name, lines in found.items()
-        if any(map(_STATED.match, lines))
-    }
+    return {name: told for name, told in found.items() if _STATED.search(told)}
 
 
-_STATED = re.compile(r"\s*(pre|post|inv|raises)\b.*:")
+_STATED = re.compile(r"(pre|post|inv|raises)\s*[\[:]")
+"""Wherever a line might begin for CrossHair."""
 
 
 def with_crosshair(

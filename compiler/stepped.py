@@ -14,6 +14,31 @@ from compiler.proving import Judgement
 from monitors.kernel import Monitor
 
 
+class Cells:
+    """All cells of a rail: a step reads nothing else of what was before it."""
+
+    def __init__(self, rail: Any) -> None:
+        """Of a rail that is laid out as fretc writes it."""
+        self._rail = rail
+        # The text has a class of its own for windows.
+        self._windows = [n for n in rail.CELLS if hasattr(getattr(rail, n), "restore")]
+        self._plain = [name for name in rail.CELLS if name not in self._windows]
+
+    def save(self) -> Hashable:
+        """Their values."""
+        rail = self._rail
+        cells = tuple([getattr(rail, name) for name in self._plain])
+        return cells, tuple([getattr(rail, name).state() for name in self._windows])
+
+    def load(self, state: Any) -> None:
+        """Go back to values that were saved."""
+        rail, (cells, windows) = self._rail, state
+        for name, value in zip(self._plain, cells, strict=True):
+            setattr(rail, name, value)
+        for name, value in zip(self._windows, windows, strict=True):
+            getattr(rail, name).restore(value)
+
+
 class Stepped:
     """A monitor whose propositions are all known."""
 
@@ -31,26 +56,18 @@ class Stepped:
         self._alone = len(monitor.REQUIREMENTS) == 1
         self._step: Any = monitor.step  # type: ignore[attr-defined]
         self._parameters = [(p, atoms.index(name)) for name, p in monitor.PROPOSITIONS.items()]
-        # The text has a class of its own for windows.
-        self._windows = [n for n in rail.CELLS if hasattr(getattr(rail, n), "restore")]
-        self._cells = [name for name in rail.CELLS if name not in self._windows]
+        self._cells = Cells(rail)
         self._fates = [n for n in rail.__slots__ if n.endswith(("_broken", "_doomed"))]
 
     def save(self) -> Hashable:
-        """All cells: a step reads nothing else."""
-        rail = self._rail
-        cells = tuple([getattr(rail, name) for name in self._cells])
-        return cells, tuple([getattr(rail, name).state() for name in self._windows])
+        """All cells."""
+        return self._cells.save()
 
     def load(self, state: Any) -> None:
         """Go back to a state; nothing was violated there."""
-        rail, (cells, windows) = self._rail, state
-        for name, value in zip(self._cells, cells, strict=True):
-            setattr(rail, name, value)
-        for name, value in zip(self._windows, windows, strict=True):
-            getattr(rail, name).restore(value)
+        self._cells.load(state)
         for name in self._fates:
-            setattr(rail, name, -1)
+            setattr(self._rail, name, -1)
 
     def step(self, letter: Valuation) -> Judgement:
         """The verdict as the text's own step tells it, and FRET's finite verdict."""

@@ -3,8 +3,12 @@
 The text is executed, stepped over every letter and compared with the counter automaton of the
 sentence (`compiler.proving`). Its steps must depend on nothing but its cells, propositions and
 constants: that is read off its tree first (`compiler.layout`), so a step that looks at the number
-of the tick cannot hide. Its column program is then compared with its steps on drawn traces, some
-of which have unknown values.
+of the tick cannot hide. The automaton knows verdicts of known values. What else a monitor tells
+(triggers, answers, open demands, marks; all of it with unknown values too) is compared with the
+text that fretc writes for the sentence, state by state (`compiler.rails`), and its column program
+with the one in that text, term by term (`compiler.columnterms`); for the text itself nothing is
+left to compare. Its column program is also compared with its steps on drawn traces, some of which
+have unknown values: that shows where they differ.
 """
 
 from __future__ import annotations
@@ -14,11 +18,14 @@ import random
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
-from compiler.layout import strange
+from compiler import rails
+from compiler.columnterms import Terms
+from compiler.layout import own, strange
 from compiler.letters import atoms_of
 from compiler.proving import NotChecked, Proved, Refuted, prove
 from compiler.rule import Rule
 from compiler.stepped import Stepped
+from compiler.targets import monitor as target
 from monitors.kernel import Column, Monitor
 from monitors.kernel.columns import column, truths
 from monitors.kernel.stepping import literals_of
@@ -31,16 +38,20 @@ _FEWEST, _TICKS = 4, 40_000
 """At least so many traces; at most so many ticks in all, if there are more traces than that."""
 
 
+MOST_STATES = 10**6
+
+
 class NotAMonitorError(Exception):
     """The text cannot be executed as a generated monitor; it says why."""
 
 
 @dataclass(frozen=True, slots=True)
 class Disagreement:
-    """A trace on which the column program and the steps differ, at its last tick."""
+    """A trace at whose last tick it tells something else than it should."""
 
     word: tuple[tuple[Truth, ...], ...]
     """The values of `atoms`; None: unknown."""
+    what: str = "its column program and its steps differ"
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,15 +64,20 @@ class Verified:
     result: Proved | Refuted | NotChecked | Disagreement
     compared: int = 0
     """Ticks of drawn traces on which the column program agreed with the steps."""
+    beside: int = 0
+    """States in which it was compared with the text that fretc writes; 0: it is that text."""
 
 
-def verified(rule: Rule, text: str, limit: int = 10**6) -> Verified:
+def verified(
+    rule: Rule, text: str, limit: int = MOST_STATES, others: Sequence[Rule] = ()
+) -> Verified:
     """Compare the text of a monitor with its rule.
 
     Args:
         rule: one that a monitor can be made of, on its own clock.
         text: what says to be its monitor, maybe beside others.
         limit: the most states that are looked at.
+        others: rules that the text may be of, too; of a text that fretc writes for several.
 
     Raises:
         NotAMonitorError: the text is no generated monitor.
@@ -70,22 +86,76 @@ def verified(rule: Rule, text: str, limit: int = 10**6) -> Verified:
     reason = strange(text)  # nothing else is executed
     if reason is not None:
         return Verified(rule.id, (), NotChecked(reason))
-    monitor = load(f"{rule.id}_monitor", text)
+    try:
+        monitor = load(f"{rule.id}_monitor", text)
+    except Exception as error:
+        reason = f"it cannot be executed: {type(error).__name__}: {error}"
+        return Verified(rule.id, (), NotChecked(reason))
+    return _shown(rule, text, monitor, limit, others)
+
+
+def _shown(rule: Rule, text: str, monitor: Monitor, limit: int, others: Sequence[Rule]) -> Verified:
+    """What is known of a text that may be executed."""
     places = [i for i, known in enumerate(monitor.REQUIREMENTS) if known.id == rule.id]
     if not places:
         return Verified(rule.id, (), NotChecked("the monitor is of other requirements"))
+    place = places[0]
     atoms = tuple(dict.fromkeys((*atoms_of(rule.sentence), *monitor.PROPOSITIONS)))
-    machine = Stepped(monitor, places[0], atoms)
+    machine = Stepped(monitor, place, atoms)
     result = prove(machine, rule.sentence, rule.ticks or 0, atoms, limit)
     if not isinstance(result, Proved):
         return Verified(rule.id, atoms, result)
-    stated = monitor.REQUIREMENTS[places[0]]
-    if (stated.fingerprint, stated.horizon) != (rule.fingerprint, rule.watch.horizon):
+    (stated,) = load("written", target.text(rule)).REQUIREMENTS
+    if tuple(monitor.REQUIREMENTS[place]) != tuple(stated):
         reason = "it decides the same, but states another sentence or deadline"
         return Verified(rule.id, atoms, NotChecked(reason))
-    compared, word = _columns_compared(monitor, places[0], atoms, rule.ticks or 0)
-    found = result if word is None else Disagreement(word)
-    return Verified(rule.id, atoms, found, compared)
+    compared, word = _columns_compared(monitor, place, atoms, rule.ticks or 0)
+    if word is not None:
+        return Verified(rule.id, atoms, Disagreement(word), compared)
+    if _is_written(text, monitor, (*others, rule)):
+        return Verified(rule.id, atoms, result, compared)
+    beside = _beside_its_own(rule, text, monitor, place, atoms, limit)
+    if isinstance(beside, int):
+        return Verified(rule.id, atoms, result, compared, beside)
+    return Verified(rule.id, atoms, beside, compared)
+
+
+def _is_written(text: str, monitor: Monitor, rules: Sequence[Rule]) -> bool:
+    """Whether it is what fretc writes for these rules, or for some of them, but for comments."""
+    known = {rule.id: rule for rule in rules}
+    ids = [requirement.id for requirement in monitor.REQUIREMENTS]
+    if not all(id in known for id in ids):
+        return False
+    written = target.text(*(known[id] for id in ids))
+    return ast.dump(own(written)) == ast.dump(own(text))
+
+
+def _beside_its_own(
+    rule: Rule, text: str, monitor: Monitor, place: int, atoms: Sequence[str], limit: int
+) -> int | Disagreement | NotChecked:
+    """In how many states it tells the same as the text that fretc writes for the rule."""
+    written = target.text(rule)
+    if len(atoms) > rails.MOST_PROPOSITIONS:
+        most = rails.MOST_PROPOSITIONS
+        return NotChecked(
+            f"it is not the text that fretc writes, and {len(atoms)} propositions, more than "
+            f"{most}, are too many to compare both with unknown values"
+        )
+    found = rails.compared(monitor, place, load("written", written), atoms, limit)
+    match found:
+        case None:
+            return NotChecked(f"with unknown values there are more than {limit} states")
+        case rails.Apart(word, what):
+            told = f"the text that fretc writes tells another {what}"
+            return Disagreement(word, told)
+        case rails.Same(states):
+            terms = Terms()
+            if terms.of(text, place) == terms.of(written, 0):
+                return states
+            return NotChecked(
+                "its column program is not the one that fretc writes: it agrees with the steps on "
+                "drawn traces, and nothing is known of others"
+            )
 
 
 def _demand_monitor(text: str) -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Collection, Iterable, Sequence
 from itertools import groupby
 from statistics import median
 
@@ -114,12 +114,14 @@ def _latency(result: Result, rule: Rule | None) -> Latency | None:
     longest = max(result.latencies)
     at_once = sum(latency <= 0 for latency in result.latencies)
     answers = phrases.times(len(result.latencies), "trigger")
+    unknown = len(result.uncertain - {moment.tick for moment in result.open})
     since = next((m for m, latency in answered(result) if latency == longest), None)
     after = f", after the trigger at {phrases.seconds(since.seconds)}" if since and longest else ""
     return Latency(
         answered=len(result.latencies),
         at_once=at_once,
-        answers=f"{answers}, {phrases.whole(at_once)} of them at the same tick",
+        answers=f"{answers}, {phrases.whole(at_once)} of them at the same tick"
+        f"{_perhaps(unknown, len(result.latencies))}",
         median=phrases.seconds(median(result.latencies)),
         longest=f"{phrases.seconds(longest)}{after}",
         longest_s=longest,
@@ -202,17 +204,27 @@ def _threshold(threshold: Threshold) -> ThresholdView:
 
 def _open(result: Result) -> Listing:
     stretches = _stretches(result.open)
-    return Listing(tuple(_since(stretch) for stretch in stretches[:LISTED]), len(result.open))
+    lines = (_since(stretch, result.uncertain) for stretch in stretches[:LISTED])
+    return Listing(tuple(lines), len(result.open))
 
 
-def _since(stretch: Sequence[Moment]) -> str:
+def _since(stretch: Sequence[Moment], uncertain: Collection[int]) -> str:
     first, last = stretch[0], stretch[-1]
+    unknown = _perhaps(sum(moment.tick in uncertain for moment in stretch), len(stretch))
     if len(stretch) == 1:
-        return f"triggered at {phrases.seconds(first.seconds)} (tick {first.tick})"
+        return f"triggered at {phrases.seconds(first.seconds)} (tick {first.tick}){unknown}"
     return (
         f"triggered from {phrases.seconds(first.seconds)} to {phrases.seconds(last.seconds)} "
-        f"(ticks {first.tick} to {last.tick}): {phrases.times(len(stretch), 'demand')}"
+        f"(ticks {first.tick} to {last.tick}): {phrases.times(len(stretch), 'demand')}{unknown}"
     )
+
+
+def _perhaps(count: int, of: int) -> str:
+    """How many may be otherwise, for propositions were unknown."""
+    if not count:
+        return ""
+    some = "" if of == 1 else "all of them " if count == of else f"{count} of them "
+    return f", {some}uncertain for propositions are unknown"
 
 
 def _unknown(result: Result) -> Listing:

@@ -120,8 +120,8 @@ def text(*rules: Rule) -> str:
     left_out = [rule for rule in rules if rule.sentence.probability]
     rules = tuple(map(plain, rules))
     names = tuple(dict.fromkeys(name for rule in rules for name in rule.watched))
-    prefixes = _prefixes([rule.id for rule in rules])
-    parameters = _parameters(names, prefixes.values())
+    prefixes = prefixes_of([rule.id for rule in rules])
+    parameters = parameters_of(names, prefixes.values())
     made = program({rule.id: rule.watch for rule in rules}, parameters, prefixes)
     runtime = kernel()
     inputs = [_Input(name, parameters[name], _is_negated(name, made)) for name in names]
@@ -214,7 +214,7 @@ def _module(name: str) -> str:
     return re.sub(r"[^a-z0-9_]", "_", name)
 
 
-def _prefixes(ids: Iterable[str]) -> dict[str, str]:
+def prefixes_of(ids: Iterable[str]) -> dict[str, str]:
     """An identifier for each id, all different."""
     prefixes: dict[str, str] = {}
     for id in ids:
@@ -235,7 +235,7 @@ _TAKEN = frozenset(
 """What the generated functions call their own, and what they call."""
 
 
-def _parameters(names: Iterable[str], prefixes: Iterable[str]) -> dict[str, str]:
+def parameters_of(names: Iterable[str], prefixes: Iterable[str]) -> dict[str, str]:
     """A parameter of `step` for each proposition: its name as an identifier, all different."""
     taken = {*_TAKEN, *(name for prefix in prefixes for name in marks_of(prefix))}
     parameters: dict[str, str] = {}

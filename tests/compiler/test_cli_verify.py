@@ -453,7 +453,39 @@ def test_an_interceptor_of_other_bindings_is_not_checked(
     edited("interceptor.py", "hold=4,", "hold=3,")
     run = fretc("verify", "--layer", "loop", path, "--interceptor", "interceptor.py")
     assert run.status == 3
-    assert "the interceptor has other options than the bindings declare" in run.out
+    assert "its options are not those that the bindings declare" in run.out
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "reason"),
+    [
+        ("PERIOD = ", "PERIOD = 10 * ", "its node is not one that fretc writes for these bindings"),
+        (
+            "velocity[:3]",
+            "velocity[:2]",
+            "its node is not one that fretc writes for these bindings",
+        ),
+        ("hold=4,", "hold=3,", "its options are not those that the bindings declare"),
+        ("    wz: float = 0.0\n", "", "its core is not as fretc can read it: `class Velocity"),
+        (
+            "def halted(",
+            "def isfinite(age: int) -> bool:\n    return age > 0\n\n\ndef halted(",
+            "its core is not as fretc can read it: `def isfinite(age: int) -> bool:`",
+        ),
+    ],
+)
+def test_nothing_is_proved_of_an_interceptor_that_flies_otherwise(
+    fretc: Fretc, loop: Callable[..., str], old: str, new: str, reason: str
+) -> None:
+    path = loop(400)
+    assert fretc(path, "--emit", "interceptor", "-o", ".").status == 0
+    verify = ("verify", "--layer", "interceptor", path, "--interceptor", "interceptor.py")
+    assert fretc(*verify).status == 0
+    edited("interceptor.py", old, new)
+    run = fretc(*verify)
+    assert run.status == 3
+    assert "proved" not in run.out.replace("not checked", "")
+    assert reason in run.out
 
 
 def test_all_five_layers_have_a_line(fretc: Fretc, loop: Callable[..., str]) -> None:

@@ -358,7 +358,10 @@ def test_a_node_that_changes_the_core_is_told(line: str) -> None:
         (((SCANNED, "    return replace(state, age=0), None"),), "a step fails: TypeError"),
         (((SCANNED, "    return None"),), "a step gives no state and command"),
         (((GROWS, "stop_age=state.stop_age + 1"),), "it has more than 3000 states"),
-        ((("    held: int\n", "    hold: int\n"),), "a step fails: TypeError"),
+        (
+            (("    held: int\n", "    hold: int\n"),),
+            "its core is not as fretc can read it: `state.held`",
+        ),
         (
             (
                 ("class ScanHeard:", "class SensorHeard:"),

@@ -5,17 +5,22 @@ None of them may be proved, or executed before it is shown to be pure.
 """
 
 import builtins
+import symtable
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
 
-from compiler.closedloop import _otherwise
 from compiler.contracts import contracts
 from compiler.gate import Gate, Heard, NotAnInterceptorError, Settings
+from compiler.provers import stated
+from compiler.purity import Head, core, head, otherwise
 from compiler.targets import interceptor
 from compiler.verification import Proved
-from fretish.declarations import Interception
+from fretish.declarations import Form, Interception
 from monitors.interceptor import Options
 
 DECLARED = Interception(
@@ -200,5 +205,315 @@ def test_the_contracts_are_not_proved_of_it(name: str) -> None:
     ],
 )
 def test_a_file_with_other_options_or_another_period_is_told(old: str, new: str) -> None:
-    """`closedloop._otherwise` says that the file is of another interceptor."""
-    assert _otherwise(sub(old, new), DECLARED) is not None
+    assert otherwise(sub(old, new), DECLARED) is not None
+
+
+# One module: what core and node share ---------------------------------------------------------
+
+NODES = [
+    interceptor.text(
+        Interception("/stop", "/cmd", "/out", scan, 50_000_000, form=form, ros=ros), "bindings.toml"
+    )
+    for scan in (None, "/scan")
+    for form in Form
+    for ros in (1, 2)
+]
+
+
+def bound_by_node(text: str) -> set[str]:
+    """The global names that Python's own symbol tables give to the part below the line."""
+    table = symtable.symtable(text.partition(interceptor.MARKER)[2], "node", "exec")
+    return {s.get_name() for s in table.get_symbols() if s.is_assigned() or s.is_imported()}
+
+
+def with_helper(name: str, text: str = BASE) -> str:
+    """A core whose `halted` asks a helper of that name, and is right as long as it is its own."""
+    helper = f"def {name}(stop: bool) -> bool:\n    return not stop\n\n\n"
+    told = sub(
+        "        state.stop\n        or", f"        not {name}(state.stop)\n        or", text
+    )
+    return sub("def halted(", f"{helper}def halted(", told)
+
+
+def all_proved(text: str) -> bool:
+    return all(isinstance(one.result, Proved) for one in contracts(text, OPTIONS))
+
+
+def test_a_helper_with_a_name_of_its_own_changes_nothing() -> None:
+    assert all_proved(with_helper("asks"))
+
+
+@pytest.mark.parametrize(
+    "name", sorted({*set().union(*map(bound_by_node, NODES)), *dir(builtins)} - {"OPTIONS"})
+)
+def test_a_core_binds_no_name_that_its_node_binds_or_calls(name: str) -> None:
+    """The node below would have it mean something else while it flies, or would call the core's."""
+    assert isinstance(head(with_helper(name)), str)
+
+
+def test_the_names_of_nodes_are_those_that_a_core_is_tempted_by() -> None:
+    found = set().union(*map(bound_by_node, NODES))
+    assert {"isfinite", "twist", "velocity", "run", "main", "Gate", "PERIOD", "sys"} <= found
+
+
+@pytest.mark.parametrize("name", ["isfinite", "twist", "velocity", "run", "all", "print"])
+def test_neither_engine_takes_a_core_that_shadows_its_node(name: str) -> None:
+    text = with_helper(name)
+    assert not any(isinstance(one.result, Proved) for one in contracts(text, OPTIONS))
+    with pytest.raises(NotAnInterceptorError):
+        Gate(text, SETTINGS)
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        ("    wz: float = 0.0\n", "    wz: float = 0.0\n    extra: float = 0.0\n"),
+        ("    wz: float = 0.0\n", ""),
+        ("    wz: float = 0.0\n", "    wz: float = 1.0\n"),
+        ("    wz: float = 0.0\n", "    wz: int = 0\n"),
+        (
+            "    vx: float = 0.0\n    vy: float = 0.0\n",
+            "    vy: float = 0.0\n    vx: float = 0.0\n",
+        ),
+        (
+            "class Velocity(NamedTuple):",
+            "@dataclass(frozen=True, slots=True)\nclass Velocity:",
+        ),
+    ],
+)
+def test_a_velocity_has_its_six_numbers_and_no_others(old: str, new: str) -> None:
+    """The node makes one of six numbers and takes it apart by their places."""
+    text = sub(old, new)
+    assert isinstance(head(text), str)
+    assert not any(isinstance(one.result, Proved) for one in contracts(text, OPTIONS))
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        ("velocity[:3]", "velocity[:2]"),
+        ("node.create_timer(PERIOD", "node.create_timer(100.0"),
+        ("PERIOD = 0.05", "PERIOD = 5.0"),
+        ('OUTPUT = "/cmd_vel_filtered"', 'OUTPUT = "/cmd_vel"'),
+        ("Twist, OUTPUT, 10)", "Twist, OUTPUT, 0)"),
+        ("gate.hear_stop, 10)", "gate.hear_scan, 10)"),
+        ("self._publish(ZERO)", "self._publish(OPTIONS)"),
+        ("import sys\n", ""),
+        ("class Gate:\n", "class Gate:\n    hear_stop = None\n"),
+    ],
+)
+def test_a_node_that_differs_in_anything_is_not_the_one_that_is_declared(
+    old: str, new: str
+) -> None:
+    told = otherwise(sub(old, new), DECLARED)
+    assert told == "its node is not one that fretc writes for these bindings: emit it again"
+
+
+def test_the_core_and_comments_may_differ() -> None:
+    assert otherwise(BASE, DECLARED) is None
+    assert otherwise(with_helper("asks"), DECLARED) is None
+    assert otherwise(sub("import sys\n", "import sys  # for the end\n"), DECLARED) is None
+    assert otherwise(BASE, replace(DECLARED, stop="/halt")) is not None
+
+
+# The language of a core -----------------------------------------------------------------------
+
+SCAN = "    return replace(state, scan_age=0), None\n"
+OUTSIDE = (
+    "min(0, 1, key='{0.real}'.format)",
+    "max(state.held, 1, key=halted)",
+    "max(state.held, 1, default=0)",
+    "max(state.held)",
+    "'{0.__class__}'.format",
+    "(0).real",
+    "0 .bit_length",
+    "(1 + 1).real",
+    "halted(state, options).real",
+    "state.held.real",
+    "state.held.bit_length",
+    "state.command.count",
+    "state.undeclared",
+    "halted",
+    "Velocity",
+    "replace",
+    "max",
+    "len",
+    "OPTIONS",
+    "options.__class__",
+    "step(state=state, heard=0, options=options)",
+    "replace(state, **options)",
+    "replace(*options)",
+    "replace()",
+    "replace(state, _held=0)",
+    "Velocity(*state)",
+    "Velocity(_x=0)",
+    "print(state)",
+    "isfinite(0)",
+    "bool(state.command)",
+    "state.held(0)",
+    "(lambda: 0)()",
+    "lambda: 0",
+    "[0]",
+    "{0}",
+    "{0: 0}",
+    "(*options, 0)",
+    "[0 for _ in state]",
+    "(0 for _ in state)",
+    "(here := 0)",
+    "f'{state}'",
+    "'text'",
+    "b'text'",
+    "...",
+    "1j",
+    "1e999",
+    "state.held * 2",
+    "state.held ** 2",
+    "state.held % 2",
+    "state.held // 2",
+    "state.held @ 2",
+    "state.held << 2",
+    "state.held | 2",
+    "state.held & 2",
+    "state.held ^ 2",
+    "~state.held",
+    "+state.held",
+    "state[0]",
+    "state is options",
+    "state is not options",
+    "state.held in (0, 1)",
+    "state.held not in (0, 1)",
+    "(yield state)",
+    "(yield from state)",
+)
+"""Expressions that are not of the language, each for one reason."""
+PLACES = (
+    "{0}",
+    "replace(state, scan_age={0})",
+    "0 if {0} else 1",
+    "{0} if state.stop else 0",
+    "not {0}",
+    "-{0}",
+    "state.stop and {0}",
+    "({0}) == 0",
+    "0 < 1 < ({0})",
+    "({0}) + 1",
+    "1 - ({0})",
+    "min(0, {0})",
+    "expired({0}, 1)",
+    "(0, {0})",
+    "Velocity({0})",
+    "Velocity(vx={0})",
+    "ScanHeard({0})",
+)
+STATEMENTS = (
+    "    return {0}, None\n",
+    "    found = {0}\n    return state, None\n",
+    "    found: int = {0}\n    return state, None\n",
+    "    if {0}:\n        return state, None\n    return state, None\n",
+    "    match {0}:\n        case 0:\n            pass\n    return state, None\n",
+    "    match state:\n        case State() if {0}:\n            pass\n    return state, None\n",
+    "    {0}\n    return state, None\n",
+    "    return (lambda: ({0}))(), None\n",
+    "    for found in ({0}):\n        pass\n    return state, None\n",
+    "    while {0}:\n        pass\n    return state, None\n",
+    "    with {0}:\n        pass\n    return state, None\n",
+    "    assert {0}\n    return state, None\n",
+    "    raise {0}\n",
+    "    del state\n    return {0}, None\n",
+)
+
+
+@given(
+    st.sampled_from(OUTSIDE),
+    st.lists(st.sampled_from(PLACES), max_size=3),
+    st.sampled_from(STATEMENTS),
+)
+@settings(max_examples=400)
+def test_what_is_not_of_the_language_is_refused_and_not_executed(
+    outside: str, places: list[str], statement: str
+) -> None:
+    inner = f"({outside})"
+    for place in places:
+        inner = f"({place.format(inner)})"
+    text = sub(SCAN, statement.format(inner))
+    assume(_is_python(text))
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("compiler.purity.executed", _never)
+        assert isinstance(core(text), str), inner
+
+
+@pytest.mark.parametrize("outside", OUTSIDE)
+def test_each_expression_is_outside_by_itself(outside: str) -> None:
+    assert isinstance(head(sub(SCAN, f"    return ({outside}), None\n")), str)
+
+
+def _is_python(text: str) -> bool:
+    try:
+        compile(text, "core", "exec")
+    except SyntaxError:
+        return False
+    return True
+
+
+def _never(*_: object) -> None:
+    raise AssertionError("it was executed")
+
+
+@pytest.mark.parametrize("place", PLACES[1:])
+def test_the_places_themselves_are_of_the_language(place: str) -> None:
+    assert isinstance(head(sub(SCAN, f"    return ({place.format('0')}), None\n")), Head)
+
+
+@pytest.mark.parametrize(
+    "annotation",
+    [
+        "print()",
+        "'print()'",
+        "Annotated[int, print()]",
+        "list[int]",
+        "state.held",
+        "tuple[int, print()]",
+        "[int]",
+        "int if state else int",
+        "lambda: int",
+        "(int := bool)",
+        "Literal[1]",
+        "int & bool",
+        "ClassVar",
+        "builtins",
+    ],
+)
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        ("    hold: int\n", "    hold: {0}\n"),
+        ("    requested: bool\n", "    requested: {0}\n"),
+        ("def hear_scan(state: State, ", "def hear_scan(state: {0}, "),
+        ("timeout: int) -> bool:", "timeout: int) -> {0}:"),
+        (SCAN, "    found: {0} = 0\n" + SCAN),
+    ],
+)
+def test_an_annotation_names_types_and_does_nothing(annotation: str, old: str, new: str) -> None:
+    """CrossHair evaluates annotations."""
+    assert isinstance(head(sub(old, new.format(annotation))), str)
+
+
+@pytest.mark.parametrize(
+    ("name", "line"),
+    [
+        ("class State:", "inv: print()"),
+        ("def initial(", "pre: print()"),
+        ("def initial(", "post:\n        print()"),
+        ("def initial(", ":raises: print()"),
+        ("def initial(", "post[state]: print()"),
+        ("def initial(", "a\\x85post: print()"),
+        ("class ScanHeard:", "\\x69nv: print()"),
+    ],
+)
+def test_a_contract_that_is_not_of_fretc_is_seen(name: str, line: str) -> None:
+    """CrossHair executes it: of classes and of functions, wherever it finds a line to begin."""
+    before, _, after = BASE.partition(name)
+    quoted = after.partition('"""')
+    changed = f'{before}{name}{quoted[0]}"""{line}\n\n    {quoted[2]}'
+    assert isinstance(head(changed), Head), "it is pure all the same"
+    assert stated(changed) != stated(BASE)

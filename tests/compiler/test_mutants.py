@@ -105,6 +105,7 @@ def of_text(text: str) -> Iterator[tuple[str, str]]:
     """All mistakes in the logic of a text: in its cells, its tick, its signals and its columns."""
     place = text.index("\n", text.index(MARK))
     head, module = text[: place + 1], ast.parse(text[place:])
+    right = ast.unparse(module)
     functions = [
         node
         for node in ast.walk(module)
@@ -125,7 +126,8 @@ def of_text(text: str) -> Iterator[tuple[str, str]]:
                         _put(parent, field, i if several else None, other)
                         changed = ast.unparse(ast.fix_missing_locations(copy.deepcopy(module)))
                         _put(parent, field, i if several else None, node)
-                        yield f"{function.name}: {kind}", f"{head}\n{changed}\n"
+                        if changed != right:
+                            yield f"{function.name}: {kind}", f"{head}\n{changed}\n"
 
 
 def _put(parent: ast.AST, field: str, place: int | None, node: ast.AST) -> None:
@@ -277,14 +279,10 @@ HARMLESS = {
     "__init__: bound",
     "__init__: constant",
     "__init__: operands swapped",
-    "columns: and, or",
-    "columns: bound",
-    "columns: negation",
-    "columns: operand left out",
-    "columns: operands swapped",
 }
 """Mistakes in a text that may change nothing: a counter that saturates later, a value that was
-never read, an operand that follows from the other, a bound of the trace that cuts nothing off."""
+never read, an operand that follows from the other. In columns none is taken: no exploration shows
+that it changes nothing at all lengths."""
 
 
 @pytest.mark.parametrize("sentence", SENTENCES)
@@ -298,6 +296,7 @@ def test_a_mistake_in_a_text_is_found_or_changes_nothing(sentence: str) -> None:
         if result == SAME:
             assert kind in HARMLESS, text[text.index(MARK) :]
     assert judge.found(target.text(made)) == SAME
+    assert found[TOLD] == 0, "what is proved tells the same as the right one"
     assert found[SAME] <= 0.17 * found.total(), found
     assert found[REFUTED] >= 5, found
     assert found[DIFFERS] >= 10, found

@@ -454,6 +454,26 @@ def test_violations_open_demands_and_unknown_ticks_are_listed(tmp_path: Path) ->
     assert shown["unknown"] == {"lines": ["ticks 3 to 5", "tick 9"], "total": 4}
 
 
+def test_what_is_uncertain_among_answers_and_open_demands_is_said(tmp_path: Path) -> None:
+    known = project(tmp_path)
+    bad = result(
+        known,
+        "inconclusive",
+        open=[moment(tick) for tick in (90, 91, 92, 95, 97)],
+        uncertain=[10, 40, 91, 92, 95],
+    )
+    (shown,) = said(made(known, tmp_path, bad))["requirements"][0]["results"]
+    assert shown["open"]["lines"] == [
+        "triggered from 9 s to 9.2 s (ticks 90 to 92): 3 demands, 2 of them uncertain for "
+        "propositions are unknown",
+        "triggered at 9.5 s (tick 95), uncertain for propositions are unknown",
+        "triggered at 9.7 s (tick 97)",
+    ]
+    assert shown["latency"]["answers"] == (
+        "3 triggers, 1 of them at the same tick, 2 of them uncertain for propositions are unknown"
+    )
+
+
 def test_thousands_of_violations_keep_the_report_small(tmp_path: Path) -> None:
     known = project(tmp_path)
     many = [violation(tick, tick) for tick in range(5000)]

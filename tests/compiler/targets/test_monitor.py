@@ -316,6 +316,7 @@ def test_r1_is_inconclusive_until_the_robot_stops() -> None:
         "triggers": [1, 2],
         "answers": [],
         "open": [{"trigger": 1, "deadline": None}, {"trigger": 2, "deadline": None}],
+        "uncertain": [],
     }
     answered = ran(R1, too_close="0110", stopped="0001")
     assert (answered["verdict"], answered["finite"]) == ("satisfied", True)

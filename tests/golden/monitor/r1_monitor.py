@@ -626,6 +626,9 @@ class Outcome:
     """Trigger and first answer to it, where a demand waits for one and it came."""
     open: tuple[tuple[int, int | None], ...]
     """Trigger and deadline (None: there is none) of each demand that is open at the end."""
+    uncertain: tuple[int, ...] = ()
+    """Triggers whose answer, or whose open demand, may be another where propositions are unknown;
+    of all others it is the same whatever the unknown values were."""
 
     def as_json(self) -> dict[str, Any]:
         """Plain values, in a fixed order of keys."""
@@ -640,6 +643,7 @@ class Outcome:
             "triggers": list(self.triggers),
             "answers": [list(pair) for pair in self.answers],
             "open": [{"trigger": t, "deadline": d} for t, d in self.open],
+            "uncertain": list(self.uncertain),
         }
 
 
@@ -715,6 +719,12 @@ def _outcome(
     horizon = requirement.horizon
     answers, waiting = _answered(triggers, must.answer, may.owed, ticks)
     deadlines = [(trigger, None if horizon is None else trigger + horizon) for trigger in waiting]
+    answered = tuple((t, k) for t, k in answers if horizon is None or k - t <= horizon)
+    still_open = tuple((t, d) for t, d in deadlines if d is None or d > last)
+    uncertain: tuple[int, ...] = ()
+    if must != may:
+        ends = (*answered, *((trigger, ticks) for trigger, _ in still_open))
+        uncertain = _uncertain(ends, must.owed & ~may.answer)
     broken = truth(must.breach != 0, may.breach != 0)
     fails = truth(_at(must.fails, last), _at(may.fails, last))
     return Outcome(
@@ -726,8 +736,9 @@ def _outcome(
         violations=violations,
         unknown=runs_of(lost_perhaps ^ lost),
         triggers=triggers,
-        answers=tuple((t, k) for t, k in answers if horizon is None or k - t <= horizon),
-        open=tuple((t, d) for t, d in deadlines if d is None or d > last),
+        answers=answered,
+        open=still_open,
+        uncertain=uncertain,
     )
 
 
@@ -757,6 +768,23 @@ def _answered(
         elif answered[then >> 3] >> (then & 7) & 1:
             pairs.append((trigger, then))
     return tuple(pairs), tuple(waiting)
+
+
+def _uncertain(ends: Iterable[tuple[int, int]], waits: int) -> tuple[int, ...]:
+    """Triggers that do not wait for certain up to the tick at which that ends.
+
+    Args:
+        ends: trigger and the tick of its answer, or the tick after the last one.
+        waits: at which ticks a demand is open for certain, and for certain not answered.
+    """
+    runs = runs_of(waits)
+    starts = [first for first, _ in runs]
+    found: list[int] = []
+    for trigger, end in ends:
+        place = bisect_right(starts, trigger) - 1
+        if trigger < end and (place < 0 or runs[place][1] < end - 1):
+            found.append(trigger)
+    return tuple(sorted(found))
 
 
 class InputError(Exception):

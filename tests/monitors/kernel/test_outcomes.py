@@ -1,0 +1,107 @@
+"""Answers and open demands are certain where no value of what is unknown would change them."""
+
+import random
+from collections.abc import Iterator, Mapping, Sequence
+from itertools import product
+
+import pytest
+
+from monitors.kernel import Monitor, Outcome, evaluate
+from monitors.kernel.columns import columns_of
+from monitors.kernel.outcomes import stepped
+from monitors.kernel.verdicts import Truth
+from tests.meaning import SCOPES
+from tests.monitoring import monitor
+from tests.strategies import templates
+
+EXACT = (
+    "whenever p the sw shall within 2 ticks satisfy q",
+    "whenever p the sw shall eventually satisfy q",
+    "whenever p the sw shall for 2 ticks satisfy q",
+    "whenever p the sw shall at the next timepoint satisfy q",
+)
+"""Each proposition comes once in what a demand needs, so that rails lose nothing."""
+
+Trace = Mapping[str, Sequence[Truth]]
+
+
+def outcomes(machine: Monitor, trace: Trace) -> tuple[Outcome, Outcome]:
+    """Of both engines."""
+    names = tuple(machine.PROPOSITIONS)
+    ticks, columns = columns_of(zip(*(trace[name] for name in names), strict=True), len(names))
+    given = dict(zip(names, columns, strict=True))
+    (whole,), (online,) = evaluate(machine, given, ticks), stepped(machine, given, ticks)
+    return whole, online
+
+
+def completions(trace: Trace) -> Iterator[dict[str, list[Truth]]]:
+    """The trace with each unknown value put to false and to true."""
+    places = [(name, i) for name, row in trace.items() for i, v in enumerate(row) if v is None]
+    for values in product((False, True), repeat=len(places)):
+        full = {name: list(row) for name, row in trace.items()}
+        for (name, i), value in zip(places, values, strict=True):
+            full[name][i] = value
+        yield full
+
+
+def told(outcome: Outcome) -> set[tuple[int, object]]:
+    """Each trigger with its answer, or with the deadline of its open demand."""
+    return {*outcome.answers, *((trigger, (deadline,)) for trigger, deadline in outcome.open)}
+
+
+def drawn(choose: random.Random, names: Sequence[str], ticks: int, most: int) -> Trace:
+    """Known but for at most so many values."""
+    trace: dict[str, list[Truth]] = {
+        name: [choose.random() < choose.choice((0.3, 0.6)) for _ in range(ticks)] for name in names
+    }
+    for _ in range(choose.randint(1, most)):
+        trace[choose.choice(names)][choose.randrange(ticks)] = None
+    return trace
+
+
+def judged(machine: Monitor, trace: Trace) -> tuple[set[int], set[int]]:
+    """The triggers that are said to be certain, and those that are by all completions."""
+    outcome, online = outcomes(machine, trace)
+    assert outcome == online
+    listed = told(outcome)
+    everywhere = set.intersection(*(told(outcomes(machine, t)[0]) for t in completions(trace)))
+    assert everywhere & {pair for pair in everywhere if pair[0] in outcome.triggers} <= listed
+    assert {*outcome.uncertain} <= {trigger for trigger, _ in listed}
+    certain = {trigger for trigger, _ in listed} - {*outcome.uncertain}
+    return certain, {trigger for trigger, _ in listed & everywhere}
+
+
+@pytest.mark.parametrize("scope", SCOPES)
+def test_what_is_said_to_be_certain_is_so_for_all_values_of_the_unknown(scope: str) -> None:
+    for template in templates():
+        if template.scope != scope:
+            continue
+        machine, choose = monitor(template.sentence), random.Random(repr(template))
+        for _ in range(4):
+            certain, right = judged(machine, drawn(choose, tuple(machine.PROPOSITIONS), 6, 3))
+            assert certain <= right, template
+
+
+@pytest.mark.parametrize("sentence", EXACT)
+def test_what_is_certain_is_said_to_be(sentence: str) -> None:
+    machine, choose = monitor(sentence), random.Random(sentence)
+    counts = [0, 0]
+    for _ in range(120):
+        trace = drawn(choose, ("p", "q"), 6, 4)
+        certain, right = judged(machine, trace)
+        assert certain == right, trace
+        counts[0] += len(certain)
+        counts[1] += len(outcomes(machine, trace)[0].uncertain)
+    assert min(counts) > 20
+
+
+def test_an_answer_behind_an_unknown_value_is_uncertain() -> None:
+    machine = monitor("whenever p the sw shall within 3 ticks satisfy q")
+    p = [True, False, False, False, True, False]
+    q: list[Truth] = [False, None, True, False, False, None]
+    outcome, online = outcomes(machine, {"p": p, "q": q})
+    assert (outcome.answers, outcome.open) == (((0, 2),), ((4, 7),))
+    assert outcome.uncertain == online.uncertain == (0, 4)
+    assert outcome.as_json()["uncertain"] == [0, 4]
+    known, _ = outcomes(machine, {"p": p, "q": [False, False, True, False, False, False]})
+    assert (known.answers, known.open, known.uncertain) == (((0, 2),), ((4, 7),), ())
