@@ -8,7 +8,7 @@ from pathlib import PurePath
 
 from compiler import bounds, closedloop, proofs
 from compiler import confined as processes
-from compiler.agent_layer import agent_evidence, checked
+from compiler.agent_layer import checked
 from compiler.closedloop import Named, Setup
 from compiler.confined import Limits, Stopped
 from compiler.contracts import contracts
@@ -19,7 +19,6 @@ from compiler.provers import stated, with_crosshair, with_dafny
 from compiler.purity import head
 from compiler.rule import Rule
 from compiler.runtime import interceptor as core
-from compiler.sif import sif
 from compiler.targets import ajpf, bundle, dafny, interceptor, monitor
 from compiler.targets.target import stem
 from compiler.verification import Evidence, Layer, NotChecked
@@ -188,14 +187,12 @@ def _agent(project: Project, asked: Request) -> tuple[Evidence, ...] | Diagnosti
 
 def _bundle(rule: Rule, claim: str, limits: Limits) -> tuple[Evidence, ...]:
     refused = ajpf.refusal(rule)
-    made = sif(rule) if refused is None else refused
-    if isinstance(made, Diagnostic):
-        return (_unknown(rule.id, Layer.AGENT, claim, f"there is none: {made.message}"),)
-    texts = bundle.texts(rule, made)
-    found = processes.confined(limits, agent_evidence, rule, texts, made.percepts)
+    found = processes.confined(limits, bundle.shown, rule) if refused is None else refused
+    if isinstance(found, Diagnostic):
+        return (_unknown(rule.id, Layer.AGENT, claim, f"there is none: {found.message}"),)
     if isinstance(found, Stopped):
         return (_unknown(rule.id, Layer.AGENT, claim, found.reason),)
-    return found
+    return found.evidence
 
 
 def _unknown(
