@@ -58,6 +58,19 @@ class Shown:
         return all(isinstance(line.result, Proved) for line in self.evidence)
 
 
+def forms(rule: Rule) -> tuple[Sif, ...] | Diagnostic:
+    """The agents that may be made: one that asks for the whole condition, and one that does not.
+
+    One where that is the same; F601 where there is none.
+    """
+    asking, bare = sif(rule), sif(rule, guarded=False)
+    if isinstance(asking, Diagnostic):
+        return asking
+    if isinstance(bare, Diagnostic) or not bare.over_responds:
+        return (asking,)
+    return (asking, bare)
+
+
 @deep
 def shown(rule: Rule, options: Options = DEFAULT, limit: int | None = None) -> Shown | Diagnostic:
     """The first form of the agent that is shown to keep its requirement, the guarded one first.
@@ -72,13 +85,11 @@ def shown(rule: Rule, options: Options = DEFAULT, limit: int | None = None) -> S
     """
     from compiler.agent_layer import STATES, agent_evidence
 
+    known = forms(rule)
+    if isinstance(known, Diagnostic):
+        return known
     found: list[Shown] = []
-    for guarded in (True, False):
-        made = sif(rule, guarded)
-        if isinstance(made, Diagnostic):
-            return made
-        if found and made.plans == found[0].sif.plans:
-            break
+    for made in known:
         files = texts(rule, made, options)
         found.append(Shown(made, agent_evidence(rule, files, made.percepts, limit or STATES)))
         if found[-1].is_kept:
@@ -112,7 +123,8 @@ def emit(rules: Sequence[Rule], options: Options = DEFAULT) -> tuple[Artifact, .
 
 def _bundle(rule: Rule, options: Options) -> Iterator[Artifact]:
     found = shown(rule, options)
-    assert isinstance(found, Shown) and found.is_kept, f"{rule.id} was to be refused"
+    assert isinstance(found, Shown), f"{rule.id} was to be refused"
+    assert found.is_kept, f"{rule.id} was to be refused"
     made = found.sif
     made_of = {
         **texts(rule, made, options),

@@ -51,8 +51,9 @@ def parts(
     condition: str, word: str, guarded: bool, mutant: bool
 ) -> tuple[tuple[str, ...], Agent, str]:
     made = rule(f"{word} {condition} the ag shall eventually satisfy r")
-    found = bundle.sif(made, guarded)
-    assert not isinstance(found, Diagnostic)
+    known = bundle.forms(made)
+    assert not isinstance(known, Diagnostic)
+    found = known[0 if guarded else -1]
     files = bundle.texts(made, found)
     text = files["SIF_mutant.gwen" if mutant else "SIF.gwen"]
     agent = gwendolen.read(Source("SIF.gwen", text))
