@@ -1,8 +1,8 @@
-"""The five layers of `fretc verify`, asked of a project: which text goes to which engine."""
+"""The six layers of `fretc verify`, asked of a project: which text goes to which engine."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterator
+from collections.abc import Callable, Collection, Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import PurePath
 
@@ -41,6 +41,8 @@ class Request:
     properties: Source | None = None
     percepts: tuple[str, ...] = ()
     provers: Collection[str] = ()
+    ajpf: Sequence[Evidence] = ()
+    """What AJPF itself has said."""
 
 
 Tell = Callable[[str], None]
@@ -67,11 +69,26 @@ def evidence(
             tell(f"{rule.id}: Dafny")
             found.extend(_dafny(rule, project, asked.limits))
     found.extend(_interceptor(project, asked, tell))
-    if Layer.AGENT not in asked.layers:
-        return tuple(found)
-    tell("agent: its properties")
-    agent = _agent(project, asked)
-    return agent if isinstance(agent, Diagnostic) else (*found, *agent)
+    if Layer.AGENT in asked.layers:
+        tell("agent: its properties")
+        agent = _agent(project, asked)
+        if isinstance(agent, Diagnostic):
+            return agent
+        found.extend(agent)
+    if Layer.AJPF in asked.layers:
+        found.extend(_ajpf(project, asked))
+    return tuple(found)
+
+
+def _ajpf(project: Project, asked: Request) -> Iterator[Evidence]:
+    """What AJPF itself has said; where nothing else is asked for, that it has said nothing."""
+    yield from asked.ajpf
+    if set(asked.layers) == {Layer.AJPF}:
+        known = {line.requirement for line in asked.ajpf}
+        for rule in project.rules:
+            if rule.id not in known:
+                claim = f"AJPF: the agent of {rule.id} keeps it"
+                yield _unknown(rule.id, Layer.AJPF, claim, "there is no result of AJPF (--ajpf)")
 
 
 def _of_rule(rule: Rule, setup: Setup, asked: Request, tell: Tell) -> Iterator[Evidence]:

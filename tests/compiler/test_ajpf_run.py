@@ -8,7 +8,7 @@ import sys
 from pathlib import Path
 from typing import Any
 
-import jsonschema
+import jsonschema  # type: ignore[import-untyped]
 import pytest
 
 from compiler.ajpf_run import ERROR, HOLDS, VIOLATED, folded, states, trace, verdict
