@@ -19,7 +19,7 @@ from compiler.files import sha256
 from compiler.proven import Proof
 from compiler.rule import Rule
 from compiler.shapes import MisshapenError, Shape
-from compiler.targets import bundle
+from compiler.targets import ajpf, bundle
 from compiler.targets.target import DEFAULT, Options
 from compiler.verification import (
     COUNTEREXAMPLE,
@@ -258,7 +258,6 @@ def _line(rule: Rule, found: AjpfResult) -> Evidence:
     which = "its bundle"
     if found.own:
         which = f"{Path(found.own[0]).name} (SHA-256 {found.own[1][:12]})"
-    weaker = "a weaker form of " if found.weakened else ""
     folder = bundle.package(rule)
     hashes = {
         f"{folder}/{name}": hashed
@@ -272,7 +271,10 @@ def _line(rule: Rule, found: AjpfResult) -> Evidence:
     if reason is not None:
         was = "it was refuted; " if isinstance(said, Counterexample) else ""
         said = NotChecked(f"{was}{reason}")
-    claim = f"AJPF: every run of the agent of {which} keeps {weaker}{rule.id}{stated}"
+    loss = ajpf.weakened(rule, options)
+    if isinstance(said, Proved) and loss is not None:
+        said = NotChecked(f"what AJPF shows is weaker than {rule.id}: {loss}")
+    claim = f"AJPF: every run of the agent of {which} keeps {rule.id}{stated}"
     return Evidence(rule.id, Layer.AJPF, claim, said, found.engine, _ASSUMED, hashes)
 
 

@@ -10,6 +10,8 @@ import pytest
 from compiler.ajpf_results import evidence, merged, read
 from compiler.proven import Proof
 from compiler.rule import Rule
+from compiler.targets.bundle import emit
+from compiler.targets.target import Options
 from compiler.verification import (
     Counterexample,
     Evidence,
@@ -218,6 +220,19 @@ def test_what_a_file_of_proofs_says_of_ajpf_gives_way_to_the_result_itself(ran: 
     assert (left.result, left.detail[:11]) == ("not checked", "it was prov")
     red = Proof("R1", "ajpf", line.claim, "counterexample", "before", (), line.engine, hashes)
     assert merged([red], []) == (red,)
+
+
+def test_a_weaker_property_does_not_show_the_requirement(ran: Mcapl) -> None:
+    made = rule("whenever too_close agilex_agent shall within 3 ticks satisfy stopped")
+    for artifact in emit([made], Options(weaken=True)):
+        ran.write(ran.folder / artifact.path, artifact.text)
+    assert ran.run().returncode == 0
+    result = only(ran, made).result
+    assert isinstance(result, NotChecked)
+    assert result.reason.startswith("what AJPF shows is weaker than R1: `within 3 ticks` has lost")
+    ran.says({"R1.jpf": (RECORDED, 0)})
+    ran.run()
+    assert isinstance(only(ran, made).result, Counterexample)
 
 
 # The commands ----------------------------------------------------------------------------------
