@@ -4,14 +4,17 @@ States are the stages of the reasoning cycle: perceive; select an intention; pla
 deed. The environment draws each percept anew, freely, at the start, at every action that is not
 silent, and whenever the agent is idle, for ever; it never speaks of anything else.
 
-What is AJPF's own: perceiving adds and removes beliefs at once, and each of them raises an event:
-those that went come first. A belief raises `+b` only when it is new. Events become intentions, and
-intentions take turns, first come first served, one deed a turn. A guard is asked when the event is
-planned; of the plans that fit, the first in the file is taken; without one, the event is dropped.
-What is more than AJPF's: beliefs that come at once, or go at once, raise their events in any order;
-and where a belief was both perceived and added by the agent, losing one source may or may not take
-the other along, and may or may not raise an event. So a property that holds here holds whichever
-way an implementation goes.
+What is AJPF's own: percepts that are drawn together are believed one after the other, those that
+went first, and each change is a state of its own, which a property sees. A belief raises `+b` only
+when it is new. Events become intentions, and intentions take turns, first come first served, one
+deed a turn. A guard is asked when the event is planned; of the plans that fit, the first in the
+file is taken; without one, the event is dropped.
+What is more than AJPF's: an agent perceives in one of two ways, in all of a run. Either all changes
+come before anything else is done; or each becomes an intention (unless the same one waits already),
+with a turn of its own after those that wait. MCAPL has rules for both. Percepts that come at once,
+or go at once, are believed in any order; and where a belief was both perceived and added by the
+agent, losing one source may or may not take the other along, and may or may not raise an event. So
+a property that holds here holds whichever way an implementation goes.
 
 Sources: Dennis, Gwendolen semantics: 2017; Dennis et al., Model checking agent programming
 languages, ASE 19 (2012); MCAPL's reasoning cycle and its environment for verification.
@@ -44,12 +47,23 @@ class Stage(StrEnum):
 
 
 @dataclass(frozen=True, slots=True)
-class Intention:
-    """What is to be done about an event."""
+class Notice:
+    """What was perceived and is to be believed, or no longer to be believed, in a turn to come."""
 
-    event: Change
-    deeds: tuple[Deed, ...] = ()
-    """Still to be done; none before a plan has been chosen."""
+    change: Change
+
+    def __str__(self) -> str:
+        """As a deed of its own."""
+        return f"the percept {self.change}"
+
+
+@dataclass(frozen=True, slots=True)
+class Intention:
+    """What is to be done about an event, or about a percept."""
+
+    event: Change | Notice
+    deeds: tuple[Deed | Notice, ...] = ()
+    """Still to be done; of an event, none before a plan has been chosen."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,6 +83,8 @@ class State:
     stage: Stage
     last: str | None
     """The last action that was not printing."""
+    in_turn: bool = False
+    """Whether each percept takes a turn of its own; chosen when the first are drawn."""
 
     @property
     def beliefs(self) -> Beliefs:
@@ -96,7 +112,10 @@ class Model:
     def steps(self, state: State) -> Iterator[Step]:
         """Everything that may happen next; at least one thing."""
         match state.stage:
-            case Stage.BEGIN | Stage.SLEEP:
+            case Stage.BEGIN:
+                yield from self._drawn(state)
+                yield from self._drawn(replace(state, in_turn=True))
+            case Stage.SLEEP:
                 yield from self._drawn(state)
             case Stage.PERCEIVE:
                 yield from _perceived(state)
@@ -177,6 +196,10 @@ class Model:
                 for shown in self._draws():
                     said = f"does {name}; the environment shows {_set(shown)}"
                     yield said, _shown(replace(after, last=name), shown)
+            case Notice(change):
+                words = "believes" if change.sign == "+" else "no longer believes"
+                for state in _believed(after, change):
+                    yield f"{words} {change.belief}", state
             case Change("+", belief):
                 yield f"adds {belief}", _added(after, belief)
             case Change(_, belief):
@@ -196,32 +219,41 @@ def _shown(state: State, percepts: Beliefs) -> State:
 
 def _perceived(state: State) -> Iterator[Step]:
     """What is no longer shown goes first, then what is newly shown comes."""
-    after = replace(state, told=True, stage=Stage.SELECT)
     gone = [Change("-", belief) for belief in sorted(state.perceived - state.percepts)]
     come = [Change("+", belief) for belief in sorted(state.percepts - state.perceived)]
+    done = replace(state, told=True, stage=Stage.SELECT)
     if state.told or not (gone or come):
-        yield "perceives nothing new", after
-        return
-    for first, then in product(permutations(gone), permutations(come)):
-        states = [after]
-        for change in (*first, *then):
-            states = [new for old in states for new in _changed(old, change)]
-        for perceived in states:
-            yield f"perceives {', '.join(map(str, (*first, *then)))}", perceived
+        yield "perceives nothing new", done
+    elif state.in_turn:
+        for first, then in product(permutations(gone), permutations(come)):
+            words = ", ".join(map(str, (*first, *then)))
+            yield f"perceives {words}: one a turn", _noticed(done, (*first, *then))
+    else:
+        for change in gone or come:
+            for after in _believed(state, change):
+                yield f"perceives {change}", after
 
 
-def _changed(state: State, change: Change) -> tuple[State, ...]:
+def _noticed(state: State, changes: tuple[Change, ...]) -> State:
+    """An intention for each of them, but for those that wait already."""
+    intentions = (Intention(Notice(change), (Notice(change),)) for change in changes)
+    new = [intention for intention in intentions if intention not in state.waiting]
+    return replace(state, waiting=(*state.waiting, *new))
+
+
+def _believed(state: State, change: Change) -> tuple[State, ...]:
     """One percept comes or goes; all that may be where the agent has the belief of its own too."""
     belief = {change.belief}
     if change.sign == "+":
         new = replace(state, perceived=state.perceived | belief)
-    else:
-        new = replace(state, perceived=state.perceived - belief)
+        raised = _raised(new, change, 1)
+        return (new, raised) if belief <= state.own else (raised,)
+    if change.belief not in state.beliefs:
+        return (state,)
+    new = replace(state, perceived=state.perceived - belief)
     raised = _raised(new, change, 1)
     if not belief <= state.own:
         return (raised,)
-    if change.sign == "+":
-        return new, raised
     return new, raised, replace(raised, own=state.own - belief)
 
 

@@ -321,6 +321,7 @@ def _assumptions(percepts: Sequence[str]) -> tuple[str, ...]:
     return (
         f"the environment shows {shown} anew at the start, at every action and whenever the "
         "agent is idle, for ever (--percept)",
+        "percepts that are drawn together are believed one after the other, in any order",
         "intentions take turns, first come, first served, one deed a turn",
         "the agent is always scheduled again",
     )

@@ -1,14 +1,19 @@
-"""Run AJPF on the files beside this one, and compare what it says with `manifest.json`.
+"""Run AJPF on the files beside this one, compare what it says with `manifest.json`, and keep it.
 
-Usage: AJPF_HOME=/path/to/mcapl python3 run.py [--timeout SECONDS]
+Usage: AJPF_HOME=/path/to/mcapl JAVA_HOME=/path/to/jdk-11 python3 run.py [--agent FILE]
 
+`--agent FILE` checks an agent of your own in place of `SIF.gwen`, which may be that file, edited.
 Exit status 0: every verdict is the expected one; 1: AJPF refutes the requirement; 2: AJPF, Java or
 a file of the bundle is missing or changed; 3: something is not shown. Of the environment are read:
 AJPF_HOME, the folder of MCAPL; JAVA_HOME, if java and javac are not on PATH; AJPF_JAVA_OPTIONS,
-options of java. What AJPF printed is kept in `logs/`.
+options of java. It needs Java 11; javac may be newer. What AJPF printed is kept in `logs/`, and
+`result.json` is what fretc reads.
 """
 
-from __future__ import annotations
+import sys
+
+if __name__ == "__main__" and not getattr(sys.flags, "safe_path", False):
+    del sys.path[0]  # what stands beside this file is no library
 
 import argparse
 import hashlib
@@ -18,67 +23,121 @@ import re
 import shlex
 import shutil
 import subprocess
-import sys
-from collections.abc import Sequence
+import time
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+SCHEMA = "fretc-ajpf-result-1"
 SHOWN, REFUTED, BAD, NOT_SHOWN = 0, 1, 2, 3
 HOLDS, VIOLATED, ERROR = "HOLDS", "VIOLATED", "ERROR"
+JAVA = 11
+"""Java PathFinder reaches into a class of the JDK that newer ones have not."""
+ANTLR = "antlr-4.13"
+"""MCAPL's parsers are made by it; a library that is older cannot read them."""
 
 
 class UnusableError(Exception):
     """What keeps AJPF from being run at all."""
 
 
+@dataclass(frozen=True)
+class Tools:
+    """Whatever is run, and what it is."""
+
+    java: str
+    version: str
+    javac: str
+    home: Path
+    class_path: str
+
+
 def main(arguments: Sequence[str]) -> int:
-    """Check all keys of the bundle; print a line for each."""
+    """Check all keys of the bundle; print a line for each, and write the result."""
     parser = argparse.ArgumentParser(description="Check this bundle with AJPF.")
     parser.add_argument("--timeout", type=float, default=3600, help="seconds for each property")
+    parser.add_argument("--agent", help="an agent of your own, in place of SIF.gwen")
     options = parser.parse_args(arguments)
     here = Path(__file__).resolve().parent
+    own = Path(options.agent).resolve() if options.agent else None
     try:
-        if re.search(r"[\s,]", str(here)):
-            raise UnusableError(f"AJPF cannot read a path with a space or a comma: {here}")
-        checks = intact(here)
-        java, javac, home = tools()
-        built(here, javac, home)
-        command = [java, *shlex.split(os.environ.get("AJPF_JAVA_OPTIONS", "")), "-jar"]
-        jar = runner(home)
+        for place in (here, *([own] if own else [])):
+            if re.search(r"[\s,]", str(place)):
+                raise UnusableError(f"AJPF cannot read a path with a space or a comma: {place}")
+        manifest = intact(here, own)
+        known = tools()
+        (here / "result.json").unlink(missing_ok=True)
+        built(here, known)
+        ran = {check["jpf"]: prepared(here, check, own) for check in manifest["checks"]}
+        (here / "logs").mkdir(exist_ok=True)
     except UnusableError as error:
         print(f"error: {error}", file=sys.stderr)
         return BAD
-    (here / "logs").mkdir(exist_ok=True)
+    except OSError as error:
+        print(f"error: {error.filename}: {error.strerror}", file=sys.stderr)
+        return BAD
+    if own is not None:
+        print(f"about the agent {own}, SHA-256 {digest(own)[:12]}...")
+    command = [known.java, *shlex.split(os.environ.get("AJPF_JAVA_OPTIONS", "")), "-cp"]
+    command += [known.class_path, "gov.nasa.jpf.tool.RunJPF"]
     found = []
-    for check in checks:
-        told, why = asked(here, [*command, str(jar), check["jpf"]], check, options.timeout)
-        found.append((check, told))
-        mark = "as expected" if told == check["expected"] else f"EXPECTED {check['expected']}"
-        print(f"{check['jpf']}: {told}, {mark}{f' ({why})' if why else ''}", flush=True)
-    return concluded(found)
-
-
-def intact(here: Path) -> list[dict[str, Any]]:
-    """The checks of the manifest, once every file of it is the one that was made."""
+    for check in manifest["checks"]:
+        answer = asked(here, [*command, str(ran[check["jpf"]])], check, options.timeout)
+        found.append(answer)
+        why = f" ({answer['why']})" if answer["why"] else ""
+        mark = "" if answer["told"] == check["expected"] else f"EXPECTED {check['expected']}"
+        print(f"{check['jpf']}: {answer['told']}, {mark or 'as expected'}{why}", flush=True)
+    status, words = concluded(found)
     try:
-        manifest = json.loads((here / "manifest.json").read_text(encoding="utf-8"))
+        written(here, result(here, manifest, known, own, found, status))
+    except OSError as error:
+        print(f"error: {error.filename}: {error.strerror}", file=sys.stderr)
+        return BAD
+    print(words)
+    return status
+
+
+# What is run -----------------------------------------------------------------------------------
+
+
+def digest(path: Path) -> str:
+    """SHA-256 of a file."""
+    return hashlib.sha256(path.read_bytes()).hexdigest()
+
+
+def intact(here: Path, own: Path | None) -> dict[str, Any]:
+    """The manifest, once every file of it is the one that was made; but for one's own agent."""
+    try:
+        manifest: dict[str, Any] = json.loads((here / "manifest.json").read_text(encoding="utf-8"))
         files, checks = manifest["files"], manifest["checks"]
-        for name, digest in files.items():
-            if hashlib.sha256((here / name).read_bytes()).hexdigest() != digest:
-                raise UnusableError(f"{name} is not the file that manifest.json tells of")
+        for name, known in files.items():
+            if digest(here / name) != known and (own is None or name != "SIF.gwen"):
+                more = "; `--agent SIF.gwen` checks an agent of your own" * (name == "SIF.gwen")
+                raise UnusableError(f"{name} is not the file that manifest.json tells of{more}")
         if {check["role"] for check in checks} != {"requirement", "control", "mutant"}:
             raise UnusableError("manifest.json does not name all that is to be checked")
         if any(c["expected"] not in (HOLDS, VIOLATED) or c["jpf"] not in files for c in checks):
             raise UnusableError("manifest.json names something that cannot be checked")
-        return list(checks)
+        if own is not None:
+            named(own, manifest["agent"])
+        return manifest
     except OSError as error:
         raise UnusableError(f"{error.filename}: {error.strerror}") from error
     except (ValueError, KeyError, TypeError, AttributeError) as error:
         raise UnusableError(f"manifest.json cannot be read: {error}") from error
 
 
-def tools() -> tuple[str, str, Path]:
-    """Java, its compiler, and the folder of MCAPL."""
+def named(own: Path, name: str) -> None:
+    """One's own agent has the name of which the properties speak: AJPF crashes on another."""
+    found = re.search(r"^\s*:name:\s*(\S+)", own.read_text(encoding="utf-8"), re.MULTILINE)
+    if found is None or found[1] != name:
+        told = f"is called `{found[1]}`" if found else "has no `:name:`"
+        raise UnusableError(f"the agent of {own} {told}; the properties are about `{name}`")
+
+
+def tools() -> Tools:
+    """Java, its compiler, and MCAPL."""
     home = os.environ.get("AJPF_HOME", "")
     if not home or not Path(home).is_dir():
         raise UnusableError("set AJPF_HOME to the folder of MCAPL")
@@ -88,28 +147,52 @@ def tools() -> tuple[str, str, Path]:
     java, javac = shutil.which("java", path=path), shutil.which("javac", path=path)
     if java is None or javac is None:
         raise UnusableError("java and javac are needed (JDK 11): set JAVA_HOME")
-    return java, javac, Path(home).resolve()
+    place = Path(home).resolve()
+    libraries = class_path(place)
+    return Tools(java, java_version(java), javac, place, libraries)
 
 
-def runner(home: Path) -> Path:
-    """Of Java PathFinder."""
-    jars = [home / "lib" / "3rdparty" / "RunJPF.jar", *sorted(home.rglob("RunJPF.jar"))]
-    jar = next((jar for jar in jars if jar.is_file()), None)
-    if jar is None:
-        raise UnusableError(f"there is no RunJPF.jar below {home}")
-    return jar
+def java_version(java: str) -> str:
+    """`11.0.22`; any other than Java 11 dies within Java PathFinder."""
+    try:
+        done = subprocess.run(
+            [java, "-version"], capture_output=True, text=True, errors="replace", timeout=60
+        )
+    except (OSError, subprocess.TimeoutExpired) as error:
+        raise UnusableError(f"{java} does not tell its version: {error}") from error
+    found = re.search(r'version "((?:1\.)?(\d+)[^"]*)"', f"{done.stderr}\n{done.stdout}")
+    if found is None:
+        raise UnusableError(f"{java} does not tell its version")
+    if int(found[2]) != JAVA:
+        raise UnusableError(
+            f"{java} is Java {found[1]}, and AJPF needs Java {JAVA}: under another it dies with "
+            f"`NoSuchMethodError`; set JAVA_HOME to a JDK {JAVA}"
+        )
+    return found[1]
 
 
-def built(here: Path, javac: str, home: Path) -> None:
-    """Compile the environment, into `classes/`."""
-    folders = [home / "bin", *sorted((home / "build").glob("*"))]
+def class_path(home: Path) -> str:
+    """What MCAPL has compiled, then all its libraries, the newest ANTLR before the others."""
+    compiled = [home / "bin", *sorted((home / "build").glob("*"))]
     libraries = sorted((home / "lib").rglob("*.jar"))
-    places = [str(place) for place in (*folders, *libraries) if place.exists()]
+    if not any(jar.name == "RunJPF.jar" for jar in libraries):
+        raise UnusableError(f"there is no RunJPF.jar below {home / 'lib'}")
+    if not any(jar.name.startswith(ANTLR) for jar in libraries):
+        raise UnusableError(
+            f"there is no {ANTLR}.*.jar below {home / 'lib'}: MCAPL's parsers need ANTLR 4.13.2"
+        )
+    libraries.sort(key=lambda jar: not jar.name.startswith(ANTLR))
+    places = [place for place in (*compiled, *libraries) if place.exists()]
+    return os.pathsep.join(map(str, places))
+
+
+def built(here: Path, known: Tools) -> None:
+    """Compile the environment, into `classes/`."""
     shutil.rmtree(here / "classes", ignore_errors=True)
     (here / "classes").mkdir()
-    command = [javac, "--release", "11", "-nowarn", "-encoding", "UTF-8", "-d", "classes"]
+    command = [known.javac, "--release", str(JAVA), "-nowarn", "-encoding", "UTF-8"]
     done = subprocess.run(
-        [*command, "-cp", os.pathsep.join(places), "Env.java"],
+        [*command, "-d", "classes", "-cp", known.class_path, "Env.java"],
         cwd=here,
         capture_output=True,
         text=True,
@@ -119,26 +202,66 @@ def built(here: Path, javac: str, home: Path) -> None:
         raise UnusableError(f"Env.java does not compile:\n{done.stdout}{done.stderr}")
 
 
-def asked(here: Path, command: list[str], check: dict[str, Any], timeout: float) -> tuple[str, str]:
-    """What AJPF says of one key, and why where that is an error."""
+def prepared(here: Path, check: Mapping[str, Any], own: Path | None) -> Path:
+    """The `.jpf` and its `.ail` below `run/`, with absolute paths: AJPF may start anywhere."""
+    place = here / "run"
+    place.mkdir(exist_ok=True)
+    ail = (here / check["agent"]).read_text(encoding="utf-8")
+    agent = here / check["agent"].replace(".ail", ".gwen")
+    if own is not None and check["agent"] == "SIF.ail":
+        agent = own
+    ail = re.sub(r"(?m)^mas\.file = .*$", lambda found: f"mas.file = {agent}", ail)
+    (place / check["agent"]).write_text(ail, encoding="utf-8")
+    jpf: str = (here / check["jpf"]).read_text(encoding="utf-8")
+    jpf = jpf.replace(f"${{config_path}}/{check['agent']}", str(place / check["agent"]))
+    jpf = jpf.replace("${config_path}", str(here))
+    path = place / str(check["jpf"])
+    path.write_text(jpf, encoding="utf-8")
+    return path
+
+
+def asked(
+    here: Path, command: Sequence[str], check: Mapping[str, Any], timeout: float
+) -> dict[str, Any]:
+    """What AJPF says of one key: the check itself, and its answer."""
     log = here / "logs" / f"{check['jpf']}.txt"
-    try:
-        done = subprocess.run(
-            command,
-            cwd=here,
-            stdin=subprocess.DEVNULL,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.STDOUT,
-            timeout=timeout,
-            text=True,
-            errors="replace",
-        )
-    except subprocess.TimeoutExpired:
-        return ERROR, f"no answer in {timeout:g} seconds"
-    except OSError as error:
-        return ERROR, f"java cannot be run: {error.strerror}"
-    log.write_text(done.stdout, encoding="utf-8")
-    return verdict(done.stdout, done.returncode)
+    began, status = time.monotonic(), 0
+    why = ""
+    with log.open("wb") as output:
+        try:
+            status = subprocess.run(
+                command,
+                cwd=here,
+                stdin=subprocess.DEVNULL,
+                stdout=output,
+                stderr=subprocess.STDOUT,
+                timeout=timeout,
+            ).returncode
+        except subprocess.TimeoutExpired:
+            why = f"no answer in {timeout:g} seconds"
+        except OSError as error:
+            why = f"java cannot be run: {error.strerror}"
+    text = log.read_text(encoding="utf-8", errors="replace")
+    told, why = (ERROR, why) if why else verdict(text, status)
+    return {
+        **{name: check[name] for name in ("role", "key", "jpf", "property", "expected")},
+        "told": told,
+        "why": why,
+        "seconds": round(time.monotonic() - began, 3),
+        "states": states(text),
+        "log": f"logs/{log.name}",
+        "log_sha256": digest(log),
+        "trace": trace(text) if told == VIOLATED else None,
+    }
+
+
+# What AJPF says --------------------------------------------------------------------------------
+
+RESULTS = re.compile(r"^=+ results\s*$", re.MULTILINE)
+EXPLAINED = (
+    ("Could not deserialize ATN", "an ANTLR that is older than MCAPL's parsers comes first"),
+    ("NoSuchMethodError", f"AJPF needs Java {JAVA}"),
+)
 
 
 def verdict(text: str, status: int) -> tuple[str, str]:
@@ -147,32 +270,176 @@ def verdict(text: str, status: int) -> tuple[str, str]:
     A complaint of a parser beats everything: AJPF goes on with another property than the one in
     the file.
     """
+    for sign, why in EXPLAINED:
+        if sign in text:
+            return ERROR, why
     complaint = re.search(r"line \d+:\d+.*", text)
     if complaint is not None:
         return ERROR, f"a file was misread: {complaint[0].strip()}"
+    severe = re.search(r"^.*\[SEVERE\].*$", text, re.MULTILINE)
+    if severe is not None:
+        return ERROR, severe[0].strip()
     if "search constraint" in text:
         return ERROR, "the search was cut short"
-    holds = "no errors detected" in text
-    violated = "An Accepting Path has been found" in text
-    if holds and violated:
+    if "MODEL PRODUCED BY AJPF" in text:
+        return ERROR, "only the model was made (`ajpf.model_only`)"
+    parts = RESULTS.split(text)
+    said = parts[-1] if len(parts) == 2 else ""
+    holds = re.search(r"^no errors detected\s*$", said, re.MULTILINE) is not None
+    errors = re.findall(r"^error #\d+: (.*)$", said, re.MULTILINE)
+    path = 'ajpf.MCAPLListener "An Accepting Path has been found'
+    violated = bool(errors) and all(error.startswith(path) for error in errors)
+    if holds and (errors or "An Accepting Path has been found" in text):
         return ERROR, "the output says two things"
     if violated and status >= 0:
         return VIOLATED, ""
-    if holds and status == 0 and not re.search(r"^error #\d", text, re.MULTILINE):
+    if holds and status == 0:
         return HOLDS, ""
+    if errors:
+        return ERROR, f"AJPF stopped: {errors[0][:200]}"
     return ERROR, f"no verdict in the output, exit status {status}"
 
 
-def concluded(found: list[tuple[dict[str, Any], str]]) -> int:
-    """Say what all verdicts together show."""
-    if any(check["role"] == "requirement" and told == VIOLATED for check, told in found):
-        print("AJPF refutes the requirement")
-        return REFUTED
-    if any(told != check["expected"] for check, told in found):
-        print("not shown: without each of these, the verdict about the requirement says nothing")
-        return NOT_SHOWN
-    print("AJPF says all that is expected of it")
-    return SHOWN
+def states(text: str) -> dict[str, int]:
+    """The numbers of the line `states:  new=303,visited=52,...`; none where there is no such."""
+    found = re.findall(r"^states:\s+(\S+)\s*$", text, re.MULTILINE)
+    parts = found[-1].split(",") if found else []
+    numbers = (re.fullmatch(r"(\w+)=(\d+)", part) for part in parts)
+    return {number[1]: int(number[2]) for number in numbers if number}
+
+
+def trace(text: str) -> dict[str, Any] | None:
+    """The run that breaks a property, a row for each state of the program; None: it is not told.
+
+    What a state changes is logged after its `New State is N`; what it does not mention is as it
+    was on the way there, and None before it is first mentioned. An action is logged before the
+    state that it leads to.
+    """
+    path = [int(state) for state in _path(text)]
+    if not path:
+        return None
+    prefix, cycle = folded(path)
+    changes, actions = logged(text)
+    names = sorted({name for number in prefix for name in changes.get(number, {})})
+    known: dict[str, bool] = {}
+    rows = []
+    for number in prefix:
+        known |= changes.get(number, {})
+        rows.append([known.get(name) for name in names])
+    return {
+        "names": names,
+        "rows": rows,
+        "states": prefix,
+        "actions": [actions.get(number, "") for number in prefix],
+        "cycle": cycle,
+    }
+
+
+def _path(text: str) -> Iterator[str]:
+    """The program states of the first path that is printed."""
+    begin = text.find("An Accepting Path has been found")
+    found = re.compile(r"\s*\[MS: (-?\d+), BS: -?\d+, UN: -?\d+\],?")
+    place = text.find("[MS:", begin) if begin >= 0 else -1
+    while place >= 0 and (match := found.match(text, place)) is not None:
+        yield match[1]
+        place = match.end()
+
+
+def folded(path: Sequence[int]) -> tuple[list[int], int | None]:
+    """The run without its second round, and where its end leads back to; None: nowhere."""
+    for length in range(1, len(path) + 1):
+        for start in range(length):
+            period = length - start
+            again = all(path[i] == path[i - period] for i in range(length, len(path)))
+            if again and len(path) > length and len(path) - start >= 2 * period - 1:
+                return list(path[:length]), start
+    return list(path), None
+
+
+def logged(text: str) -> tuple[dict[int, dict[str, bool]], dict[int, str]]:
+    """Of each new state, what became true or false in it, and the action that led there."""
+    changes: dict[int, dict[str, bool]] = {}
+    actions: dict[int, str] = {}
+    state, action = None, ""
+    form = re.compile(
+        r"\[INFO\] New State is (-?\d+)|\[FINE\] Updating (.+) to (true|false)\s*$"
+        r"|\[INFO\] \S+ done (.+?)\s*$"
+    )
+    for line in text.splitlines():
+        found = form.search(line)
+        if found is None:
+            continue
+        if found[1] is not None:
+            state = int(found[1])
+            changes.setdefault(state, {})
+            if action:
+                actions[state] = action
+            action = ""
+        elif found[2] is not None and state is not None:
+            changes[state][found[2].replace("()", "")] = found[3] == "true"
+        elif found[4] is not None:
+            action = found[4]
+    return changes, actions
+
+
+# What is said of it ----------------------------------------------------------------------------
+
+
+def concluded(found: Sequence[Mapping[str, Any]]) -> tuple[int, str]:
+    """What all verdicts together show: an exit status, and words."""
+    if any(check["role"] == "requirement" and check["told"] == VIOLATED for check in found):
+        return REFUTED, "AJPF refutes the requirement"
+    if any(check["told"] != check["expected"] for check in found):
+        words = "not shown: without each of these, the verdict about the requirement says nothing"
+        return NOT_SHOWN, words
+    return SHOWN, "AJPF says all that is expected of it"
+
+
+def result(
+    here: Path,
+    manifest: Mapping[str, Any],
+    known: Tools,
+    own: Path | None,
+    found: Sequence[Mapping[str, Any]],
+    status: int,
+) -> dict[str, Any]:
+    """What fretc reads; its schema is `ajpf-result.schema.json`."""
+    files = {name: digest(here / name) for name in sorted(manifest["files"])}
+    return {
+        "schema": SCHEMA,
+        "requirement": manifest["requirement"],
+        "fretc": manifest["fretc"],
+        "weakened": manifest["weakened"],
+        "verdict": {SHOWN: "shown", REFUTED: "refuted"}.get(status, "not shown"),
+        "agent": {"file": str(own), "sha256": digest(own)} if own is not None else None,
+        "mcapl": {"commit": commit(known.home)},
+        "java": known.version,
+        "files": files,
+        "checks": list(found),
+    }
+
+
+def commit(home: Path) -> str | None:
+    """The commit of a checkout, read off its `.git`; None where there is none."""
+    try:
+        git = home / ".git"
+        head = (git / "HEAD").read_text(encoding="utf-8").strip()
+        if not head.startswith("ref: "):
+            return head
+        name = head.removeprefix("ref: ")
+        if (git / name).is_file():
+            return (git / name).read_text(encoding="utf-8").strip()
+        packed = (git / "packed-refs").read_text(encoding="utf-8")
+        return next((x.split()[0] for x in packed.splitlines() if x.endswith(f" {name}")), None)
+    except (OSError, ValueError):
+        return None
+
+
+def written(here: Path, content: Mapping[str, Any]) -> None:
+    """The result appears whole, or not at all."""
+    place = here / "result.json.new"
+    place.write_text(f"{json.dumps(content, indent=2)}\n", encoding="utf-8")
+    place.replace(here / "result.json")
 
 
 if __name__ == "__main__":

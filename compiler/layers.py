@@ -1,15 +1,15 @@
-"""The five layers of `fretc verify`, asked of a project: which text goes to which engine."""
+"""The six layers of `fretc verify`, asked of a project: which text goes to which engine."""
 
 from __future__ import annotations
 
 import ast
-from collections.abc import Callable, Collection, Iterator
+from collections.abc import Callable, Collection, Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import PurePath
 
 from compiler import bounds, closedloop, proofs
 from compiler import confined as processes
-from compiler.agent_layer import agent_evidence, checked
+from compiler.agent_layer import checked
 from compiler.closedloop import Named, Setup
 from compiler.confined import Limits, Stopped
 from compiler.contracts import contracts
@@ -20,7 +20,6 @@ from compiler.provers import stated, with_crosshair, with_dafny
 from compiler.purity import head, otherwise
 from compiler.rule import Rule
 from compiler.runtime import interceptor as core
-from compiler.sif import sif
 from compiler.targets import ajpf, bundle, dafny, interceptor, monitor
 from compiler.targets.target import stem
 from compiler.verification import Evidence, Layer, NotChecked
@@ -43,6 +42,8 @@ class Request:
     properties: Source | None = None
     percepts: tuple[str, ...] = ()
     provers: Collection[str] = ()
+    ajpf: Sequence[Evidence] = ()
+    """What AJPF itself has said."""
 
 
 Tell = Callable[[str], None]
@@ -69,11 +70,26 @@ def evidence(
             tell(f"{rule.id}: Dafny")
             found.extend(_dafny(rule, project, asked.limits))
     found.extend(_interceptor(project, asked, tell))
-    if Layer.AGENT not in asked.layers:
-        return tuple(found)
-    tell("agent: its properties")
-    agent = _agent(project, asked)
-    return agent if isinstance(agent, Diagnostic) else (*found, *agent)
+    if Layer.AGENT in asked.layers:
+        tell("agent: its properties")
+        agent = _agent(project, asked)
+        if isinstance(agent, Diagnostic):
+            return agent
+        found.extend(agent)
+    if Layer.AJPF in asked.layers:
+        found.extend(_ajpf(project, asked))
+    return tuple(found)
+
+
+def _ajpf(project: Project, asked: Request) -> Iterator[Evidence]:
+    """What AJPF itself has said; where nothing else is asked for, that it has said nothing."""
+    yield from asked.ajpf
+    if set(asked.layers) == {Layer.AJPF}:
+        known = {line.requirement for line in asked.ajpf}
+        for rule in project.rules:
+            if rule.id not in known:
+                claim = f"AJPF: the agent of {rule.id} keeps it"
+                yield _unknown(rule.id, Layer.AJPF, claim, "there is no result of AJPF (--ajpf)")
 
 
 def _of_rule(rule: Rule, project: Project, asked: Request, tell: Tell) -> Iterator[Evidence]:
@@ -197,14 +213,12 @@ def _agent(project: Project, asked: Request) -> tuple[Evidence, ...] | Diagnosti
 
 def _bundle(rule: Rule, claim: str, limits: Limits) -> tuple[Evidence, ...]:
     refused = ajpf.refusal(rule)
-    made = sif(rule) if refused is None else refused
-    if isinstance(made, Diagnostic):
-        return (_unknown(rule.id, Layer.AGENT, claim, f"there is none: {made.message}"),)
-    texts = bundle.texts(rule, made)
-    found = processes.confined(limits, agent_evidence, rule, texts, made.percepts)
+    found = processes.confined(limits, bundle.shown, rule) if refused is None else refused
+    if isinstance(found, Diagnostic):
+        return (_unknown(rule.id, Layer.AGENT, claim, f"there is none: {found.message}"),)
     if isinstance(found, Stopped):
         return (_unknown(rule.id, Layer.AGENT, claim, found.reason),)
-    return found
+    return found.evidence
 
 
 def _unknown(

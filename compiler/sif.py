@@ -2,10 +2,13 @@
 
 A condition in disjunctive form becomes plans: one for each event that can make it true, guarded by
 what else has to hold. The response is an action for each of its propositions, and the belief that
-it was done. One trigger with one response is released when it goes, without a guard: with one, the
-event of a trigger that comes back during the release is discarded, and the response is lost. All
-others are not released: events would come faster than they are handled. They respond once, and a
-guard tells that they have.
+it was done. Percepts come one after the other: where one of them is negated, a property sees the
+condition true between two of them, and by the time the event is planned the guard drops it. The
+form without those guards responds to every such event, also where the rest does not hold.
+One trigger with one response is released when it goes, without a guard: with one, the event of a
+trigger that comes back during the release is discarded, and the response is lost. All others are
+not released: events would come faster than they are handled. They respond once, and a guard tells
+that they have.
 """
 
 from __future__ import annotations
@@ -51,14 +54,21 @@ class Sif:
     """The plans without what makes the response true."""
     released: bool
     """Whether the response is taken back when the trigger goes."""
+    over_responds: bool
+    """Whether plans do not ask for the rest of the condition, and so respond without it too."""
 
 
 Term = tuple[tuple[str, bool], ...]
 """A conjunction: propositions, each true or false."""
 
 
-def sif(rule: Rule) -> Sif | Diagnostic:
-    """The agent that reacts as the rule demands; or F601 for what no such agent can be made of."""
+def sif(rule: Rule, guarded: bool = True) -> Sif | Diagnostic:
+    """The agent that reacts as the rule demands; or F601 for what no such agent can be made of.
+
+    Args:
+        rule: the requirement.
+        guarded: whether plans ask for the rest of the condition, where there is any.
+    """
     sentence = rule.sentence
     if sentence.condition is None:
         mend = "an agent reacts to an event: state what triggers it, `whenever ...`"
@@ -79,10 +89,14 @@ def sif(rule: Rule) -> Sif | Diagnostic:
     spoilt = tuple(Action(_action(rule, name)) for name in believed)
     last = Guard(False, believed[-1]) if believed and not released else None
     plans, mutant = (
-        (*_reactions(terms, deeds, last), *(_releases(terms, responses) if released else ()))
+        (
+            *_reactions(terms if guarded else _alone(terms), deeds, last),
+            *(_releases(terms, responses) if released else ()),
+        )
         for deeds in (answer, spoilt)
     )
-    return Sif(sentence.component, percepts, responses, plans, mutant, released)
+    bare = not guarded and terms != _alone(terms)
+    return Sif(sentence.component, percepts, responses, plans, mutant, released, bare)
 
 
 def _terms(rule: Rule, condition: e.Expression) -> tuple[Term, ...] | Diagnostic:
@@ -100,6 +114,11 @@ def _terms(rule: Rule, condition: e.Expression) -> tuple[Term, ...] | Diagnostic
             return not_expressible(_TARGET, rule, "a condition that only negates", mend)
         terms.append(term)
     return tuple(terms)
+
+
+def _alone(terms: tuple[Term, ...]) -> tuple[Term, ...]:
+    """Each literal as a term of its own."""
+    return tuple(dict.fromkeys((literal,) for term in terms for literal in term))
 
 
 def _literal(expression: e.Expression) -> tuple[str, bool] | None:

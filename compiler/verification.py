@@ -29,6 +29,8 @@ class Layer(StrEnum):
     """So they do at every bound and latency, not only at those that are declared."""
     AGENT = "agent"
     """The text of the agent has the properties of its property file, in a model of our own."""
+    AJPF = "ajpf"
+    """So it has by AJPF's own verdict, as the `run.py` of a bundle has recorded it."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -140,6 +140,9 @@ class Code(Enum):
     OTHER_AGENT = ("F612", "a property speaks of another agent than the one that is given")
     BAD_PERCEPT = ("F613", "a percept cannot be drawn by the environment")
     NOT_KEPT = ("F614", "the agent that would be generated does not keep the requirement")
+    OVER_RESPONDS = ("F615", "the agent that is generated responds more often than is demanded")
+    BAD_AJPF_RESULT = ("F616", "a result of AJPF cannot be read")
+    FOREIGN_AJPF_RESULT = ("F617", "a result of AJPF is about no requirement that is there")
     TOO_LARGE = ("F670", "what would be made is too large")
 
     SHORT_HOLD = ("F630", "the interceptor holds zero no longer than messages may be lost")

@@ -53,6 +53,11 @@ _HEADINGS = {
     "--verification",
     help="What `fretc verify` found; build/verification.json, if it is there and none is given.",
 )
+@click.option(
+    "--ajpf",
+    multiple=True,
+    help="A result of AJPF; each build/*_ajpf/result.json if none is given.",
+)
 @click.option("--lock", help="fretc.lock; the one in the requirements' folder if not given.")
 @click.option("--waivers", help="waivers.toml; the one in the requirements' folder if not given.")
 @click.option(
@@ -67,6 +72,7 @@ def report(
     hazards: str | None,
     evidence: str,
     verification: str | None,
+    ajpf: tuple[str, ...],
     lock: str | None,
     waivers: str | None,
     strict: bool,
@@ -77,6 +83,7 @@ def report(
     All forms say the same. The same inputs give the same bytes; waivers count by the day of
     SOURCE_DATE_EPOCH, where that is set.
     """
+    from compiler.ajpf_results import written as results
     from compiler.project import beside, companions, requirement_files, whole
     from compiler.proven import written
     from compiler.report import make
@@ -94,13 +101,14 @@ def report(
     lock = lock or beside(requirements, "fretc.lock")
     waivers = waivers or beside(requirements, "waivers.toml")
     verification = verification or written()
-    made = make(project, evidence, lock=lock, waivers=waivers, verification=verification)
+    said = ajpf or results()
+    made = make(project, evidence, lock=lock, waivers=waivers, verification=verification, ajpf=said)
     say([*project.diagnostics, *made.diagnostics])
     if made.report is None:
         raise SystemExit(BAD)
     wanted = {"html": html, **{name: path for name, path in forms.items() if path is not None}}
     texts = _texts(made, project, evidence, strict=strict)
-    read = filter(None, (bindings, hazards, verification, lock, waivers))
+    read = filter(None, (bindings, hazards, verification, lock, waivers, *said))
     logs = [str(result["run"]) for result in _audited(evidence, made.report)]
     _deliver(wanted, texts, [evidence, *files, *companions(files), *read, *dict.fromkeys(logs)])
     if has_errors([*project.diagnostics, *made.diagnostics]):

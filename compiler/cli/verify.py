@@ -19,10 +19,11 @@ if TYPE_CHECKING:
     from compiler.verification import Evidence
     from fretish.source import Source
 
-_LAYERS = ("monitor", "interceptor", "loop", "bounds", "agent")
+_LAYERS = ("monitor", "interceptor", "loop", "bounds", "agent", "ajpf")
 _HEADINGS = {
     "What is looked at": ("layers", "monitor", "provers", "bindings", "limit"),
     "Texts in place of new ones": ("path", "interceptor", "agent", "properties", "percepts"),
+    "Found by others": ("ajpf",),
     "Printed and written": ("form", "output", "traces"),
 }
 
@@ -38,7 +39,7 @@ _HEADINGS = {
     "layers",
     multiple=True,
     type=click.Choice(_LAYERS),
-    help="What to look at, maybe several; all five if none is given.",
+    help="What to look at, maybe several; all six if none is given.",
 )
 @click.option("--monitor", is_flag=True, help="The same as `--layer monitor`.")
 @click.option(
@@ -54,6 +55,11 @@ _HEADINGS = {
 @click.option("--properties", help="The properties of the agent, as AJPF reads them.")
 @click.option(
     "--percept", "percepts", multiple=True, help="A percept that the agent's environment draws."
+)
+@click.option(
+    "--ajpf",
+    multiple=True,
+    help="A result of AJPF; each build/*_ajpf/result.json if none is given.",
 )
 @click.option("--bindings", help="bindings.toml; the one beside the first FILE if not given.")
 @click.option(
@@ -84,6 +90,7 @@ def verify(
     agent: str | None,
     properties: str | None,
     percepts: tuple[str, ...],
+    ajpf: tuple[str, ...],
     bindings: str | None,
     limit: int,
     form: str,
@@ -95,10 +102,12 @@ def verify(
     monitor: the text of a monitor means what its sentence says. interceptor: its text keeps its
     contracts. loop: both, and any environment, keep the requirement under the assumptions of the
     bindings. bounds: so they do whatever the times are. agent: its text has its properties.
+    ajpf: what AJPF itself has said of it.
 
     Exit status: 0 all proved, 1 a claim about a requirement is refuted, 2 bad use or input,
     3 something is vacuous, not checked, or stays stopped.
     """
+    from compiler.ajpf_results import written
     from compiler.confined import Limits
     from compiler.layers import Request
     from compiler.project import companions
@@ -110,6 +119,7 @@ def verify(
     if path is not None and not named:
         named = {"monitor": None}
     project = _project(files, bindings)
+    results = ajpf or (written() if "ajpf" in (named or _LAYERS) else ())
     asked = Request(
         [Layer(name) for name in named or _LAYERS],
         Limits(seconds=limit),
@@ -119,14 +129,25 @@ def verify(
         _read(properties),
         percepts,
         provers,
+        _said_by_ajpf(project, results),
     )
     _refused(project, asked)
     found = _evidence(project, asked)
-    given = (path, interceptor, agent, properties, bindings)
+    given = (path, interceptor, agent, properties, bindings, *results)
     read = [requirement.wording.source.name for requirement in project.requirements]
     inputs = [*read, *companions(read), *(name for name in given if name is not None)]
     _tell(found, form, output, traces, inputs)
     raise SystemExit(_status(found))
+
+
+def _said_by_ajpf(project: Project, results: Sequence[str]) -> Sequence[Evidence]:
+    from compiler.ajpf_results import evidence
+
+    lines, said = evidence(project.rules, results)
+    say(said)
+    if has_errors(said):
+        raise SystemExit(BAD)
+    return lines
 
 
 def _half(agent: str | None) -> Diagnostic:

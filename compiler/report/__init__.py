@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 
+from compiler.ajpf_results import evidence as ajpf_evidence
 from compiler.evidence import read
 from compiler.lock import read as read_lock
 from compiler.project import Project
@@ -46,6 +47,7 @@ def make(
     lock: str | None = None,
     waivers: str | None = None,
     verification: str | None = None,
+    ajpf: Sequence[str] = (),
 ) -> Made:
     """Make the report.
 
@@ -55,6 +57,7 @@ def make(
         lock: path of a lock; None: nothing has been reviewed.
         waivers: path of a file of waivers; None: nothing is waived.
         verification: path of what `fretc verify` wrote; None: nothing was proved.
+        ajpf: paths of what the `run.py` of bundles wrote.
     """
     audited = read(evidence)
     if isinstance(audited, Diagnostic) and audited.is_error:
@@ -67,9 +70,10 @@ def make(
         return Made(None, (known,))
     waived, told = _waived(project, waivers)
     found = None if isinstance(audited, Diagnostic) else audited
-    whole, said = report(project, found, evidence, known, waived, proofs)
+    lines, unread = ajpf_evidence(project.rules, ajpf)
+    whole, said = report(project, found, evidence, known, waived, proofs, lines)
     missing = (audited,) if isinstance(audited, Diagnostic) else ()
-    return Made(whole, (*missing, *told, *said), project.rules)
+    return Made(whole, (*missing, *told, *unread, *said), project.rules)
 
 
 def _waived(

@@ -7,6 +7,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from types import MappingProxyType
 
 from compiler import __version__
+from compiler.ajpf_results import merged
 from compiler.checks import checks
 from compiler.estimates import AVERAGE
 from compiler.evidence import Evidence
@@ -42,6 +43,7 @@ from compiler.report.views import (
     Report,
     RequirementView,
 )
+from compiler.verification import Evidence as Line
 from compiler.waivers import Waiver
 from fretish.diagnostic import Code, Diagnostic, Severity, has_errors
 from fretish.source import Source
@@ -55,6 +57,7 @@ def report(
     lock: Lock | None = None,
     waivers: Mapping[str, Waiver] = MappingProxyType({}),
     proofs: Proofs | None = None,
+    ajpf: Sequence[Line] = (),
 ) -> tuple[Report, tuple[Diagnostic, ...]]:
     """The report, and what there is to say of the evidence.
 
@@ -65,9 +68,10 @@ def report(
         lock: None where nothing has been reviewed.
         waivers: those that count now, by the requirement.
         proofs: None where nothing was verified.
+        ajpf: what AJPF itself said, held against what is made now.
     """
     found = runs(evidence)
-    proved = proofs.proofs if proofs else ()
+    proved = merged(proofs.proofs if proofs else (), ajpf)
     claimed = claims(project, evidence, lock, waivers, proved)
     anchors = {claim.id: claim.anchor for claim in reversed(claimed)}
     audited = evidence is not None

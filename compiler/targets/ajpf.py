@@ -222,7 +222,9 @@ def _controls(rule: Rule, key: str) -> Iterator[tuple[str, f.Formula, str]]:
         yield "reach", never, why.format(key)
     timing = rule.sentence.timing
     negates = meant.scope is not None and meant.scope.negates
-    if negates or not isinstance(timing, s.Never):
+    # What `never` forbids, an `only` scope demands outside of its mode, and the other way round: a
+    # prohibition is kept by not responding, and nothing is wrong with that.
+    if negates is isinstance(timing, s.Never):
         reason = f"the response comes; if it never does, {key} holds without it"
         yield "resp", f.globally(f.not_(response)), reason
     if isinstance(timing, s.Before) and not negates:

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from importlib.resources import files
 from pathlib import PurePosixPath
 from typing import Any
@@ -23,11 +24,11 @@ from compiler.sif import Drawn, Sif, sif
 from compiler.targets import ajpf
 from compiler.targets.target import DEFAULT, Options, Target, stem
 from compiler.templating import render, to_json
-from compiler.verification import NotChecked, Proved
+from compiler.verification import Evidence, NotChecked, Proved
 from fretish import expressions as e
 from fretish.declarations import Declarations, Modality
 from fretish.depth import deep
-from fretish.diagnostic import Code, Diagnostic
+from fretish.diagnostic import Code, Diagnostic, Severity
 from monitors.measures import MIRRORED
 
 SCHEMA = "fretc-ajpf-bundle-1"
@@ -40,16 +41,66 @@ def refusal(rule: Rule, options: Options = DEFAULT) -> Diagnostic | None:
     refused = ajpf.refusal(rule, options)
     if refused is not None:
         return refused
-    made = sif(rule)
-    if isinstance(made, Diagnostic):
-        return made
-    return _not_kept(rule, made, options)
+    found = shown(rule, options)
+    return found if isinstance(found, Diagnostic) else _not_kept(rule, found.evidence)
 
 
-def _not_kept(rule: Rule, made: Sif, options: Options) -> Diagnostic | None:
-    from compiler.agent_layer import agent_evidence
+@dataclass(frozen=True, slots=True)
+class Shown:
+    """An agent, and what the model says of its texts."""
 
-    for line in agent_evidence(rule, texts(rule, made, options), made.percepts):
+    sif: Sif
+    evidence: tuple[Evidence, ...]
+
+    @property
+    def is_kept(self) -> bool:
+        """Whether all of it is as it has to be."""
+        return all(isinstance(line.result, Proved) for line in self.evidence)
+
+
+def forms(rule: Rule) -> tuple[Sif, ...] | Diagnostic:
+    """The agents that may be made: one that asks for the whole condition, and one that does not.
+
+    One where that is the same; F601 where there is none.
+    """
+    asking, bare = sif(rule), sif(rule, guarded=False)
+    if isinstance(asking, Diagnostic):
+        return asking
+    if isinstance(bare, Diagnostic) or not bare.over_responds:
+        return (asking,)
+    return (asking, bare)
+
+
+@deep
+def shown(rule: Rule, options: Options = DEFAULT, limit: int | None = None) -> Shown | Diagnostic:
+    """The first form of the agent that is shown to keep its requirement, the guarded one first.
+
+    Args:
+        rule: one that `ajpf.refusal` does not refuse, with the same options.
+        options: `weaken` counts.
+        limit: how many states are explored of each form.
+
+    Returns:
+        Where no form is shown to keep it, the guarded one; F601 where there is none at all.
+    """
+    from compiler.agent_layer import STATES, agent_evidence
+
+    known = forms(rule)
+    if isinstance(known, Diagnostic):
+        return known
+    found: list[Shown] = []
+    for made in known:
+        files = texts(rule, made, options)
+        found.append(Shown(made, agent_evidence(rule, files, made.percepts, limit or STATES)))
+        if found[-1].is_kept:
+            return found[-1]
+        if any(isinstance(line.result, NotChecked) for line in found[-1].evidence):
+            break  # an agent that responds to more has more states
+    return found[0]
+
+
+def _not_kept(rule: Rule, evidence: Sequence[Evidence]) -> Diagnostic | None:
+    for line in evidence:
         if isinstance(line.result, Proved):
             continue
         result = line.result
@@ -71,8 +122,10 @@ def emit(rules: Sequence[Rule], options: Options = DEFAULT) -> tuple[Artifact, .
 
 
 def _bundle(rule: Rule, options: Options) -> Iterator[Artifact]:
-    made = sif(rule)
-    assert isinstance(made, Sif), f"{rule.id} was to be refused"
+    found = shown(rule, options)
+    assert isinstance(found, Shown), f"{rule.id} was to be refused"
+    assert found.is_kept, f"{rule.id} was to be refused"
+    made = found.sif
     made_of = {
         **texts(rule, made, options),
         **_configuration(rule, made, options),
@@ -110,6 +163,7 @@ def _agent(rule: Rule, made: Sif, plans: Sequence[Drawn], what: str) -> str:
         "ajpf-bundle/agent.gwen.j2",
         title=f"{what} {rule.id}",
         sentence=_sentence(rule),
+        over_responds=made.over_responds,
         agent=made.agent,
         plans=[_plan(plan) for plan in plans],
     )
@@ -192,6 +246,7 @@ def _manifest(rule: Rule, made: Sif, options: Options, texts: Mapping[str, str])
         "percepts": list(made.percepts),
         "responses": list(made.responses),
         "released": made.released,
+        "over_responds": made.over_responds,
         "atoms": [_atom(rule, made, name) for name in (*made.percepts, *made.responses)],
         "checks": _checks(rule, options),
         "files": {name: sha256(text) for name, text in sorted(texts.items())},
@@ -250,12 +305,30 @@ def _refuse_weak(rule: Rule) -> Diagnostic | None:
     return refusal(rule, _WEAKEN)
 
 
+@deep
+def remark(rule: Rule, options: Options = DEFAULT) -> Diagnostic | None:
+    """What is to be known of the properties (F605, F606, F607); else of the agent (F615)."""
+    told = ajpf.remark(rule, options)
+    found = shown(rule, options) if told is None else told
+    if not isinstance(found, Shown) or not found.sif.over_responds:
+        return told
+    return Diagnostic(
+        Code.OVER_RESPONDS,
+        f"the agent of {rule.id} responds to every event of its condition, also where the rest "
+        "of the condition does not hold",
+        rule.sentence.condition.span if rule.sentence.condition else rule.requirement.wording,
+        "percepts are believed one after the other, so that an agent which asks for the rest may "
+        "miss its trigger; where that is too often, bind the whole condition to one proposition",
+        Severity.WARNING,
+    )
+
+
 def _remark(rule: Rule) -> Diagnostic | None:
-    return ajpf.remark(rule)
+    return remark(rule)
 
 
 def _remark_weak(rule: Rule) -> Diagnostic | None:
-    return ajpf.remark(rule, _WEAKEN)
+    return remark(rule, _WEAKEN)
 
 
 _SUMMARY = "an agent, its environment and its properties, ready for AJPF"

@@ -92,6 +92,7 @@ def test_a_percept_becomes_an_event_a_plan_and_deeds_one_stage_each() -> None:
     for said in (
         "the environment shows near",
         "perceives +near",
+        "perceives nothing new",
         "turns to +near",
         "plans +near",
         "does halt; the environment shows near",
@@ -180,20 +181,62 @@ def events(state: State) -> list[str]:
     return [str(intention.event) for intention in state.waiting]
 
 
-def test_percepts_that_change_at_once_raise_their_events_in_any_order() -> None:
+def perceived(model: Model, state: State) -> set[tuple[tuple[str, ...], ...]]:
+    """What is believed on each way through perceiving, one set of names for each state."""
+    if state.stage is not Stage.PERCEIVE:
+        return {()}
+    return {
+        (tuple(sorted(after.beliefs)), *rest)
+        for _, after in model.steps(state)
+        for rest in perceived(model, after)
+    }
+
+
+def test_percepts_that_change_at_once_are_believed_one_after_the_other_in_any_order() -> None:
     model = Model(agent("+a : {True} <- +x;"), ("a", "b"))
     shown = first("the environment shows a, b", list(model.steps(model.initial)))
-    both = [state for _, state in model.steps(shown)]
-    assert sorted(map(events, both)) == [["+a", "+b"], ["+b", "+a"]]
-    gone = replace(both[0], percepts=frozenset(), told=False, stage=Stage.PERCEIVE, waiting=())
-    assert sorted(events(s) for _, s in model.steps(gone)) == [["-a", "-b"], ["-b", "-a"]]
+    both = ("a", "b")
+    assert perceived(model, shown) == {(("a",), both, both), (("b",), both, both)}
+    believed = replace(shown, percepts=frozenset(), perceived=frozenset("ab"))
+    assert perceived(model, believed) == {(("a",), (), ()), (("b",), (), ())}
 
 
 def test_what_went_comes_before_what_came() -> None:
     model = Model(agent(ONCE), ("a", "b"))
     state = replace(model.initial, percepts=frozenset("a"), perceived=frozenset("b"))
-    ((_, after),) = model.steps(replace(state, stage=Stage.PERCEIVE))
-    assert (events(after), after.beliefs) == (["-b", "+a"], frozenset("a"))
+    assert perceived(model, replace(state, stage=Stage.PERCEIVE)) == {((), ("a",), ("a",))}
+
+
+AFTER = ("perceives nothing new", "turns to +near", "plans +near")
+"""What happens once the percept is believed."""
+
+
+def test_an_agent_may_take_each_percept_in_a_turn_of_its_own() -> None:
+    model = Model(agent(RELEASED), ("near",))
+    begun = [s for words, s in model.steps(model.initial) if words.endswith("shows near")]
+    (state,) = [state for state in begun if state.in_turn]
+    for said in (
+        "perceives +near: one a turn",
+        "turns to the percept +near",
+        "goes on",
+        "believes near",
+        "perceives nothing new",
+        "turns to +near",
+        "plans +near",
+    ):
+        assert ("B(ag,near)" in model.label(state)) is (said in AFTER)
+        state = first(said, list(model.steps(state)))
+
+
+def test_a_percept_that_waits_is_not_noticed_twice() -> None:
+    model = Model(agent(ONCE), ("near",))
+    near = frozenset({"near"})
+    state = replace(model.initial, percepts=near, stage=Stage.PERCEIVE, in_turn=True)
+    ((_, noticed),) = model.steps(state)
+    assert events(noticed) == ["the percept +near"]
+    again = replace(noticed, told=False, stage=Stage.PERCEIVE)
+    ((_, still),) = model.steps(again)
+    assert events(still) == ["the percept +near"]
 
 
 def outcomes(model: Model, state: State) -> set[tuple[frozenset[str], tuple[str, ...]]]:

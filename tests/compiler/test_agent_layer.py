@@ -5,6 +5,7 @@ from collections.abc import Sequence
 import pytest
 
 from compiler.agent_layer import checked
+from compiler.targets import ajpf
 from compiler.verification import (
     Counterexample,
     Evidence,
@@ -17,6 +18,7 @@ from compiler.verification import (
 )
 from fretish.diagnostic import Code, Diagnostic
 from fretish.source import Source
+from tests.compiler.targets.test_bundle import rule
 
 PAPER = """GWENDOLEN
 :name: agilex_agent
@@ -60,10 +62,11 @@ def test_the_papers_agent_is_proved_where_its_trigger_comes_and_the_check_can_fa
         "every run of the agent keeps 1a: "
         "[] ((B(agilex_agent,too_close)) -> (<> (B(agilex_agent,stopped))))"
     )
-    assert main.result == Proved("all runs through 50 states keep it")
+    assert main.result == Proved("all runs through 121 states keep it")
     assert main.assumptions == (
         "the environment shows exactly too_close, each freely, anew at the start, at every action "
         "and whenever the agent is idle, for ever (--percept)",
+        "percepts that are drawn together are believed one after the other, in any order",
         "intentions take turns, first come, first served, one deed a turn",
         "the agent is always scheduled again",
     )
@@ -200,3 +203,16 @@ def test_a_percept_is_spelt_as_the_agent_spells_it() -> None:
 def test_a_file_without_properties_shows_nothing(properties: str) -> None:
     (line,) = lines(properties, ["too_close"])
     assert line.result == NotChecked("`sif.psl` has none")
+
+
+def test_in_an_only_scope_an_agent_that_never_responds_keeps_the_prohibition() -> None:
+    """As AJPF says; that the mode is left at all is the control that counts."""
+    made = rule("only in m mode the ag shall eventually satisfy r")
+    idle = PAPER.replace("agilex_agent", "ag").replace("too_close", "m")
+    found = checked(Source("a.gwen", idle), Source("p.psl", ajpf.text(made)), ["m"])
+    assert not isinstance(found, Diagnostic)
+    assert statuses(found) == [("R1", "proved"), ("R1_reach", "proved")]
+    responding = idle.replace("stop_moving,", "+r,")
+    found = checked(Source("a.gwen", responding), Source("p.psl", ajpf.text(made)), ["m"])
+    assert not isinstance(found, Diagnostic)
+    assert statuses(found)[0] == ("R1", "counterexample")

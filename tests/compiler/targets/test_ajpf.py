@@ -292,9 +292,10 @@ def test_a_sentence_of_many_lines_is_one_comment() -> None:
          {"reach": "m | m R (m | !p)", "resp": "G !q"}),
         ("after m, sw shall eventually satisfy q", {"reach": "G(m -> G m)", "resp": "G !q"}),
         ("only in m, whenever p sw shall eventually satisfy q",
-         {"reach": "G !(!m & p)", "resp": "G !q"}),
+         {"reach": "G !(!m & p)"}),
         ("only before m, sw shall never satisfy q", {"reach": "G !m", "resp": "G !q"}),
-        ("only after m, sw shall before t satisfy q", {"reach": "G !m", "resp": "G !q"}),
+        ("only after m, sw shall before t satisfy q", {"reach": "G !m"}),
+        ("only in m, sw shall always satisfy q", {"reach": "G m"}),
         ("whenever true sw shall eventually satisfy q", {"resp": "G !q"}),
         ("whenever p sw shall eventually satisfy false", {"reach": "G !p"}),
     ],
@@ -324,7 +325,7 @@ def test_controls_ask_for_the_trigger_the_response_and_the_stop(
     ],
 )
 def test_a_control_says_what_it_is_for(scope: str, why: str) -> None:
-    _, reach, _ = ajpf.properties(rule(f"{scope}, sw shall eventually satisfy q"))
+    _, reach, *_ = ajpf.properties(rule(f"{scope}, sw shall eventually satisfy q"))
     assert reach.why == why
 
 

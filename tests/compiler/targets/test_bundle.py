@@ -135,8 +135,13 @@ def test_the_layer_shows_what_the_manifest_expects() -> None:
         ),
         (
             "whenever a & !b the ag shall satisfy r",
-            ["+a : {~B b, ~B r} <- do_r, +r;", "-b : {B a, ~B r} <- do_r, +r;"],
-            ["+a : {~B b, ~B r} <- do_r;", "-b : {B a, ~B r} <- do_r;"],
+            ["+a : {~B r} <- do_r, +r;", "-b : {~B r} <- do_r, +r;"],
+            ["+a : {~B r} <- do_r;", "-b : {~B r} <- do_r;"],
+        ),
+        (
+            "whenever a & b the ag shall satisfy r",
+            ["+a : {B b, ~B r} <- do_r, +r;", "+b : {B a, ~B r} <- do_r, +r;"],
+            ["+a : {B b, ~B r} <- do_r;", "+b : {B a, ~B r} <- do_r;"],
         ),
         (
             "whenever a | b the ag shall satisfy r",
@@ -156,6 +161,28 @@ def test_a_plan_for_each_event_that_can_make_the_condition_true(
     files = bundle(rule(sentence))
     assert plans(files) == agent
     assert plans(files, "SIF_mutant.gwen") == mutant
+
+
+def test_an_agent_that_responds_too_often_says_so() -> None:
+    made = rule("whenever a & !b the ag shall eventually satisfy r")
+    assert TARGET.remark is not None
+    told = TARGET.remark(made)
+    assert told is not None
+    assert told.code is Code.OVER_RESPONDS
+    assert not told.is_error
+    files = bundle(made)
+    assert json.loads(files["r1_ajpf/manifest.json"])["over_responds"]
+    assert "// It responds to every event" in files["r1_ajpf/SIF.gwen"]
+    for sentence in ("whenever a & b the ag shall satisfy r", "whenever a the ag shall satisfy r"):
+        assert TARGET.remark(rule(sentence)) is None
+        files = bundle(rule(sentence))
+        assert not json.loads(files["r1_ajpf/manifest.json"])["over_responds"]
+        assert "// It responds to every event" not in files["r1_ajpf/SIF.gwen"]
+
+
+def test_where_neither_form_is_shown_to_keep_it_there_is_none() -> None:
+    told = refused("whenever a & !b the ag shall always satisfy r")
+    assert told.code is Code.NOT_KEPT
 
 
 def test_a_response_that_is_an_action_is_that_action() -> None:
