@@ -30,7 +30,11 @@ from compiler.cli.verify import verify
 from fretish.diagnostic import Code, Diagnostic
 
 
-@click.group(cls=Commands, no_args_is_help=True)
+@click.group(
+    cls=Commands,
+    no_args_is_help=True,
+    context_settings={"help_option_names": ["-h", "--help"]},
+)
 @click.version_option(__version__, prog_name="fretc", message="%(prog)s %(version)s")
 def cli() -> None:
     """From FRETish requirements to monitors, audited logs and a traceability report.

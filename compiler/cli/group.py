@@ -20,7 +20,16 @@ class Commands(click.Group):
 
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
         """Put the default command before a file."""
-        if args and args[0] not in self.commands and args[0] not in ("--help", "--version"):
+        if (
+            args
+            and args[0] not in self.commands
+            and args[0]
+            not in (
+                "-h",
+                "--help",
+                "--version",
+            )
+        ):
             if not args[0].startswith("-") and not _is_path(args[0]):
                 stop(_unknown_command(args[0], [*self.commands]))
             args = [DEFAULT, *args]
