@@ -73,7 +73,8 @@ def write(files: Mapping[Path, str | bytes]) -> Diagnostic | None:
     """Write all of them: each under a temporary name first, then renamed.
 
     Nothing half-written stays behind: when one cannot be written, none is put in place. A link is
-    followed, a file keeps its permissions, and what is no regular file is never replaced.
+    followed, a file keeps its permissions, and what is no regular file is never replaced. A text
+    that begins with `#!` may also be run by whoever may read it.
     """
     waiting: list[tuple[Path, Path]] = []
     path = Path()
@@ -104,10 +105,17 @@ def write(files: Mapping[Path, str | bytes]) -> Diagnostic | None:
 
 def _fill(temporary: Path, content: str | bytes, *, like: Path) -> None:
     """Write a new file, with the permissions of the one that it will replace, if there is one."""
+    data = content.encode() if isinstance(content, str) else content
     with temporary.open("xb") as file:
-        if like.exists():
-            temporary.chmod(stat.S_IMODE(like.stat().st_mode))
-        file.write(content.encode() if isinstance(content, str) else content)
+        mode = stat.S_IMODE((like.stat() if like.exists() else os.fstat(file.fileno())).st_mode)
+        if data.startswith(b"#!"):
+            mode |= (mode & _READABLE) >> 2
+        os.fchmod(file.fileno(), mode)
+        file.write(data)
+
+
+_READABLE = stat.S_IRUSR | stat.S_IRGRP | stat.S_IROTH
+"""Two bits above those by which a file may be run."""
 
 
 def sha256(text: str) -> str:

@@ -60,6 +60,16 @@ class Stop:
 
 
 @dataclass(frozen=True, slots=True)
+class Contact:
+    """The chassis begins to touch an obstacle."""
+
+    at: Pose
+    """Where the robot was."""
+    seconds: float
+    """Simulated time."""
+
+
+@dataclass(frozen=True, slots=True)
 class Mission:
     """What happened, as the simulator knows it; the log has to show it by itself.
 
@@ -72,7 +82,7 @@ class Mission:
         stops: the interventions.
         measured_clearance: least clearance that a scan showed, metres.
         true_clearance: least true distance from chassis to obstacle, metres, negative in contact.
-        contacts: how often the chassis began to touch an obstacle.
+        touched: each time that the chassis began to touch an obstacle.
         messages: how many the log holds.
         track: where the robot really was, at every tenth of a second.
         scene: the room as it really was.
@@ -87,11 +97,16 @@ class Mission:
     stops: tuple[Stop, ...]
     measured_clearance: float
     true_clearance: float
-    contacts: int
+    touched: tuple[Contact, ...]
     messages: int
     track: tuple[Pose, ...]
     scene: Scene
     path: Path
+
+    @property
+    def contacts(self) -> int:
+        """How often it was touched."""
+        return len(self.touched)
 
 
 def record(
@@ -260,7 +275,7 @@ class _Run:
             stops=tuple(judge.stops),
             measured_clearance=self._driver.measured,
             true_clearance=judge.clearance,
-            contacts=judge.contacts,
+            touched=tuple(judge.touched),
             messages=self._log.messages,
             track=tuple(judge.track),
             scene=self._scene,
@@ -302,7 +317,7 @@ class _Judge:
     def __init__(self, robot: Robot) -> None:
         self._robot = robot
         self.present = self.clearance = robot.clearance()
-        self.contacts = 0
+        self.touched: list[Contact] = []
         self.stops: list[Stop] = []
         self.track: list[Pose] = []
         self._touching = self._stop = False
@@ -323,7 +338,8 @@ class _Judge:
         self.present = robot.clearance()
         self.clearance = min(self.clearance, self.present)
         touching = robot.touching()
-        self.contacts += touching and not self._touching
+        if touching and not self._touching:
+            self.touched.append(Contact(robot.pose, (tick + 1) / _TICKS_PER_SECOND))
         self._touching = touching
         if tick % 5 == 0:
             self.track.append(robot.pose)

@@ -15,13 +15,14 @@ from simulation.mission import Mission
 from simulation.motion import Pose
 from simulation.scene import ROBOT, STORE, Barrel, Box
 
-_INK, _MAPPED, _MOVED, _WAY, _STOP, _GOAL = (
+_INK, _MAPPED, _MOVED, _WAY, _STOP, _GOAL, _CONTACT = (
     "#333333",
     "#b8c4cf",
     "#e8871e",
     "#2463a8",
     "#c0182a",
     "#2e8540",
+    "#8a1a9b",
 )
 
 _EVERY, _FRAME = 20, 66
@@ -45,13 +46,15 @@ def animate(mission: Mission) -> bytes:
     (line,) = axes.plot([], [], color=_WAY, lw=1.6)
     robot = axes.add_patch(_outline(ROBOT, mission.track[0], facecolor=_WAY, alpha=0.6))
     marks = axes.scatter([], [], marker="X", s=60, color=_STOP, zorder=5)
+    hits = axes.scatter([], [], marker="*", s=120, color=_CONTACT, zorder=8)
     frames = []
     for count in range(1, len(mission.track) + 1, _EVERY):
         track = mission.track[:count]
         line.set_data([p.x for p in track], [p.y for p in track])
         robot.set_xy(_corners(ROBOT, track[-1]))
-        stops = [(s.at.x, s.at.y) for s in mission.stops if s.seconds <= (count - 1) / 10]
-        marks.set_offsets(np.array(stops).reshape(-1, 2))
+        for shown_as, events in ((marks, mission.stops), (hits, mission.touched)):
+            past = [(e.at.x, e.at.y) for e in events if e.seconds <= (count - 1) / 10]
+            shown_as.set_offsets(np.array(past).reshape(-1, 2))
         canvas.draw()
         shown = Image.fromarray(np.asarray(canvas.buffer_rgba())).convert("RGB")
         frames.append(shown.quantize(colors=32))
@@ -144,6 +147,16 @@ def _way(axes: Any, mission: Mission) -> None:
             color=_STOP,
             zorder=5,
             label="stopped by the safety function",
+        )
+    if mission.touched:
+        axes.scatter(
+            [contact.at.x for contact in mission.touched],
+            [contact.at.y for contact in mission.touched],
+            marker="*",
+            s=190,
+            color=_CONTACT,
+            zorder=8,
+            label="contact with an obstacle",
         )
 
 

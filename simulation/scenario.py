@@ -224,10 +224,8 @@ def _mistakes(scenario: Scenario) -> Iterator[str]:
         "safety.threshold": safety.threshold,
         "recorder.keep": recorder.keep,
     }
-    none = {"safety.late": safety.late, "lidar.range_min": scenario.lidar.range_min}
     shares = {"recorder.keep": recorder.keep}
     for topic, way in scenario.transport.items():
-        none |= {f"transport.{topic}.delay": way.delay}
         shares |= {f"transport.{topic}.loss": way.loss, f"transport.{topic}.swap": way.swap}
     walker = scenario.store.walker
     if walker is not None:
@@ -235,7 +233,6 @@ def _mistakes(scenario: Scenario) -> Iterator[str]:
         if walker.start == walker.end:
             yield "`store.walker` must not end where it starts"
     yield from (f"`{name}` must be above 0" for name, value in more.items() if value <= 0)
-    yield from (f"`{name}` must not be below 0" for name, value in none.items() if value < 0)
     for name, value in shares.items():
         if not 0 <= value <= 1:
             yield f"`{name}` must be between 0 and 1"
@@ -249,8 +246,6 @@ def _mistakes(scenario: Scenario) -> Iterator[str]:
 
 def _interceptor_mistakes(node: Interceptor) -> Iterator[str]:
     times = ("hold", "command_timeout", "safety_timeout")
-    if node.period < 0:
-        yield "`interceptor.period` must not be below 0"
     if node.at_once != (node.period > 0):
         yield "`interceptor.at_once` must be true with a period above 0, and false without one"
     for name in times:
@@ -260,6 +255,9 @@ def _interceptor_mistakes(node: Interceptor) -> Iterator[str]:
         elif value and value < node.period:
             yield f"`interceptor.{name}` must be 0, or not below the period"
 
+
+_SIGNED = {"recorder.jump_by"}
+"""Numbers that may be negative, beside places: a clock may jump back."""
 
 T = TypeVar("T")
 
@@ -276,12 +274,14 @@ def _table(cls: type[T], data: object, where: str) -> T:
     for key, one in known.items():
         if key not in data and one.default is MISSING and one.default_factory is MISSING:
             raise ScenarioError(f"`{f'{where}.{key}' if where else key}` is missing")
-    return cls(
-        **{
-            key: _value(hints[key], value, f"{where}.{key}".lstrip("."))
-            for key, value in data.items()
-        }
-    )
+    made = {
+        key: _value(hints[key], value, f"{where}.{key}".lstrip(".")) for key, value in data.items()
+    }
+    for key, value in made.items():
+        name = f"{where}.{key}".lstrip(".")
+        if isinstance(value, float) and value < 0 and name not in _SIGNED:
+            raise ScenarioError(f"`{name}` must not be below 0")
+    return cls(**made)
 
 
 def _value(kind: Any, value: object, where: str) -> Any:

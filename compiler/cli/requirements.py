@@ -14,7 +14,8 @@ from fretish.diagnostic import Code, Diagnostic, has_errors
 
 if TYPE_CHECKING:
     from compiler.project import Project
-    from compiler.targets.target import Options
+    from compiler.rule import Rule
+    from compiler.targets.target import Options, Target
 
 _EMITS = (
     "ltl", "monitor", "ajpf", "ajpf-bundle", "interceptor", "dafny", "smv", "hoa", "dot", "prism",
@@ -132,26 +133,42 @@ def _print_formulas(project: Project, options: Options) -> None:
 
 
 def _emit(project: Project, kinds: dict[str, None], output: str, options: Options) -> None:
-    from compiler.pipeline import clashes
+    """Write whatever can be; what a target refuses is told and keeps nothing else from it."""
     from compiler.targets import TARGETS
 
     named = [TARGETS[kind] for kind in kinds]
     targets = [(options.weaken and target.weak) or target for target in named]
-    refused = [
-        diagnostic
-        for target in targets
-        for rule in project.rules
-        if (diagnostic := target.refuse(rule)) is not None
-    ]
-    refused += [d for target in targets if (d := target.refuse_project(options))]
-    if options.one_file:
-        refused.extend(clashes(project.rules))
-    if refused:
-        stop(*refused)
-    say([d for target in targets for rule in project.rules if (d := target.remark(rule))])
-    say([diagnostic for target in targets for diagnostic in target.remarks(options)])
-    files = [artifact for target in targets for artifact in target.emit(project.rules, options)]
+    made = [(target, *_emitted(target, project.rules, options)) for target in targets]
+    refused = [diagnostic for _, _, wrong in made for diagnostic in wrong]
+    kept = [(target, rules) for target, rules, _ in made if rules is not None]
+    say(refused)
+    say([d for target, rules in kept for rule in rules if (d := target.remark(rule))])
+    say([diagnostic for target, _ in kept for diagnostic in target.remarks(options)])
+    files = [artifact for target, rules in kept for artifact in target.emit(rules, options)]
     _deliver_all({str(artifact.path): artifact.text for artifact in files}, output)
+    if refused:
+        raise SystemExit(BAD)
+
+
+def _emitted(
+    target: Target, rules: Sequence[Rule], options: Options
+) -> tuple[list[Rule] | None, list[Diagnostic]]:
+    """The rules that the target can make files of, None: no file at all; and what it refuses.
+
+    A file of all rules is made of all of them or not at all.
+    """
+    from compiler.pipeline import clashes
+
+    found = [(rule, target.refuse(rule)) for rule in rules]
+    wrong = [diagnostic for _, diagnostic in found if diagnostic is not None]
+    whole = [diagnostic] if (diagnostic := target.refuse_project(options)) else []
+    one_file = options.one_file and target.name == "monitor"
+    if one_file:
+        whole += clashes(rules)
+    if whole or (wrong and (one_file or not target.per_rule)):
+        return None, [*wrong, *whole]
+    kept = [rule for rule, diagnostic in found if diagnostic is None]
+    return (kept or None) if wrong else kept, wrong
 
 
 @click.command(short_help="Put sentences into their canonical wording.")

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import math
 import os
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from pathlib import Path
@@ -15,6 +16,7 @@ import click
 from compiler.cli.output import SHOWN, VIOLATION, deliver, not_written, say_line, stop
 from compiler.cli.progress import progress
 from fretish.diagnostic import Code, Diagnostic
+from fretish.source import Source, Span
 
 if TYPE_CHECKING:
     from simulation.scenario import Scenario
@@ -96,6 +98,7 @@ def _scenario(name: str) -> Scenario:
     try:
         scenario = load(name)
         possible(scenario)
+        _known(scenario)
     except OSError as error:
         stop(_bad_scenario(name, error.strerror or str(error)))
     except (ScenarioError, ValueError) as error:
@@ -103,11 +106,44 @@ def _scenario(name: str) -> Scenario:
     return scenario
 
 
+def _known(scenario: Scenario) -> None:
+    """Whether there are the requirements of which it says how they come out.
+
+    Raises:
+        ScenarioError: one is not there.
+    """
+    from compiler.experiment import project
+    from simulation.scenario import ScenarioError
+
+    known = [rule.id for rule in project().rules]
+    for id, verdict in scenario.expect.verdicts.items():
+        if id not in known:
+            where = f"`expect.{verdict.replace(' ', '_')}`"
+            there = ", ".join(known)
+            raise ScenarioError(f"{where} names `{id}`, which is no requirement; there are {there}")
+
+
+def _place(name: str, why: str) -> Span | None:
+    """Where the key stands that the text names first; the file's start where it cannot be found."""
+    from compiler.files import read
+
+    source = read(name) if name.endswith(".toml") else None
+    if not isinstance(source, Source):
+        return None
+    *tables, key = why.partition("`")[2].partition("`")[0].split(".")
+    text = source.text
+    header = re.search(rf"^\s*\[+\s*{re.escape(tables[0])}\b", text, re.M) if tables else None
+    begin = header.end() if header else 0
+    found = re.compile(rf"(?<![\w-]){re.escape(key)}(?=\s*=)").search(text, begin) if key else None
+    return source.span(*found.span()) if found else source.span(0, 0)
+
+
 def _bad_scenario(name: str, why: str) -> Diagnostic:
     """F914."""
     return Diagnostic(
         Code.BAD_SCENARIO,
         f"the scenario `{name}` cannot be run: {why}",
+        _place(name, why),
         help="`fretc simulate --list` names those that come with fretc",
     )
 
@@ -119,9 +155,16 @@ def _file(out: str) -> Path:
         stop(not_written(out, "it is a file of its own"))
     if path.exists() and not path.is_file():
         stop(not_written(out, "it is no regular file"))
-    if not path.parent.is_dir():
-        stop(not_written(out, "No such file or directory"))
+    _folder(path.parent, out)
     return path
+
+
+def _folder(folder: Path, out: str) -> None:
+    """Make it, with those that it lies in."""
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        stop(not_written(out, error.strerror or str(error)))
 
 
 def _record(
@@ -185,8 +228,8 @@ def _count(
     if len(set(called)) < len(called):
         raise click.UsageError("two of the scenarios have the same name")
     folder = Path(out) if out is not None else None
-    if folder is not None and not folder.is_dir():
-        stop(not_written(str(out), "a campaign needs a folder that is there"))
+    if folder is not None:
+        _folder(folder, str(out))
     total = len(scenarios) * count
     with progress(total, "simulating") as show:
         try:

@@ -177,19 +177,15 @@ def _node(node: Interception) -> dict[str, Any]:
         "timed": timed,
         "period": node.period / 10**9,
         "summary": _summary(node),
-        "imports": _imports(node.ros, timed),
+        "statuses": _STATUSES[node.ros],
     }
 
 
-def _imports(ros: int, timed: bool) -> tuple[str, ...]:
-    plain = {"sys"} | ({"signal"} if ros == 2 else {"time"} if timed else set())
-    return (
-        *(f"import {name}" for name in sorted(plain)),
-        "from collections.abc import Callable",
-        "from math import isfinite",
-        "from threading import Lock",
-        "from typing import Any",
-    )
+_STATUSES = {
+    1: "3 no ROS master has answered, 4 ROS has ended it: another node has taken its name, say",
+    2: "4 ROS has ended it",
+}
+"""What else `--help` says of how the node ends, for each ROS."""
 
 
 def _summary(node: Interception) -> str:

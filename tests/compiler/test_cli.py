@@ -1,6 +1,7 @@
 """The command as its users meet it: what it prints, writes and exits with."""
 
 import json
+import os
 import subprocess
 import sys
 from pathlib import Path
@@ -113,14 +114,50 @@ def test_minus_prints_in_place_of_writing(fretc: Fretc) -> None:
     assert not Path("build").exists()
 
 
-def test_one_target_that_refuses_keeps_every_file_from_being_written(fretc: Fretc) -> None:
-    sentence = "whenever p the rover shall within 3 ticks satisfy q"
-    run = fretc(write("r.fret", sentence), "--emit", "monitor", "--emit", "ajpf")
+def test_what_a_target_refuses_keeps_nothing_else_from_being_written(fretc: Fretc) -> None:
+    write("req/a.fret", "whenever p the rover shall within 3 ticks satisfy q")
+    write("req/b.fret", "whenever p the rover shall eventually satisfy q")
+    run = fretc("req", "--emit", "ajpf", "--emit", "interceptor", "--emit", "monitor")
     assert run.status == 2
-    assert run.err.startswith(
-        "F601 AJPF cannot express the timing `within 3 ticks` of r\n  --> r.fret:1:1\n"
+    assert "F601 AJPF cannot express the timing `within 3 ticks` of a\n" in run.err
+    assert "F323 there are no bindings, and so no interceptor\n" in run.err
+    assert run.err.endswith(
+        "wrote build/b.psl\nwrote build/a_monitor.py\nwrote build/b_monitor.py\n"
     )
-    assert not Path("build").exists()
+    assert sorted(path.name for path in Path("build").iterdir()) == [
+        "a_monitor.py", "b.psl", "b_monitor.py",
+    ]  # fmt: skip
+    alone = fretc("req/b.fret", "--emit", "ajpf", "-o", "alone")
+    assert alone.status == 0
+    assert Path("alone/b.psl").read_text() == Path("build/b.psl").read_text()
+
+
+def test_a_file_of_all_requirements_is_made_of_all_of_them_or_not_at_all(fretc: Fretc) -> None:
+    write("req/a.fret", "whenever p the rover shall within 3 seconds satisfy q")
+    write("req/b.fret", "whenever p the rover shall eventually satisfy q")
+    run = fretc("req", "--emit", "monitor", "--one-file", "--emit", "json")
+    assert run.status == 2
+    assert sorted(path.name for path in Path("build").iterdir()) == ["a.json", "b.json"]
+
+
+@pytest.mark.parametrize("mask", [0o022, 0o077])
+def test_a_file_with_a_command_line_can_be_run_by_whoever_can_read_it(
+    fretc: Fretc, mask: int
+) -> None:
+    before = os.umask(mask)
+    try:
+        write("build/r_monitor.py", "")
+        write("target.ltl", "")
+        Path("build/r.ltl").symlink_to("../target.ltl")
+        path = write("r.fret", "the rover shall always satisfy q")
+        assert fretc(path, "--emit", "monitor", "--emit", "ltl").status == 0
+    finally:
+        os.umask(before)
+    modes = [oct(Path(f"build/r{end}").stat().st_mode & 0o777) for end in ("_monitor.py", ".ltl")]
+    assert modes == (["0o755", "0o644"] if mask == 0o022 else ["0o700", "0o600"])
+    ran = subprocess.run(["build/r_monitor.py", "-h"], capture_output=True, text=True, check=False)
+    assert ran.returncode == 0
+    assert ran.stdout.startswith("usage")
 
 
 def test_within_is_emitted_for_ajpf_where_weakening_is_allowed(fretc: Fretc) -> None:

@@ -50,6 +50,13 @@ def test_a_mission_is_recorded_and_drawn(tmp_path: Path) -> None:
     assert about["fretc"]
 
 
+def test_folders_that_are_missing_are_made(tmp_path: Path) -> None:
+    ran = fretc(tmp_path, "--duration", "1", "--out", "a/b/c.mcap", "--png", "d/e.png")
+    assert ran.returncode == 0, ran.stderr
+    assert (tmp_path / "a/b/c.mcap").is_file()
+    assert (tmp_path / "d/e.png").is_file()
+
+
 def test_a_mission_can_be_a_log_of_ros_1(tmp_path: Path) -> None:
     ran = fretc(tmp_path, "--duration", "1", "--encoding", "ros1", "--out", "a.mcap")
     assert ran.returncode == 0, ran.stderr
@@ -91,15 +98,18 @@ def test_a_campaign_ends_in_a_table_and_tells_what_is_not_as_stated(tmp_path: Pa
         (("bad.toml", "--out", "a.mcap"), "F914 the scenario `bad.toml` cannot be run: `title` is"),
         (("ghost.toml", "--out", "a.mcap"), "cannot be run: the store has no obstacle `ghost`"),
         (("walker", "nominal", "--out", "a.mcap"), "F907 several scenarios need --campaign"),
-        (("--out", "no/a.mcap"), "F905 `no/a.mcap` cannot be written"),
+        (("--out", "bad.toml/a.mcap"), "F905 `bad.toml/a.mcap` cannot be written: File exists"),
         (("--out", "-"), "F905 `-` cannot be written"),
         (("--out", "."), "F905 `.` cannot be written: it is no regular file"),
         (("--out", "a.x", "--png", "a.x"), "F905 `a.x` cannot be written: two outputs"),
-        (("--out", "a.mcap", "--png", "no/a.png"), "F905 `no/a.png` cannot be written"),
+        (("--out", "a.mcap", "--png", "bad.toml/a.png"), "F905 `bad.toml/a.png` cannot be written"),
         (("--out", "a.mcap", "--duration", "inf"), "F905 `a.mcap` cannot be written: a mission"),
         (("--campaign", "1", "--png", "a.png"), "F907 a campaign takes no --png"),
         (("walker", "walker", "--campaign", "1"), "F907 two of the scenarios have the same name"),
-        (("--campaign", "1", "--out", "no"), "F905 `no` cannot be written: a campaign needs"),
+        (
+            ("--campaign", "1", "--out", "bad.toml"),
+            "F905 `bad.toml` cannot be written: File exists",
+        ),
     ],
 )
 def test_what_cannot_be_done_is_refused_and_leaves_nothing(
@@ -113,6 +123,31 @@ def test_what_cannot_be_done_is_refused_and_leaves_nothing(
     assert ran.returncode == 2
     assert said in ran.stderr
     assert sorted(path.name for path in tmp_path.iterdir()) == ["bad.toml", "ghost.toml"]
+
+
+@pytest.mark.parametrize(
+    ("text", "why", "shown"),
+    [
+        (
+            "[safety]\nlate = -1\n",
+            "`safety.late` must not be below 0\n",
+            "  --> bad.toml:3:1\n   | late = -1\n   | ^^^^\n",
+        ),
+        (
+            '[expect]\nviolated = ["R99"]\n',
+            "`expect.violated` names `R99`, which is no requirement; there are R1, ",
+            '  --> bad.toml:3:1\n   | violated = ["R99"]\n   | ^^^^^^^^\n',
+        ),
+    ],
+)
+def test_what_is_wrong_in_a_scenario_is_shown(
+    tmp_path: Path, text: str, why: str, shown: str
+) -> None:
+    (tmp_path / "bad.toml").write_text(f'title = "a"\n{text}', encoding="utf-8")
+    ran = fretc(tmp_path, "bad.toml", "--out", "a.mcap")
+    assert (ran.returncode, ran.stdout) == (2, "")
+    assert ran.stderr.startswith(f"F914 the scenario `bad.toml` cannot be run: {why}")
+    assert shown in ran.stderr
 
 
 def test_a_campaign_that_is_stopped_leaves_nothing_half_written(tmp_path: Path) -> None:

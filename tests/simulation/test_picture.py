@@ -1,3 +1,4 @@
+from dataclasses import replace
 from io import BytesIO
 from pathlib import Path
 
@@ -6,6 +7,7 @@ from matplotlib.image import imread
 from PIL import Image
 from PIL.GifImagePlugin import GifImageFile
 
+from simulation.mission import Contact
 from simulation.picture import animate, draw
 from simulation.scenario import load
 from tests.simulation.missions import record
@@ -25,6 +27,20 @@ def test_the_picture_shows_what_was_moved_and_where_the_robot_was_stopped(tmp_pa
     assert shares["nominal"] == {"moved": 0.0, "stop": 0.0}
     assert shares["obstacle-moved"]["moved"] > 0.001
     assert shares["obstacle-moved"]["stop"] > 0.0001
+
+
+def test_the_picture_and_the_film_show_where_the_robot_touched_something(tmp_path: Path) -> None:
+    mission = record(tmp_path / "a.mcap", load("nominal"), max_seconds=4)
+    assert mission.touched == ()
+    counts = []
+    for touched in ((), (Contact(mission.track[-1], 1.0),)):
+        shown = replace(mission, touched=touched)
+        for image in (Image.open(BytesIO(draw(shown))), Image.open(BytesIO(animate(shown)))):
+            image.seek(getattr(image, "n_frames", 1) - 1)
+            seen = np.asarray(image.convert("RGB")).astype(int) - (138, 26, 155)
+            counts.append(int((np.abs(seen).max(axis=2) < 20).sum()))
+    assert counts[0] == counts[1] == 0
+    assert counts[2] > 0 < counts[3]
 
 
 def test_the_film_shows_the_whole_mission(tmp_path: Path) -> None:

@@ -52,6 +52,13 @@ no_data = ["R2"]
         ('title = "a"\nduration = nan', "`duration` must be finite"),
         ('title = "a"\nduration = 0', "`duration` must be above 0"),
         ('title = "a"\n[safety]\nlate = -1', "`safety.late` must not be below 0"),
+        ('title = "a"\n[safety]\ndies_at = -1', "`safety.dies_at` must not be below 0"),
+        ('title = "a"\n[planner]\nsilent = -0.1', "`planner.silent` must not be below 0"),
+        (
+            'title = "a"\n[lidar]\noutages = [{ at = 1, seconds = -1 }]',
+            "`lidar.outages.seconds` must not be below 0",
+        ),
+        ('title = "a"\n[interceptor]\nhold = -1', "`interceptor.hold` must not be below 0"),
         (
             'title = "a"\n[interceptor]\nat_once = false',
             "`interceptor.at_once` must be true with a period above 0, and false without one",

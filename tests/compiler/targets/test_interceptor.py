@@ -2,11 +2,13 @@
 
 import ast
 import sys
+from collections import Counter
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from math import inf, nan
 from pathlib import Path
+from threading import Event, Thread
 from types import ModuleType, SimpleNamespace
 from typing import Any
 
@@ -182,6 +184,17 @@ class Ros:
     timers: list[tuple[float, Callable[[], None]]] = field(default_factory=list)
     closed: list[str] = field(default_factory=list)
     story: Callable[["Ros"], None] = lambda ros: None
+    """What happens until ROS, or a signal, ends the node."""
+    publishers: Counter[str] = field(default_factory=lambda: Counter({"/stop": 1}))
+    signalled: bool = True
+    """Whether a signal ends it."""
+    handlers: list[Callable[[int, object], None]] = field(default_factory=list)
+    join: Callable[[], None] = lambda: None
+
+    def interrupt(self) -> None:
+        """A signal comes; the thread that hears it waits for the one that this is called in."""
+        for handle in self.handlers:
+            handle(2, None)
 
 
 class Twist:
@@ -212,20 +225,27 @@ class Publisher:
 
 
 def ros2(ros: Ros) -> dict[str, Any]:
-    def subscribe(kind: type, topic: str, call: Callable[[Any], None], qos: object) -> None:
+    def subscribe(kind: type, topic: str, call: Callable[[Any], None], qos: object) -> Any:
         ros.hears[topic] = (kind.__name__, call)
+        return SimpleNamespace(topic_name=topic)
+
+    def spin(node: object) -> None:
+        ros.story(ros)
+        if ros.signalled:
+            ros.interrupt()
 
     node = SimpleNamespace(
         create_publisher=lambda kind, topic, depth: Publisher(ros, topic),
         create_subscription=subscribe,
         create_timer=lambda period, call, clock: ros.timers.append((period, call)),
-        destroy_node=lambda: ros.closed.append("node"),
+        count_publishers=lambda topic: ros.publishers[topic],
     )
     return {
         "rclpy": SimpleNamespace(
             init=lambda args, signal_handler_options: None,
             create_node=lambda name: node,
-            spin=lambda node: ros.story(ros),
+            spin=spin,
+            ok=lambda: not ros.closed,
             shutdown=lambda: ros.closed.append("rclpy"),
         ),
         "rclpy.clock": SimpleNamespace(
@@ -238,14 +258,32 @@ def ros2(ros: Ros) -> dict[str, Any]:
 
 def ros1(ros: Ros) -> dict[str, Any]:
     ends: list[Callable[[], None]] = []
+    whys: list[Callable[[str], None]] = []
 
-    def subscribe(topic: str, kind: type, call: Callable[[Any], None], queue_size: int) -> None:
-        ros.hears[topic] = (kind.__name__, call)
+    def subscribe(
+        topic: str,
+        kind: type,
+        call: Callable[[Any], None] | None = None,
+        queue_size: int | None = None,
+    ) -> Any:
+        if call is not None:
+            ros.hears[topic] = (kind.__name__, call)
+        return SimpleNamespace(get_num_connections=lambda: ros.publishers[topic])
+
+    def shut_down(reason: str) -> None:
+        if not ros.closed:
+            ros.closed.append(reason)
+            for end in ends:
+                end()
+            for why in whys:
+                why(reason)
 
     def spin() -> None:
         ros.story(ros)
-        for end in ends:
-            end()
+        if ros.signalled:
+            ros.interrupt()
+        else:
+            shut_down("new node registered with same name")
 
     def is_shutdown() -> bool:
         if len(ros.says) < 3:
@@ -254,19 +292,22 @@ def ros1(ros: Ros) -> dict[str, Any]:
         return True
 
     return {
+        "rosgraph": SimpleNamespace(get_master_uri=lambda: "http://master:11311"),
         "rospy": SimpleNamespace(
-            init_node=lambda name, argv: None,
+            core=SimpleNamespace(add_preshutdown_hook=whys.append),
+            init_node=lambda name, argv, disable_signals: ros.join(),
             Publisher=lambda topic, kind, queue_size: Publisher(ros, topic),
             Subscriber=subscribe,
             on_shutdown=ends.append,
+            signal_shutdown=shut_down,
             is_shutdown=is_shutdown,
             spin=spin,
-        )
+        ),
     }
 
 
 @contextmanager
-def installed(modules: dict[str, Any]) -> Iterator[None]:
+def installed(ros: Ros, modules: dict[str, Any]) -> Iterator[None]:
     """As if ROS were here; no signal of this process is touched."""
     messages = {
         "geometry_msgs.msg": SimpleNamespace(Twist=Twist),
@@ -281,7 +322,7 @@ def installed(modules: dict[str, Any]) -> Iterator[None]:
             parent = name.partition(".")[0]
             if parent not in modules:
                 patched.setitem(sys.modules, parent, ModuleType(parent))
-        patched.setattr("signal.signal", lambda *_: None)
+        patched.setattr("signal.signal", lambda number, handle: ros.handlers.append(handle))
         yield
 
 
@@ -291,7 +332,8 @@ STILL = (0.0,) * 6
 
 def run(node: Interception, ros: Ros, modules: dict[str, Any]) -> int:
     module = executed(text(node, "bindings.toml"), "interceptor")
-    with installed(modules):
+    module.FLUSH = 0.0
+    with installed(ros, modules):
         status: int = module.main(["interceptor.py"])
     return status
 
@@ -321,7 +363,7 @@ def test_the_node_for_ros_2_hears_and_speaks() -> None:
     }
     said = [STILL, FAST, FAST, STILL, FAST, STILL, STILL, STILL, STILL]
     assert ros.says == [("/wheels", one) for one in said]
-    assert ros.closed == ["node", "rclpy"]
+    assert ros.closed == ["rclpy"]
 
 
 def test_the_last_that_the_wheels_hear_is_zero_whatever_ends_the_node(
@@ -337,12 +379,87 @@ def test_the_last_that_the_wheels_hear_is_zero_whatever_ends_the_node(
     assert ros.says[-2:] == [("/wheels", FAST), ("/wheels", STILL)]
     assert capsys.readouterr().err == "interceptor.py: ValueError: the middleware is gone\n"
 
-    def interrupted(ros: Ros) -> None:
-        raise KeyboardInterrupt
-
-    ros = Ros(story=interrupted)
+    ros = Ros()
     assert run(NODE, ros, ros2(ros)) == 0
     assert ros.says == [("/wheels", STILL)]
+
+    ros = Ros(signalled=False)
+    assert run(NODE, ros, ros2(ros)) == 4
+    assert ros.says == [("/wheels", STILL)]
+    assert capsys.readouterr().err == "interceptor.py: ROS has ended it: it was shut down\n"
+
+
+def test_the_end_waits_for_whoever_speaks_and_nobody_speaks_after_it() -> None:
+    """The thread that ends the node needs the lock; no signal can take it from its holder."""
+    module, said = executed(text(NODE, "bindings.toml"), "interceptor"), list[Any]()
+    inside, go = Event(), Event()
+
+    def publish(velocity: Any) -> None:
+        inside.set()
+        assert go.wait(5)
+        said.append(velocity)
+
+    gate = module.Gate(publish)
+    module.FLUSH = 0.0
+    ringing, closing = Thread(target=gate.ring), Thread(target=gate.close)
+    ringing.start()
+    assert inside.wait(5)
+    closing.start()
+    go.set()
+    ringing.join(5)
+    closing.join(5)
+    gate.ring()
+    gate.close()
+    assert said == [module.ZERO, module.ZERO]
+
+
+def test_of_two_safety_functions_none_moves_the_robot(capsys: pytest.CaptureFixture[str]) -> None:
+    def story(ros: Ros) -> None:
+        hear = {topic: call for topic, (_, call) in ros.hears.items()}
+        ((_, ring),) = ros.timers
+        hear["/stop"](Bool(False))
+        hear["/cmd_vel"](Twist(*FAST))
+        ros.publishers["/stop"] = 2
+        ring()
+        hear["/stop"](Bool(False))
+        hear["/cmd_vel"](Twist(*FAST))
+        ros.publishers["/stop"] = 1
+        hear["/cmd_vel"](Twist(*FAST))
+        hear["/stop"](Bool(False))
+        hear["/cmd_vel"](Twist(*FAST))
+
+    ros = Ros(story=story)
+    node = Interception("/stop", "/cmd_vel", "/wheels", period=50 * MS)
+    assert run(node, ros, ros2(ros)) == 0
+    moving = [said == FAST for _, said in ros.says]
+    assert moving == [True, *[False] * (len(moving) - 3), True, False]
+    assert capsys.readouterr().err == (
+        "interceptor.py: /stop has several publishers: the robot stands until one is left\n"
+        "interceptor.py: /stop has one publisher again, which decides\n"
+    )
+
+
+@given(options, st.lists(st.tuples(heard, st.booleans()), max_size=20))
+def test_while_there_are_two_safety_functions_nothing_but_zero_is_said(
+    made: interceptor.Options, messages: list[tuple[Any, bool]]
+) -> None:
+    """And with one of them the gate is the core alone, from the state that it has come to."""
+    module, said, count = executed(text(NODE, "bindings.toml"), "interceptor"), list[Any](), [1]
+    module.OPTIONS = module.Options(*(getattr(made, n) for n in made.__dataclass_fields__))
+    module.tell = lambda what: None
+    gate = module.Gate(said.append, lambda: count[0])
+    for message, alone in messages:
+        count[0] = 1 if alone else 2
+        values = [getattr(message, name) for name in message.__dataclass_fields__]
+        same = getattr(module, type(message).__name__)(*values)
+        state, told = module.step(gate.state, same, module.OPTIONS)
+        said.clear()
+        gate.take(same)
+        if alone:
+            assert (gate.state, said) == (state, [] if told is None else [told])
+        else:
+            assert gate.state.stop
+            assert not any(map(any, said))
 
 
 def test_the_papers_node_for_ros_1_has_no_timer() -> None:
@@ -356,6 +473,27 @@ def test_the_papers_node_for_ros_1_has_no_timer() -> None:
     assert run(PAPER, ros, ros1(ros)) == 0
     assert ros.says == [("/wheels", one) for one in (FAST, STILL, STILL)]
     assert sorted(ros.hears) == ["/cmd_vel", "/stop"]
+
+
+def test_what_ends_the_node_of_ros_1_is_told_by_its_status(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    ros = Ros(signalled=False)
+    assert run(PAPER, ros, ros1(ros)) == 4
+    assert ros.says == [("/wheels", STILL)]
+    said = "interceptor.py: ROS has ended it: new node registered with same name\n"
+    assert capsys.readouterr().err == said
+
+    def wait_for_a_master() -> None:
+        ros.interrupt()
+        over.wait()
+
+    over = Event()
+    ros = Ros(join=wait_for_a_master)
+    assert run(PAPER, ros, ros1(ros)) == 3
+    over.set()
+    said = "interceptor.py: no ROS master has answered at http://master:11311\n"
+    assert (ros.says, capsys.readouterr().err) == ([], said)
 
 
 def test_the_timer_of_ros_1_is_steady_and_makes_up_for_nothing() -> None:
@@ -372,19 +510,22 @@ def test_the_timer_of_ros_1_is_steady_and_makes_up_for_nothing() -> None:
         patched.setattr("time.monotonic", lambda: now[0])
         patched.setattr("time.sleep", sleep)
         assert run(node, ros, ros1(ros)) == 0
-    assert slept == [0.05, 0.0, 0.04]
+    assert slept == [0.05, 0.0, 0.04, 0.0]  # the last is for the last zero to leave
     assert [one for _, one in ros.says] == [STILL, STILL, STILL, FAST, STILL]
 
 
 def test_without_ros_it_says_so_and_help_needs_none(capsys: pytest.CaptureFixture[str]) -> None:
     with pytest.MonkeyPatch.context() as patched:
         patched.setitem(sys.modules, "rclpy", None)
+        patched.setattr("signal.signal", lambda number, handle: None)
         assert MODULE.main(["interceptor.py"]) == 2
-        assert capsys.readouterr().err.startswith("interceptor.py needs ROS 2 and its Python pack")
+        assert capsys.readouterr().err.startswith("interceptor.py: it needs ROS 2 and its Python p")
         assert MODULE.main(["interceptor.py", "--help"]) == 0
     assert capsys.readouterr().out == (
         "usage: python interceptor.py [ROS ARGUMENTS]\n\n"
         "Hears /stop (Bool), /cmd_vel (Twist), /scan (LaserScan).\n"
         "Every 50 ms, on each command and at once on a request to stop\n"
-        "it says the last command on /wheels,\nor zero where the robot must stand.\n"
+        "it says the last command on /wheels,\nor zero where the robot must stand.\n\n"
+        "exit status: 0 ended by SIGINT or SIGTERM, 1 a fault, 2 ROS is not installed,\n"
+        "4 ROS has ended it\n"
     )

@@ -1,3 +1,4 @@
+#!/usr/bin/env python3
 # Interceptor between /cmd_vel and /cmd_vel_filtered, for ROS 2
 #
 # Three parts: the core, which is the same in every interceptor; the options of this one; the ROS
@@ -243,11 +244,13 @@ OPTIONS = Options(
 
 # The ROS node ----------------------------------------------------------------------------------
 
+import os
 import signal
 import sys
+import time
 from collections.abc import Callable
 from math import isfinite
-from threading import Lock
+from threading import Lock, Thread
 from typing import Any
 
 HELP = """\
@@ -257,12 +260,18 @@ Hears /gwendolen_control (Bool), /cmd_vel (Twist).
 Every 50 ms, on each command and at once on a request to stop
 it says the last command on /cmd_vel_filtered,
 or zero where the robot must stand.
+
+exit status: 0 ended by SIGINT or SIGTERM, 1 a fault, 2 ROS is not installed,
+4 ROS has ended it
 """
 STOP = "/gwendolen_control"
 COMMAND = "/cmd_vel"
 OUTPUT = "/cmd_vel_filtered"
 PERIOD = 0.05
 """Seconds."""
+CROWD = f"{STOP} has several publishers: the robot stands until one is left"
+FLUSH = 0.1
+"""Seconds for the last zero to leave this process."""
 
 
 class Gate:
@@ -271,17 +280,32 @@ class Gate:
     One at a time: what is published comes in the order of the states.
     """
 
-    def __init__(self, publish: Callable[[Velocity], None]) -> None:
+    def __init__(
+        self, publish: Callable[[Velocity], None], speakers: Callable[[], int] = lambda: 1
+    ) -> None:
+        """`speakers` gives how many publishers the topic of stops has at this moment."""
         self.state = initial(OPTIONS)
         self._publish = publish
+        self._speakers = speakers
+        self._alone, self._closed = True, False
         self._lock = Lock()
 
     def take(self, heard: StopHeard | CommandHeard | ScanHeard | TimerRang) -> None:
-        """One step."""
+        """One step; of several safety functions none is trusted: each moment requests a stop."""
         with self._lock:
-            self.state, said = step(self.state, heard, OPTIONS)
-            if said is not None:
-                self._publish(said)
+            alone = self._speakers() <= 1
+            if not alone:
+                self._step(StopHeard(True))
+            if alone or not isinstance(heard, StopHeard):
+                self._step(heard)
+            if alone != self._alone:
+                self._alone = alone
+                tell(CROWD if not alone else f"{STOP} has one publisher again, which decides")
+
+    def _step(self, heard: StopHeard | CommandHeard | ScanHeard | TimerRang) -> None:
+        self.state, said = step(self.state, heard, OPTIONS)
+        if said is not None:
+            self._publish(said)
 
     def hear_stop(self, message: Any) -> None:
         """A std_msgs/Bool."""
@@ -301,10 +325,18 @@ class Gate:
         self.take(TimerRang())
 
     def close(self) -> None:
-        """The last that the wheels hear is zero."""
+        """The last that the wheels hear is zero, and it has time to leave."""
         with self._lock:
-            self._publish(ZERO)
-            self._publish = lambda said: None
+            if not self._closed:
+                self._closed = True
+                self._publish(ZERO)
+                self._publish = lambda said: None
+                time.sleep(FLUSH)
+
+
+def tell(what: str) -> None:
+    """To whoever has started the node."""
+    print(f"interceptor.py: {what}", file=sys.stderr, flush=True)
 
 
 def velocity(message: Any) -> Velocity:
@@ -320,49 +352,99 @@ def twist(velocity: Velocity, message: Any) -> Any:
     return message
 
 
-def run(arguments: list[str]) -> None:
-    """Hear and publish until the node is stopped."""
-    import rclpy
-    from geometry_msgs.msg import Twist
-    from rclpy.clock import Clock, ClockType
-    from rclpy.signals import SignalHandlerOptions
-    from std_msgs.msg import Bool
+class Node:
+    """The gate in ROS 2."""
 
-    # ROS's own handlers would close it before the last zero is published.
-    rclpy.init(args=arguments, signal_handler_options=SignalHandlerOptions.NO)
-    signal.signal(signal.SIGTERM, signal.default_int_handler)
-    node = rclpy.create_node("interceptor")
-    wheels = node.create_publisher(Twist, OUTPUT, 10)
-    gate = Gate(lambda said: wheels.publish(twist(said, Twist())))
-    node.create_subscription(Bool, STOP, gate.hear_stop, 10)
-    node.create_subscription(Twist, COMMAND, gate.hear_command, 1)
-    # A steady clock: simulated or corrected time must not stop the watchdogs.
-    node.create_timer(PERIOD, gate.ring, clock=Clock(clock_type=ClockType.STEADY_TIME))
-    try:
+    def __init__(self) -> None:
+        self.waits = ""
+        """What it still waits for: ROS 2 has no master."""
+        self.reason = "it was shut down"
+        """Why ROS has ended it."""
+        self.end: Callable[[], None] = lambda: None
+
+    def run(self, arguments: list[str]) -> None:
+        """Hear and publish until ROS is shut down."""
+        import rclpy
+        from geometry_msgs.msg import Twist
+        from rclpy.clock import Clock, ClockType
+        from rclpy.signals import SignalHandlerOptions
+        from std_msgs.msg import Bool
+
+        rclpy.init(args=arguments, signal_handler_options=SignalHandlerOptions.NO)
+        node = rclpy.create_node("interceptor")
+        wheels = node.create_publisher(Twist, OUTPUT, 10)
+        gate = Gate(
+            lambda said: wheels.publish(twist(said, Twist())),
+            lambda: node.count_publishers(stops.topic_name),
+        )
+
+        def end() -> None:
+            gate.close()
+            if rclpy.ok():
+                rclpy.shutdown()
+
+        self.end = end
+        stops = node.create_subscription(Bool, STOP, gate.hear_stop, 10)
+        node.create_subscription(Twist, COMMAND, gate.hear_command, 1)
+        # A steady clock: simulated or corrected time must not stop the watchdogs.
+        node.create_timer(PERIOD, gate.ring, clock=Clock(clock_type=ClockType.STEADY_TIME))
         rclpy.spin(node)
-    finally:
-        gate.close()
-        node.destroy_node()
-        rclpy.shutdown()
+
+
+class Worker(Thread):
+    """The node, on a thread of its own."""
+
+    def __init__(self, node: Node, arguments: list[str]) -> None:
+        super().__init__(daemon=True)
+        self._node, self._arguments = node, arguments
+        self.error: Exception | None = None
+
+    def run(self) -> None:
+        """Until ROS is shut down, or something fails."""
+        try:
+            self._node.run(self._arguments)
+        except Exception as error:
+            self.error = error
 
 
 def main(arguments: list[str]) -> int:
-    """Run the node; gives the exit status."""
+    """Run the node; gives the exit status.
+
+    A signal is only noted, and this thread shares no lock: whatever it interrupts, nothing waits.
+    """
     if {"-h", "--help"} & set(arguments):
         print(HELP, end="")
         return 0
-    try:
-        run(arguments)
-    except ImportError as error:
-        print(f"interceptor.py needs ROS 2 and its Python packages: {error}", file=sys.stderr)
+    signals: list[int] = []
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, lambda number, frame: signals.append(number))
+    node = Node()
+    worker = Worker(node, arguments)
+    worker.start()
+    while worker.is_alive() and not signals:
+        worker.join(0.05)
+    error = worker.error  # Later ones come of the end.
+    if not node.waits:  # Before it is at work ROS may hold locks for as long as no master answers.
+        end = Thread(target=node.end, daemon=True)
+        end.start()
+        end.join(2.0)
+        worker.join(1.0)
+    if isinstance(error, ImportError):
+        tell(f"it needs ROS 2 and its Python packages: {error}")
         return 2
-    except KeyboardInterrupt:
-        return 0
-    except Exception as error:
-        print(f"interceptor.py: {type(error).__name__}: {error}", file=sys.stderr)
+    if error is not None:
+        tell(f"{type(error).__name__}: {error}")
         return 1
+    if not signals:
+        tell(f"ROS has ended it: {node.reason}")
+        return 4
+    if node.waits:
+        tell(node.waits)
+        return 3
     return 0
 
 
 if __name__ == "__main__":
-    sys.exit(main(sys.argv))
+    STATUS = main(sys.argv)
+    sys.stdout.flush()
+    os._exit(STATUS)  # No thread of ROS keeps the process alive.

@@ -1,3 +1,4 @@
+#!/usr/bin/env python3
 # Runtime monitor of R1
 #
 # R1: whenever too_close agilex_agent shall eventually satisfy stopped
