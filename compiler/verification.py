@@ -31,6 +31,11 @@ class Layer(StrEnum):
     """The text of the agent has the properties of its property file, in a model of our own."""
 
 
+ALL, PROVERS = ("verify", "proof"), ("dafny", "crosshair")
+METHODS = (*ALL, *PROVERS, *map(str, Layer))
+"""Methods of `verify = [...]` that `fretc verify` can give a result for."""
+
+
 @dataclass(frozen=True, slots=True)
 class Trace:
     """A run as a table: a row for each tick."""

@@ -40,6 +40,8 @@ class Requirement:
     fret: Mapping[str, str] = field(default_factory=dict)
     """What FRET keeps beside the sentence and fretc does not use: project, comments, ..."""
     header: Tables | None = field(default=None, compare=False, repr=False)
+    mistakes: tuple[Diagnostic, ...] = ()
+    """What is wrong with the header; its other fields are then not read."""
 
     @property
     def is_free_text(self) -> bool:
@@ -52,7 +54,11 @@ class Requirement:
 
 
 def requirements(source: Source) -> tuple[tuple[Requirement, ...], tuple[Diagnostic, ...]]:
-    """Read every requirement of a `.fret` text; those with a mistake in the header are left out."""
+    """Read every requirement of a `.fret` text, and what is wrong with their headers.
+
+    One whose header has a mistake is kept by its id, so that nobody loses sight of it; it is left
+    out where its id cannot be read.
+    """
     found: list[Requirement] = []
     wrong: list[Diagnostic] = []
     pairs = _pairs(source)
@@ -97,10 +103,12 @@ def _requirement(
     tables = read(header, Code.BAD_HEADER, "the header")
     if isinstance(tables, Diagnostic):
         return None, (tables,)
+    data = tables.data
     wrong = tuple(_mistakes(tables, alone=alone))
     if wrong:
-        return None, wrong
-    data = tables.data
+        id = data.get("id", stem if alone else None)
+        kept = Requirement(id, wording, header=tables, mistakes=wrong) if _fits("id", id) else None
+        return kept, wrong
     return (
         Requirement(
             id=data.get("id", stem),

@@ -23,7 +23,7 @@ def given(kind: str, declared: str, example: str) -> set[str]:
         beside, wrong = read_bindings(Source("bindings.toml", declared))
         assert beside is not None, wrong
     written, said = requirements(Source("r.fret", example.strip("\n")))
-    found = [*said, *duplicates(written)]
+    found = [*said, *duplicates(written).values()]
     for requirement in written:
         rule, remarks = formalize(requirement, beside)
         found.extend(remarks)
