@@ -242,7 +242,7 @@ def _left_out(plan: Plan, beside: Mapping[str, Any]) -> Iterator[Mapping[str, An
         yield unjudged(
             beside["run"],
             refused.id,
-            "; ".join(reason.message for reason in refused.why),
+            f"not judged: {'; '.join(f'{d.code.number} {d.message}' for d in refused.why)}",
             {**log, **refused.hashes(plan.bindings)},
             beside["health"],
         )

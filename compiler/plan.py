@@ -58,7 +58,7 @@ class Refused:
     sha256: str
     """Of the canonical wording; of the wording as it is, where that cannot be formalized."""
     monitor: str
-    """SHA-256 of the monitor; empty where there is none."""
+    """SHA-256 of the monitor; of an empty text where there is none."""
     why: tuple[Diagnostic, ...]
 
     def hashes(self, bindings: str) -> dict[str, str]:
@@ -136,19 +136,18 @@ def refusals(project: Project) -> tuple[tuple[Requirement, tuple[Diagnostic, ...
     rules = _in_force(project)
     own = {id(rule.requirement): rule for rule in rules}
     failed = {id(each.requirement): each.diagnostic for each in project.failed}
-    failed = {**project.mistaken, **failed}
-    declarations = project.declarations
     unusable = _unusable(project, rules[0]) if rules and not has_errors(project.general) else None
-    found: list[tuple[Requirement, tuple[Diagnostic, ...]]] = []
+    found = []
     for requirement in project.requirements:
-        rule, why = own.get(id(requirement)), failed.get(id(requirement))
-        if why is not None and why.is_error and requirement.status != "retired":
-            found.append((requirement, (why,)))
-        elif rule is not None and unusable is not None:
-            found.append((requirement, (unusable,)))
-        elif rule is not None and declarations is not None:
-            reasons = _not_auditable(rule, declarations)
-            found.extend([(requirement, reasons)] if reasons else [])
+        rule = own.get(id(requirement))
+        why = [failed.get(id(requirement)) or project.mistaken.get(id(requirement))]
+        if rule is not None and unusable is not None:
+            why.append(unusable)
+        elif rule is not None and project.declarations is not None:
+            why.extend(_not_auditable(rule, project.declarations))
+        reasons = tuple(reason for reason in why if reason is not None and reason.is_error)
+        if reasons and requirement.status != "retired":
+            found.append((requirement, reasons))
     return tuple(found)
 
 
@@ -160,7 +159,7 @@ def _left(project: Project, requirement: Requirement, why: tuple[Diagnostic, ...
     rule = next((each for each in project.rules if each.requirement is requirement), None)
     if rule is None:
         text = wording(requirement)
-        return Refused(requirement.id, text, sha256(text), "", why)
+        return Refused(requirement.id, text, sha256(text), sha256(""), why)
     made = sha256(monitors.text(rule))
     return Refused(rule.id, wording(requirement), rule.fingerprint, made, why)
 
