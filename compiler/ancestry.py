@@ -29,7 +29,10 @@ def unknown_parents(
     unknown = [(r, parent) for r in written for parent in r.parents if parent not in known]
     if unknown and file is None and not above:
         requirement, parent = unknown[0]
-        others = "" if len(unknown) == 1 else f", and so are {len(unknown) - 1} more parents"
+        more = len(unknown) - 1
+        others = (
+            f" ({more} more {'parent is' if more == 1 else 'parents are'}, too)" if more else ""
+        )
         yield _unknown(
             requirement,
             f"there is no `hazards.toml`: the parent `{parent}` of {requirement.id} is declared "

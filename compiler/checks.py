@@ -100,7 +100,7 @@ def _planned(rule: Rule) -> Iterator[Diagnostic]:
 
 def _misspelt(rule: Rule, method: str) -> Iterator[Diagnostic]:
     """F528: nearly the name of a method whose results fretc knows; any other name is one's own."""
-    near = suggestion(method, _METHODS, cutoff=0.8)
+    near = suggestion(method, _METHODS, cutoff=0.75)
     if method not in _METHODS and near is not None:
         yield Diagnostic(
             Code.MISSPELT_METHOD,

@@ -77,8 +77,8 @@ def test_without_any_file_of_hazards_all_unknown_parents_are_one_message() -> No
     requirements = written({"A": "H", "B": "HJ", "C": "A"})
     (one,) = unknown_parents(requirements, (), (), None)
     assert one.message == (
-        "there is no `hazards.toml`: the parent `H` of A is declared nowhere, and so are 2 more "
-        "parents"
+        "there is no `hazards.toml`: the parent `H` of A is declared nowhere (2 more parents "
+        "are, too)"
     )
     assert len(list(unknown_parents(requirements, (), (), "hazards.toml"))) == 3
     assert list(unknown_parents(requirements, "HJ", (), "hazards.toml")) == []
