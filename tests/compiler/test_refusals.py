@@ -31,6 +31,7 @@ REFUSED = {
     ),
     "no FRETish": ("the sw must satisfy p", "", "", "F107"),
     "a bad header": ("the sw shall always satisfy p", 'status = "aproved"\n', "", "F105"),
+    "a header that is no TOML": ("the sw shall always satisfy p", "status = \n", "", "F102"),
     "an unknown field": ("the sw shall always satisfy p", 'titel = "a"\n', "", "F103"),
     "params without a binding": (
         "the sw shall always satisfy p",
@@ -138,6 +139,26 @@ def test_two_requirements_of_one_id_are_one_row_without_a_verdict(fretc: Fretc) 
     run = fretc("audit", log("l.mcap", [1]), "--format", "json")
     assert (run.status, rows(run.out)) == (2, {"R1": "satisfied", "R2": "no data"})
     assert len(json.loads(run.out)) == 2
+
+
+@pytest.mark.parametrize(
+    ("text", "id"),
+    [
+        ("+++\nid = R7\n+++\nthe sw shall always satisfy p\n", "r2"),
+        ("+++\ntitle = 3\n+++\nthe sw shall always satisfy p\n", "r2"),
+        ('+++\nid = "R7"\nthe sw shall always satisfy p\n', "r2"),
+        ("the sw shall satisfy p\n+++\nid = 7\n+++\nthe sw shall satisfy p\n", "r2-line-5"),
+    ],
+)
+def test_a_requirement_whose_id_cannot_be_read_is_called_by_its_file(
+    fretc: Fretc, text: str, id: str
+) -> None:
+    project("the sw shall always satisfy p", "", "")
+    write("requirements/r2.fret", text)
+    run = fretc("audit", log("l.mcap", [1]), "--format", "json")
+    assert run.status == 2
+    assert rows(run.out)["R1"] == "satisfied"
+    assert rows(run.out)[id] == "no data"
 
 
 def test_a_retired_requirement_is_not_missed(fretc: Fretc) -> None:
