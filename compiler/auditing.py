@@ -23,7 +23,7 @@ from fretish.diagnostic import Diagnostic
 from fretish.rendering import visible
 from monitors import kernel
 from monitors.audit import audit, examined, signals_of
-from monitors.evidence import SCHEMA, as_record, unread
+from monitors.evidence import SCHEMA, as_record, unjudged, unread
 from monitors.inputs import STDIN
 from monitors.inputs import shown as called
 from monitors.judgement import Engine as Evaluation
@@ -223,12 +223,31 @@ def audited(plan: Plan, log: str) -> Audited:
     recording = examined(recording, declarations, names)
     evidence = audit(recording, declarations, monitors, EVALUATIONS[plan.evaluation])
     phased = {e.requirement: e.phases for e in evidence if e.phases is not None}
+    records = [as_record(e) for e in evidence]
     return Audited(
-        tuple(as_record(e) for e in evidence),
+        (*records, *_left_out(plan, records[0])),
         (*recording.findings, *findings(phased, declarations)),
         read=True,
         stamp=before if before == stamp(log) else None,
     )
+
+
+def _left_out(plan: Plan, beside: Mapping[str, Any]) -> Iterator[Mapping[str, Any]]:
+    """What is shown of each refused requirement in a run: nothing, and why.
+
+    Args:
+        plan: which requirements it refuses.
+        beside: what is shown of another one in the run, whose log was read.
+    """
+    log = {name: sha for name, sha in beside["hashes"].items() if name.startswith("log")}
+    for refused in plan.refused:
+        yield unjudged(
+            beside["run"],
+            refused.id,
+            f"not judged: {'; '.join(f'{d.code.number} {d.message}' for d in refused.why)}",
+            {**log, **refused.hashes(plan.bindings)},
+            beside["health"],
+        )
 
 
 def given_up(plan: Plan, log: str, how: str) -> Audited:
@@ -245,7 +264,8 @@ def given_up(plan: Plan, log: str, how: str) -> Audited:
 def _unread(plan: Plan, log: str, why: Diagnostic) -> Audited:
     hashes = _hash_of(log)
     records = [
-        unread(called(log), c.id, why, {**hashes, **c.hashes(plan.bindings)}) for c in plan.claims
+        unread(called(log), each.id, why, {**hashes, **each.hashes(plan.bindings)})
+        for each in plan.named
     ]
     return Audited(tuple(records), (why,), read=False)
 
@@ -265,8 +285,7 @@ def _evidence(
         "fretc": __version__,
         "bindings": {"file": plan.declarations.source.name, "sha256": plan.bindings},
         "requirements": [
-            {"id": claim.id, "sentence": claim.sentence, "sha256": claim.sha256}
-            for claim in plan.claims
+            {"id": each.id, "sentence": each.sentence, "sha256": each.sha256} for each in plan.named
         ],
         "results": list(results),
     }

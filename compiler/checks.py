@@ -8,18 +8,22 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
+from compiler.ancestry import without_hazard
 from compiler.links import Node
 from compiler.lock import Standing
 from compiler.project import Project
 from compiler.rule import Rule
 from compiler.targets import TARGETS
 from compiler.targets.target import Options
+from compiler.verification import METHODS
 from fretish.declarations import Role
-from fretish.diagnostic import Code, Diagnostic, Severity
+from fretish.diagnostic import Code, Diagnostic, Severity, suggestion
 from fretish.expressions import names
 from fretish.source import Source, Span
 
 _COMMAND = "command"
+_METHODS = ("audit", *METHODS, *TARGETS)
+"""Those whose results fretc knows, or whose files it makes."""
 
 
 def checks(project: Project, standings: Sequence[Standing]) -> tuple[Diagnostic, ...]:
@@ -77,6 +81,7 @@ def _planned(rule: Rule) -> Iterator[Diagnostic]:
     for method in rule.requirement.verify:
         target = TARGETS.get("monitor" if method == "audit" else method)
         if target is None:
+            yield from _misspelt(rule, method)
             continue
         refused = target.refuse(rule)
         if refused is not None:
@@ -93,11 +98,24 @@ def _planned(rule: Rule) -> Iterator[Diagnostic]:
             yield remark
 
 
+def _misspelt(rule: Rule, method: str) -> Iterator[Diagnostic]:
+    """F528: nearly the name of a method whose results fretc knows; any other name is one's own."""
+    near = suggestion(method, _METHODS, cutoff=0.75)
+    if method not in _METHODS and near is not None:
+        yield Diagnostic(
+            Code.MISSPELT_METHOD,
+            f"{rule.id} plans `{method}`, which is no method that fretc knows: it stays open",
+            rule.requirement.place("verify"),
+            help=f"did you mean `{near}`?",
+            severity=Severity.WARNING,
+        )
+
+
 # Links -----------------------------------------------------------------------------------------
 
 
 def _links(project: Project) -> Iterator[Diagnostic]:
-    """F522 and F523: hazards that nothing is there to prevent, requirements for no reason."""
+    """F522, F523 and F527: hazards that nothing prevents, requirements that reach none."""
     active = [r for r in project.requirements if r.status != "retired"]
     above = {parent for requirement in active for parent in requirement.parents}
     for hazard in project.hazards.values():
@@ -117,6 +135,15 @@ def _links(project: Project) -> Iterator[Diagnostic]:
                 help="name the hazard or the requirement that it is there for in `parents`",
                 severity=Severity.WARNING,
             )
+    declared = {*project.hazards, *project.parents}
+    for requirement in without_hazard(active, declared) if declared else ():
+        yield Diagnostic(
+            Code.REACHES_NO_HAZARD,
+            f"the parents of {requirement.id} lead to no hazard",
+            requirement.place("parents"),
+            help="name the hazard in `parents`, or in those of a requirement above it",
+            severity=Severity.WARNING,
+        )
 
 
 # Reviews ---------------------------------------------------------------------------------------

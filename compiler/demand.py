@@ -178,12 +178,11 @@ def boolean(expression: e.Expression, expand: Expand) -> f.Formula:
         case e.Name("FTP"):
             return expand("FTP", (), read) or f.Atom("FTP")
         case e.Name(id):
-            # A quoted name may look like the text of a comparison: then it keeps its quotes.
-            return f.Atom(f'"{id}"' if is_compound(id) else id)
+            return f.Atom(variable(id))
         case e.Comparison():
-            return f.Atom(_atom(expression))
+            return f.Atom(atom(expression))
         case e.Call(name, args):
-            return expand(name, args, read) or f.Atom(_atom(expression))
+            return expand(name, args, read) or f.Atom(atom(expression))
         case e.Not(arg):
             return f.not_(read(arg))
         case e.And(args):
@@ -202,15 +201,23 @@ def boolean(expression: e.Expression, expand: Expand) -> f.Formula:
             assert_never(expression)
 
 
-def _atom(expression: e.Expression) -> str:
+def variable(id: str) -> str:
+    """The name of an atom that is a variable.
+
+    A quoted name may look like the text of a comparison: then it keeps its quotes.
+    """
+    return f'"{id}"' if is_compound(id) else id
+
+
+def atom(expression: e.Expression) -> str:
     """FRET's text of an atom: every operator in parentheses, `(x + (2 * y))`."""
     match expression:
         case e.Comparison(op, left, right) | e.Arithmetic(op, left, right):
-            return f"({_atom(left)} {op} {_atom(right)})"
+            return f"({atom(left)} {op} {atom(right)})"
         case e.Negation(arg):
-            return f"(- {_atom(arg)})"
+            return f"(- {atom(arg)})"
         case e.Call(name, args):
-            return f"{identifier(name)}({','.join(_atom(arg) for arg in args)})"
+            return f"{identifier(name)}({','.join(atom(arg) for arg in args)})"
         case e.Name(id):
             return identifier(id)  # as everywhere in formulas: `a.b` is `a_DOT_b`
         case e.Number(digits):
@@ -225,16 +232,16 @@ def _boolean_atom(expression: e.Expression) -> str:
     """A Boolean argument of a call."""
     match expression:
         case e.Not(arg):
-            return f"! {_atom(arg)}"
+            return f"! {atom(arg)}"
         case e.And(args):
-            return " & ".join(map(_atom, args))
+            return " & ".join(map(atom, args))
         case e.Or(args):
-            return " | ".join(map(_atom, args))
+            return " | ".join(map(atom, args))
         case e.Xor(left, right):
-            return f"{_atom(left)} xor {_atom(right)}"
+            return f"{atom(left)} xor {atom(right)}"
         case e.Implies(left, right):
-            return f"{_atom(left)} -> {_atom(right)}"
+            return f"{atom(left)} -> {atom(right)}"
         case e.Iff(left, right):
-            return f"{_atom(left)} <-> {_atom(right)}"
+            return f"{atom(left)} <-> {atom(right)}"
         case _:
             raise AssertionError(f"not an argument: {expression}")

@@ -15,6 +15,7 @@ from compiler.counted import probability, trials
 from compiler.estimates import Estimated
 from compiler.files import read as read_text
 from compiler.files import sha256
+from compiler.odds import REFUTED
 from compiler.shapes import MisshapenError, Shape
 from compiler.surroundings import Window, window
 from fretish.diagnostic import Code, Diagnostic, Severity
@@ -177,6 +178,13 @@ def by_requirement(evidence: Evidence | None) -> Mapping[str, Sequence[Result]]:
     for result in evidence.results if evidence else ():
         found.setdefault(result.requirement, []).append(result)
     return found
+
+
+def refuted(path: str) -> frozenset[str]:
+    """The requirements that all runs together refute; none where there is no evidence."""
+    found = read(path)
+    told = () if isinstance(found, Diagnostic) else found.probabilities
+    return frozenset(one.requirement for one in told if one.answer == REFUTED)
 
 
 def read(path: str) -> Evidence | Diagnostic:

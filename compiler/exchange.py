@@ -84,7 +84,7 @@ def _from_json(source: Source) -> Import:
     requirements, variables = parts
     said: list[Diagnostic] = []
     found = list(_requirements(requirements, source, said))
-    declared = _variables(variables)
+    declared = _variables(variables, source, said)
     files = [*_documents(found), *_glossary(declared)]
     return Import(tuple(files), tuple(said), len(found), len(declared))
 
@@ -126,7 +126,19 @@ def _requirements(
             said.append(_skipped(f"requirement {number} ({reqid or 'no id'}) has no text", source))
             continue
         project = _text(record.get("project"))
-        id = _unique(_id(reqid or f"requirement-{number}"), project, taken)
+        wanted = _id(reqid or f"requirement-{number}")
+        id = _unique(wanted, project, taken)
+        if id != wanted:
+            of = f" of project {project}" if project else ""
+            said.append(
+                _told(
+                    Code.RENAMED,
+                    f"requirement {number} ({reqid}{of}) is imported as `{id}`: `{wanted}` is "
+                    "taken, and capitals do not tell ids apart",
+                    source,
+                    "rename it in its project, or import each project into a folder of its own",
+                )
+            )
         ids[project, reqid] = id
         kept.append((id, fulltext, record))
     for id, fulltext, record in kept:
@@ -212,27 +224,57 @@ def _pair(requirement: Imported) -> str:
 # Variables -------------------------------------------------------------------------------------
 
 
-def _variables(records: Iterable[Mapping[str, Any]]) -> dict[str, dict[str, Any]]:
-    """`[variable.NAME]` tables; a variable of several components is one."""
+def _variables(
+    records: Iterable[Mapping[str, Any]], source: Source, said: list[Diagnostic]
+) -> dict[str, dict[str, Any]]:
+    """`[variable.NAME]` tables: names are those of one folder, whatever project they are of.
+
+    Of several variables of a name the first stays, and what the others say else is told (F530).
+    """
     tables: dict[str, dict[str, Any]] = {}
     for record in records:
         name = _text(record.get("variable_name"))
         if not name or record.get("modeldoc") is True:
             continue
-        kept = {
-            key: _plain(value)
-            for key, value in sorted(record.items())
-            if key not in _VARIABLE_FIELDS | _NOT_KEPT and value not in ("", None, [], {}, False)
-        }
-        table = {
-            "component": _text(record.get("component_name")),
-            "type": _text(record.get("dataType")),
-            "role": _text(record.get("idType")).lower(),
-            "text": _text(record.get("description")),
-            "fret": {**kept, **_of_project(record)},
-        }
-        tables.setdefault(name, {key: value for key, value in table.items() if value})
+        table = _variable(record)
+        first = tables.setdefault(name, table)
+        if first != table:
+            said.append(_merged(name, first, table, source))
     return tables
+
+
+def _variable(record: Mapping[str, Any]) -> dict[str, Any]:
+    """What is kept of a variable."""
+    kept = {
+        key: _plain(value)
+        for key, value in sorted(record.items())
+        if key not in _VARIABLE_FIELDS | _NOT_KEPT and value not in ("", None, [], {}, False)
+    }
+    table = {
+        "component": _text(record.get("component_name")),
+        "type": _text(record.get("dataType")),
+        "role": _text(record.get("idType")).lower(),
+        "text": _text(record.get("description")),
+        "fret": {**kept, **_of_project(record)},
+    }
+    return {key: value for key, value in table.items() if value}
+
+
+def _merged(
+    name: str, first: Mapping[str, Any], other: Mapping[str, Any], source: Source
+) -> Diagnostic:
+    lost = [
+        key for key in ("component", "type", "role", "text") if first.get(key) != other.get(key)
+    ]
+    one, two = first.get("fret", {}), other.get("fret", {})
+    lost += sorted(key for key in {*one, *two} if one.get(key) != two.get(key))
+    what = ", ".join(f"{key} `{other.get(key, two.get(key, ''))}`" for key in lost)
+    return _told(
+        Code.MERGED_VARIABLE,
+        f"a second variable `{name}` is left out: it has {what}",
+        source,
+        "import each project into a folder of its own, or make the two say the same",
+    )
 
 
 def _plain(value: Any) -> Any:
@@ -273,8 +315,11 @@ _GUESSES = {
 
 
 def _from_csv(source: Source, columns: Mapping[str, str]) -> Import:
+    delimiter = _delimiter(source.text)
     try:
-        reader = csv.DictReader(io.StringIO(source.text), restkey="", strict=True)
+        reader = csv.DictReader(
+            io.StringIO(source.text), restkey="", strict=True, delimiter=delimiter
+        )
         rows = list(reader)
         names = [name for name in reader.fieldnames or () if name]
     except csv.Error as error:
@@ -289,6 +334,25 @@ def _from_csv(source: Source, columns: Mapping[str, str]) -> Import:
     said: list[Diagnostic] = []
     found = list(_requirements((_row(row, chosen) for row in rows), source, said))
     return Import(tuple(_documents(found)), tuple(said), len(found), 0, chosen)
+
+
+_DELIMITERS = ",;\t"
+
+
+def _delimiter(text: str) -> str:
+    """What parts the header into the most columns: a comma, a semicolon or a tab.
+
+    Spreadsheets write semicolons where a comma parts the digits of a number. The first of these
+    wins where two part it alike.
+    """
+
+    def columns(delimiter: str) -> int:
+        try:
+            return len(next(csv.reader(io.StringIO(text), delimiter=delimiter), ()))
+        except csv.Error:
+            return 0
+
+    return max(_DELIMITERS, key=columns)
 
 
 def _columns(
@@ -349,6 +413,10 @@ def _bad(why: str, source: Source, mend: str, at: int = 0) -> Diagnostic:
         source.span(at, min(at + 1, len(source.text))),
         help=mend,
     )
+
+
+def _told(code: Code, what: str, source: Source, mend: str) -> Diagnostic:
+    return Diagnostic(code, what, Source(source.name, "").span(), mend, Severity.WARNING)
 
 
 def _skipped(why: str, source: Source) -> Diagnostic:

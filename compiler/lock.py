@@ -8,13 +8,14 @@ by `fretc lock` only; a person's reason not to have something shown yet is a wai
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from datetime import date
 from typing import Any
 
 import tomli_w
 
+from compiler.evidence import VERDICTS
 from compiler.files import read as read_text
 from compiler.links import REVIEW, Chain, Node, Suspect, changed, suspects
 from fretish.diagnostic import Code, Diagnostic, Severity, suggestion
@@ -22,6 +23,7 @@ from fretish.ordering import natural
 from fretish.source import Source
 from fretish.tables import Tables
 from fretish.tables import read as read_tables
+from monitors import kernel
 
 NAME = "fretc.lock"
 SCHEMA = "fretc-lock-1"
@@ -56,6 +58,45 @@ class Lock:
 def accepted(chain: Chain, reviewer: str, role: str, date: str, comment: str) -> Review:
     """The present state of a requirement, accepted."""
     return Review(chain.requirement, reviewer, role, date, comment, chain.prints, chain.verdicts)
+
+
+def verdicts_of(chain: Chain) -> str:
+    """The verdicts that a review of it would accept, in words, the worst first."""
+    told = []
+    for word in VERDICTS:
+        runs = sorted(run for run, verdict in chain.verdicts.items() if verdict == word)
+        if not runs:
+            continue
+        named = ", ".join(runs[:_NAMED]) if word == kernel.VIOLATED else ""
+        rest = len(runs) - (_NAMED if named else 0)
+        more = f"{rest} {'more ' if named else ''}run{'' if rest == 1 else 's'}" if rest > 0 else ""
+        told.append(f"{word} in {' and '.join(part for part in (named, more) if part)}")
+    return "; ".join(told) or "no run of it was audited"
+
+
+_NAMED = 3
+"""Of so many violated runs the names are told."""
+
+
+def unnamed_violations(chosen: Sequence[Chain], refuted: Collection[str]) -> tuple[Diagnostic, ...]:
+    """F529 for each requirement that would be accepted though runs show that it does not hold.
+
+    Args:
+        chosen: what is to be accepted.
+        refuted: ids of the requirements with a probability that all runs together refute.
+    """
+    wrong = {
+        c.requirement: verdicts_of(c) for c in chosen if kernel.VIOLATED in c.verdicts.values()
+    }
+    wrong |= {c.requirement: "refuted by all runs" for c in chosen if c.requirement in refuted}
+    return tuple(
+        Diagnostic(
+            Code.UNREVIEWED_VIOLATION,
+            f"{id} is {told}",
+            help="mend it, or accept it as it is: add `--accept-violations`",
+        )
+        for id, told in wrong.items()
+    )
 
 
 def text(lock: Lock) -> str:

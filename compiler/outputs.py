@@ -14,7 +14,7 @@ from xml.etree import ElementTree
 
 from compiler.estimates import AVERAGE, Estimated
 from compiler.odds import INCONCLUSIVE, REFUTED, SUPPORTED
-from compiler.rule import Rule
+from fretish.documents import Requirement
 from fretish.source import Span
 from monitors import kernel
 
@@ -107,14 +107,14 @@ def valid(text: str) -> str:
 
 def github(
     results: Sequence[Mapping[str, Any]],
-    rules: Sequence[Rule],
+    requirements: Sequence[Requirement],
     together: Sequence[Estimated] = (),
 ) -> str:
     """A line for each result, shown at the sentence of its requirement.
 
     Of a run that only counts (`trials`) it is a notice: what all runs say follows.
     """
-    places = {rule.id: rule.requirement.wording for rule in rules}
+    places = {requirement.id: requirement.wording for requirement in requirements}
     lines = []
     for result in results:
         level = "notice" if "trials" in result else _LEVELS.get(result["verdict"], "warning")

@@ -1,15 +1,19 @@
-"""Requirements that live in other tools, as parents of ours: their ids and titles.
+"""Requirements that live in other tools, as parents of ours: their ids, titles and texts.
 
-Sources: StrictDoc, the SDoc text grammar; Doorstop, item files; sphinx-needs, needs.json; OMG,
-Requirements Interchange Format (ReqIF) 1.2.
+Each tool's own reading counts, never one that looks like it: of StrictDoc, Doorstop and
+sphinx-needs the file is read that the tool itself exports, and ReqIF by the library `reqif`. An
+export is plain data, so nothing of a stranger's document is executed; StrictDoc's library would run
+`strictdoc_config.py`, and needs some seventy packages; Doorstop's follows `!include`.
+
+Sources: StrictDoc, `strictdoc export --formats=json`; Doorstop, `doorstop export --yaml`;
+sphinx-needs, needs.json; OMG, Requirements Interchange Format (ReqIF) 1.2.
 """
 
 from __future__ import annotations
 
 import json
-import re
 import zipfile
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -45,6 +49,8 @@ def parents(settings: Settings) -> tuple[Mapping[str, Parent], tuple[Diagnostic,
         try:
             for parent in _read(settings.folder / name, name):
                 found.setdefault(parent.id, parent)
+        except ModuleNotFoundError:
+            wrong.append(_missing(settings, name))
         except (UnreadableError, OSError) as error:
             why = error.strerror if isinstance(error, OSError) else str(error)
             wrong.append(_unreadable(settings, name, why or str(error)))
@@ -52,121 +58,173 @@ def parents(settings: Settings) -> tuple[Mapping[str, Parent], tuple[Diagnostic,
 
 
 def _unreadable(settings: Settings, name: str, why: str) -> Diagnostic:
-    tables = settings.tables
-    place = tables.value("tool", "fretc", "parents") if tables else Source(name, "").span()
     return Diagnostic(
         Code.BAD_PARENTS,
         f"the parents in `{name}` cannot be read: {why}",
-        _within(place, name),
-        help="name a .sdoc file, a folder of Doorstop, needs.json, or a .reqif file",
+        _place(settings, name),
+        help=_EXPORTS.get(Path(name).suffix.lower(), _EXPORTS[""]),
     )
 
 
-def _within(place: Span, name: str) -> Span:
+_EXPORTS = {
+    ".sdoc": "name what StrictDoc writes: `strictdoc export --formats=json`, then `index.json`",
+    ".yml": "name what Doorstop writes: `doorstop export --yaml all FOLDER`",
+    "": "name the JSON export of StrictDoc, the YAML export of Doorstop, needs.json, or a .reqif",
+}
+
+
+def _missing(settings: Settings, name: str) -> Diagnostic:
+    return Diagnostic(
+        Code.MISSING_EXTRA,
+        f"the parents in `{name}` need `reqif`",
+        _place(settings, name),
+        help="install the extra: pip install 'fretc[reqif]' "
+        "(in a checkout: .venv/bin/pip install '.[reqif]')",
+    )
+
+
+def _place(settings: Settings, name: str) -> Span:
+    tables = settings.tables
+    place = tables.value("tool", "fretc", "parents") if tables else Source(name, "").span()
     at = place.text.find(name)
     return place.part(at, at + len(name)) if at >= 0 else place
 
 
 def _read(path: Path, name: str) -> Iterator[Parent]:
     if path.is_dir():
-        return _doorstop(path, name)
+        return _exports(path, name)
     match path.suffix.lower():
-        case ".sdoc":
-            return _strictdoc(_text(path), name)
         case ".json":
-            return _needs(_text(path), name)
+            return _json(_text(path), name)
+        case ".yml" | ".yaml":
+            return _doorstop(path, name)
         case ".reqif":
             return _reqif(_text(path), name)
         case ".reqifz":
             return _reqifz(path, name)
+        case ".sdoc":
+            raise UnreadableError("only StrictDoc itself reads its documents for certain")
         case _:
             raise UnreadableError("no format is known by that ending")
 
 
+_MOST = 64 * 2**20
+"""Bytes of a document; more is none of requirements."""
+
+
 def _text(path: Path) -> str:
+    with path.open("rb") as file:
+        return _decoded(file.read(_MOST + 1))
+
+
+def _decoded(data: bytes) -> str:
+    if len(data) > _MOST:
+        raise UnreadableError(f"it is larger than {_MOST // 2**20} MiB")
     try:
-        return path.read_text(encoding="utf-8-sig")
+        return data.decode("utf-8-sig")
     except UnicodeDecodeError:
         raise UnreadableError("it is not UTF-8 text") from None
-
-
-# StrictDoc -------------------------------------------------------------------------------------
-
-_NODE = re.compile(r"^\[(?:\[|/)?(?P<kind>[A-Z][A-Z0-9_]*)\]?\]\s*$", re.MULTILINE)
-_FIELD = re.compile(r"^(?P<name>[A-Z][A-Z0-9_]*): (?P<value>.*)$", re.MULTILINE)
-_BLOCK = re.compile(
-    r"^(?P<name>[A-Z][A-Z0-9_]*): >>>\n(?P<value>.*?)^<<<$", re.MULTILINE | re.DOTALL
-)
-
-
-def _strictdoc(text: str, name: str) -> Iterator[Parent]:
-    """Every node with a UID, of whatever type the grammar of the document has."""
-    if not text.lstrip().startswith("[DOCUMENT]"):
-        raise UnreadableError("it does not begin with `[DOCUMENT]`")
-    nodes = list(_NODE.finditer(text))
-    for node, following in zip(nodes, [*nodes[1:], None], strict=True):
-        if node["kind"] in ("DOCUMENT", "GRAMMAR", "TEXT"):
-            continue
-        body = text[node.end() : following.start() if following else len(text)]
-        blocks = {m["name"]: m["value"] for m in _BLOCK.finditer(body)}
-        fields = {m["name"]: m["value"] for m in _FIELD.finditer(_BLOCK.sub("", body))} | blocks
-        if "UID" in fields:
-            yield _parent(fields["UID"], fields.get("TITLE"), fields.get("STATEMENT"), name)
 
 
 def _parent(id: str, title: str | None, text: str | None, source: str) -> Parent:
     return Parent(id.strip(), (title or "").strip(), (text or "").strip(), source)
 
 
+def _json(text: str, name: str) -> Iterator[Parent]:
+    """An export of StrictDoc, or of sphinx-needs."""
+    try:
+        data = json.loads(text)
+    except (ValueError, RecursionError):
+        raise UnreadableError("it is not JSON") from None
+    if isinstance(data, dict) and isinstance(data.get("DOCUMENTS"), list):
+        return _strictdoc(data["DOCUMENTS"], name)
+    if isinstance(data, dict) and "versions" in data:
+        return _needs(data, name)
+    raise UnreadableError("it has neither `DOCUMENTS`, as StrictDoc writes, nor `versions`")
+
+
+# StrictDoc -------------------------------------------------------------------------------------
+
+_NO_TEXT = ("UID", "MID", "TITLE", "NODES", "RELATIONS", "GRAMMAR", "OPTIONS", "STATUS", "TAGS")
+
+
+def _strictdoc(documents: Sequence[Any], name: str) -> Iterator[Parent]:
+    """Every node with a UID below the documents, of whatever type their grammars have."""
+    waiting = [node for document in reversed(documents) for node in _nodes(document)]
+    while waiting:
+        node = waiting.pop()
+        uid = node.get("UID")
+        if isinstance(uid, str):
+            yield _parent(uid, str(node.get("TITLE") or ""), _statement(node), name)
+        waiting.extend(_nodes(node))
+
+
+def _nodes(node: Any) -> list[dict[str, Any]]:
+    """What is below it, the first one last."""
+    below = node.get("NODES", []) if isinstance(node, dict) else None
+    if not isinstance(below, list) or not all(isinstance(each, dict) for each in below):
+        raise UnreadableError("its nodes are not as StrictDoc writes them")
+    return below[::-1]
+
+
+def _statement(node: Mapping[str, Any]) -> str:
+    """Its statement; all other texts of a node whose grammar has none."""
+    if "STATEMENT" in node:
+        return str(node["STATEMENT"])
+    told = {k: v for k, v in node.items() if k not in _NO_TEXT and not k.startswith("_")}
+    return "\n".join(value for value in told.values() if isinstance(value, str))
+
+
 # Doorstop --------------------------------------------------------------------------------------
 
 
-def _doorstop(folder: Path, name: str) -> Iterator[Parent]:
-    """Every active item of the documents in the folder and below it."""
-    documents = sorted(path.parent for path in folder.rglob(".doorstop.yml"))
-    if not documents:
-        raise UnreadableError("no `.doorstop.yml` is in it")
-    for document in documents:
-        for path in sorted(document.glob("*.yml")):
-            if path.name == ".doorstop.yml":
-                continue
-            item = _yaml(path)
-            if item.get("active", True):
-                header, text = str(item.get("header") or ""), str(item.get("text") or "")
-                yield _parent(path.stem, header, text, name)
+def _exports(folder: Path, name: str) -> Iterator[Parent]:
+    """Every document in a folder of exports."""
+    if any(folder.rglob(".doorstop.yml")):
+        raise UnreadableError("it holds the items; `doorstop export --yaml all FOLDER` writes them")
+    paths = sorted(folder.glob("*.yml"))
+    if not paths:
+        raise UnreadableError("no export of Doorstop (`*.yml`) is in it")
+    for path in paths:
+        yield from _doorstop(path, name)
 
 
-def _yaml(path: Path) -> Mapping[str, Any]:
+def _doorstop(path: Path, name: str) -> Iterator[Parent]:
+    """The items of one exported document; Doorstop exports the active ones."""
     try:
         found = yaml.safe_load(_text(path))
-    except yaml.YAMLError:
+    except (yaml.YAMLError, RecursionError):
         raise UnreadableError(f"{path.name} is not YAML") from None
-    if not isinstance(found, dict):
-        raise UnreadableError(f"{path.name} is no item")
-    return found
+    if not isinstance(found, dict) or not all(_is_item(item) for item in found.values()):
+        raise UnreadableError(f"{path.name} is no export of Doorstop")
+    for uid, item in found.items():
+        if item.get("active", True):
+            yield _parent(str(uid), item.get("header"), item["text"], name)
+
+
+def _is_item(item: Any) -> bool:
+    if not isinstance(item, dict) or "level" not in item:
+        return False
+    return isinstance(item.get("text"), str) and isinstance(item.get("header", ""), str)
 
 
 # sphinx-needs ----------------------------------------------------------------------------------
 
 
-def _needs(text: str, name: str) -> Iterator[Parent]:
+def _needs(data: Mapping[str, Any], name: str) -> Iterator[Parent]:
     """The needs of the current version."""
-    try:
-        data = json.loads(text)
-    except (ValueError, RecursionError):
-        raise UnreadableError("it is not JSON") from None
-    versions = data.get("versions") if isinstance(data, dict) else None
-    if not isinstance(versions, dict) or not versions:
-        raise UnreadableError("it has no `versions`, as a needs.json has")
-    current = data.get("current_version")
-    version = versions.get(current) or versions[sorted(versions)[-1]]
+    versions, current = data["versions"], data.get("current_version")
+    if not isinstance(versions, dict) or not isinstance(current, str) or current not in versions:
+        raise UnreadableError("its `current_version` is not among its `versions`")
+    version = versions[current]
     needs = version.get("needs") if isinstance(version, dict) else None
     if not isinstance(needs, dict):
         raise UnreadableError("its version has no `needs`")
     for id, need in needs.items():
-        if isinstance(need, dict):
-            content = need.get("content", need.get("description"))
-            yield _parent(id, str(need.get("title") or ""), str(content or ""), name)
+        if not isinstance(need, dict):
+            raise UnreadableError(f"`{id}` is no need")
+        content = need.get("content", need.get("description"))
+        yield _parent(id, str(need.get("title") or ""), str(content or ""), name)
 
 
 # ReqIF -----------------------------------------------------------------------------------------
@@ -178,48 +236,62 @@ def _reqifz(path: Path, name: str) -> Iterator[Parent]:
     try:
         with zipfile.ZipFile(path) as archive:
             inside = sorted(n for n in archive.namelist() if n.lower().endswith(".reqif"))
-            texts = [archive.read(n).decode("utf-8-sig") for n in inside]
-    except (zipfile.BadZipFile, UnicodeDecodeError):
-        raise UnreadableError("it is no archive of ReqIF files") from None
+            texts = [_inside(archive, each) for each in inside]
+    except zipfile.BadZipFile:
+        texts = []
+    if not texts:
+        raise UnreadableError("it is no archive of ReqIF files")
     for text in texts:
         yield from _reqif(text, name)
 
 
+def _inside(archive: zipfile.ZipFile, member: str) -> str:
+    with archive.open(member) as file:
+        return _decoded(file.read(_MOST + 1))
+
+
 def _reqif(text: str, name: str) -> Iterator[Parent]:
     """Every SPEC-OBJECT, by its foreign id where it has one, else by its identifier."""
-    if "<!ENTITY" in text:
-        raise UnreadableError("it declares entities")
+    from reqif.parser import ReqIFParser
+
+    if "<!DOCTYPE" in text or "<!ENTITY" in text:
+        raise UnreadableError("it declares a document type, which ReqIF has none of")
     try:
-        root = ElementTree.fromstring(text)
-    except ElementTree.ParseError as error:
-        raise UnreadableError(f"it is not XML: {error}") from None
-    if _tag(root) != "REQ-IF":
-        raise UnreadableError("its root is no `REQ-IF`")
-    names = {
-        node.get("IDENTIFIER", ""): node.get("LONG-NAME", "")
-        for node in root.iter()
-        if _tag(node).startswith("ATTRIBUTE-DEFINITION-")
+        content = ReqIFParser.parse_from_string(text).core_content.req_if_content
+        types, objects = content.spec_types or (), content.spec_objects or ()
+        names = {
+            definition.identifier: definition.long_name or ""
+            for kind in types
+            for definition in getattr(kind, "attribute_definitions", None) or ()
+        }
+        found = [_spec_object(each, names, name) for each in objects]
+    except Exception as error:  # the library has no exception of its own for what it cannot read
+        raise UnreadableError(f"the library `reqif` does not take it: {_first(error)}") from None
+    yield from found
+
+
+def _first(error: Exception) -> str:
+    """The first line of what it says."""
+    return next(iter(str(error).splitlines()), "") or type(error).__name__
+
+
+def _spec_object(spec: Any, names: Mapping[str, str], source: str) -> Parent:
+    values = {
+        names.get(attribute.definition_ref, ""): _value(attribute)
+        for attribute in spec.attributes or ()
     }
-    for node in root.iter():
-        if _tag(node) == "SPEC-OBJECT":
-            yield _spec_object(node, names, name)
+    known = {name: values[name] for name in _NAMES if name in values}
+    id = known.get("ReqIF.ForeignID") or known.get("UID") or spec.identifier
+    title = known.get("ReqIF.Name") or known.get("ReqIF.ChapterName") or known.get("TITLE")
+    text = known.get("ReqIF.Text") or "\n".join(v for n, v in values.items() if n not in _NAMES)
+    return _parent(id, title or spec.long_name, text, source)
 
 
-def _tag(node: ElementTree.Element) -> str:
-    return str(node.tag).rpartition("}")[2]
-
-
-def _spec_object(node: ElementTree.Element, names: Mapping[str, str], source: str) -> Parent:
-    values: dict[str, str] = {}
-    for value in node.iter():
-        if not _tag(value).startswith("ATTRIBUTE-VALUE-"):
-            continue
-        refs = [ref.text or "" for ref in value.iter() if _tag(ref).endswith("-REF")]
-        known = next((names[ref] for ref in refs if ref in names), "")
-        if known in _NAMES:
-            content = next((part for part in value.iter() if _tag(part) == "THE-VALUE"), None)
-            said = "".join(content.itertext()) if content is not None else ""
-            values[known] = value.get("THE-VALUE", said)
-    id = values.get("ReqIF.ForeignID") or values.get("UID") or node.get("IDENTIFIER", "")
-    title = values.get("ReqIF.Name") or values.get("ReqIF.ChapterName") or values.get("TITLE")
-    return _parent(id or "", title or node.get("LONG-NAME"), values.get("ReqIF.Text"), source)
+def _value(attribute: Any) -> str:
+    """The value as text; of XHTML without its elements."""
+    value = attribute.value
+    if isinstance(value, list):
+        return ", ".join(map(str, value))
+    if attribute.value_stripped_xhtml is None:
+        return str(value or "")
+    return "".join(ElementTree.fromstring(f"<x>{attribute.value_stripped_xhtml}</x>").itertext())

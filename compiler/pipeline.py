@@ -8,6 +8,7 @@ from dataclasses import replace
 from fractions import Fraction
 
 from compiler import predicates
+from compiler.agreement import disagreements
 from compiler.anticipation import anticipated
 from compiler.demand import obligation
 from compiler.formula import endless
@@ -21,12 +22,13 @@ from fretish.checking import conditions, temporal_predicates, too_deep
 from fretish.clock import Clock, assumed_ticks, in_ticks
 from fretish.declarations import Declarations, Modality, Variable
 from fretish.depth import deep
-from fretish.diagnostic import Code, Diagnostic, Severity, suggestion
+from fretish.diagnostic import Code, Diagnostic, Severity
 from fretish.documents import Requirement
 from fretish.parser import parse
 from fretish.source import Span
 from fretish.surprises import surprises
 from fretish.syntax import Sentence
+from fretish.tables import as_key
 
 
 @deep
@@ -50,9 +52,9 @@ def formalize(
         rule = _rule(requirement, sentence, ticks, declarations)
     except RecursionError:  # some versions of Python bound it below what `deep` asks for
         return None, (too_deep(sentence),)
-    clash = next(clashes([rule]), None)
-    if clash is not None:
-        return None, (clash,)
+    wrong = (*clashes([rule]), *(disagreements(rule, declarations) if declarations else ()))
+    if wrong:
+        return None, wrong
     return rule, tuple(_remarks(requirement, sentence, declarations))
 
 
@@ -161,12 +163,11 @@ def drift(requirement: Requirement, declarations: Declarations) -> Iterator[Diag
         place = requirement.place("params", name)
         proposition = declarations.propositions.get(name)
         if proposition is None:
-            near = suggestion(name, declarations.propositions)
             yield Diagnostic(
                 Code.UNKNOWN_NAME,
                 f"`params` states a number for `{name}`, which has no binding",
                 place,
-                help=f"did you mean `{near}`?" if near else "name a proposition of the bindings",
+                help="name the proposition that the number belongs to, and bind it",
             )
             continue
         stated = _quantity(text)
@@ -221,16 +222,18 @@ def _constants(expression: e.Expression) -> set[_Exact]:
 
 
 def unbound(rule: Rule, declarations: Declarations) -> Iterator[Diagnostic]:
-    """F304 for every proposition of the sentence that the bindings do not have."""
+    """F304 for every proposition of the sentence that the bindings do not have.
+
+    No other proposition is proposed in its place: the nearest name may be another safety claim.
+    """
     for name in rule.watched:
         if name in declarations.propositions:
             continue
-        near = suggestion(name, declarations.propositions)
         yield Diagnostic(
             Code.UNBOUND,
             f"`{name}` of {rule.id} has no binding in {declarations.source.name}",
             _place(rule, name),
-            help=f"did you mean `{near}`?" if near else f"add `[proposition.{name}]` there",
+            help=f"add `[proposition.{as_key(name)}]` there",
         )
 
 
@@ -243,16 +246,23 @@ def _place(rule: Rule, name: str) -> Span:
     return rule.requirement.wording
 
 
-def duplicates(requirements: Sequence[Requirement]) -> Iterator[Diagnostic]:
-    """F201 for every id that comes again; capitals, `-`, `_` and `.` do not tell files apart."""
+def duplicates(requirements: Sequence[Requirement]) -> Mapping[int, Diagnostic]:
+    """F201 for every id that comes again; capitals, `-`, `_` and `.` do not tell files apart.
+
+    Returns:
+        By the `id()` of each requirement whose id is not its own, the first one's too.
+    """
     first: dict[str, Requirement] = {}
+    found: dict[int, Diagnostic] = {}
     for requirement in requirements:
         earlier = first.setdefault(re.sub(r"[-.]", "_", requirement.id.lower()), requirement)
         if earlier is not requirement:
             place = earlier.place("id")
-            yield Diagnostic(
+            found[id(requirement)] = Diagnostic(
                 Code.DUPLICATE_ID,
                 f"the id `{requirement.id}` is taken: {place.source.name}:{place.line}",
                 requirement.place("id"),
                 help="give each an id of its own; capitals, `-`, `_` and `.` do not count",
             )
+            found.setdefault(id(earlier), found[id(requirement)])
+    return found

@@ -21,7 +21,8 @@ from compiler.targets import monitor as monitors
 from compiler.trials import Chance, chance, trials
 from fretish.declarations import Declarations
 from fretish.depth import deep
-from fretish.diagnostic import Code, Diagnostic
+from fretish.diagnostic import Code, Diagnostic, has_errors
+from fretish.documents import Requirement
 from monitors.audit import Watched
 from monitors.evidence import SCHEMA
 from monitors.integrity import Integrity
@@ -49,6 +50,23 @@ class Claim:
 
 
 @dataclass(frozen=True, slots=True)
+class Refused:
+    """A requirement that no log can be judged by: it is never lost, and shown by nothing."""
+
+    id: str
+    sentence: str
+    sha256: str
+    """Of the canonical wording; of the wording as it is, where that cannot be formalized."""
+    monitor: str
+    """SHA-256 of the monitor; of an empty text where there is none."""
+    why: tuple[Diagnostic, ...]
+
+    def hashes(self, bindings: str) -> dict[str, str]:
+        """As those of a claim."""
+        return {"sentence": self.sha256, "bindings": bindings, "monitor": self.monitor}
+
+
+@dataclass(frozen=True, slots=True)
 class Plan:
     """The claims and what their propositions mean; what an audit shows depends on nothing else."""
 
@@ -64,6 +82,18 @@ class Plan:
     """SHA-256 of all of it to the letter that one log is judged by, and of the fretc that does."""
     confidence: float = odds.CONFIDENCE
     """Of what all logs together say of a probability."""
+    refused: tuple[Refused, ...] = field(default=(), compare=False, repr=False)
+    """The requirements in force that are not among the claims."""
+
+    @property
+    def named(self) -> tuple[Claim | Refused, ...]:
+        """Every requirement in force: those that are judged, then those that cannot be."""
+        return (*self.claims, *self.refused)
+
+    @property
+    def refusals(self) -> tuple[Diagnostic, ...]:
+        """Everything that keeps a requirement from being judged."""
+        return tuple(dict.fromkeys(reason for each in self.refused for reason in each.why))
 
 
 def planned(
@@ -74,21 +104,64 @@ def planned(
 ) -> Plan | tuple[Diagnostic, ...]:
     """The plan to audit every requirement that is not retired, or why there can be none.
 
+    A requirement that cannot be judged is among the `refused` of the plan. There is a plan where
+    at least one can be.
+
     Args:
-        project: read without errors.
+        project: without errors but for those of single requirements.
         evaluation: how the monitors are run: `columns` or `online`; what they show is the same.
         integrity: what is looked at of a log beyond the messages in question.
         confidence: of what is said of a probability, between 0.5 and 1.
     """
-    rules = [rule for rule in project.rules if rule.requirement.status != "retired"]
     declarations = project.declarations
-    wrong = _not_auditable(rules, declarations)
-    if wrong or declarations is None:
-        return tuple(wrong)
+    refused = refusals(project)
+    reasons = {id(requirement) for requirement, _ in refused}
+    rules = [rule for rule in _in_force(project) if id(rule.requirement) not in reasons]
+    wrong = tuple(dict.fromkeys(reason for _, why in refused for reason in why))
+    if declarations is None or not rules:
+        return wrong or (Diagnostic(Code.NOTHING_TO_DO, "there is no requirement to audit"),)
     claims = tuple(_claim(rule) for rule in rules)
-    key = _key(claims, declarations, evaluation, integrity)
+    left = tuple(_left(project, requirement, why) for requirement, why in refused)
+    key = _key(claims, left, declarations, evaluation, integrity)
     bindings = fingerprint(declarations)
-    return Plan(claims, declarations, bindings, evaluation, integrity, key, confidence)
+    one_each = tuple({each.id: each for each in reversed(left)}.values())[::-1]
+    return Plan(claims, declarations, bindings, evaluation, integrity, key, confidence, one_each)
+
+
+def refusals(project: Project) -> tuple[tuple[Requirement, tuple[Diagnostic, ...]], ...]:
+    """Every requirement in force that an audit cannot judge, and why: errors, in their order.
+
+    Where the bindings themselves have a mistake, that is no fault of a requirement.
+    """
+    rules = _in_force(project)
+    own = {id(rule.requirement): rule for rule in rules}
+    failed = {id(each.requirement): each.diagnostic for each in project.failed}
+    unusable = _unusable(project, rules[0]) if rules and not has_errors(project.general) else None
+    found = []
+    for requirement in project.requirements:
+        rule = own.get(id(requirement))
+        why = [failed.get(id(requirement)) or project.mistaken.get(id(requirement))]
+        if rule is not None and unusable is not None:
+            why.append(unusable)
+        elif rule is not None and project.declarations is not None:
+            why.extend(_not_auditable(rule, project.declarations))
+        reasons = tuple(reason for reason in why if reason is not None and reason.is_error)
+        if reasons and requirement.status != "retired":
+            found.append((requirement, reasons))
+    return tuple(found)
+
+
+def _in_force(project: Project) -> list[Rule]:
+    return [rule for rule in project.rules if rule.requirement.status != "retired"]
+
+
+def _left(project: Project, requirement: Requirement, why: tuple[Diagnostic, ...]) -> Refused:
+    rule = next((each for each in project.rules if each.requirement is requirement), None)
+    if rule is None:
+        text = wording(requirement)
+        return Refused(requirement.id, text, sha256(text), sha256(""), why)
+    made = sha256(monitors.text(rule))
+    return Refused(rule.id, wording(requirement), rule.fingerprint, made, why)
 
 
 def _claim(rule: Rule) -> Claim:
@@ -104,12 +177,18 @@ def _claim(rule: Rule) -> Claim:
 
 @deep
 def _key(
-    claims: Sequence[Claim], declarations: Declarations, evaluation: str, integrity: Integrity
+    claims: Sequence[Claim],
+    refused: Sequence[Refused],
+    declarations: Declarations,
+    evaluation: str,
+    integrity: Integrity,
 ) -> str:
     """The bindings count with their places too: findings tell lines of them."""
     digest = hashlib.sha256(pickle.dumps(declarations, protocol=5))
     texts = [(c.id, c.sentence, c.sha256, c.monitor, astuple(c.demand)) for c in claims]
-    digest.update(json.dumps([SCHEMA, edition(), evaluation, integrity, texts]).encode())
+    left = [(r.id, r.sentence, r.sha256, r.monitor, [d.message for d in r.why]) for r in refused]
+    told = [SCHEMA, edition(), evaluation, integrity, texts, left]
+    digest.update(json.dumps(told).encode())
     return digest.hexdigest()
 
 
@@ -142,27 +221,27 @@ def watched(plan: Plan) -> tuple[Watched, ...]:
     )
 
 
-def _not_auditable(rules: Sequence[Rule], declarations: Declarations | None) -> list[Diagnostic]:
-    if not rules:
-        return [Diagnostic(Code.NOTHING_TO_DO, "there is no requirement to audit")]
+def _unusable(project: Project, first: Rule) -> Diagnostic | None:
+    """Why the bindings cannot be used for any requirement, said once; None where they can."""
+    declarations = project.declarations
     if declarations is None:
-        return [
-            Diagnostic(
-                Code.UNBOUND,
-                "no bindings say what the propositions mean in the messages",
-                rules[0].requirement.wording,
-                help="write `bindings.toml` beside the requirements, or name it with `--bindings`",
-            )
-        ]
+        return Diagnostic(
+            Code.UNBOUND,
+            "no bindings say what the propositions mean in the messages",
+            first.requirement.wording,
+            help="write `bindings.toml` beside the requirements, or name it with `--bindings`",
+        )
     if not declarations.clock.declared:
-        return [
-            Diagnostic(
-                Code.NO_CLOCK,
-                f"`{declarations.source.name}` declares no clock",
-                declarations.source.span(0, 0),
-                help='add `[clock]` with `tick = "100 ms"`',
-            )
-        ]
-    refused = [monitors.refuse(replace(rule, pctl=None)) for rule in rules]
-    missing = [diagnostic for rule in rules for diagnostic in unbound(rule, declarations)]
-    return [*(diagnostic for diagnostic in refused if diagnostic), *missing]
+        return Diagnostic(
+            Code.NO_CLOCK,
+            f"`{declarations.source.name}` declares no clock",
+            declarations.source.span(0, 0),
+            help='add `[clock]` with `tick = "100 ms"`',
+        )
+    return None
+
+
+def _not_auditable(rule: Rule, declarations: Declarations) -> tuple[Diagnostic, ...]:
+    """Why no log can be judged by a rule; empty where one can."""
+    refused = monitors.refuse(replace(rule, pctl=None))
+    return (*([refused] if refused else []), *unbound(rule, declarations))

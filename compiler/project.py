@@ -6,11 +6,12 @@ import hashlib
 import json
 import os
 import tomllib
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+from compiler.ancestry import circles, unknown_parents
 from compiler.files import read, unreadable
 from compiler.parents import Parent
 from compiler.parents import parents as read_parents
@@ -19,7 +20,7 @@ from compiler.rule import Rule
 from compiler.settings import settings
 from fretish.bindings import read_bindings
 from fretish.declarations import Declarations
-from fretish.diagnostic import Code, Diagnostic, Severity, has_errors, suggestion
+from fretish.diagnostic import Code, Diagnostic, has_errors
 from fretish.documents import Requirement, requirements
 from fretish.ordering import natural
 from fretish.source import Source
@@ -61,8 +62,18 @@ class Project:
     declarations: Declarations | None
     hazards: Mapping[str, Hazard]
     diagnostics: tuple[Diagnostic, ...]
+    general: tuple[Diagnostic, ...] = ()
+    """Those of the diagnostics that are about no single requirement."""
+    mistaken: Mapping[int, Diagnostic] = field(default_factory=dict)
+    """The mistake of each requirement that has a rule all the same, by its `id()`: it shares its
+    id with another one, or its `params` name what is not there."""
     parents: Mapping[str, Parent] = field(default_factory=dict)
     """What other tools have, by its id; read where hazards are."""
+
+    @property
+    def without_rule(self) -> tuple[Requirement, ...]:
+        """The requirements that have an error, or are free text."""
+        return tuple(each.requirement for each in self.failed)
 
 
 def load(
@@ -82,30 +93,65 @@ def load(
     """
     declarations, said = _declarations(bindings or _beside(paths, BINDINGS))
     known, told = _hazards(hazards) if hazards else ({}, ())
-    unsaid = frozenset({Code.NO_CLOCK}) if has_errors(said) else frozenset()  # it may be there
-    written: list[Requirement] = []
-    diagnostics = [*said, *told]
+    written, unread = _written(paths)
+    above, elsewhere = _above(paths) if parents else ({}, ())
+    rules, failed, mistaken, remarks = _formalized(written, declarations, broken=has_errors(said))
+    upward = [*told, *elsewhere]
+    if (hazards or parents) and not has_errors(upward):
+        upward.extend(unknown_parents(written, known, above, hazards))
+        upward.extend(circles(written))
+    general = (*said, *unread, *upward)
+    return Project(
+        tuple(written),
+        rules,
+        failed,
+        declarations,
+        known,
+        (*said, *unread, *remarks, *upward),
+        general,
+        mistaken,
+        above,
+    )
+
+
+def _written(paths: Sequence[str]) -> tuple[list[Requirement], list[Diagnostic]]:
+    """Every requirement, and what is wrong with the files, but for the headers of these."""
+    found: list[Requirement] = []
+    wrong: list[Diagnostic] = []
     for path in paths:
         source = read(path)
-        found, wrong = ((), (source,)) if isinstance(source, Diagnostic) else requirements(source)
-        written.extend(found)
-        diagnostics.extend(wrong)
-    diagnostics.extend(duplicates(written))
-    rules, failed = [], []
+        kept, mistakes = ((), (source,)) if isinstance(source, Diagnostic) else requirements(source)
+        own = [mistake for requirement in kept for mistake in requirement.mistakes]
+        found.extend(kept)
+        wrong.extend(mistake for mistake in mistakes if mistake not in own)
+    return found, wrong
+
+
+def _formalized(
+    written: Sequence[Requirement], declarations: Declarations | None, *, broken: bool
+) -> tuple[tuple[Rule, ...], tuple[Failed, ...], dict[int, Diagnostic], list[Diagnostic]]:
+    """The rules, requirements without one, mistakes of those with one, and all there is to say.
+
+    Args:
+        written: as read.
+        declarations: None where there are none, or they are `broken`: a clock may be among them.
+        broken: whether the bindings have a mistake.
+    """
+    unsaid = frozenset({Code.NO_CLOCK}) if broken else frozenset()
+    mistaken = dict(duplicates(written))
+    rules, failed, said = [], [], list(dict.fromkeys(mistaken.values()))
     for requirement in written:
-        rule, remarks = formalize(requirement, declarations)
-        diagnostics.extend(remark for remark in remarks if remark.code not in unsaid)
-        if rule is not None:
-            rules.append(rule)
-        else:
+        rule, remarks = None, requirement.mistakes
+        if not remarks:
+            rule, remarks = formalize(requirement, declarations)
+        said.extend(remark for remark in remarks if remark.code not in unsaid)
+        if rule is None:
             failed.append(Failed(requirement, _reason(remarks)))
-    above, unread = _above(paths) if parents else ({}, ())
-    diagnostics.extend(unread)
-    if hazards or above:
-        diagnostics.extend(_unknown_parents(written, {*known, *above}))
-    return Project(
-        tuple(written), tuple(rules), tuple(failed), declarations, known, tuple(diagnostics), above
-    )
+            continue
+        rules.append(rule)
+        if has_errors(remarks):
+            mistaken.setdefault(id(requirement), _reason(remarks))
+    return tuple(rules), tuple(failed), mistaken, said
 
 
 def whole(
@@ -264,25 +310,4 @@ def _hazard_mistakes(tables: Tables, id: str, fields: Any) -> list[Diagnostic]:
             found.append(wrong(f"`{key}` must be a text", "write it in quotes", id, key))
     if "title" not in fields:
         found.append(wrong(f"the hazard {id} has no title", 'add `title = "..."`', id))
-    return found
-
-
-def _unknown_parents(written: Sequence[Requirement], above: Collection[str]) -> list[Diagnostic]:
-    """F501: a parent is neither a hazard, nor a requirement, here or in another tool."""
-    known = [*sorted(above, key=natural), *(requirement.id for requirement in written)]
-    found = []
-    for requirement in written:
-        for parent in requirement.parents:
-            if parent in known:
-                continue
-            near = suggestion(parent, known)
-            found.append(
-                Diagnostic(
-                    Code.UNKNOWN_PARENT,
-                    f"{requirement.id} names the parent `{parent}`, which is not declared",
-                    requirement.place("parents"),
-                    help=f"did you mean `{near}`?" if near else f"declare it in {HAZARDS}",
-                    severity=Severity.WARNING,
-                )
-            )
     return found

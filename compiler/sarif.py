@@ -21,6 +21,7 @@ from compiler.record import wording
 from compiler.rule import Rule
 from compiler.templating import to_json
 from fretish.diagnostic import Diagnostic
+from fretish.documents import Requirement
 from fretish.meaning import meaning
 from fretish.source import Span
 from monitors import kernel
@@ -49,6 +50,7 @@ def sarif(
     rules: Sequence[Rule],
     diagnostics: Sequence[Diagnostic] = (),
     together: Sequence[Estimated] = (),
+    failed: Sequence[Requirement] = (),
 ) -> str:
     """One SARIF run; the same inputs give the same bytes.
 
@@ -57,12 +59,15 @@ def sarif(
         rules: all requirements of the results; others are left out.
         diagnostics: what there is to say of the logs.
         together: requirements that are judged over all runs: each gives one more result.
+        failed: requirements without a rule.
     """
     meant = dict.fromkeys(result["requirement"] for result in results)
-    used = [rule for rule in rules if rule.id in meant]
+    named = {r.id: r for r in (*(rule.requirement for rule in rules), *failed)}
+    used = [requirement for id, requirement in named.items() if id in meant]
+    by_id = {rule.id: rule for rule in rules}
     files = _files(results, used)
     content = {
-        "tool": {"driver": _driver(used, diagnostics)},
+        "tool": {"driver": _driver(used, by_id, diagnostics)},
         "invocations": [_invocation(diagnostics)],
         "artifacts": list(files.values()),
         "columnKind": "unicodeCodePoints",
@@ -74,12 +79,14 @@ def sarif(
     return f"{to_json({'$schema': _SCHEMA, 'version': '2.1.0', 'runs': [content]})}\n"
 
 
-def _driver(rules: Sequence[Rule], diagnostics: Sequence[Diagnostic]) -> dict[str, Any]:
+def _driver(
+    used: Sequence[Requirement], rules: Mapping[str, Rule], diagnostics: Sequence[Diagnostic]
+) -> dict[str, Any]:
     codes = {diagnostic.code.number: diagnostic.code for diagnostic in diagnostics}
     return {
         "name": "fretc",
         "semanticVersion": __version__,
-        "rules": [_rule(rule) for rule in rules],
+        "rules": [_rule(each, rules.get(each.id)) for each in used],
         "notifications": [
             {"id": number, "shortDescription": {"text": codes[number].summary}}
             for number in sorted(codes)
@@ -87,22 +94,26 @@ def _driver(rules: Sequence[Rule], diagnostics: Sequence[Diagnostic]) -> dict[st
     }
 
 
-def _rule(rule: Rule) -> dict[str, Any]:
-    requirement, sentence = rule.requirement, wording(rule.requirement)
-    words = meaning(rule.sentence, rule.ticks, rule.clock)
+def _rule(requirement: Requirement, rule: Rule | None) -> dict[str, Any]:
+    """A requirement; without a rule nothing says what it means."""
+    sentence = wording(requirement)
+    words = meaning(rule.sentence, rule.ticks, rule.clock) if rule else ""
     told = [words, requirement.text, requirement.rationale]
     return {
-        "id": rule.id,
+        "id": requirement.id,
         "shortDescription": {"text": requirement.title or sentence},
         "fullDescription": {"text": sentence},
-        "help": {"text": "\n\n".join(text for text in told if text)},
+        "help": {"text": "\n\n".join(text for text in told if text) or sentence},
         "defaultConfiguration": {"level": "error"},
-        "properties": {"sha256": rule.fingerprint, "parents": list(requirement.parents)},
+        "properties": {
+            **({"sha256": rule.fingerprint} if rule else {}),
+            "parents": list(requirement.parents),
+        },
     }
 
 
 def _files(
-    results: Sequence[Mapping[str, Any]], rules: Sequence[Rule]
+    results: Sequence[Mapping[str, Any]], used: Sequence[Requirement]
 ) -> dict[str, dict[str, Any]]:
     """Each file by its name: the logs, and where the sentences are."""
     files: dict[str, dict[str, Any]] = {}
@@ -113,19 +124,19 @@ def _files(
         size, sha256 = result["health"].get("size"), result["hashes"].get("log")
         artifact |= {"length": size} if size is not None else {}
         artifact |= {"hashes": {"sha-256": sha256}} if sha256 else {}
-    for rule in rules:
-        name = rule.requirement.wording.source.name
+    for requirement in used:
+        name = requirement.wording.source.name
         files.setdefault(name, {"location": _place(name), "sourceLanguage": "fretish"})
     return files
 
 
 def _result(
-    result: Mapping[str, Any], rules: Sequence[Rule], files: Sequence[str]
+    result: Mapping[str, Any], used: Sequence[Requirement], files: Sequence[str]
 ) -> dict[str, Any]:
     run = result["run"]
     level = _COUNTED if "trials" in result else _LEVELS.get(result["verdict"], _NOT_SHOWN)
     said = f"{run}: {result['verdict']}: {result['reason']}"
-    return _at_sentence(result["requirement"], run, rules, files) | {
+    return _at_sentence(result["requirement"], run, used, files) | {
         **level,
         "message": {"text": said},
         "analysisTarget": _place(run) | {"index": files.index(run)},
@@ -133,19 +144,23 @@ def _result(
     }
 
 
-def _result_of_all(one: Estimated, rules: Sequence[Rule], files: Sequence[str]) -> dict[str, Any]:
+def _result_of_all(
+    one: Estimated, used: Sequence[Requirement], files: Sequence[str]
+) -> dict[str, Any]:
     said = "; ".join((one.reason, *one.lines[1:]))
-    return _at_sentence(one.requirement, "", rules, files) | {
+    return _at_sentence(one.requirement, "", used, files) | {
         **_OVER_ALL.get(one.answer, _NOT_SHOWN),
         "message": {"text": f"all runs: {one.answer}: {said}"},
         "properties": {"answer": one.answer},
     }
 
 
-def _at_sentence(id: str, run: str, rules: Sequence[Rule], files: Sequence[str]) -> dict[str, Any]:
+def _at_sentence(
+    id: str, run: str, used: Sequence[Requirement], files: Sequence[str]
+) -> dict[str, Any]:
     """What every result of a requirement has; `run` is empty for all of them together."""
-    (number,) = (i for i, rule in enumerate(rules) if rule.id == id)
-    span = rules[number].requirement.wording
+    (number,) = (i for i, requirement in enumerate(used) if requirement.id == id)
+    span = used[number].wording
     where = _place(span.source.name) | {"index": files.index(span.source.name)}
     same = hashlib.sha256(f"{id}\n{run}".encode()).hexdigest()
     return {

@@ -73,7 +73,7 @@ def _settings(folder: Path, tables: Tables, told: Any) -> Settings | Diagnostic:
             return unknown_key(Code.BAD_SETTINGS, key, _FIELDS, span, "[tool.fretc]")
     parents = told.get("parents", [])
     if not isinstance(parents, list) or not all(isinstance(path, str) for path in parents):
-        mend = 'write `parents = ["docs/hazards.sdoc"]`'
+        mend = 'write `parents = ["build/hazards/json/index.json"]`'
         return _wrong(tables, "`parents` must be a list of paths", mend, "tool", "fretc", "parents")
     return Settings(folder, tuple(parents), tables)
 

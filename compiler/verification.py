@@ -33,6 +33,11 @@ class Layer(StrEnum):
     """So it has by AJPF's own verdict, as the `run.py` of a bundle has recorded it."""
 
 
+ALL, PROVERS = ("verify", "proof"), ("dafny", "crosshair")
+METHODS = (*ALL, *PROVERS, *map(str, Layer))
+"""Methods of `verify = [...]` that `fretc verify` can give a result for."""
+
+
 @dataclass(frozen=True, slots=True)
 class Trace:
     """A run as a table: a row for each tick."""

@@ -15,6 +15,7 @@ from fretish.tables import Tables, read, unknown_key
 FIELDS = ("id", "title", "text", "parents", "rationale", "status", "verify", "params", "fret")
 STATUSES = ("draft", "approved", "retired")
 _ID = re.compile(r"[A-Za-z0-9][A-Za-z0-9_.-]*")
+_ID_LINE = re.compile(rf'^[ \t]*id[ \t]*=[ \t]*"(?P<id>{_ID.pattern})"', re.MULTILINE)
 _FREE_TEXT = re.compile(r'"[^"]*"')
 _FENCE = re.compile(r"^\ufeff?\+\+\+[ \t]*(?:\r?\n|\Z)", re.MULTILINE)
 
@@ -40,6 +41,8 @@ class Requirement:
     fret: Mapping[str, str] = field(default_factory=dict)
     """What FRET keeps beside the sentence and fretc does not use: project, comments, ..."""
     header: Tables | None = field(default=None, compare=False, repr=False)
+    mistakes: tuple[Diagnostic, ...] = ()
+    """What is wrong with the header; its other fields are then not read."""
 
     @property
     def is_free_text(self) -> bool:
@@ -52,17 +55,20 @@ class Requirement:
 
 
 def requirements(source: Source) -> tuple[tuple[Requirement, ...], tuple[Diagnostic, ...]]:
-    """Read every requirement of a `.fret` text; those with a mistake in the header are left out."""
+    """Read every requirement of a `.fret` text, and what is wrong with their headers.
+
+    One whose header cannot be read is kept by its id, so that nobody loses sight of it; by the name
+    of its file where its id cannot be read either.
+    """
     found: list[Requirement] = []
     wrong: list[Diagnostic] = []
     pairs = _pairs(source)
     if isinstance(pairs, Diagnostic):
-        return (), (pairs,)
+        return (_unread(source, source.span(), pairs),), (pairs,)
     for header, wording in pairs:
         requirement, mistakes = _requirement(source, header, wording, alone=len(pairs) == 1)
         wrong.extend(mistakes)
-        if requirement is not None:
-            found.append(requirement)
+        found.append(requirement)
     return tuple(found), tuple(wrong)
 
 
@@ -90,17 +96,19 @@ def _stripped(span: Span) -> Span:
 
 def _requirement(
     source: Source, header: Span | None, wording: Span, *, alone: bool
-) -> tuple[Requirement | None, tuple[Diagnostic, ...]]:
-    stem = PurePath(source.name).stem.strip("<>") or "requirement"
+) -> tuple[Requirement, tuple[Diagnostic, ...]]:
+    stem = _stem(source)
     if header is None:
         return Requirement(stem, wording), ()
     tables = read(header, Code.BAD_HEADER, "the header")
     if isinstance(tables, Diagnostic):
-        return None, (tables,)
+        return _unread(source, wording, tables, header.text, alone=alone), (tables,)
+    data = tables.data
     wrong = tuple(_mistakes(tables, alone=alone))
     if wrong:
-        return None, wrong
-    data = tables.data
+        id = data.get("id")
+        known = str(id) if _fits("id", id) else _called(source, wording, alone=alone)
+        return Requirement(known, wording, header=tables, mistakes=wrong), wrong
     return (
         Requirement(
             id=data.get("id", stem),
@@ -117,6 +125,24 @@ def _requirement(
         ),
         (),
     )
+
+
+def _stem(source: Source) -> str:
+    return PurePath(source.name).stem.strip("<>") or "requirement"
+
+
+def _called(source: Source, wording: Span, *, alone: bool) -> str:
+    """What a requirement without an id is called: its file, and its line where it is not alone."""
+    return _stem(source) if alone else f"{_stem(source)}-line-{wording.line}"
+
+
+def _unread(
+    source: Source, wording: Span, why: Diagnostic, header: str = "", *, alone: bool = True
+) -> Requirement:
+    """A requirement whose header is no TOML; a line that looks like its id still names it."""
+    named = _ID_LINE.search(header)
+    known = named["id"] if named else _called(source, wording, alone=alone)
+    return Requirement(known, wording, mistakes=(why,))
 
 
 def _mistakes(tables: Tables, *, alone: bool) -> Iterator[Diagnostic]:

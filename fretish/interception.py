@@ -8,8 +8,9 @@ from typing import Any
 
 from fretish import units
 from fretish.declarations import Assumed, Form, Interception, Planner, Requests
-from fretish.diagnostic import Code, suggestion
+from fretish.diagnostic import Code
 from fretish.fields import Fields
+from fretish.tables import as_key
 
 TABLE = """\
 [interceptor]
@@ -215,12 +216,11 @@ class Loop(Fields):
             self._absent("assume", "stands", '"PROPOSITION"')
         if name is None or name in propositions:
             return name or ""
-        near = suggestion(name, propositions)
         self._say(
             Code.UNKNOWN_NAME,
             f"`stands` names `{name}`, which is no bound proposition",
             self.tables.value("assume", "stands"),
-            f"did you mean `{near}`?" if near else f"declare `[proposition.{name}]`",
+            f"declare `[proposition.{as_key(name)}]`",
         )
         return name
 

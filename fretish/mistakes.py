@@ -84,7 +84,7 @@ _TIMINGS = frozenset(
     {"IMMEDIATELY", "INITIALLY", "FINALLY", "EVENTUALLY", "ALWAYS", "NEVER", "WITHIN", "FOR"}
 )
 _COMPARISONS = ("LESS", "AT_MOST", "GREATER", "AT_LEAST", "EQUAL", "UNEQUAL")
-_AMOUNT = {"WITHIN": " 3 seconds", "FOR": " 3 seconds"}
+_AMOUNT = {"WITHIN": " N seconds", "FOR": " N seconds"}
 _SHALL = ("should", "must", "will", "shal", "has", "needs")
 
 
@@ -197,7 +197,7 @@ def _number(u: Unexpected) -> Diagnostic | None:
         Code.BAD_DURATION,
         "a duration begins with a number in digits",
         u.met.span,
-        help=f"write such as `{u.before.word} 3 seconds`",
+        help=f"write such as `{u.before.word} N seconds`",
     )
 
 
@@ -240,7 +240,7 @@ def _chain(u: Unexpected) -> Diagnostic | None:
         Code.NOT_FRETISH,
         "comparisons do not chain",
         u.met.span,
-        help="write each by itself: `3 < x & x < 5`",
+        help="write each by itself, and join them by `&`",
     )
 
 
@@ -248,7 +248,10 @@ def _number_form(u: Unexpected) -> Diagnostic | None:
     """`.5` and `007`."""
     if u.met.kind == "_DOT" and u.wants("NUMBER"):
         return Diagnostic(
-            Code.NOT_FRETISH, "a number begins with a digit", u.met.span, help="write `0.5`"
+            Code.NOT_FRETISH,
+            "a number begins with a digit",
+            u.met.span,
+            help="write a 0 before the point",
         )
     if u.met.kind != "NUMBER" or u.before is None or u.before.kind != "NUMBER":
         return None
@@ -348,14 +351,14 @@ def _order(u: Unexpected) -> Diagnostic | None:
             Code.NOT_FRETISH,
             "the probability stands after `shall`",
             u.met.span,
-            help="write `shall with probability > 0.9 eventually satisfy ...`",
+            help="write it there: `shall with probability ... satisfy ...`",
         )
     if u.met.kind == "PROBABILITY":
         return Diagnostic(
             Code.NOT_FRETISH,
             "`with` is missing before `probability`",
             u.met.span,
-            help="write `with probability > 0.9`",
+            help="write `with probability ...`",
         )
     return None
 

@@ -25,7 +25,7 @@ def surprises(sentence: s.Sentence) -> Iterator[Diagnostic]:
             Code.NO_TIMING,
             "without a timing the response is required at some time, however late",
             sentence.component_span,
-            "write `eventually` if that is meant, or `immediately`, `always`, `within 3 seconds`",
+            "write `eventually` if that is meant, or `immediately`, `always`, `within N seconds`",
         )
     scope = sentence.scope
     if scope is None:

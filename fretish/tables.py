@@ -8,6 +8,8 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
+import tomli_w
+
 from fretish.diagnostic import Code, Diagnostic, suggestion
 from fretish.source import Span
 
@@ -105,6 +107,11 @@ def _offset(text: str, line: int, column: int) -> int:
     lines = text.split("\n")
     before = sum(len(part) + 1 for part in lines[: line - 1])
     return min(before + column - 1, len(text))
+
+
+def as_key(name: str) -> str:
+    """The name as a key of TOML: in quotes where it needs them."""
+    return tomli_w.dumps({name: 0}).removesuffix(" = 0\n")
 
 
 def unknown_key(code: Code, key: str, known: Iterable[str], span: Span, where: str) -> Diagnostic:

@@ -147,12 +147,31 @@ def unread(
     run: str, requirement: str, diagnostic: Diagnostic, hashes: Mapping[str, str]
 ) -> dict[str, Any]:
     """The JSON object of a run whose log could not be read: nothing is shown."""
+    health: dict[str, Any] = {
+        "intact": False,
+        "size": None,
+        "checked": None,
+        "gaps": [],
+        "findings": [as_json(diagnostic)],
+        "topics": {},
+    }
+    return unjudged(run, requirement, diagnostic.message, hashes, health)
+
+
+def unjudged(
+    run: str,
+    requirement: str,
+    reason: str,
+    hashes: Mapping[str, str],
+    health: Mapping[str, Any],
+) -> dict[str, Any]:
+    """The JSON object of a run and a requirement that could not be held against it."""
     return {
         "run": run,
         "requirement": requirement,
         "verdict": NO_DATA,
         "finite": None,
-        "reason": diagnostic.message,
+        "reason": reason,
         "clock": "",
         "ticks": 0,
         "start_ns": None,
@@ -172,14 +191,7 @@ def unread(
         "thresholds": [],
         "units": {},
         "hashes": dict(hashes),
-        "health": {
-            "intact": False,
-            "size": None,
-            "checked": None,
-            "gaps": [],
-            "findings": [as_json(diagnostic)],
-            "topics": {},
-        },
+        "health": dict(health),
         "assumptions": [],
     }
 

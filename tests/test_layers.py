@@ -70,7 +70,7 @@ DOORS = {
     },
     "fsspec": {"monitors/inputs.py"},
     "z3": {"compiler/bounds.py"},
-    "reqif": {"compiler/report/forms/reqif.py"},
+    "reqif": {"compiler/parents.py", "compiler/report/forms/reqif.py"},
     "yaml": {"compiler/parents.py", "compiler/report/forms/gsn.py", "monitors/folders.py"},
     "mcap_protobuf": {"monitors/protobuf.py"},
     "mcap_ros1": {"monitors/decoding.py"},

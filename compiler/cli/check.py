@@ -26,16 +26,17 @@ def check(
 ) -> None:
     """Say what is wrong or missing in a project, before any run.
 
-    Mistakes in requirements, bindings, hazards, lock and waivers; numbers that have drifted apart;
-    requirements that hold whatever happens; planned methods that can give no result; links that
-    are missing; what has changed since its review. Exit status: 0 nothing to say, 3 warnings, 2
-    mistakes.
+    Mistakes in requirements, bindings, hazards, lock and waivers; everything that an audit would
+    refuse; numbers that have drifted apart; requirements that hold whatever happens; planned
+    methods that can give no result; links that are missing; what has changed since its review.
+    Exit status: 0 nothing to say, 3 warnings, 2 mistakes.
     """
     from compiler.checks import checks
     from compiler.evidence import read as read_evidence
     from compiler.links import chains
     from compiler.lock import Lock, orphaned, standings
     from compiler.lock import read as read_lock
+    from compiler.plan import refusals
     from compiler.project import beside, whole
     from compiler.proven import known as proven
     from compiler.waivers import read as read_waivers
@@ -61,7 +62,9 @@ def check(
     waived = beside(requirements, "waivers.toml")
     if waived is not None:
         said.extend(read_waivers(waived, [r.id for r in project.requirements], today())[1])
-    if not has_errors(said):
+    flawed = has_errors(said)
+    said.extend(reason for _, why in refusals(project) for reason in why)
+    if not flawed:
         said.extend(checks(project, standings(found, lock)))
     _finish(tuple(dict.fromkeys(said)), len(project.requirements))
 

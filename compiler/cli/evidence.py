@@ -90,6 +90,8 @@ def _plan(requirements: str, bindings: str | None) -> tuple[Project, Plan]:
     plan = planned(project)
     if not isinstance(plan, Plan):
         stop(*plan)
+    if plan.refused:
+        stop(*plan.refusals)
     return project, plan
 
 

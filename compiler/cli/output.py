@@ -30,6 +30,13 @@ def say(diagnostics: Sequence[Diagnostic]) -> None:
         say_line(render_all(diagnostics))
 
 
+def say_also(diagnostics: Sequence[Diagnostic], earlier: Sequence[Diagnostic]) -> None:
+    """Print them below others, if any of both there are."""
+    if diagnostics and earlier:
+        say_line("")
+    say(diagnostics)
+
+
 def say_line(text: str) -> None:
     """Print a line on standard error; where that cannot be, the exit status still tells."""
     with suppress(OSError):

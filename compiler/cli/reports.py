@@ -148,7 +148,9 @@ def _texts(
         "json_": lambda: made.json or "",
         "csv": lambda: csv_text(whole),
         "junit": lambda: junit(whole, strict=strict),
-        "sarif": lambda: sarif(whole, _audited(evidence, whole), project.rules, said),
+        "sarif": lambda: sarif(
+            whole, _audited(evidence, whole), project.rules, said, project.without_rule
+        ),
         "markdown": lambda: markdown(whole),
         "gsn": lambda: gsn(whole),
         "reqif": lambda: _reqif(whole),

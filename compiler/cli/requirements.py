@@ -218,6 +218,7 @@ def import_(
 ) -> None:
     """Read requirements that FRET exported: JSON, or a CSV.
 
+    A comma, a semicolon or a tab parts the columns of a CSV: what parts its header into the most.
     Writes a `.fret` file for each project, and `bindings.toml` with FRET's variables. Formulas are
     not taken over: they are made from the sentences.
     """

@@ -11,6 +11,7 @@ import click
 from compiler.cli.output import BAD, NOT_SHOWN, SHOWN, deliver, say, say_line, stop
 from fretish.diagnostic import Code, Diagnostic, Severity, has_errors, suggestion
 from fretish.ordering import natural
+from fretish.rendering import visible
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -39,6 +40,7 @@ _VERIFICATION = click.option(
 @_EVIDENCE
 @_VERIFICATION
 @click.option("--lock", "path", help="The lock; `fretc.lock` in the requirements' folder.")
+@click.option("--accept-violations", is_flag=True, help="Also where a run violates a requirement.")
 def lock(
     ids: tuple[str, ...],
     reviewer: str,
@@ -49,14 +51,17 @@ def lock(
     evidence: str,
     verification: str | None,
     path: str | None,
+    accept_violations: bool,
 ) -> None:
     """Accept the present state of requirements, as their reviewer.
 
     Fingerprints of the sentence, its parents, parameters, bindings and artefacts, and of each
     audited run with its verdict, go into `fretc.lock`. Any later change makes the links downstream
     of it suspect. Without an ID all requirements are accepted; of the others the reviews stay.
+    What the runs say of each is named; a violation is accepted only with `--accept-violations`.
     """
-    from compiler.lock import Lock, accepted, is_date, text
+    from compiler.evidence import refuted
+    from compiler.lock import Lock, accepted, is_date, text, unnamed_violations, verdicts_of
     from compiler.waivers import today
 
     for name, said in (("--reviewer", reviewer), ("--role", role), ("--comment", comment)):
@@ -69,6 +74,9 @@ def lock(
     if has_errors(project.diagnostics):
         raise SystemExit(BAD)
     chosen = _chosen(chains, ids)
+    violations = unnamed_violations(chosen, refuted(evidence))
+    if violations and not accept_violations:
+        stop(*violations)
     where = path or _beside(requirements)
     before = _read(where, must=False)
     kept = before.reviews if before is not None else {}
@@ -76,7 +84,8 @@ def lock(
     reviews = {id: review for id, review in kept.items() if id in known}
     reviews |= {c.requirement: accepted(c, reviewer, role, day, comment) for c in chosen}
     deliver({Path(where): text(Lock(reviews))})
-    say_line(f"accepted {', '.join(chain.requirement for chain in chosen)}")
+    for chain in chosen:
+        say_line(visible(f"accepted {chain.requirement}: {verdicts_of(chain)}"))
     for id in sorted(kept.keys() - known, key=natural):
         say_line(f"left out {id}: it is not among the requirements")
 
@@ -100,7 +109,6 @@ def diff(
     from compiler.comparison import as_record, differences, text
     from compiler.lock import standings
     from compiler.templating import to_json
-    from fretish.rendering import visible
 
     project, chains = _chains(requirements, evidence, verification)
     if has_errors(project.diagnostics):

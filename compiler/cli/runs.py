@@ -20,13 +20,15 @@ from compiler.cli.output import (
     not_written,
     protect,
     say,
-    say_line,
+    say_also,
     stop,
 )
 from compiler.cli.summaries import summarize
 from fretish.diagnostic import Code, Diagnostic, has_errors
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from compiler.auditing import Audit, Engine
     from compiler.project import Project
 
@@ -160,16 +162,16 @@ def audit(
     protect(outputs, inputs)
     project = load(files, bindings or beside(requirements, "bindings.toml"))
     say(project.diagnostics)
-    if has_errors(project.diagnostics):
+    if has_errors(project.general):
         raise SystemExit(BAD)
     plan = planned(project, evaluation, Integrity(integrity), confidence)
     if not isinstance(plan, Plan):
-        stop(*plan)
+        stop(*(reason for reason in plan if reason not in project.diagnostics))
     journal = Journal(Path(evidence), plan) if evidence != "-" and len(logs) > 1 else None
+    refused = [reason for reason in plan.refusals if reason not in project.diagnostics]
+    say_also(refused, project.diagnostics)
     result = audit_all(plan, logs, _engine(engine, jobs), journal, resume=resume)
-    if project.diagnostics and result.diagnostics:
-        say_line("")
-    say(result.diagnostics)
+    say_also(result.diagnostics, (*project.diagnostics, *refused))
     if result.read:  # a mistyped name must not cost the evidence of the last audit
         marked = _marked(result, project, annotations) if annotate or annotations else {}
         forms: dict[Path, str | bytes] = {Path(evidence): result.evidence}
@@ -180,8 +182,8 @@ def audit(
         deliver({**forms, **marked}, inputs)
         if journal is not None:
             journal.remove()
-    click.echo(_printed(result, project, form), nl=False)
-    if has_errors(result.diagnostics):
+    click.echo(_printed(result, project, refused, form), nl=False)
+    if plan.refused or has_errors((*project.diagnostics, *result.diagnostics)):
         raise SystemExit(BAD)
     raise SystemExit(VIOLATION if result.violated else SHOWN if result.shown else NOT_SHOWN)
 
@@ -192,7 +194,7 @@ def _marked(result: Audit, project: Project, folder: str | None) -> dict[Path, b
     return sidecars(result.results, project.rules, Path(folder or "build/annotations"))
 
 
-def _printed(result: Audit, project: Project, form: str) -> str:
+def _printed(result: Audit, project: Project, refused: Sequence[Diagnostic], form: str) -> str:
     from compiler.outputs import github, junit
     from compiler.sarif import sarif
 
@@ -202,9 +204,11 @@ def _printed(result: Audit, project: Project, form: str) -> str:
         case "junit":
             return junit(result.results, result.estimates)
         case "github":
-            return github(result.results, project.rules, result.estimates)
+            return github(result.results, project.requirements, result.estimates)
         case "sarif":
-            return sarif(result.results, project.rules, result.diagnostics, result.estimates)
+            said = (*project.diagnostics, *refused, *result.diagnostics)
+            left = project.without_rule
+            return sarif(result.results, project.rules, said, result.estimates, left)
         case _:
             return coloured(result.text)
 

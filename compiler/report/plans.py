@@ -7,9 +7,10 @@ from collections.abc import Sequence
 from compiler import verification
 from compiler.report import phrases
 from compiler.report.claims import UNFORMALIZED, Claim
-from compiler.report.proofs import METHODS, covering, in_words, worst
+from compiler.report.proofs import covering, in_words, worst
 from compiler.report.views import Planned, ProofView
 from compiler.targets import TARGETS
+from compiler.verification import METHODS
 
 _AUDIT = "audit"
 

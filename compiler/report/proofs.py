@@ -10,7 +10,15 @@ from compiler.proven import Proof
 from compiler.report import phrases
 from compiler.report.claims import MARKS, SUSPECT
 from compiler.report.views import Mark, ProofView, RequirementView
-from compiler.verification import COUNTEREXAMPLE, NOT_CHECKED, PROVED, VACUOUS, Layer
+from compiler.verification import (
+    ALL,
+    COUNTEREXAMPLE,
+    NOT_CHECKED,
+    PROVED,
+    PROVERS,
+    VACUOUS,
+    Layer,
+)
 
 _MARKS: Mapping[str, Mark] = {
     COUNTEREXAMPLE: Mark(COUNTEREXAMPLE, "✘", "violated"),
@@ -19,10 +27,6 @@ _MARKS: Mapping[str, Mark] = {
     PROVED: Mark(PROVED, "✔", "satisfied"),
 }
 """The worst first, as for verdicts."""
-_ALL = ("verify", "proof")
-_PROVERS = ("dafny", "crosshair")
-METHODS = (*_ALL, *_PROVERS, *map(str, Layer))
-"""Methods of `verify = [...]` that `fretc verify` can give a result for."""
 _OF_MONITOR = (str(Layer.MONITOR), str(Layer.LOOP), str(Layer.BOUNDS))
 """Layers whose claims are about the text of the requirement's monitor."""
 SHARED = ("interceptor", "agent")
@@ -70,9 +74,9 @@ def _suspicions(proof: Proof, now: Mapping[str, str]) -> Iterator[str]:
 
 def covering(method: str, proofs: Sequence[ProofView]) -> list[ProofView]:
     """The proofs that are results of a planned method."""
-    if method in _ALL:
+    if method in ALL:
         return list(proofs)
-    if method in _PROVERS:
+    if method in PROVERS:
         return [proof for proof in proofs if method in proof.engine.casefold()]
     return [proof for proof in proofs if proof.layer == method]
 

@@ -95,7 +95,7 @@ def remark(rule: Rule) -> Diagnostic | None:
         Code.NEVER_DECIDED,
         f"no run, however long, can violate {rule.id} or confirm it: it sets no bound",
         sentence.timing_span or rule.requirement.wording,
-        help="state a bound: `within 200 milliseconds` in place of `eventually`",
+        help="state a bound: `within ...` in place of `eventually`",
         severity=Severity.WARNING,
     )
 

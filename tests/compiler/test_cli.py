@@ -99,7 +99,7 @@ def test_emitted_files_go_to_build_and_are_named(fretc: Fretc) -> None:
         "  --> r1.fret:1:39\n"
         f"   | {R1}\n"
         "   |                                       ^^^^^^^^^^\n"
-        "help: state a bound: `within 200 milliseconds` in place of `eventually`\n"
+        "help: state a bound: `within ...` in place of `eventually`\n"
         "wrote build/r1_monitor.py\nwrote build/r1.psl\n",
     )
     assert sorted(path.name for path in Path("build").iterdir()) == ["r1.psl", "r1_monitor.py"]

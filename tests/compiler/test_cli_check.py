@@ -107,3 +107,88 @@ def test_mistakes_win_over_warnings(good: Fretc) -> None:
 def test_a_lock_that_cannot_be_read_is_a_mistake(good: Fretc) -> None:
     write("requirements/fretc.lock", "x")
     assert good("check").status == 2
+
+
+@pytest.mark.parametrize(
+    ("parents", "way"),
+    [
+        ({"R1": ["R1"]}, "R1 → R1"),
+        ({"R1": ["R2"], "R2": ["R3", "HAZ-1"], "R3": ["R1"]}, "R1 → R2 → R3 → R1"),
+    ],
+)
+def test_parents_in_a_circle_are_a_mistake(
+    good: Fretc, parents: dict[str, list[str]], way: str
+) -> None:
+    for id, above in parents.items():
+        text = GOOD.replace('"R1"', f'"{id}"').replace('["HAZ-1"]', str(above).replace("'", '"'))
+        write(f"requirements/{id.lower()}.fret", text)
+    run = good("check")
+    assert run.status == 2
+    assert f"F526 R1 is its own ancestor: {way}\n" in run.err
+    assert run.err.count("F526") == 1
+
+
+@pytest.mark.parametrize(
+    ("status", "above", "told"),
+    [
+        ("approved", "HAZ-1", False),
+        ("retired", "HAZ-1", True),
+        ("approved", "R1", False),
+        ("approved", "GONE", True),
+    ],
+)
+def test_a_requirement_that_reaches_no_hazard_is_told(
+    good: Fretc, status: str, above: str, told: bool
+) -> None:
+    low = GOOD.replace('"R1"', '"R3"').replace("HAZ-1", "R2")
+    high = GOOD.replace('"R1"', '"R2"').replace("HAZ-1", above).replace("approved", status)
+    write("requirements/r2.fret", high)
+    write("requirements/r3.fret", low)
+    run = good("check")
+    assert run.status == (3 if told else 0)
+    assert ("F527 warning: the parents of R3 lead to no hazard" in run.err) == told
+
+
+def test_hazards_that_cannot_be_read_are_one_message(good: Fretc) -> None:
+    write("requirements/r2.fret", GOOD.replace('"R1"', '"R2"'))
+    write("requirements/hazards.toml", "[HAZ-1\n")
+    run = good("check")
+    assert (run.status, run.err.count("F502"), "F501" in run.err) == (2, 1, False)
+    run = good("check", "--hazards", "gone.toml")
+    assert (run.status, run.err.count("F901"), "F501" in run.err) == (2, 1, False)
+
+
+def test_hazards_that_are_nowhere_are_one_message(good: Fretc) -> None:
+    write("requirements/r2.fret", GOOD.replace('"R1"', '"R2"'))
+    Path("requirements/hazards.toml").unlink()
+    run = good("check")
+    assert run.status == 3
+    assert run.err.count("F501") == 1
+    assert "the parent `HAZ-1` of R1 is declared nowhere (1 more parent is, too)" in run.err
+
+
+@pytest.mark.parametrize(
+    ("method", "near"),
+    [
+        ("auditt", "audit"),
+        ("adit", "audit"),
+        ("monitr", "monitor"),
+        ("proofs", "proof"),
+        ("dafni", "dafny"),
+        ("ajfp", "ajpf"),
+    ],
+)
+def test_a_misspelt_method_gets_a_suggestion(good: Fretc, method: str, near: str) -> None:
+    edited("r1.fret", '["audit"]', f'["{method}"]')
+    run = good("check")
+    assert run.status == 3
+    assert f"F528 warning: R1 plans `{method}`" in run.err
+    assert f"help: did you mean `{near}`?" in run.err
+
+
+@pytest.mark.parametrize(
+    "method", ["review", "inspection", "test", "analysis", "simulation", "field trial", "audit"]
+)
+def test_a_method_of_ones_own_is_no_mistake(good: Fretc, method: str) -> None:
+    edited("r1.fret", '["audit"]', f'["{method}"]')
+    assert good("check").status == 0

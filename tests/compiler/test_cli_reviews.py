@@ -5,6 +5,8 @@ from pathlib import Path
 
 import pytest
 
+from compiler.links import Chain
+from compiler.lock import unnamed_violations
 from tests.command import Fretc, write
 from tests.compiler.report import cases
 
@@ -24,7 +26,7 @@ def folder(fretc: Fretc) -> Path:
 def test_nothing_has_changed_right_after_a_review(fretc: Fretc, folder: Path) -> None:
     run = fretc("lock", *BY, *ON)
     assert (run.status, run.out) == (0, "")
-    assert run.err == "wrote requirements/fretc.lock\naccepted R1\n"
+    assert run.err == "wrote requirements/fretc.lock\naccepted R1: satisfied in 1 run\n"
     run = fretc("diff")
     assert (run.status, run.out, run.err) == (0, "R1  as it was reviewed\n", "")
 
@@ -185,3 +187,64 @@ def test_a_proof_after_the_review_changes_nothing_that_was_reviewed(
     run = fretc("diff")
     assert "suspect" not in run.out
     assert "  new      proof R1 loop: it holds\n" in run.out
+
+
+# What is accepted ------------------------------------------------------------------------------
+
+
+def audited(folder: Path, **verdicts: str) -> None:
+    """Evidence of runs, each with its verdict."""
+    project = cases.project(folder)
+    results = [
+        cases.result(
+            project,
+            verdict,
+            run=f"{run}.mcap",
+            violations=[cases.violation(40, 42)] if verdict == "violated" else [],
+        )
+        for run, verdict in verdicts.items()
+    ]
+    write("build/evidence.json", json.dumps(cases.evidence(project, *results)))
+
+
+def test_a_violation_is_accepted_by_name_only(fretc: Fretc, folder: Path) -> None:
+    audited(folder, a="satisfied", b="violated", c="violated")
+    run = fretc("lock", *BY, *ON)
+    assert (run.status, run.out) == (2, "")
+    assert run.err == (
+        "F529 R1 is violated in b.mcap, c.mcap; satisfied in 1 run\n"
+        "help: mend it, or accept it as it is: add `--accept-violations`\n"
+    )
+    assert not (folder / "fretc.lock").exists()
+    run = fretc("lock", *BY, *ON, "--accept-violations")
+    assert run.status == 0
+    assert "accepted R1: violated in b.mcap, c.mcap; satisfied in 1 run\n" in run.err
+
+
+def test_of_others_than_the_chosen_ones_nothing_is_asked(fretc: Fretc, folder: Path) -> None:
+    audited(folder, a="violated")
+    write("requirements/r2.fret", '+++\nid = "R2"\n+++\nthe sw shall always satisfy near\n')
+    run = fretc("lock", "R2", *BY, *ON)
+    assert run.status == 0
+    assert "accepted R2: no run of it was audited\n" in run.err
+
+
+def test_the_verdicts_are_named_the_worst_first(fretc: Fretc, folder: Path) -> None:
+    audited(folder, a="satisfied", b="no data", c="inconclusive", d="no data")
+    run = fretc("lock", *BY, *ON)
+    assert run.status == 0
+    told = "no data in 2 runs; inconclusive in 1 run; satisfied in 1 run"
+    assert f"accepted R1: {told}\n" in run.err
+
+
+def test_of_many_violated_runs_some_are_named(fretc: Fretc, folder: Path) -> None:
+    audited(folder, **dict.fromkeys("abcde", "violated"))
+    told = "F529 R1 is violated in a.mcap, b.mcap, c.mcap and 2 more runs\n"
+    assert told in fretc("lock", *BY, *ON).err
+
+
+def test_what_all_runs_refute_is_accepted_by_name_only() -> None:
+    chain = Chain("R1", {}, (), {"a.mcap": "no data"})
+    (wrong,) = unnamed_violations([chain], {"R1"})
+    assert wrong.message == "R1 is refuted by all runs"
+    assert unnamed_violations([chain], {"R2"}) == ()

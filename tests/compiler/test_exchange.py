@@ -341,10 +341,46 @@ def test_no_project_takes_the_file_of_another(fretc: Fretc, projects: tuple[str,
     assert sorted(r.id for r in found) == ["R0", "R1"]
 
 
-def test_a_variable_of_two_components_is_one(fretc: Fretc) -> None:
-    arm = {**STOPPED, "component_name": "arm", "description": "of the arm"}
-    fretc("import", export({"requirements": [], "variables": [STOPPED, arm]}))
+def test_a_new_id_is_told(fretc: Fretc) -> None:
+    records = [record("R2", project="A"), record("R2", project="A"), record("r2", project="B")]
+    run = fretc("import", export(records))
+    told = [line for line in run.err.splitlines() if line.startswith("F531")]
+    why = "is taken, and capitals do not tell ids apart"
+    assert told == [
+        f"F531 warning: requirement 2 (R2 of project A) is imported as `A-R2`: `R2` {why}",
+        f"F531 warning: requirement 3 (r2 of project B) is imported as `B-r2`: `r2` {why}",
+    ]
+    assert "F531" not in fretc("import", export([record("R1"), record("R2")]), "-o", "other").err
+
+
+def test_a_variable_that_says_the_same_twice_is_one(fretc: Fretc) -> None:
+    run = fretc("import", export({"requirements": [], "variables": [STOPPED, dict(STOPPED)]}))
     assert written()["bindings.toml"].count("[variable.stopped]") == 1
+    assert "F530" not in run.err
+
+
+@pytest.mark.parametrize(
+    ("change", "lost"),
+    [
+        ({"project": "Arm"}, "project `Arm`"),
+        ({"component_name": "arm"}, "component `arm`"),
+        ({"description": "of the arm"}, "text `of the arm`"),
+        ({"dataType": "integer"}, "type `integer`"),
+        ({"idType": "Input"}, "role `input`"),
+        ({"assignment": "speed < 1"}, "assignment `speed < 1`"),
+        ({"assignment": ""}, "assignment ``"),
+        ({"modeRequirement": "m"}, "modeRequirement `m`"),
+    ],
+)
+def test_a_variable_that_says_something_else_is_told(
+    fretc: Fretc, change: dict[str, str], lost: str
+) -> None:
+    run = fretc(
+        "import", export({"requirements": [], "variables": [STOPPED, {**STOPPED, **change}]})
+    )
+    assert run.status == 0
+    told = f"F530 warning: a second variable `stopped` is left out: it has {lost}\n"
+    assert told in run.err
     assert 'component = "rover"' in written()["bindings.toml"]
 
 
@@ -510,6 +546,24 @@ def test_what_is_no_csv_is_refused(fretc: Fretc, text: str, why: str) -> None:
     run = fretc("import", write("list.csv", text))
     assert run.status == 2
     assert run.err.startswith(f"F505 `list.csv` cannot be imported: {why}\n")
+
+
+@pytest.mark.parametrize("parted", [",", ";", "\t"])
+def test_commas_semicolons_and_tabs_part_columns(fretc: Fretc, parted: str) -> None:
+    sentence = "the sw shall, in all modes; here, satisfy p"
+    rows = [("ID", "Text", "Note, short"), ("R1", sentence, "a;b")]
+    text = "".join(parted.join(f'"{cell}"' for cell in row) + "\r\n" for row in rows)
+    run = fretc("import", write("list.csv", text))
+    assert run.status == 0
+    (found,) = requirements()
+    assert (found.id, found.rationale) == ("R1", "Note, short: a;b")
+    assert found.wording.text == f'"{sentence}"'
+
+
+def test_the_header_says_what_parts_columns_not_the_texts(fretc: Fretc) -> None:
+    text = "id;text\nR1;the sw shall, here, there, everywhere, satisfy p\n"
+    assert fretc("import", write("list.csv", text)).status == 0
+    assert [r.id for r in requirements()] == ["R1"]
 
 
 def test_rows_of_other_lengths_are_read(fretc: Fretc) -> None:

@@ -77,13 +77,13 @@ def test_any_text_gives_xml_that_can_be_read(text: str) -> None:
     ],
 )
 def test_an_annotation_stands_at_the_sentence(verdict: str, level: str) -> None:
-    found = github([result(verdict)], [rule("the sw shall always satisfy q")])
+    found = github([result(verdict)], [rule("the sw shall always satisfy q").requirement])
     assert found == f"::{level} file=r.fret,line=1,title=R1 {verdict}::a.mcap: why\n"
 
 
 def test_nothing_in_a_result_makes_another_annotation() -> None:
     evil = result("violated", run="a\n::error::b", reason="100%\r\n::warning::x")
-    found = github([evil], [rule("the sw shall always satisfy q")])
+    found = github([evil], [rule("the sw shall always satisfy q").requirement])
     assert found.count("\n") == 1
     assert "%0A::error::b" in found
     assert "100%25%0D%0A" in found

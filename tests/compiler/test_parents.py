@@ -1,8 +1,12 @@
 """Parents that live in StrictDoc, Doorstop, sphinx-needs or ReqIF."""
 
 import json
+import subprocess
+import sys
 import zipfile
+from collections.abc import Mapping
 from pathlib import Path
+from shutil import which
 
 import pytest
 
@@ -15,29 +19,24 @@ from tests.command import Fretc, write
 SDOC = """\
 [DOCUMENT]
 TITLE: Hazards
-UID: DOC
-
-[GRAMMAR]
-ELEMENTS:
-- TAG: HAZARD
 
 [[SECTION]]
 UID: SEC-1
 TITLE: Motion
 
 [REQUIREMENT]
-MID: 12345
 UID: SAFE-1
 STATUS: Active
 TITLE: Stop in time
 STATEMENT: >>>
 The robot stops.
-UID: not a field
+
+[REQUIREMENT]
+UID: NOT-A-NODE
 <<<
 
-[HAZARD]
-UID: HAZ-7
-STATEMENT: The robot hits a drum.
+[REQUIREMENT]
+STATEMENT: Nobody can point at this one.
 
 [[/SECTION]]
 
@@ -46,6 +45,55 @@ STATEMENT: >>>
 UID: NO
 <<<
 """
+"""What `strictdoc export --formats=json` reads."""
+STATEMENT = "The robot stops.\n\n[REQUIREMENT]\nUID: NOT-A-NODE"
+
+
+def strictdoc(*more: Mapping[str, object], statement: str = STATEMENT) -> str:
+    """What StrictDoc 0.30.4 writes for it, but for the grammar."""
+    safe = {
+        "_TOC": "1.1",
+        "_NODE_TYPE": "REQUIREMENT",
+        "UID": "SAFE-1",
+        "STATUS": "Active",
+        "TITLE": "Stop in time",
+        "STATEMENT": f"{statement}\n",
+    }
+    nameless = {"_NODE_TYPE": "REQUIREMENT", "STATEMENT": "Nobody can point at this one."}
+    section = {
+        "_TOC": "1",
+        "_NODE_TYPE": "SECTION",
+        "UID": "SEC-1",
+        "TITLE": "Motion",
+        "NODES": [safe, nameless, *more],
+    }
+    text = {"_TOC": "2", "_NODE_TYPE": "TEXT", "STATEMENT": "UID: NO\n"}
+    document = {
+        "_NODE_TYPE": "DOCUMENT",
+        "UID": "DOC",
+        "TITLE": "Hazards",
+        "GRAMMAR": {"ELEMENTS": []},
+        "NODES": [section, text],
+    }
+    return json.dumps({"_COMMENT": "", "DOCUMENTS": [document]})
+
+
+DOORSTOP = """\
+SAFE-1:
+  active: true
+  derived: false
+  header: |
+    Stop in time
+  level: 1.0
+  links: []
+  normative: true
+  ref: ''
+  reviewed: null
+  text: |
+    The robot stops.
+
+"""
+"""What `doorstop export --yaml` of Doorstop 3.2 writes, of YAML and of Markdown items alike."""
 NEEDS = {
     "current_version": "1.0",
     "versions": {
@@ -53,30 +101,7 @@ NEEDS = {
         "1.0": {"needs": {"SAFE-1": {"title": "Stop in time", "content": "The robot stops."}}},
     },
 }
-REQIF = """\
-<?xml version="1.0" encoding="UTF-8"?>
-<REQ-IF xmlns="http://www.omg.org/spec/ReqIF/20110401/reqif.xsd" xmlns:h="http://www.w3.org/1999/xhtml">
-<CORE-CONTENT><REQ-IF-CONTENT>
-<SPEC-TYPES><SPEC-OBJECT-TYPE IDENTIFIER="t"><SPEC-ATTRIBUTES>
-<ATTRIBUTE-DEFINITION-STRING IDENTIFIER="a1" LONG-NAME="ReqIF.ForeignID"/>
-<ATTRIBUTE-DEFINITION-STRING IDENTIFIER="a2" LONG-NAME="ReqIF.Name"/>
-<ATTRIBUTE-DEFINITION-XHTML IDENTIFIER="a3" LONG-NAME="ReqIF.Text"/>
-</SPEC-ATTRIBUTES></SPEC-OBJECT-TYPE></SPEC-TYPES>
-<SPEC-OBJECTS>
-<SPEC-OBJECT IDENTIFIER="o1"><VALUES>
-<ATTRIBUTE-VALUE-STRING THE-VALUE="SAFE-1"><DEFINITION>
-<ATTRIBUTE-DEFINITION-STRING-REF>a1</ATTRIBUTE-DEFINITION-STRING-REF></DEFINITION>
-</ATTRIBUTE-VALUE-STRING>
-<ATTRIBUTE-VALUE-STRING THE-VALUE="Stop in time"><DEFINITION>
-<ATTRIBUTE-DEFINITION-STRING-REF>a2</ATTRIBUTE-DEFINITION-STRING-REF></DEFINITION>
-</ATTRIBUTE-VALUE-STRING>
-<ATTRIBUTE-VALUE-XHTML><DEFINITION>
-<ATTRIBUTE-DEFINITION-XHTML-REF>a3</ATTRIBUTE-DEFINITION-XHTML-REF></DEFINITION>
-<THE-VALUE><h:div>The robot <h:b>stops</h:b>.</h:div></THE-VALUE></ATTRIBUTE-VALUE-XHTML>
-</VALUES></SPEC-OBJECT>
-<SPEC-OBJECT IDENTIFIER="o2" LONG-NAME="Only a name"/>
-</SPEC-OBJECTS></REQ-IF-CONTENT></CORE-CONTENT></REQ-IF>
-"""
+REQIF = (Path(__file__).parent.parent / "data/parents.reqif").read_text("utf-8")
 STOP = ("SAFE-1", "Stop in time", "The robot stops.")
 
 
@@ -92,21 +117,52 @@ def read(path: str) -> list[tuple[str, str, str]]:
     return [(parent.id, parent.title, parent.text) for parent in found.values()]
 
 
-def test_strictdoc_gives_every_node_with_a_uid_and_nothing_within_texts() -> None:
-    sdoc = read(write("docs/hazards.sdoc", SDOC))
-    assert ("SEC-1", "Motion", "") in sdoc
-    assert ("HAZ-7", "", "The robot hits a drum.") in sdoc
-    assert ("SAFE-1", "Stop in time", "The robot stops.\nUID: not a field") in sdoc
-    assert len(sdoc) == 3
+def test_strictdoc_gives_every_node_with_a_uid_and_its_whole_statement() -> None:
+    hazard = {"_NODE_TYPE": "HAZARD", "UID": "HAZ-7", "HARM": "a drum", "CAUSE": "speed"}
+    assert read(write("out/index.json", strictdoc(hazard))) == [
+        ("SEC-1", "Motion", ""),
+        ("SAFE-1", "Stop in time", STATEMENT),
+        ("HAZ-7", "", "a drum\nspeed"),
+    ]
 
 
-def test_doorstop_gives_every_active_item() -> None:
-    write("reqs/.doorstop.yml", "settings:\n  digits: 3\n  prefix: SAFE-\n  sep: ''\n")
-    write("reqs/SAFE-1.yml", "active: true\nheader: Stop in time\ntext: |\n  The robot stops.\n")
-    write("reqs/SAFE-2.yml", "active: false\ntext: gone\n")
-    write("reqs/sub/.doorstop.yml", "settings: {}\n")
-    write("reqs/sub/SUB001.yml", "text: below\n")
-    assert read("reqs") == [STOP, ("SUB001", "", "below")]
+@pytest.mark.skipif(which("strictdoc") is None, reason="needs the program strictdoc")
+def test_strictdoc_itself_writes_what_is_read() -> None:
+    write("docs/hazards.sdoc", SDOC)
+    subprocess.run(
+        ["strictdoc", "export", "--formats=json", "--output-dir", "out", "docs"],
+        check=True,
+        capture_output=True,
+    )
+    assert read("out/json/index.json") == [
+        ("SEC-1", "Motion", ""),
+        ("SAFE-1", "Stop in time", STATEMENT),
+    ]
+
+
+def test_doorstop_gives_every_item_of_a_document_or_of_a_folder() -> None:
+    write("out/SAFE.yml", DOORSTOP)
+    write("out/SUB.yml", "SUB001:\n  active: true\n  level: 1.0\n  text: below\n")
+    assert read("out/SAFE.yml") == [STOP]
+    assert read("out") == [STOP, ("SUB001", "", "below")]
+
+
+@pytest.mark.skipif(which("doorstop") is None, reason="needs the program doorstop")
+def test_doorstop_itself_writes_what_is_read_of_yaml_and_of_markdown() -> None:
+    def run(*arguments: str) -> None:
+        subprocess.run([*arguments], check=True, capture_output=True)
+
+    run("git", "init", "-q", ".")
+    run("doorstop", "create", "-s", "-", "SAFE", "reqs")
+    run("doorstop", "create", "-s", "-", "-p", "SAFE", "-i", "markdown", "MD", "md")
+    run("doorstop", "add", "SAFE")
+    run("doorstop", "add", "MD")
+    (item,) = Path("reqs").glob("SAFE*.yml")
+    item.write_text("active: true\nlevel: 1.0\nheader: Stop in time\ntext: The robot stops.\n")
+    (other,) = Path("md").glob("MD*.md")
+    other.write_text("---\nactive: true\nlevel: 1.0\n---\n\n# Below\n\nIt is seen.\n")
+    run("doorstop", "export", "--yaml", "all", "out")
+    assert read("out") == [("MD-001", "Below", "It is seen."), ("SAFE-001", *STOP[1:])]
 
 
 def test_sphinx_needs_gives_the_current_version() -> None:
@@ -124,16 +180,23 @@ def test_reqif_gives_every_object_by_its_foreign_id() -> None:
 @pytest.mark.parametrize(
     ("path", "text", "why"),
     [
-        ("a.sdoc", "TITLE: x\n", "it does not begin with `[DOCUMENT]`"),
+        ("a.sdoc", "[DOCUMENT]\nTITLE: x\n", "only StrictDoc itself reads its documents"),
         ("a.json", "{", "it is not JSON"),
-        ("a.json", "[]", "it has no `versions`, as a needs.json has"),
-        ("a.reqif", "<REQ-IF>", "it is not XML"),
-        ("a.reqif", "<html/>", "its root is no `REQ-IF`"),
-        ("a.reqif", '<!DOCTYPE x [<!ENTITY a "b">]><REQ-IF>&a;</REQ-IF>', "it declares entities"),
+        ("a.json", "[]", "it has neither `DOCUMENTS`, as StrictDoc writes, nor `versions`"),
+        ("a.json", '{"DOCUMENTS": [3]}', "its nodes are not as StrictDoc writes them"),
+        ("a.json", '{"versions": {}}', "its `current_version` is not among its `versions`"),
+        ("a.json", '{"versions": {"1": {"needs": {"A": 3}}}, "current_version": "1"}', "`A` is no"),
+        ("a.yml", "a: [", "a.yml is not YAML"),
+        ("a.yml", "active: true\nlevel: 1.0\ntext: an item\n", "a.yml is no export of Doorstop"),
+        ("a.yml", "A: {level: 1, text: !!python/name:os.system }", "a.yml is not YAML"),
+        ("a.yml", "A: {level: 1, text: [x]}", "a.yml is no export of Doorstop"),
+        ("a.reqif", "<REQ-IF>", "the library `reqif` does not take it: Premature end of data"),
+        ("a.reqif", "<html/>", "the library `reqif` does not take it: Expected root tag"),
+        ("a.reqif", '<!DOCTYPE x [<!ENTITY a "b">]><x>&a;</x>', "it declares a document type"),
         ("a.reqifz", "x", "it is no archive of ReqIF files"),
         ("a.txt", "x", "no format is known by that ending"),
         ("reqs/x", "x", "no format is known by that ending"),
-        ("gone.sdoc", None, "No such file or directory"),
+        ("gone.json", None, "No such file or directory"),
     ],
 )
 def test_a_document_that_cannot_be_read_is_told(path: str, text: str | None, why: str) -> None:
@@ -148,7 +211,31 @@ def test_a_document_that_cannot_be_read_is_told(path: str, text: str | None, why
 def test_a_folder_without_items_is_told() -> None:
     write("reqs/a.md", "x")
     _, (said,) = parents(Settings(Path.cwd(), ("reqs",)))
-    assert "no `.doorstop.yml` is in it" in said.message
+    assert "no export of Doorstop (`*.yml`) is in it" in said.message
+
+
+def test_a_folder_of_items_is_to_be_exported() -> None:
+    write("reqs/.doorstop.yml", "settings: {}\n")
+    write("reqs/SAFE001.yml", "active: true\nlevel: 1.0\ntext: The robot stops.\n")
+    _, (said,) = parents(Settings(Path.cwd(), ("reqs",)))
+    assert "it holds the items; `doorstop export --yaml all FOLDER` writes them" in said.message
+
+
+def test_a_document_beyond_all_measure_is_not_read(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("compiler.parents._MOST", 1024**2)
+    with zipfile.ZipFile("bomb.reqifz", "w", zipfile.ZIP_DEFLATED) as archive:
+        archive.writestr("a.reqif", " " * 1024**2 + REQIF)
+    for path in ("bomb.reqifz", write("a.yml", "# " * 1024**2)):
+        found, (said,) = parents(Settings(Path.cwd(), (path,)))
+        assert (found, "it is larger than 1 MiB" in said.message) == ({}, True)
+
+
+def test_reqif_without_its_library_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "reqif.parser", None)
+    found, (said,) = parents(Settings(Path.cwd(), (write("a.reqif", REQIF),)))
+    assert (found, said.code) == ({}, Code.MISSING_EXTRA)
+    assert said.help is not None
+    assert "pip install 'fretc[reqif]'" in said.help
 
 
 # Settings --------------------------------------------------------------------------------------
@@ -187,14 +274,14 @@ def test_settings_with_a_mistake_are_told(text: str, told: str) -> None:
 
 
 def test_ids_are_checked_against_the_documents(fretc: Fretc) -> None:
-    write("pyproject.toml", '[tool.fretc]\nparents = ["docs/hazards.sdoc"]\n')
-    write("docs/hazards.sdoc", SDOC)
+    write("pyproject.toml", '[tool.fretc]\nparents = ["docs/hazards.json"]\n')
+    write("docs/hazards.json", strictdoc())
     good = '+++\nid = "R1"\nparents = ["SAFE-1"]\n+++\nthe sw shall always satisfy p\n'
     write("requirements/r1.fret", good)
     run = fretc("report", "--json", "out.json")
     assert (run.status, "F501" in run.err) == (0, False)
     (view,) = json.loads(Path("out.json").read_text())["requirements"]
-    title = "Stop in time (docs/hazards.sdoc)"
+    title = "Stop in time (docs/hazards.json)"
     assert view["parents"] == [{"id": "SAFE-1", "title": title, "anchor": ""}]
     write("requirements/r1.fret", good.replace("SAFE-1", "SAFE-2"))
     run = fretc("report")
@@ -203,17 +290,19 @@ def test_ids_are_checked_against_the_documents(fretc: Fretc) -> None:
 
 
 def test_a_changed_parent_makes_what_is_below_it_suspect(fretc: Fretc) -> None:
-    write("pyproject.toml", '[tool.fretc]\nparents = ["docs/hazards.sdoc"]\n')
-    write("docs/hazards.sdoc", SDOC)
+    write("pyproject.toml", '[tool.fretc]\nparents = ["docs/hazards.json"]\n')
+    write("docs/hazards.json", strictdoc())
     write(
         "requirements/r1.fret",
         '+++\nid = "R1"\nparents = ["SAFE-1"]\n+++\nthe sw shall always satisfy p\n',
     )
     by = ("--reviewer", "A", "--role", "B", "--comment", "c", "--date", "2026-01-01")
     assert fretc("lock", *by).status == 0
-    write("docs/hazards.sdoc", SDOC.replace("The robot stops.", "The robot\n stops."))
+    write(
+        "docs/hazards.json", strictdoc(statement=STATEMENT.replace("robot stops", "robot\n stops"))
+    )
     assert fretc("diff").status == 0, "white space is no change"
-    write("docs/hazards.sdoc", SDOC.replace("The robot stops", "The robot stands"))
+    write("docs/hazards.json", strictdoc(statement=STATEMENT.replace("NOT-A", "STILL-NOT-A")))
     run = fretc("diff")
     assert run.status == 3
     assert "  changed  parent SAFE-1\n" in run.out
@@ -221,9 +310,9 @@ def test_a_changed_parent_makes_what_is_below_it_suspect(fretc: Fretc) -> None:
 
 
 def test_the_first_document_that_has_an_id_counts() -> None:
-    write("a.sdoc", SDOC)
+    write("a.json", strictdoc())
     write("needs.json", json.dumps(NEEDS))
-    found, wrong = parents(Settings(Path.cwd(), ("needs.json", "a.sdoc")))
+    found, wrong = parents(Settings(Path.cwd(), ("needs.json", "a.json")))
     assert wrong == ()
     assert found["SAFE-1"] == Parent(*STOP, "needs.json")
-    assert "HAZ-7" in found
+    assert "SEC-1" in found

@@ -189,7 +189,7 @@ def test_a_mistake_in_one_header_leaves_the_others() -> None:
     found, wrong = requirements(
         Source("r.fret", '+++\nidd = "R1"\n+++\nsw shall satisfy p\n+++\nid = "R2"\n+++\nq\n')
     )
-    assert [r.id for r in found] == ["R2"]
+    assert [(r.id, len(r.mistakes)) for r in found] == [("r-line-4", 2), ("R2", 0)]
     assert [d.code for d in wrong] == [Code.UNKNOWN_FIELD, Code.BAD_FIELD]
 
 

@@ -1,35 +1,43 @@
 """Every code is explained, and the examples do what they say."""
 
+import tomllib
+
 import pytest
 
 from compiler.pipeline import duplicates, formalize
 from compiler.targets import monitor
 from fretish.bindings import read_bindings
 from fretish.declarations import Declarations
-from fretish.diagnostic import Code
+from fretish.diagnostic import Code, Diagnostic
 from fretish.documents import requirements
 from fretish.explanations import Explained, as_record, explanations, text
 from fretish.source import Source
+from tests.mending import toml_in
 
 EXAMPLES = {number: each for number, each in explanations().items() if each.wrong}
 
 
-def given(kind: str, declared: str, example: str) -> set[str]:
-    """The codes of all that is said of an example."""
+def told(kind: str, declared: str, example: str) -> list[Diagnostic]:
+    """All that is said of an example."""
     if kind == "bindings":
-        return {d.code.number for d in read_bindings(Source("bindings.toml", example))[1]}
+        return list(read_bindings(Source("bindings.toml", example))[1])
     beside: Declarations | None = None
     if declared:
         beside, wrong = read_bindings(Source("bindings.toml", declared))
         assert beside is not None, wrong
     written, said = requirements(Source("r.fret", example.strip("\n")))
-    found = [*said, *duplicates(written)]
+    found: list[Diagnostic] = [*said, *duplicates(written).values()]
     for requirement in written:
         rule, remarks = formalize(requirement, beside)
         found.extend(remarks)
         remark = monitor.remark(rule) if rule else None
         found.extend([remark] if remark else [])
-    return {diagnostic.code.number for diagnostic in found}
+    return found
+
+
+def given(kind: str, declared: str, example: str) -> set[str]:
+    """The codes of all that is said of an example."""
+    return {diagnostic.code.number for diagnostic in told(kind, declared, example)}
 
 
 def test_every_code_is_explained_and_nothing_else() -> None:
@@ -41,6 +49,14 @@ def test_an_example_gives_its_code_and_the_mended_one_gives_none(number: str) ->
     example = EXAMPLES[number]
     assert number in given(example.kind, example.declared, example.wrong)
     assert not given(example.kind, example.declared, example.mended)
+
+
+@pytest.mark.parametrize("number", EXAMPLES)
+def test_the_toml_that_an_example_is_told_to_write_parses(number: str) -> None:
+    example = EXAMPLES[number]
+    for diagnostic in told(example.kind, example.declared, example.wrong):
+        for fragment in (*toml_in(diagnostic.help or ""), diagnostic.paste):
+            tomllib.loads(fragment)
 
 
 @pytest.mark.parametrize("code", Code, ids=lambda code: code.number)

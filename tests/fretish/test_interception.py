@@ -191,5 +191,5 @@ def test_a_mistake_is_told_with_its_mend() -> None:
         "  --> b.toml:26:12\n"
         '   | stands   = "stoped"\n'
         "   |            ^^^^^^^^\n"
-        "help: did you mean `stopped`?"
+        "help: declare `[proposition.stoped]`"
     )

@@ -58,7 +58,7 @@ def said(text: str) -> Diagnostic:
             "  --> r.fret:1:21\n"
             "   | the sw shall within n ticks satisfy p\n"
             "   |                     ^\n"
-            "help: write such as `within 3 seconds`",
+            "help: write such as `within N seconds`",
         ),
         (
             "the sw shall for satisfy p",
@@ -66,7 +66,7 @@ def said(text: str) -> Diagnostic:
             "  --> r.fret:1:18\n"
             "   | the sw shall for satisfy p\n"
             "   |                  ^^^^^^^\n"
-            "help: write such as `for 3 seconds`",
+            "help: write such as `for N seconds`",
         ),
         (
             "globally the sw shall satisfy p",
@@ -146,7 +146,7 @@ def said(text: str) -> Diagnostic:
             "  --> r.fret:1:1\n"
             "   | with probability > 0.9 the sw shall satisfy q\n"
             "   | ^^^^\n"
-            "help: write `shall with probability > 0.9 eventually satisfy ...`",
+            "help: write it there: `shall with probability ... satisfy ...`",
         ),
         (
             "the sw shall probability > 0.9 satisfy q",
@@ -154,7 +154,7 @@ def said(text: str) -> Diagnostic:
             "  --> r.fret:1:14\n"
             "   | the sw shall probability > 0.9 satisfy q\n"
             "   |              ^^^^^^^^^^^\n"
-            "help: write `with probability > 0.9`",
+            "help: write `with probability ...`",
         ),
         (
             "the sw shall satisfy p && q",
@@ -202,7 +202,7 @@ def said(text: str) -> Diagnostic:
             "  --> r.fret:1:28\n"
             "   | the sw shall satisfy 3 < x < 5\n"
             "   |                            ^\n"
-            "help: write each by itself: `3 < x & x < 5`",
+            "help: write each by itself, and join them by `&`",
         ),
         (
             "the sw shall satisfy x > .5",
@@ -210,7 +210,7 @@ def said(text: str) -> Diagnostic:
             "  --> r.fret:1:26\n"
             "   | the sw shall satisfy x > .5\n"
             "   |                          ^\n"
-            "help: write `0.5`",
+            "help: write a 0 before the point",
         ),
         (
             "the sw shall satisfy x > 007",

@@ -46,7 +46,7 @@ def test_a_sentence_without_a_timing() -> None:
         "  --> r.fret:1:5\n"
         "   | the sw shall satisfy q\n"
         "   |     ^^\n"
-        "help: write `eventually` if that is meant, or `immediately`, `always`, `within 3 seconds`"
+        "help: write `eventually` if that is meant, or `immediately`, `always`, `within N seconds`"
     )
 
 

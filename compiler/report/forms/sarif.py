@@ -10,6 +10,7 @@ from compiler.report.claims import SUSPECT
 from compiler.report.views import Report
 from compiler.rule import Rule
 from fretish.diagnostic import Diagnostic
+from fretish.documents import Requirement
 
 
 def sarif(
@@ -17,6 +18,7 @@ def sarif(
     audited: Sequence[Mapping[str, Any]],
     rules: Sequence[Rule],
     diagnostics: Sequence[Diagnostic],
+    failed: Sequence[Requirement] = (),
 ) -> str:
     """One SARIF run.
 
@@ -25,8 +27,9 @@ def sarif(
         audited: the results of the evidence that the report was made of, in its order.
         rules: all requirements of the project.
         diagnostics: what there is to say of requirements and evidence.
+        failed: requirements of the project without a rule.
     """
-    return results.sarif(list(_judged(report, audited)), rules, diagnostics)
+    return results.sarif(list(_judged(report, audited)), rules, diagnostics, failed=failed)
 
 
 def _judged(report: Report, audited: Sequence[Mapping[str, Any]]) -> Iterator[Mapping[str, Any]]:
