@@ -57,7 +57,7 @@ def animate(mission: Mission) -> bytes:
             shown_as.set_offsets(np.array(past).reshape(-1, 2))
         canvas.draw()
         shown = Image.fromarray(np.asarray(canvas.buffer_rgba())).convert("RGB")
-        frames.append(shown.quantize(colors=32))
+        frames.append(shown.quantize(colors=64))
     image = BytesIO()
     first, *others = frames
     first.save(image, format="GIF", save_all=True, append_images=others, duration=_FRAME, loop=0)
