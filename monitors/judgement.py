@@ -77,10 +77,14 @@ def _longer(
 ) -> str | None:
     """The verdict with the cut tick as one more.
 
-    What that shows is no verdict: the tick is cut short, and no duration counts it.
+    What that shows is no verdict: the tick is cut short, and no duration counts it. Nor does a
+    tick that is as the last one, unless something is unknown: then it may be another one.
     """
     cut = {name: cut[name] for name in columns}
-    if not ticks or cut == {name: column.at(ticks - 1) for name, column in columns.items()}:
+    if not ticks:
+        return None
+    last = {name: column.at(ticks - 1) for name, column in columns.items()}
+    if cut == last and None not in cut.values():
         return None
     longer = {name: column.followed(cut[name], ticks) for name, column in columns.items()}
     (then,) = engine(monitor, longer, ticks + 1, kernel.INCONCLUSIVE)

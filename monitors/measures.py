@@ -159,11 +159,16 @@ def compared(op: str, left: Term, right: Term) -> tuple[NDArray[np.bool_], NDArr
 
 # Constants
 
+_HALVES = WHOLE // 2
+"""From here on every 64-bit float is a whole number, and what lies between two of them is none."""
+_BEYOND = 2**64
+"""From here on nothing was recorded as a whole number."""
+
 
 def _beside(constant: Fraction, measure: Measure, op: str) -> Values:
     """What stands for a constant that `measure op constant` compares."""
     exact, kind = constant / measure.scale, measure.values.dtype
-    if kind != EXACT or abs(exact) < WHOLE:
+    if not _HALVES <= abs(exact) < (_BEYOND if kind == EXACT else WHOLE) or kind == np.float32:
         return _nearest(exact, kind)
     if exact.denominator != 1 and op in ("=", "!="):
         return np.array([np.inf], EXACT)  # no whole number is equal to it
@@ -225,6 +230,12 @@ def _double(value: Term) -> Term:
     return value if isinstance(value, Fraction) else Measure(value.plain, value.scale)
 
 
+def _beside_constant(value: Term) -> Term:
+    """Without whole numbers beyond 64-bit floats: an end of them and of a constant may be none."""
+    exact = isinstance(value, Measure) and value.values.dtype == EXACT
+    return _double(value) if exact else value
+
+
 def _call(name: str, args: Sequence[Term]) -> Term:
     match name, len(args):
         case "abs", 1:
@@ -243,7 +254,7 @@ def _call(name: str, args: Sequence[Term]) -> Term:
 def _end(function: np.ufunc, left: Term, right: Term) -> Term:
     if isinstance(left, Fraction) and isinstance(right, Fraction):
         return min(left, right) if function is np.minimum else max(left, right)
-    if any(isinstance(one, Measure) and one.values.dtype == EXACT for one in (left, right)):
-        left, right = _double(left), _double(right)
+    if isinstance(left, Fraction) or isinstance(right, Fraction):
+        left, right = _beside_constant(left), _beside_constant(right)
     one, other, scale = together(left, right)
     return Measure(function(one, other), scale)

@@ -154,20 +154,36 @@ def test_whole_numbers_of_64_bits_are_compared_as_whole_numbers(
 ) -> None:
     close = st.integers(-9, 9).map(lambda n: x + Fraction(n, 4))
     bound = data.draw(st.one_of(close, INTEGERS.map(Fraction))) if data else Fraction(x + 1)
-    if abs(bound) < 2**53:
+    if abs(bound) < 2**52:
         bound = Fraction(int(bound))
     sign = "-" if bound < 0 else ""
     text = f"{sign}({written(bound * FACTORS[field].factor, name)})"
     expected = OPERATORS[op](Fraction(x), bound)
-    assert judged(f"x {op} {text}", x, EXACT, field) == expected
     mirrored = {"<": ">", "<=": ">=", ">": "<", ">=": "<="}.get(op, op)
-    assert judged(f"{text} {mirrored} x", x, EXACT, field) == expected
+    for kind in [EXACT, DOUBLE] if abs(x) <= 2**53 and abs(bound) < 2**53 else [EXACT]:
+        for term in ("x", "min(x, x)", "max(x, x)"):
+            assert judged(f"{term} {op} {text}", x, kind, field) == expected
+            assert judged(f"{text} {mirrored} {term}", x, kind, field) == expected
 
 
 def test_a_fraction_among_whole_numbers_stays_a_fraction() -> None:
     scope = Scope(3, {"x": np.array([0.5, 2**53 + 1, np.nan], EXACT)})
     assert truth(parsed("x < 0.7"), scope).tolist() == [2, 0, 1]
     assert truth(parsed("min(x, 9007199254740993.5) < 0.7"), scope).tolist() == [2, 0, 1]
+
+
+@pytest.mark.parametrize("text", ["1e300", "-1e300", "18446744073709551616", "123456789e12"])
+def test_a_float_beyond_whole_numbers_is_its_decimal_beside_whole_numbers_too(text: str) -> None:
+    scope = Scope(2, {"x": np.array([float(text), 2**53 + 1], EXACT)})
+    assert truth(parsed(f"x = {text}"), scope).tolist() == [2, 0]
+
+
+def test_the_lesser_of_two_whole_numbers_is_a_whole_number() -> None:
+    numbers = {"x": np.array([2**53 + 1], EXACT), "y": np.array([2**53 + 3], EXACT)}
+    scope = Scope(1, numbers, scales=dict.fromkeys("xy", Fraction(1, 100)))
+    assert truth(parsed("min(x, y) = 9007199254740993 cm"), scope).tolist() == [2]
+    assert truth(parsed("max(x, y) = 9007199254740995 cm"), scope).tolist() == [2]
+    assert truth(parsed("min(x, y) = 9007199254740992 cm"), scope).tolist() == [0]
 
 
 def test_two_signals_of_one_unit_are_compared_as_they_were_recorded() -> None:
