@@ -20,6 +20,7 @@ from compiler import confined as processes
 from compiler.closedloop import Setup, artefacts, assumptions, case
 from compiler.confined import Limits, Stopped
 from compiler.gate import NotAnInterceptorError, Settings
+from compiler.interceptor_file import is_original
 from compiler.kripke import TooManyStatesError
 from compiler.letters import atoms_of, meanings
 from compiler.loopmodel import Channel
@@ -37,6 +38,7 @@ from compiler.looptwin import (
 )
 from compiler.pipeline import formalize
 from compiler.rule import Rule
+from compiler.statements import is_same
 from compiler.targets import monitor as target
 from compiler.verification import Counterexample, Evidence, Layer, NotChecked, Proved, Result
 from fretish import syntax as s
@@ -64,6 +66,16 @@ class Question:
     """The bound of the sentence; None: it has none."""
     tick: int
     """Nanoseconds."""
+
+    @property
+    def unknown(self) -> str | None:
+        """Why small times do not speak for all of them; None: they do."""
+        if is_original(self.case.interceptor):
+            return None
+        return (
+            "the interceptor's core is not the one that fretc writes: what it does at the times "
+            "that are looked at says nothing of longer ones"
+        )
 
 
 @dataclass(frozen=True, slots=True)
@@ -134,6 +146,8 @@ def question(rule: Rule, setup: Setup) -> Question | str:
         return f"`{made.stands}` alone does not answer it"
     assert rule.clock is not None
     bound = rule.ticks if isinstance(sentence.timing, s.Within) else None
+    if not is_same(made.safety, made.observer):
+        return "the monitor is not the one that fretc writes for it, and only that is looked at"
     return Question(made, sentence, bound, rule.clock.period or 0)
 
 
@@ -157,9 +171,11 @@ def search(asked: Question) -> Answer:
         wrong, version = _proved(times_of(asked.case.channel))
         if wrong is not None:
             return Answer(NotChecked(wrong), NotChecked(wrong), version)
-        answered = Proved(
+        answered: Result = Proved(
             f"by an inductive invariant; {steps:,} steps of {loops} loops are steps of its model"
         )
+        if asked.unknown is not None:
+            answered = NotChecked(asked.unknown)
         return Answer(answered, _least(asked), version)
     except (NotALoopError, NotAnInterceptorError, TooManyStatesError) as error:
         return Answer(NotChecked(str(error)), NotChecked(str(error)))

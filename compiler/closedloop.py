@@ -17,9 +17,9 @@ from compiler.confined import Limits, Stopped
 from compiler.files import sha256
 from compiler.gate import Settings
 from compiler.interception import options, ticks
+from compiler.interceptor_file import otherwise
 from compiler.loopmodel import Channel
 from compiler.loopsearch import Case, Found, search
-from compiler.purity import otherwise
 from compiler.rule import Rule
 from compiler.targets import monitor as target
 from compiler.verification import Evidence, Layer, NotChecked, Result

@@ -147,6 +147,10 @@ def _silence(name: str, timeout: int) -> Callable[[Moment], bool]:
 
 
 def _of_speech(options: Options) -> Iterator[Contract]:
+    yield Contract(
+        "nothing but zero and the last command is ever published",
+        lambda m: m.said == "other",
+    )
     if options.event_driven:
         yield Contract(
             "something is published when a command comes, and at no other time",

@@ -12,8 +12,8 @@ from dataclasses import asdict, dataclass
 from typing import Any, NamedTuple
 
 from compiler.heard import COMMAND, RELEASE, RING, SCAN, STOP, Moment, Seen, after, first
+from compiler.interceptor_file import core
 from compiler.opaque import InspectedError, Opaque, is_opaque, is_zero
-from compiler.purity import core
 from monitors.interceptor import Options
 
 Key = tuple[object, ...]
@@ -183,7 +183,7 @@ class _Walk:
                 key.append(("command", number))
             elif value is None or isinstance(value, int | float):
                 values[name] = value
-                key.append(value)
+                key.append((type(value), value))  # beyond 2^53 equal numbers add up differently
             elif is_zero(value, self.module.Velocity):
                 values[name] = self.module.ZERO
                 key.append("zero")

@@ -1,9 +1,9 @@
 """An interceptor's text as a machine that can be put into any state and stepped.
 
-Only its core is executed, once it is known to be pure (`compiler.purity`): no input, no output, no
-node. The step must not look into velocities, so that opaque commands stand for all. Source of that
-reduction: Wolper, Expressing interesting properties of programs in propositional temporal logic,
-POPL 1986 (data independence).
+Only its core is executed, once it is known to be pure (`compiler.interceptor_file`): no input, no
+output, no node. The step must not look into velocities, so that opaque commands stand for all.
+Source of that reduction: Wolper, Expressing interesting properties of programs in propositional
+temporal logic, POPL 1986 (data independence).
 """
 
 from __future__ import annotations
@@ -12,8 +12,8 @@ from dataclasses import dataclass, fields
 from enum import Enum
 from typing import Any
 
+from compiler.interceptor_file import core
 from compiler.opaque import InspectedError, Opaque, is_opaque, is_zero
-from compiler.purity import core
 
 
 class NotAnInterceptorError(Exception):
@@ -72,8 +72,6 @@ class Gate:
         self._module = module = read.module
         named = {field.name: getattr(settings, field.name) for field in fields(settings)}
         self._options = self._called(module.Options, **named)
-        deaf = {**named, "scan_timeout": 0, "command_timeout": 0}
-        self._deaf = self._called(module.Options, **deaf)
         self._fields = tuple(getattr(module.State, "__dataclass_fields__", ()))
         if "command" not in self._fields:
             raise NotAnInterceptorError("its `State` has no `command`")
@@ -87,7 +85,6 @@ class Gate:
         }
         self._known: dict[tuple[State, Heard], tuple[State, Said]] = {}
         self._objects: dict[State, Any] = {}
-        self._stopping: dict[State, bool] = {}
         self.initial = self._encoded(self._called(module.initial, self._options))
 
     def hear(self, state: State, heard: Heard) -> tuple[State, Said]:
@@ -102,12 +99,10 @@ class Gate:
         return found
 
     def stopping(self, state: State) -> bool:
-        """Whether it is halted, and not by the silence of a sensor or of the planner."""
-        found = self._stopping.get(state)
-        if found is None:
-            told = self._called(self._module.halted, self._objects[state], self._deaf)
-            found = self._stopping[state] = self._called(bool, told)
-        return found
+        """Whether it hands no command on, although sensor and planner have just been heard."""
+        scanned, _ = self.hear(state, Heard.SCAN)
+        _, said = self.hear(scanned, Heard.MOVE)
+        return not said
 
     def halts(self, state: Any) -> bool:
         """`halted`, of a state as the text has it."""

@@ -15,9 +15,9 @@ from compiler.confined import Limits, Stopped
 from compiler.contracts import contracts
 from compiler.files import sha256
 from compiler.interception import ASSUMED, assumed, options
+from compiler.interceptor_file import head, otherwise
 from compiler.project import Project
 from compiler.provers import stated, with_crosshair, with_dafny
-from compiler.purity import head, otherwise
 from compiler.rule import Rule
 from compiler.runtime import interceptor as core
 from compiler.targets import ajpf, bundle, dafny, interceptor, monitor

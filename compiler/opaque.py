@@ -38,5 +38,8 @@ def is_opaque(value: Any) -> bool:
 
 
 def is_zero(value: Any, velocity: type[tuple[Any, ...]]) -> bool:
-    """Whether it is a velocity of that class with nothing but zeros; asks no opaque one."""
-    return type(value) is velocity and not any(is_opaque(part) or part != 0 for part in value)
+    """Whether it is a velocity of that class with nothing but zeros; asks no opaque one.
+
+    Zeros are floats: ROS 2 takes no other numbers, and whole ones add up differently beyond 2^53.
+    """
+    return type(value) is velocity and all(type(part) is float and part == 0 for part in value)

@@ -4,37 +4,25 @@ What the tree may consist of is listed here, and all else is refused, before any
 There is no loop and no recursion, so every step ends; no attribute is written, no name bound twice,
 nothing called but the core's own functions and constructors, `min`, `max` and `replace`, and no
 function is a value. No object is told from another that is equal to it, and no constant is read but
-`ZERO`, so that a state is its values. Annotations are types and nothing else: other programs
-evaluate them. The node below the core is one that fretc writes, up to its numbers and texts
-(`otherwise` compares these too), and binds no name of the core: both are one module when it flies.
+`ZERO`, so that a state is the values of its fields. Annotations are types and nothing else: other
+programs evaluate them.
 """
 
 from __future__ import annotations
 
 import ast
 import builtins
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Collection
 from functools import cache
 from math import isfinite
-from types import ModuleType
-from typing import Any
 
-from compiler.layout import is_utf8
 from compiler.runtime import interceptor as original
-from compiler.targets import interceptor
-from compiler.targets.interceptor import MARKER
-from fretish.declarations import Form, Interception
-from monitors.loading import executed
 
 _IMPORTS = {
     "__future__": {"annotations"},
     "dataclasses": {"dataclass", "replace"},
     "typing": {"NamedTuple"},
 }
-_NEEDED = (
-    "ZERO Velocity Options State StopHeard CommandHeard ScanHeard TimerRang initial halted step"
-).split()
 _BUILTINS = frozenset(dir(builtins))
 """No name of them is given to anything else: the node below uses them too."""
 _CHOSEN = frozenset({"min", "max"})
@@ -46,106 +34,25 @@ _UNARY = (ast.Not, ast.USub)
 _COMPARED = (ast.Lt, ast.LtE, ast.Gt, ast.GtE, ast.Eq, ast.NotEq)
 
 
-class _StrangeError(Exception):
+class StrangeError(Exception):
     """What is not on the list."""
 
 
-@dataclass(frozen=True, slots=True)
-class Head:
-    """The text of a core that is known to be pure, without the node below it."""
-
-    text: str
-
-
-@dataclass(frozen=True, slots=True)
-class Core:
-    """The core, executed."""
-
-    module: Any
-    """A module; its attributes are classes, functions and constants."""
-
-
-def core(text: str, name: str = "interceptor") -> Core | str:
-    """Execute the core of an interceptor once it is known to be pure; else, why it is not.
+def bound_names(tree: ast.Module, taken: Collection[str]) -> frozenset[str]:
+    """The names that a core binds; it is pure.
 
     Args:
-        text: what `--emit interceptor` wrote, or the core alone.
-        name: for tracebacks.
+        tree: of the core.
+        taken: names that it must not bind.
+
+    Raises:
+        StrangeError: it may not be pure, or binds such a name.
     """
-    known = head(text)
-    if isinstance(known, str):
-        return known
-    try:
-        module: ModuleType = executed(known.text, name)
-    except Exception as error:
-        return f"it cannot be executed: {type(error).__name__}: {error}"
-    return Core(module)
+    return _Module(taken).check(tree)
 
 
-def head(text: str) -> Head | str:
-    """The core of an interceptor where it is pure; else, why it is not. Nothing is executed.
-
-    Args:
-        text: what `--emit interceptor` wrote, or the core alone.
-    """
-    if not is_utf8(text):
-        return "Python reads it in another encoding than UTF-8"
-    above, marked, node = text.partition(f"{MARKER}\n")
-    try:
-        tree = ast.parse(above)
-        missing = [name for name in _NEEDED if name not in _defined(tree)]
-        if missing:
-            return f"its core has no `{missing[0]}`"
-        names = _Module().check(tree)
-        if marked and "OPTIONS" not in names:
-            return "its core has no `OPTIONS`"
-        if marked:
-            _check_node(node)
-            _check_whole(text, tree, node)
-    except (SyntaxError, ValueError, RecursionError) as error:
-        return f"it is no Python: {error}"
-    except _StrangeError as error:
-        return f"its core is not as fretc can read it: {error}"
-    return Head(above)
-
-
-def otherwise(text: str, interception: Interception) -> str | None:
-    """Why the file is of another interceptor than the bindings declare; None: it is of this one.
-
-    The core may be another: it is what is looked at. Its options and the node around it may not.
-    """
-    try:
-        options, node = _around(text)
-    except (SyntaxError, ValueError, RecursionError) as error:
-        return f"it is no Python: {error}"
-    declared, written = _around(interceptor.text(interception, "bindings.toml"))
-    if (options, node) == ([], None):
-        return None
-    if options != declared:
-        return "its options are not those that the bindings declare: emit it again"
-    if node != written:
-        return "its node is not one that fretc writes for these bindings: emit it again"
-    return None
-
-
-def _around(text: str) -> tuple[list[str], str | None]:
-    """What binds `OPTIONS`, and the node (None: there is none), to the letter but for comments."""
-    above, marked, node = text.partition(f"{MARKER}\n")
-    statements = map(ast.unparse, ast.parse(above).body)
-    options = [each for each in statements if each.startswith("OPTIONS")]
-    return options, ast.dump(ast.parse(node)) if marked else None
-
-
-def _defined(tree: ast.Module) -> Iterator[str]:
-    """Classes, functions and constants, without a look at what they are."""
-    for node in tree.body:
-        match node:
-            case ast.ClassDef(name) | ast.FunctionDef(name) | ast.Assign([ast.Name(name)]):
-                yield name
-
-
-def _strange(node: ast.AST) -> _StrangeError:
-    return _StrangeError(f"`{_line(node)}`")
+def _strange(node: ast.AST) -> StrangeError:
+    return StrangeError(f"`{_line(node)}`")
 
 
 def _demand(right: bool, node: ast.AST) -> None:
@@ -153,61 +60,8 @@ def _demand(right: bool, node: ast.AST) -> None:
         raise _strange(node)
 
 
-def _check_node(node: str) -> None:
-    """It is one that fretc writes, up to its numbers and texts.
-
-    Python has no end of ways to change a module from below, so that nothing else is looked into.
-    """
-    if _shape(node) not in _shapes():
-        raise _StrangeError("the node below it is not one that fretc writes")
-
-
-def _check_whole(text: str, core: ast.Module, node: str) -> None:
-    """Core and node are the module, one below the other."""
-    parts = [*core.body, *ast.parse(node).body]
-    if [ast.dump(part) for part in ast.parse(text).body] != [ast.dump(part) for part in parts]:
-        raise _StrangeError("core and node are not one below the other")
-
-
-@cache
-def _nodes() -> tuple[str, ...]:
-    """Those that fretc writes for each ROS and form, with and without a scan."""
-    made = (
-        Interception("/a", "/b", "/c", scan, 10**8, form=form, ros=ros)
-        for scan in (None, "/d")
-        for form in Form
-        for ros in (1, 2)
-    )
-    texts = (interceptor.text(one, "bindings.toml") for one in made)
-    return tuple(each.partition(f"{MARKER}\n")[2] for each in texts)
-
-
-@cache
-def _shapes() -> frozenset[str]:
-    return frozenset(map(_shape, _nodes()))
-
-
-@cache
-def _names_of_nodes() -> frozenset[str]:
-    """What a node binds at its outermost level: a core that has it too is another one in flight."""
-    return frozenset(name for node in _nodes() for name in _outermost(ast.parse(node)))
-
-
-def _outermost(node: ast.AST) -> Iterator[str]:
-    """The names that statements bind, without those inside of functions and classes."""
-    for child in ast.iter_child_nodes(node):
-        match child:
-            case ast.FunctionDef(name) | ast.AsyncFunctionDef(name) | ast.ClassDef(name):
-                yield name
-            case ast.alias(name, other):
-                yield (other or name).partition(".")[0]
-            case ast.Name(name, ast.Store() | ast.Del()):
-                yield name
-            case ast.ExceptHandler(name=str() as name):
-                yield name
-                yield from _outermost(child)
-            case _:
-                yield from _outermost(child)
+def _line(node: ast.AST) -> str:
+    return (ast.unparse(node).splitlines() or ["nothing"])[0]
 
 
 @cache
@@ -236,24 +90,11 @@ def _is_docstring(node: ast.AST) -> bool:
             return False
 
 
-def _shape(node: str) -> str:
-    """Its tree without what constants say."""
-    return ast.dump(_Blank().visit(ast.parse(node)))
-
-
-class _Blank(ast.NodeTransformer):
-    def visit_Constant(self, node: ast.Constant) -> ast.Constant:
-        return ast.Constant(type(node.value).__name__)
-
-
-def _line(node: ast.AST) -> str:
-    return (ast.unparse(node).splitlines() or ["nothing"])[0]
-
-
 class _Module:
     """The statements of the core."""
 
-    def __init__(self) -> None:
+    def __init__(self, taken: Collection[str]) -> None:
+        self.taken = taken
         self.bound: set[str] = set()
         self.classes: set[str] = set()
         self.fields: set[str] = set()
@@ -311,14 +152,15 @@ class _Module:
 
     def _bind(self, name: str, node: ast.AST) -> None:
         _demand(name not in self.bound and name not in _BUILTINS, node)
-        _demand(not name.startswith("_") and name not in _names_of_nodes(), node)
+        _demand(not name.startswith("_") and name not in self.taken, node)
         self.bound.add(name)
 
     def _class(self, node: ast.ClassDef) -> None:
-        """Fields with or without a constant, in a frozen dataclass or a NamedTuple."""
+        """Fields with or without a constant, in a frozen dataclass; `Velocity` is a NamedTuple."""
         written = [ast.unparse(part) for part in (*node.decorator_list, *node.bases)]
         _demand(written in (["dataclass(frozen=True, slots=True)"], ["NamedTuple"]), node)
         _demand(len(node.bases) == (written == ["NamedTuple"]) and not node.keywords, node)
+        _demand(bool(node.bases) == (node.name == "Velocity"), node)
         _demand(not getattr(node, "type_params", ()), node)
         for part in node.body:
             match part:
@@ -357,7 +199,7 @@ class _Module:
             ends |= found
             rest -= found
         if rest:
-            raise _StrangeError(f"`{self._in_a_circle(min(rest), rest)}` calls itself")
+            raise StrangeError(f"`{self._in_a_circle(min(rest), rest)}` calls itself")
 
     def _in_a_circle(self, name: str, rest: set[str]) -> str:
         """One that calls itself; each of `rest` calls another one of them."""

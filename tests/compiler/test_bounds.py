@@ -75,6 +75,30 @@ def test_a_loop_that_does_something_else_is_not_checked() -> None:
     assert search(asked(WITHIN.format(4), core=wrong)) == Answer(reason, reason)
 
 
+FORGETS = (
+    ("    command_age: int\n\n", "    command_age: int\n    quiet: int = 0\n\n"),
+    ("        stop_age=0,\n", "        stop_age=0,\n        quiet=0,\n"),
+    ("        state.stop\n        or", "        (state.stop and state.quiet < 30)\n        or"),
+    (
+        "        state,\n        stop_age=min(",
+        "        state,\n        quiet=min(state.quiet + 1, 30),\n        stop_age=min(",
+    ),
+)
+
+
+def test_small_times_say_nothing_of_long_ones_where_the_core_is_another() -> None:
+    """It forgets a stop after 30 ticks without a message: 40 lost ones are too many for it."""
+    core = CORE
+    for old, new in FORGETS:
+        core = edited(core, old, new)
+    small = search(asked(WITHIN.format(4), Settings(hold=1), core=core))
+    assert isinstance(small.enough, Proved), "under the declared times it is as good as any"
+    assert isinstance(small.answered, NotChecked)
+    assert small.answered.reason.startswith("the interceptor's core is not the one that fretc")
+    large = Channel(1, latency=2, lost=40, braking=4)
+    assert not isinstance(search(asked(EVENTUALLY, Settings(hold=1), large, core)).enough, Proved)
+
+
 def test_a_twin_that_promises_too_much_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
     """Held against the loop with one lost message less than there is."""
     loop = Parts.of(case(WITHIN.format(9), Settings(), Channel(1, lost=2))).loop

@@ -396,6 +396,18 @@ def test_the_least_bound_is_told(fretc: Fretc, loop: Callable[..., str]) -> None
     assert run.status == 0
 
 
+def test_bounds_are_of_the_monitor_that_fretc_writes(
+    fretc: Fretc, loop: Callable[..., str]
+) -> None:
+    """At longer times than those that are looked at, another one may ask for no stop."""
+    path = loop(400)
+    assert fretc(path, "--emit", "monitor", "-o", ".").status == 0
+    edited("r1_monitor.py", "oldest_1 >= 4\n", "oldest_1 >= 5\n")
+    run = fretc("verify", "--layer", "bounds", path, "--file", "r1_monitor.py")
+    assert run.status == 3
+    assert run.out.count("the monitor is not the one that fretc writes for it") == 2
+
+
 def test_a_stop_that_stays_is_no_violation(fretc: Fretc, loop: Callable[..., str]) -> None:
     path = loop(400, ("[assume]", "latching = true\n\n[assume]"))
     run = fretc("verify", "--layer", "loop", path)

@@ -10,7 +10,7 @@ from compiler.contracts import contracts
 from compiler.gate import Gate, NotAnInterceptorError, Settings
 from compiler.heard import COMMAND, RELEASE, RING, SCAN, STOP
 from compiler.interception import options as counted
-from compiler.purity import Core, Head, core, head
+from compiler.interceptor_file import Core, Head, core, head
 from compiler.targets.interceptor import text
 from compiler.verification import Counterexample, Evidence, Layer, NotChecked, Proved
 from fretish.declarations import Form, Interception
@@ -50,6 +50,7 @@ SILENCE = (
 NO_STOP = SILENCE.format(3, "the safety function")
 NO_SCAN = SILENCE.format(2, "the sensor")
 NO_COMMAND = SILENCE.format(3, "the planner")
+NOTHING_ELSE = "nothing but zero and the last command is ever published"
 SPEAKS = "at each tick of the timer something is published"
 REPEATS = "at a tick without a reason to stand the last command is published"
 RANGE = "every number that the core keeps stays between 0 and its bound"
@@ -78,8 +79,8 @@ def test_the_emitted_interceptor_keeps_every_contract() -> None:
     assert counted(NODE) == OPTIONS
     found = contracts(EMITTED, OPTIONS)
     assert [e.claim for e in found] == [
-        FIRST, SETS, PASSES, STOPPED, AT_ONCE, HOLD, NO_STOP, NO_SCAN, NO_COMMAND, SPEAKS, REPEATS,
-        RANGE,
+        FIRST, SETS, PASSES, STOPPED, AT_ONCE, HOLD, NO_STOP, NO_SCAN, NO_COMMAND,
+        NOTHING_ELSE, SPEAKS, REPEATS, RANGE,
     ]  # fmt: skip
     assert {e.result for e in found} == {Proved("225 states, 1125 steps")}
     assert {e.layer for e in found} == {Layer.INTERCEPTOR}
@@ -91,7 +92,9 @@ def test_the_emitted_interceptor_keeps_every_contract() -> None:
 
 def test_the_papers_interceptor_keeps_its_own() -> None:
     found = contracts(text(PAPER, "bindings.toml"), counted(PAPER))
-    assert [e.claim for e in found] == [FIRST, LATCHES, PASSES, STOPPED, FOR_EVER, ONLY_THEN, RANGE]
+    assert [e.claim for e in found] == [
+        FIRST, LATCHES, PASSES, STOPPED, FOR_EVER, NOTHING_ELSE, ONLY_THEN, RANGE,
+    ]  # fmt: skip
     assert refuted(found) == set()
     assert found[0].assumptions[1:] == ("no silence is noticed: form = event in [interceptor]",)
 
@@ -169,11 +172,15 @@ MUTANTS = {
     ),
     "passes on the command before": (
         ((PASSED, "return after, ZERO if halted(after, options) else state.command"),),
-        {PASSES},
+        {PASSES, NOTHING_ELSE},
     ),
     "makes up a command": (
         ((PASSED, "return after, ZERO if halted(after, options) else Velocity(1.0)"),),
-        {PASSES},
+        {PASSES, NOTHING_ELSE},
+    ),
+    "makes up a command at a scan": (
+        ((SCANNED, f"{SCANNED[:-4]}ZERO if halted(state, options) else Velocity(9.0)"),),
+        {NOTHING_ELSE},
     ),
     "says nothing when halted": (
         ((RUNG, "said = None if halted(older, options) else state.command"),),
@@ -194,6 +201,53 @@ MUTANTS = {
 def test_a_mutant_breaks_the_contracts_that_it_should(name: str) -> None:
     changes, broken = MUTANTS[name]
     assert refuted(contracts(mutant(*changes), OPTIONS)) == broken
+
+
+FIELD = "    command_age: int\n"
+AT_FIRST = "command_age=options.command_timeout,\n"
+OBEYS = "stop=requested or (options.latching and state.stop)"
+
+
+@pytest.mark.parametrize(
+    ("first", "then", "sum_"),
+    [
+        ("9007199254740992", "9007199254740992.0", "state.odd + 1"),
+        ("9007199254740992.0", "9007199254740992", "state.odd + 1"),
+        ("Velocity()", "Velocity(0)", "state.odd.vx + 9007199254740993"),
+        ("Velocity(0)", "Velocity()", "state.odd.vx + 9007199254740993"),
+    ],
+)
+@pytest.mark.parametrize("obeys", [">", "<="])
+def test_equal_numbers_that_add_up_differently_are_not_one_state(
+    first: str, then: str, sum_: str, obeys: str
+) -> None:
+    """Whole numbers and floats part beyond 2^53; a scan changes the one into the other."""
+    changed = mutant(
+        (FIELD, f"{FIELD}    odd: float | Velocity\n"),
+        (AT_FIRST, f"{AT_FIRST}        odd={first},\n"),
+        (
+            SCANNED,
+            f"    odd = {then} if state.scan_age == 0 else state.odd\n"
+            "    return replace(state, scan_age=0, odd=odd), None",
+        ),
+        (OBEYS, f"stop=requested and {sum_} {obeys} 9007199254740992"),
+    )
+    found = {e.claim: e.result for e in contracts(changed, OPTIONS)}
+    assert not isinstance(found[SETS], Proved)
+
+
+def test_zero_in_whole_numbers_is_none() -> None:
+    """ROS 2 takes floats alone, and the node would fail when the robot is to stop."""
+    whole = mutant((PASSED, "return after, Velocity(0) if halted(after, options) else command"))
+    assert {PASSES, STOPPED, NOTHING_ELSE} <= refuted(contracts(whole, OPTIONS))
+
+
+def test_a_state_has_fields_by_which_states_are_told_apart() -> None:
+    """As a NamedTuple it would have none that are looked at."""
+    changed = mutant(
+        ("@dataclass(frozen=True, slots=True)\nclass State:", "class State(NamedTuple):")
+    )
+    assert reason(changed) == ("its core is not as fretc can read it: `class State(NamedTuple):`")
 
 
 def test_a_latch_that_releases_is_told() -> None:

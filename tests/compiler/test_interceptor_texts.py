@@ -16,8 +16,8 @@ from hypothesis import strategies as st
 
 from compiler.contracts import contracts
 from compiler.gate import Gate, Heard, NotAnInterceptorError, Settings
+from compiler.interceptor_file import Head, core, head, otherwise
 from compiler.provers import stated
-from compiler.purity import Head, core, head, otherwise
 from compiler.targets import interceptor
 from compiler.verification import Proved
 from fretish.declarations import Form, Interception
@@ -438,7 +438,7 @@ def test_what_is_not_of_the_language_is_refused_and_not_executed(
     text = sub(SCAN, statement.format(inner))
     assume(_is_python(text))
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("compiler.purity.executed", _never)
+        patch.setattr("compiler.interceptor_file.executed", _never)
         assert isinstance(core(text), str), inner
 
 

@@ -286,3 +286,55 @@ def test_too_many_states_are_not_checked() -> None:
 )
 def test_what_finite_runs_can_refute(formula: f.Formula, expected: bool) -> None:
     assert is_safety(formula) == expected
+
+
+HALTED = """\
+def halted(state: State, options: Options) -> bool:
+    return 0 > 1
+
+
+def kept_back(state: State, options: Options) -> bool:"""
+
+
+def test_what_a_core_says_of_itself_does_not_release_a_stop() -> None:
+    """Its `halted` says no, and its steps go by another function."""
+    lying = CORE.replace("halted(", "kept_back(")
+    lying = edited(lying, "def kept_back(state: State, options: Options) -> bool:", HALTED)
+    for settings, channel in ((LATCH, EDGE), (TIMER, Channel(1, lost=2, edge=True))):
+        known = case(WITHIN.format(9), settings, channel)
+        assert status(search(known).released) == "counterexample"
+        assert status(search(replace(known, interceptor=lying)).released) == "counterexample"
+
+
+@pytest.mark.parametrize(
+    ("cell", "first", "step", "ignored"),
+    [
+        ("w_1", "Window(60, 3)", "far = w_1.step(True, near)", "far"),
+        ("x_broken", "-1", "x_broken = x_broken + 1 if near else x_broken", "x_broken > 5"),
+        ("x_doomed", "-1", "x_doomed = x_doomed + 1 if near else x_doomed", "x_doomed > 5"),
+    ],
+)
+def test_a_safety_function_that_remembers_more_than_is_put_back_is_not_stepped(
+    cell: str, first: str, step: str, ignored: str
+) -> None:
+    known = case(WITHIN.format(3))
+    text = known.safety
+    for old, new in (
+        ('        "doubt",\n', f'        "doubt",\n        "{cell}",\n'),
+        ('        "oldest_1",\n    )', f'        "oldest_1",\n        "{cell}",\n    )'),
+        (
+            "        self.oldest_1 = -1\n",
+            f"        self.oldest_1 = -1\n        self.{cell} = {first}\n",
+        ),
+        ("= self.oldest_1\n", f"= self.oldest_1\n        {cell} = self.{cell}\n"),
+        ("self.oldest_1 = oldest_1\n", f"self.oldest_1 = oldest_1\n        self.{cell} = {cell}\n"),
+        (
+            "            if oldest_1 >= 0 and",
+            f"            {step}\n            if oldest_1 >= 0 and",
+        ),
+        ("elif near and not_stopped:", f"elif near and not_stopped and not ({ignored}):"),
+    ):
+        text = edited(text, old, new)
+    found = search(with_safety(known, text)).kept
+    assert isinstance(found, NotChecked)
+    assert "it is not laid out as fretc writes it" in found.reason

@@ -522,3 +522,22 @@ def test_another_deadline_in_its_words_is_not_proved() -> None:
     text = emitted(WITHIN).replace("            3,\n        ),", "            300,\n        ),")
     assert text != emitted(WITHIN)
     assert "states another sentence" in reason(check(WITHIN, text))
+
+
+@pytest.mark.parametrize("bounds", ["60, 3", "-1, 3", "3, -1", "3, 2"])
+def test_a_window_whose_state_is_less_than_what_it_goes_by_is_not_proved(bounds: str) -> None:
+    """Ages above its end are one state, and it would ask for more of them."""
+    changed = edited(
+        emitted(WITHIN),
+        ('        "doubt",\n', '        "doubt",\n        "w_1",\n'),
+        ('        "oldest_1",\n    )', '        "oldest_1",\n        "w_1",\n    )'),
+        ("self.oldest_1 = -1\n", f"self.oldest_1 = -1\n        self.w_1 = Window({bounds})\n"),
+        ("= self.oldest_1\n", "= self.oldest_1\n        w_1 = self.w_1\n"),
+        ("self.oldest_1 = oldest_1\n", "self.oldest_1 = oldest_1\n        self.w_1 = w_1\n"),
+        (
+            "if oldest_1 >= 0 and not_q",
+            "far = w_1.step(True, p)\n            if oldest_1 >= 0 and not_q",
+        ),
+        ("elif p and not_q:", "elif p and not_q and not far:"),
+    )
+    assert reason(check(WITHIN, changed)).startswith(LAYOUT)

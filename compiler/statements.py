@@ -1,0 +1,84 @@
+"""Statements of a text, held against those that fretc writes."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Sequence
+from functools import cache
+
+
+class StrangeError(Exception):
+    """What is not as the generator writes it."""
+
+
+def demand(right: bool, node: ast.AST) -> None:
+    """Raises StrangeError, with the line of the node, where something is not right."""
+    if not right:
+        line = (ast.unparse(node).splitlines() or ["nothing"])[0]
+        raise StrangeError(f"it is not laid out as fretc writes it: `{line}`")
+
+
+@cache
+def normal(text: str) -> str:
+    """A statement or an expression as `ast.unparse` writes it."""
+    return ast.unparse(ast.parse(text))
+
+
+def is_one_of(node: ast.AST, *texts: str) -> bool:
+    """The node is one of these statements or expressions."""
+    found = ast.unparse(node)
+    return any(found == normal(text) for text in texts)
+
+
+def reads(statements: Sequence[ast.stmt], text: str) -> bool:
+    """The statements are those of the text."""
+    return "\n".join(map(ast.unparse, statements)) == normal(text)
+
+
+def is_same(text: str, other: str) -> bool:
+    """Both texts are one program: they differ in comments and white space at most."""
+    try:
+        return text == other or ast.dump(ast.parse(text)) == ast.dump(ast.parse(other))
+    except (SyntaxError, ValueError, RecursionError):
+        return False
+
+
+def constants(node: ast.AST) -> tuple[object, ...]:
+    """The values of a tuple of constants."""
+    demand(isinstance(node, ast.Tuple), node)
+    assert isinstance(node, ast.Tuple)
+    for part in node.elts:
+        demand(isinstance(part, ast.Constant), part)
+    return tuple(part.value for part in node.elts if isinstance(part, ast.Constant))
+
+
+def names_in(node: ast.AST) -> tuple[str, ...]:
+    """The values of a tuple of texts."""
+    found = constants(node)
+    names = tuple(value for value in found if isinstance(value, str))
+    demand(names == found, node)
+    return names
+
+
+def body_of(node: ast.stmt, name: str, arguments: str, *decorators: str) -> list[ast.stmt]:
+    """The statements of a function below its docstring; there is at least one."""
+    demand(isinstance(node, ast.FunctionDef), node)
+    assert isinstance(node, ast.FunctionDef)
+    demand(node.name == name and not getattr(node, "type_params", ()), node)
+    demand(ast.unparse(node.args) == _arguments(arguments), node.args)
+    demand([ast.unparse(d) for d in node.decorator_list] == [*decorators], node)
+    body = below_docstring(node)
+    demand(bool(body), node)
+    return body
+
+
+@cache
+def _arguments(text: str) -> str:
+    function = ast.parse(f"def f({text}): pass").body[0]
+    assert isinstance(function, ast.FunctionDef)
+    return ast.unparse(function.args)
+
+
+def below_docstring(node: ast.FunctionDef | ast.ClassDef) -> list[ast.stmt]:
+    """The statements after the docstring, if there is one."""
+    return node.body[1:] if ast.get_docstring(node) is not None else node.body
