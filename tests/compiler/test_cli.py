@@ -430,7 +430,7 @@ def test_requirements_come_as_people_count(fretc: Fretc) -> None:
     told = fretc(".").out
     assert [line for line in told.splitlines() if line.startswith("R")] == ["R1", "R2", "R10"]
     text = fretc(".", "--emit", "monitor", "--one-file", "-o", "-").out
-    assert text.startswith("# Runtime monitor of R1, R2, R10\n")
+    assert text.startswith("#!/usr/bin/env python3\n# Runtime monitor of R1, R2, R10\n")
     assert "def step(self, *, p1: Truth, p2: Truth, p10: Truth)" in text
     assert [r.id for r in load("monitors.py", text).REQUIREMENTS] == ["R1", "R2", "R10"]
 

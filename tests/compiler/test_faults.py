@@ -73,14 +73,14 @@ FAULTS = (
     (WITHIN, "q = not_q = doubt", "q = not_q = True", REFUSED),
     (WITHIN, "q = not_q = doubt", "not_q = doubt", REFUSED),
     (WITHIN, "q = not_q = doubt", "q = doubt", REFUSED),
-    (WITHIN, "known = False\n                m = doubt", "m = doubt", REFUSED),
-    (WITHIN, "known = False\n                m = doubt", "known = True\n                m = doubt", REFUSED),
+    (WITHIN, "known = False\n                    m = doubt", "m = doubt", REFUSED),
+    (WITHIN, "known = False\n                    m = doubt", "m = doubt\n                    known = True", REFUSED),
     (WITHIN, "        doubt = self.doubt\n", "        doubt = False\n", REFUSED),
     (WITHIN, "        self.doubt = doubt\n", "        self.doubt = False\n", REFUSED),
     (WITHIN, "doubt: bool = False", "doubt: bool = True", REFUSED),
     (WITHIN, "            not_q = not q\n", "", REFUSED),
     (WITHIN, "            not_q = not q\n", "            not_q = not p\n", REFUSED),
-    (WITHIN, 'refused("m", m)', "pass", REFUSED),
+    (WITHIN, 'm = boolean(m, "m")', "pass", REFUSED),
     (WITHIN, P, "            if p is not True:\n", REFUSED),
     (WITHIN, P, "            if p is not False:\n", REFUSED),
     (WITHIN, "oldest_1 >= 0 and not_q and m", "oldest_1 >= 0 and not q and m", DIFFERS),
@@ -166,7 +166,7 @@ def test_a_parameter_of_another_name_than_its_proposition_has_is_refused(name: s
 
 @pytest.mark.parametrize(
     "name",
-    "known rows refused tick doubt self advance signals marks CELLS p not_q r1_last __hidden".split(),
+    "known rows boolean tick doubt self advance signals marks CELLS p not_q r1_last __hidden".split(),
 )
 def test_a_cell_has_no_name_that_something_else_has(name: str) -> None:
     """`known`, put back into the rail, would say that nothing was unknown."""

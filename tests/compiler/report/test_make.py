@@ -179,7 +179,11 @@ def test_a_requirement_that_the_audit_left_out_is_not_exercised(tmp_path: Path) 
 
 
 def test_a_project_without_a_requirement_shows_nothing(tmp_path: Path) -> None:
-    known = project(tmp_path, "+++\nid = 1\n+++\nthe robot shall satisfy stopped\n")
+    """Its only file is no text; what is one, with whatever mistakes, is a requirement."""
+    project(tmp_path)
+    (tmp_path / "r1.fret").write_bytes(b"\xff")
+    places = [str(tmp_path / name) for name in ("r1.fret", "bindings.toml", "hazards.toml")]
+    known = load(places[:1], places[1], places[2])
     assert known.requirements == ()
     content = said(made(known, tmp_path))
     assert content["overall"]["mark"]["word"] == "nothing shown"
@@ -312,7 +316,7 @@ def test_a_project_with_errors_is_never_all_shown(tmp_path: Path) -> None:
     overall = said(made(known, tmp_path, result(known, "satisfied", latencies_s=[])))["overall"]
     assert overall["headline"] == "Not everything that was claimed is shown."
     assert overall["sentences"] == [
-        "The one requirement, R1, held in the audited run.",
+        "1 of 2 requirements held in the audited run.",
         "No damage was found in the run.",
         "The requirements or what stands beside them have errors: this report is not complete.",
     ]

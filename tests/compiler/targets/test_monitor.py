@@ -16,6 +16,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from compiler.files import write
 from compiler.pipeline import formalize
 from compiler.targets import TARGETS
 from compiler.targets import monitor as target
@@ -584,8 +585,8 @@ def programs(tmp_path_factory: pytest.TempPathFactory) -> Path:
         "long": "only after some_rather_long_mode_name, upon another_rather_long_name > 3 the sw "
         "shall until yet_another_rather_long_stop_name satisfy the_response_is_long_too",
     }
-    for name, sentence in sentences.items():
-        (folder / f"{name}.py").write_text(target.text(rule(sentence, name)), encoding="utf-8")
+    texts = {folder / f"{name}.py": target.text(rule(s, name)) for name, s in sentences.items()}
+    assert write(texts) is None
     return folder
 
 
