@@ -304,16 +304,17 @@ def test_a_mistake_in_a_text_is_found_or_changes_nothing(sentence: str) -> None:
 
 @pytest.mark.parametrize("sentence", SENTENCES)
 def test_a_mistake_in_a_formula_is_found_or_proved_to_change_nothing(sentence: str) -> None:
+    """What changes nothing is proved, or not checked: its columns are others, and seem to agree."""
     made = rule(sentence)
     judge = Judge(made)
     found: Counter[str] = Counter()
     for kind, watch in of_watch(made.watch):
         result = judge.found(target.text(replace(made, watch=watch)))
-        assert result in (REFUTED, DIFFERS, SAME), (kind, watch)
+        assert result in (REFUTED, DIFFERS, REFUSED, SAME), (kind, watch)
         found[result] += 1
-        if result == SAME:
+        if result in (REFUSED, SAME):
             assert kind.partition(": ")[2] == "weak, strong" or kind.startswith("doom"), kind
-    assert found[SAME] <= 0.2 * found.total(), found
+    assert found[REFUSED] + found[SAME] <= 0.2 * found.total(), found
     assert found[REFUTED] >= 5, found
 
 
