@@ -314,7 +314,7 @@ def _ambiguous(name: str, part: str, span: Span) -> Diagnostic:
         Code.AMBIGUOUS_UNIT,
         f"`{part}` in `{name}` may be a unit or what is declared as `{part}`",
         span,
-        help=f"give `{part}` a name that is no unit; to divide by it, write such as `(2 m) / {part}`",
+        help=f"give `{part}` a name that is no unit; a quotient may be written `(2 m) / {part}`",
     )
 
 
