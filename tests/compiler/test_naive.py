@@ -420,7 +420,7 @@ def case(seed: int) -> Case:
 
 def timed(random: Random, coarse: bool, tick: int) -> tuple[str, str, int]:
     """A form of sentence, the words of its timing, and how many ticks that counts."""
-    form = random.choice(list(FORMS))
+    form = random.choice([form for form in FORMS if not coarse or "{n}" in form])
     if not coarse or " after " in form:
         count = random.randint(1, 4)
         return form, f"{count} tick{'s' * (count > 1)}", count
