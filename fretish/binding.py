@@ -6,7 +6,9 @@ A small language of its own, never Python's: signals, numbers with units, compar
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import re
+from collections.abc import Collection, Iterator, Mapping
+from fractions import Fraction
 from functools import cache
 from importlib.resources import files
 from typing import Any, cast
@@ -16,7 +18,7 @@ from lark.exceptions import UnexpectedCharacters, UnexpectedInput, VisitError
 from lark.visitors import Transformer_NonRecursive
 
 from fretish import expressions as e
-from fretish.diagnostic import Code, Diagnostic, suggestion
+from fretish.diagnostic import Code, Diagnostic, Severity, suggestion
 from fretish.source import Span
 from fretish.units import DIMENSIONLESS, NAMES, Dimension, base_name, nanoseconds, unit
 
@@ -109,7 +111,7 @@ class _Build(Transformer_NonRecursive[Token, Any]):
         return e.Quantity(text[:split].strip(), name, self._span(children[0]))
 
     def number(self, children: list[Token]) -> e.Expression:
-        return e.Number(str(children[0]))
+        return e.Number(str(children[0]), self._span(children[0]))
 
     def truth(self, children: list[Token]) -> e.Expression:
         return e.Truth(children[0] == "true")
@@ -144,10 +146,12 @@ def dimension(whole: e.Expression, kinds: Mapping[str, Kind], place: Span) -> Ki
             return kinds[id] if id in kinds else _unknown_name(id, kinds, span or place)
         case e.Number():
             return DIMENSIONLESS
-        case e.Quantity(_, name, _):
+        case e.Quantity(_, name, span):
             known = unit(name)
             assert known is not None
-            return known.dimension
+            parts = [part for part in re.split("[*/]", name)[1:] if part in kinds]
+            also = [part for part in parts if (one := unit(part)) and one.dimension == kinds[part]]
+            return _ambiguous(name, also[0], span or place) if also else known.dimension
         case e.Negation(arg):
             return _numbers([arg], kinds, place)
         case e.Arithmetic(op, left, right):
@@ -239,6 +243,36 @@ def is_truth(expression: e.Expression) -> bool:
     return not isinstance(expression, numbers)
 
 
+def plain_percents(
+    whole: e.Expression, percents: Collection[str], place: Span
+) -> Iterator[Diagnostic]:
+    """F338 for each comparison of a signal in percent with a number that is 1 or more and in none.
+
+    Args:
+        whole: an expression whose dimensions are right.
+        percents: the names of the signals in percent.
+        place: where to point when the number has no place of its own.
+    """
+    for part in e.children(whole):
+        yield from plain_percents(part, percents, place)
+    if not isinstance(whole, e.Comparison):
+        return
+    for side, other in ((whole.left, whole.right), (whole.right, whole.left)):
+        measured = {name.id for name in e.names(side)}
+        limit = other.arg if isinstance(other, e.Negation) else other
+        if not measured or not measured <= {*percents} or not isinstance(limit, e.Number):
+            continue
+        if Fraction(limit.digits) > 1:
+            yield Diagnostic(
+                Code.PLAIN_PERCENT,
+                f"`{', '.join(sorted(measured))}` is in %, and {limit.digits} is no percentage: it "
+                f"is {limit.digits} times 100 %",
+                limit.span or place,
+                help=f"write `{limit.digits} %`",
+                severity=Severity.WARNING,
+            )
+
+
 _SPELT = {"mps": "m/s", "kph": "km/h", "kmh": "km/h", "rps": "rad/s", "degrees": "deg"}
 """Units by names that are nearer to those of other units."""
 
@@ -272,6 +306,15 @@ def _unknown_name(id: str, kinds: Mapping[str, Kind], span: Span) -> Diagnostic:
         f"`{id}` is not declared",
         span,
         help=f"did you mean `{near}`?" if near else f"declared here: {known}",
+    )
+
+
+def _ambiguous(name: str, part: str, span: Span) -> Diagnostic:
+    return Diagnostic(
+        Code.AMBIGUOUS_UNIT,
+        f"`{part}` in `{name}` may be a unit or what is declared as `{part}`",
+        span,
+        help=f"give `{part}` a name that is no unit; a quotient may be written `(2 m) / {part}`",
     )
 
 

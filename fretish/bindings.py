@@ -25,7 +25,7 @@ from fretish.declarations import (
     Variable,
     path,
 )
-from fretish.diagnostic import Code, Diagnostic
+from fretish.diagnostic import Code, Diagnostic, has_errors
 from fretish.fields import Fields
 from fretish.interception import Loop
 from fretish.source import Source, Span
@@ -59,7 +59,7 @@ def read_bindings(source: Source) -> tuple[Declarations | None, tuple[Diagnostic
         return None, (tables,)
     reader = _Reader(tables)
     declarations = reader.declarations()
-    return (None if reader.wrong else declarations), tuple(reader.wrong)
+    return (None if has_errors(reader.wrong) else declarations), tuple(reader.wrong)
 
 
 class _Reader(Fields):
@@ -375,6 +375,9 @@ class _Reader(Fields):
                 place,
                 "compare it: `min_range < 5 cm`",
             )
+        else:
+            percents = {name for name, signal in signals.items() if signal.unit == units.PERCENT}
+            self.wrong.extend(binding.plain_percents(expression, percents, place))
         return kind is None
 
     # Variables that are not bound

@@ -82,6 +82,8 @@ class Code(Enum):
     NO_INTERCEPTOR = ("F323", "the bindings declare no interceptor")
 
     BAD_PHASE = ("F337", "the phase of the clock is not within a tick")
+    PLAIN_PERCENT = ("F338", "a plain number stands beside a signal in percent")
+    AMBIGUOUS_UNIT = ("F339", "a part of a unit is the name of a signal too")
 
     UNREADABLE_LOG = ("F401", "the log cannot be read")
     NOT_A_LOG = ("F402", "the file is not an MCAP log")

@@ -40,6 +40,7 @@ def _times(left: Unit, right: Unit, power: int = 1) -> Unit:
 
 
 ONE = Unit(DIMENSIONLESS, Fraction(1))
+PERCENT = Unit(DIMENSIONLESS, Fraction(1, 100))
 SECOND = _base("s")
 _METRE, _KILOGRAM = _base("m"), _base("kg")
 _NEWTON = Unit((1, 1, -2, 0, 0, 0), Fraction(1))
@@ -47,7 +48,7 @@ _VOLT = Unit((2, 1, -3, -1, 0, 0), Fraction(1))
 
 _UNITS: dict[str, Unit] = {
     "1": ONE,
-    "%": Unit(DIMENSIONLESS, Fraction(1, 100)),
+    "%": PERCENT,
     "m": _METRE,
     "km": _base("m", 1000),
     "dm": _base("m", Fraction(1, 10)),
@@ -79,7 +80,7 @@ _UNITS: dict[str, Unit] = {
     "Hz": Unit((0, 0, -1, 0, 0, 0), Fraction(1)),
 }
 NAMES = tuple(_UNITS)
-_FACTOR = re.compile(r"([A-Za-z%]+|1)(?:\^?(-?\d+))?")
+_FACTOR = re.compile(r"([A-Za-z%]+|1)(?:\^?(-?[0-9]{1,2}))?")
 
 
 def unit(text: str) -> Unit | None:

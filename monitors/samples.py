@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
+from math import inf
 from typing import Any, TypeVar
 
 import numpy as np
@@ -38,10 +39,18 @@ _Number = TypeVar("_Number", float, Numbers)
 
 def scaled(value: _Number, scale: Fraction) -> _Number:
     """`value * scale`, rounded once where a division or a multiplication alone does it."""
-    with np.errstate(over="ignore"):  # what is too large is infinite
+    with np.errstate(over="ignore", invalid="ignore"):  # what is too large is infinite
         if scale.numerator == 1:
-            return value / float(scale.denominator)
-        return value * float(scale.numerator) / float(scale.denominator)
+            return value / _float(scale.denominator)
+        return value * _float(scale.numerator) / _float(scale.denominator)
+
+
+def _float(whole: int) -> float:
+    """The nearest float of a number above 0; infinite where that is too large."""
+    try:
+        return float(whole)
+    except OverflowError:
+        return inf
 
 
 def widest(values: NDArray[Any]) -> Values:

@@ -31,8 +31,9 @@ _HEADER = 4096
 def split(path: str) -> Folder | None:
     """The run that a bag is a file of; None where it is one of its own.
 
-    Files of one name are one run if their numbers follow each other and each begins where the one
-    before it ends: names alone could be those of runs that were numbered.
+    Files of one name are one run if their numbers follow each other, none comes twice (`run_1.bag`
+    and `run_01.bag`), and each begins where the one before it ends: names alone could be those of
+    runs that were numbered.
 
     Args:
         path: of one of the files, or what `named` gives.
@@ -44,13 +45,11 @@ def split(path: str) -> Folder | None:
     match = _WHOLE.fullmatch(name) or _FILE.fullmatch(name)
     if match is None or (_WHOLE.fullmatch(name) and os.path.lexists(path)):
         return None
-    numbers: dict[int, str] = {}
-    for other in sorted(os.listdir(parent or ".")):
-        file = _FILE.fullmatch(other)
-        if file and file["run"] == match["run"]:
-            numbers.setdefault(int(file["number"]), other)
-    files = [numbers[number] for number in sorted(numbers)]
-    follow = all(b == a + 1 for a, b in pairwise(sorted(numbers)))
+    found = (_FILE.fullmatch(other) for other in os.listdir(parent or "."))
+    own = [file for file in found if file and file["run"] == match["run"]]
+    numbers = sorted((int(file["number"]), file[0]) for file in own)
+    files = [file for _, file in numbers]
+    follow = all(b == a + 1 for (a, _), (b, _) in pairwise(numbers))
     if len(files) < 2 or not follow or not _in_time(parent, files):
         return None
     return Folder(parent or ".", tuple(files), None, None, {}, "")

@@ -335,6 +335,35 @@ def test_a_number_of_the_requirement_that_its_binding_does_not_have_is_drift(fre
     )
 
 
+@pytest.mark.parametrize(
+    ("expression", "stated", "drifts"),
+    [
+        ("d < 5 cm", "0.05 m", False),
+        ("d < 10 cm / 2", "5 cm", False),
+        ("d < 10 cm / 2", "10 cm", True),
+        ("d < 4 cm + 1 cm and d > -3 cm", "50 mm", False),
+        ("d < 4 cm + 1 cm", "4 cm", True),
+        ("d > -3 cm", "3 cm", False),
+        ("d > -3 cm", "-3 cm", False),
+        ("d > 3 cm", "-3 cm", True),
+        ("d / 2 < min(5 cm, 7 cm)", "5 cm", False),
+        ("d / 2 < min(5 cm, 7 cm)", "7 cm", True),
+        ("d < 5 cm for 200 ms", "0.2 s", False),
+    ],
+)
+def test_a_number_of_a_binding_is_what_is_computed_of_its_numbers(
+    fretc: Fretc, expression: str, stated: str, drifts: bool
+) -> None:
+    write(
+        "bindings.toml",
+        '[clock]\ntick = "100 ms"\n[signal.d]\npath = "/scan.d"\nunit = "m"\n'
+        f'[proposition.too_close]\nexpr = "{expression}"\n',
+    )
+    header = f'+++\nid = "R1"\nparams = {{ too_close = "{stated}" }}\n+++\n'
+    run = fretc(write("r1.fret", header + R1))
+    assert ("F310" in run.err) == drifts
+
+
 # Speed, as what is not imported -------------------------------------------------------------------
 
 
@@ -430,7 +459,7 @@ def test_requirements_come_as_people_count(fretc: Fretc) -> None:
     told = fretc(".").out
     assert [line for line in told.splitlines() if line.startswith("R")] == ["R1", "R2", "R10"]
     text = fretc(".", "--emit", "monitor", "--one-file", "-o", "-").out
-    assert text.startswith("#!/usr/bin/env python3\n# Runtime monitor of R1, R2, R10\n")
+    assert "\n# Runtime monitor of R1, R2, R10\n" in text
     assert "def step(self, *, p1: Truth, p2: Truth, p10: Truth)" in text
     assert [r.id for r in load("monitors.py", text).REQUIREMENTS] == ["R1", "R2", "R10"]
 

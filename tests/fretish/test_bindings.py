@@ -423,3 +423,76 @@ def test_two_dimensions_never_meet(expression: str, message: str) -> None:
 )
 def test_dimensions_that_agree_are_accepted(expression: str) -> None:
     read(changed('"min_range < 5 cm"', f'"{expression}"'))
+
+
+PERCENT = """
+[clock]
+tick = "100 ms"
+[signal.level]
+path = "/battery.level"
+unit = "%"
+[signal.ratio]
+path = "/battery.ratio"
+[proposition.low]
+expr = "{}"
+"""
+
+
+@pytest.mark.parametrize(
+    "expression", ["level < 20", "20 > level", "abs(level) >= 20", "level > -5", "not (level = 2)"]
+)
+def test_a_plain_number_beside_percent_is_warned_of(expression: str) -> None:
+    declarations, (warning,) = read_bindings(Source("bindings.toml", PERCENT.format(expression)))
+    assert declarations is not None
+    assert (warning.code.number, warning.is_error) == ("F338", False)
+    assert warning.span is not None
+    assert warning.span.text in {"20", "5", "2"}
+    assert warning.help == f"write `{warning.span.text} %`"
+
+
+@pytest.mark.parametrize(
+    "expression",
+    ["level < 20 %", "level < 0.2", "level <= 1", "level > 0", "ratio > 20", "level < 20 * ratio"],
+)
+def test_a_percentage_or_a_part_of_one_is_not(expression: str) -> None:
+    declarations, said = read_bindings(Source("bindings.toml", PERCENT.format(expression)))
+    assert (declarations is not None, said) == (True, ())
+
+
+NAMED_AS_UNITS = """
+[clock]
+tick = "100 ms"
+[signal.v]
+path = "/v.data"
+unit = "m/s"
+[signal.s]
+path = "/s.data"
+unit = "s"
+[proposition.p]
+expr = "{}"
+"""
+
+
+@pytest.mark.parametrize(
+    ("expression", "place"),
+    [
+        ("v > 10 m/s", "10 m/s"),
+        ("v * s > 10 m*s/s", "10 m*s/s"),
+        ("v > 1 m/s and s > 2 s", "1 m/s"),
+    ],
+)
+def test_a_unit_that_may_be_a_signal_is_refused(expression: str, place: str) -> None:
+    declarations, (wrong,) = read_bindings(Source("b", NAMED_AS_UNITS.format(expression)))
+    assert declarations is None
+    assert wrong.code.number == "F339"
+    assert wrong.span is not None
+    assert wrong.span.text == place
+
+
+def test_a_signal_of_another_dimension_than_the_unit_is_not_meant() -> None:
+    read(NAMED_AS_UNITS.replace('unit = "s"', 'unit = "m"').format("v > 10 m/s"))
+
+
+@pytest.mark.parametrize("expression", ["v > (10 m) / s", "v > 10 km/h", "s > 2 s", "v * s > 1 m"])
+def test_a_signal_may_have_the_name_of_a_unit_that_is_not_at_stake(expression: str) -> None:
+    read(NAMED_AS_UNITS.format(expression))

@@ -50,7 +50,9 @@ def test_an_angle_is_no_plain_number() -> None:
     assert radian.dimension != plain.dimension == DIMENSIONLESS
 
 
-@pytest.mark.parametrize("text", ["", "metre", "m/", "/s", "m//s", "m^", "m**2", "5 m", "M", "m s"])
+@pytest.mark.parametrize("text", [
+     "", "metre", "m/", "/s", "m//s", "m^", "m**2", "5 m", "M", "m s",
+     "km^200", "m^-200", "km^99999999"])  # fmt: skip
 def test_what_is_no_unit_is_not_read(text: str) -> None:
     assert unit(text) is None
 

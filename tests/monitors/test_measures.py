@@ -160,7 +160,10 @@ def test_whole_numbers_of_64_bits_are_compared_as_whole_numbers(
     text = f"{sign}({written(bound * FACTORS[field].factor, name)})"
     expected = OPERATORS[op](Fraction(x), bound)
     mirrored = {"<": ">", "<=": ">=", ">": "<", ">=": "<="}.get(op, op)
-    for kind in [EXACT, DOUBLE] if abs(x) <= 2**53 and abs(bound) < 2**53 else [EXACT]:
+    kinds: tuple[np.dtype[Any], ...] = (
+        (EXACT, DOUBLE) if abs(x) <= 2**53 and abs(bound) < 2**53 else (EXACT,)
+    )
+    for kind in kinds:
         for term in ("x", "min(x, x)", "max(x, x)"):
             assert judged(f"{term} {op} {text}", x, kind, field) == expected
             assert judged(f"{text} {mirrored} {term}", x, kind, field) == expected

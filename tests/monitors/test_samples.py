@@ -1,6 +1,7 @@
 """Numbers of logs are judged as the numbers that were recorded: whichever type, unit and way in."""
 
 import json
+import math
 import struct
 from collections.abc import Sequence
 from fractions import Fraction
@@ -115,3 +116,22 @@ def test_whole_numbers_of_64_bits_are_held_exactly(numbers: list[int]) -> None:
 def test_a_power_of_ten_is_rounded_once(value: float, factor: int) -> None:
     assert scaled(value, Fraction(factor)) == float(Fraction(value) * factor)
     assert scaled(value, Fraction(1, factor)) == float(Fraction(value) / factor)
+
+
+def test_what_a_scale_makes_too_large_is_infinite() -> None:
+    huge = Fraction(10) ** 400
+    assert scaled(2.0, huge) == math.inf
+    assert scaled(-2.0, huge / 3) == -math.inf
+    assert scaled(2.0, 1 / huge) == 0
+    assert math.isnan(scaled(0.0, huge))
+
+
+def test_a_product_of_many_units_is_no_fault(tmp_path: Path) -> None:
+    path = write(tmp_path / "x.mcap", [sent("Float64", 2.0, S + k * 100 * MS) for k in range(3)])
+    product = "*".join(["x"] * 120)
+    declarations = declare(
+        f'[clock]\ntick = "100 ms"\n[signal.x]\npath = "/x.data"\nunit = "km"\n'
+        f'[proposition.p]\nexpr = "{product} + {product} > {product}"\n'
+    )
+    log = recorded(path, declarations)
+    assert trace(declarations, log, ["p"]).columns["p"].true == 0b111

@@ -171,3 +171,13 @@ def test_what_ros_itself_reindexes_is_known_as_that(tmp_path: Path) -> None:
     assert 0 < len(found.samples["x"].values) < 300
     assert np.array_equal(found.samples["x"].values, np.arange(len(found.samples["x"].values)) / 10)
     assert (codes(found), found.intact) == (["F422", "F415"], False)
+
+
+@pytest.mark.parametrize("name", ["run_01.bag", "run_1.bag.active", "run_00.bag"])
+def test_of_two_files_with_one_number_none_is_passed_by(tmp_path: Path, name: str) -> None:
+    folder = run(tmp_path / "runs", SIX[:2], SIX[2:4], SIX[4:])
+    shutil.copy(bag(tmp_path / "other.bag", SIX[2:4]), folder / name)
+    names = {*(f"run_{i}.bag" for i in range(3)), name}
+    found = logs([str(folder)])
+    assert not isinstance(found, Diagnostic)
+    assert sorted(Path(log).name for log in found) == sorted(names)
