@@ -2,7 +2,7 @@
 
 Nothing in a file is trusted: a wrong shape is F616. A result counts only where it is about the
 texts that fretc makes now; what a result concludes is not read but concluded again, from each of
-its checks, against the checks that a bundle has now.
+its checks, against the checks that a bundle has now, and against the logs where they lie beside it.
 """
 
 from __future__ import annotations
@@ -11,9 +11,9 @@ import hashlib
 import json
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from pathlib import Path
+from pathlib import Path, PurePath
 
-from compiler.ajpf_run import ERROR, HOLDS, SCHEMA, VIOLATED
+from compiler.ajpf_run import ERROR, HOLDS, SCHEMA, VIOLATED, verdict
 from compiler.files import read as read_text
 from compiler.files import sha256
 from compiler.proven import Proof
@@ -63,6 +63,9 @@ class Check:
     why: str
     seconds: float
     states: int | None
+    log: str
+    """The name of the file that has what AJPF printed."""
+    log_sha256: str
     trace: Trace | None
 
     @property
@@ -227,6 +230,8 @@ def _check(at: Shape) -> Check:
         at.field("why").text(),
         at.field("seconds").number(),
         states.field("new").count() if states.has("new") else None,
+        PurePath(at.field("log").text()).name,
+        at.field("log_sha256").text(),
         None if trace.value is None else _trace(trace),
     )
 
@@ -293,7 +298,29 @@ def _reason(rule: Rule, found: AjpfResult, options: Options) -> str | None:
     asked = {tuple(map(check.get, _QUESTION)) for check in manifest["checks"]}
     if asked != {check.question for check in found.checks} or len(asked) != len(found.checks):
         return "it does not tell of what a bundle asks: run AJPF again"
-    return None if found.own is None else _changed(*found.own)
+    other = next(filter(None, (_otherwise(found.file, check) for check in found.checks)), None)
+    if other is not None or found.own is None:
+        return other
+    return _changed(*found.own)
+
+
+def _otherwise(file: str, check: Check) -> str | None:
+    """Why a log does not say what the result tells of it; None: it does, or is not there.
+
+    A refutation stays one: nothing is asked of its log.
+    """
+    if check.role == "requirement" and check.told == VIOLATED:
+        return None
+    try:
+        content = (Path(file).parent / "logs" / check.log).read_bytes()
+    except (OSError, ValueError):
+        return None
+    if hashlib.sha256(content).hexdigest() != check.log_sha256:
+        return f"logs/{check.log} is not what AJPF printed then: run AJPF again"
+    said, _ = verdict(content.decode(errors="replace"), 0)
+    if check.told not in (said, ERROR):
+        return f"it tells {check.told} of {check.jpf}, and logs/{check.log} does not"
+    return None
 
 
 _QUESTION = ("role", "key", "jpf", "property", "expected")
@@ -309,8 +336,10 @@ def _stale(found: AjpfResult, now: Mapping[str, str]) -> Iterator[str]:
 def _changed(file: str, hashed: str) -> str | None:
     """Why one's own agent is not the one that was checked; None: it is."""
     try:
-        content = Path(file).read_bytes()
-    except OSError:
+        content = Path(file).read_bytes() if Path(file).is_file() else None
+    except (OSError, ValueError):
+        content = None
+    if content is None:
         return f"the agent {file} cannot be read, to be held against the one that was checked"
     if hashlib.sha256(content).hexdigest() != hashed:
         return f"the agent {file} was changed since: run AJPF again"

@@ -10,15 +10,16 @@ options of java. It needs Java 11; javac may be newer. What AJPF printed is kept
 `result.json` is what fretc reads.
 """
 
+import os
 import sys
 
-if __name__ == "__main__" and not getattr(sys.flags, "safe_path", False):
-    del sys.path[0]  # what stands beside this file is no library
+if __name__ == "__main__":  # what stands beside this file is no library
+    beside = os.path.dirname(os.path.realpath(__file__))
+    sys.path = [place for place in sys.path if os.path.realpath(place) != beside]
 
 import argparse
 import hashlib
 import json
-import os
 import re
 import shlex
 import shutil
@@ -27,7 +28,7 @@ import time
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import IO, Any
 
 SCHEMA = "fretc-ajpf-result-1"
 SHOWN, REFUTED, BAD, NOT_SHOWN = 0, 1, 2, 3
@@ -63,12 +64,19 @@ def main(arguments: Sequence[str]) -> int:
     own = Path(options.agent).resolve() if options.agent else None
     try:
         for place in (here, *([own] if own else [])):
-            if re.search(r"[\s,]", str(place)):
-                raise UnusableError(f"AJPF cannot read a path with a space or a comma: {place}")
+            if re.search(r"[^\w./+@~-]", str(place), re.ASCII):
+                raise UnusableError(
+                    "AJPF reads paths of letters, digits and `_ . / + @ ~ -` alone, and not "
+                    f"{place}"
+                )
         manifest = intact(here, own)
         known = tools()
+        lock = alone(here)
+        ran_on = digests(here, manifest, own)
         (here / "result.json").unlink(missing_ok=True)
         built(here, known)
+        shutil.rmtree(here / "run", ignore_errors=True)
+        (here / "run").mkdir()
         ran = {check["jpf"]: prepared(here, check, own) for check in manifest["checks"]}
         (here / "logs").mkdir(exist_ok=True)
     except UnusableError as error:
@@ -78,7 +86,7 @@ def main(arguments: Sequence[str]) -> int:
         print(f"error: {error.filename}: {error.strerror}", file=sys.stderr)
         return BAD
     if own is not None:
-        print(f"about the agent {own}, SHA-256 {digest(own)[:12]}...")
+        print(f"about the agent {own}, SHA-256 {ran_on[str(own)][:12]}...")
     command = [known.java, *shlex.split(os.environ.get("AJPF_JAVA_OPTIONS", "")), "-cp"]
     command += [known.class_path, "gov.nasa.jpf.tool.RunJPF"]
     found = []
@@ -90,10 +98,17 @@ def main(arguments: Sequence[str]) -> int:
         print(f"{check['jpf']}: {answer['told']}, {mark or 'as expected'}{why}", flush=True)
     status, words = concluded(found)
     try:
-        written(here, result(here, manifest, known, own, found, status))
+        if digests(here, manifest, own) != ran_on:
+            raise UnusableError("a file was changed while AJPF was at work: run it again")
+        written(here, result(manifest, known, own, ran_on, found, status))
+    except UnusableError as error:
+        print(f"error: {error}", file=sys.stderr)
+        return BAD
     except OSError as error:
         print(f"error: {error.filename}: {error.strerror}", file=sys.stderr)
         return BAD
+    finally:
+        lock.close()
     print(words)
     return status
 
@@ -126,6 +141,27 @@ def intact(here: Path, own: Path | None) -> dict[str, Any]:
         raise UnusableError(f"{error.filename}: {error.strerror}") from error
     except (ValueError, KeyError, TypeError, AttributeError) as error:
         raise UnusableError(f"manifest.json cannot be read: {error}") from error
+
+
+def digests(here: Path, manifest: Mapping[str, Any], own: Path | None) -> dict[str, str]:
+    """SHA-256 of all that AJPF reads, by its name; of one's own agent by its path."""
+    found = {name: digest(here / name) for name in sorted(manifest["files"])}
+    return found if own is None else {**found, str(own): digest(own)}
+
+
+def alone(here: Path) -> IO[str]:
+    """A lock, as long as it is open: two runs in one folder would read each other's files."""
+    file = (here / "run.lock").open("w")
+    try:
+        import fcntl
+
+        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except ImportError:
+        pass  # a system without such locks
+    except OSError:
+        file.close()
+        raise UnusableError(f"another run.py is at work in {here}") from None
+    return file
 
 
 def named(own: Path, name: str) -> None:
@@ -205,7 +241,6 @@ def built(here: Path, known: Tools) -> None:
 def prepared(here: Path, check: Mapping[str, Any], own: Path | None) -> Path:
     """The `.jpf` and its `.ail` below `run/`, with absolute paths: AJPF may start anywhere."""
     place = here / "run"
-    place.mkdir(exist_ok=True)
     ail = (here / check["agent"]).read_text(encoding="utf-8")
     agent = here / check["agent"].replace(".ail", ".gwen")
     if own is not None and check["agent"] == "SIF.ail":
@@ -231,7 +266,7 @@ def asked(
         try:
             status = subprocess.run(
                 command,
-                cwd=here,
+                cwd=here / "run",  # a `jpf.properties` there would count, and there is none
                 stdin=subprocess.DEVNULL,
                 stdout=output,
                 stderr=subprocess.STDOUT,
@@ -396,22 +431,22 @@ def concluded(found: Sequence[Mapping[str, Any]]) -> tuple[int, str]:
 
 
 def result(
-    here: Path,
     manifest: Mapping[str, Any],
     known: Tools,
     own: Path | None,
+    ran_on: Mapping[str, str],
     found: Sequence[Mapping[str, Any]],
     status: int,
 ) -> dict[str, Any]:
     """What fretc reads; its schema is `ajpf-result.schema.json`."""
-    files = {name: digest(here / name) for name in sorted(manifest["files"])}
+    files = {name: ran_on[name] for name in sorted(manifest["files"])}
     return {
         "schema": SCHEMA,
         "requirement": manifest["requirement"],
         "fretc": manifest["fretc"],
         "weakened": manifest["weakened"],
         "verdict": {SHOWN: "shown", REFUTED: "refuted"}.get(status, "not shown"),
-        "agent": {"file": str(own), "sha256": digest(own)} if own is not None else None,
+        "agent": {"file": str(own), "sha256": ran_on[str(own)]} if own is not None else None,
         "mcapl": {"commit": commit(known.home)},
         "java": known.version,
         "files": files,

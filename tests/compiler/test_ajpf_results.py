@@ -1,5 +1,6 @@
 """Results of AJPF as evidence: only about what is made now, and never more than AJPF said."""
 
+import hashlib
 import json
 from collections.abc import Callable
 from pathlib import Path
@@ -150,6 +151,29 @@ def test_the_conclusion_of_the_file_is_not_believed(ran: Mcapl) -> None:
 
     changed(ran, lie)
     assert isinstance(only(ran).result, Counterexample)
+
+
+@pytest.mark.parametrize("name", ["R1", "R1_reach", "R1_resp", "R1_mutant"])
+def test_a_result_is_held_against_the_logs_that_lie_beside_it(ran: Mcapl, name: str) -> None:
+    log = ran.bundle / f"logs/{name}.jpf.txt"
+    printed = log.read_bytes()
+    log.write_bytes(printed + b"\n")
+    assert only(ran).result == NotChecked(
+        f"logs/{name}.jpf.txt is not what AJPF printed then: run AJPF again"
+    )
+    other = RECORDED if name == "R1" else ENDING
+    log.write_text(other, encoding="utf-8")
+
+    def rehash(content: dict[str, Any]) -> None:
+        (check,) = (c for c in content["checks"] if c["jpf"] == f"{name}.jpf")
+        check["log_sha256"] = hashlib.sha256(log.read_bytes()).hexdigest()
+
+    changed(ran, rehash)
+    found = only(ran).result
+    assert isinstance(found, NotChecked)
+    assert found.reason.endswith(f"and logs/{name}.jpf.txt does not")
+    log.unlink()
+    assert isinstance(only(ran).result, Proved)
 
 
 def test_an_agent_of_ones_own_counts_while_it_is_as_it_was(ran: Mcapl) -> None:

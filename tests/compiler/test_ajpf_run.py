@@ -1,5 +1,6 @@
 """The script of a bundle: its verdicts, and that nothing but a verdict is taken for one."""
 
+import fcntl
 import hashlib
 import json
 import os
@@ -216,10 +217,58 @@ def test_a_manifest_without_its_controls_is_no_success(mcapl: Mcapl) -> None:
     assert mcapl.run().returncode == 2
 
 
-def test_a_folder_that_ajpf_cannot_name_is_refused(tmp_path: Path) -> None:
-    done = Mcapl(tmp_path / "my folder").run()
+@pytest.mark.parametrize(
+    "name",
+    ["my folder", "a,b", "a;b", "a:b", "a$b", "${HOME}", "a\nb", "a\\b", "a'b", "Büro", "#1"],
+)
+def test_a_folder_that_ajpf_cannot_name_is_refused(tmp_path: Path, name: str) -> None:
+    """It reads paths from lists and from properties, where these letters mean something else."""
+    done = Mcapl(tmp_path / name).run()
     assert done.returncode == 2
-    assert "AJPF cannot read a path with a space or a comma" in done.stderr
+    assert "AJPF reads paths of letters, digits and `_ . / + @ ~ -` alone" in done.stderr
+
+
+@pytest.mark.parametrize("name", ["SIF.gwen", "SIF.psl", "Env.java", "R1.jpf"])
+def test_a_file_that_changes_while_ajpf_is_at_work_leaves_no_result(
+    mcapl: Mcapl, name: str
+) -> None:
+    """As when the bundle is emitted again meanwhile."""
+    path = mcapl.bundle / name
+    script = (mcapl.folder / "bin/java").read_text(encoding="utf-8")
+    mcapl.tool("java", script.replace("name=$(base", f"echo >> '{path}'; name=$(base"))
+    done = mcapl.run()
+    assert done.returncode == 2
+    assert done.stderr == "error: a file was changed while AJPF was at work: run it again\n"
+    assert not (mcapl.bundle / "result.json").exists()
+
+
+def test_an_agent_of_ones_own_that_changes_meanwhile_leaves_no_result(mcapl: Mcapl) -> None:
+    own = mcapl.folder / "own.gwen"
+    own.write_text((mcapl.bundle / "SIF.gwen").read_text(encoding="utf-8"), encoding="utf-8")
+    script = (mcapl.folder / "bin/java").read_text(encoding="utf-8")
+    mcapl.tool("java", script.replace("name=$(base", f"echo >> '{own}'; name=$(base"))
+    assert mcapl.run("--agent", str(own)).returncode == 2
+    assert not (mcapl.bundle / "result.json").exists()
+
+
+def test_two_runs_in_one_folder_do_not_read_each_others_files(mcapl: Mcapl) -> None:
+    with (mcapl.bundle / "run.lock").open("w") as other:
+        fcntl.flock(other, fcntl.LOCK_EX)
+        done = mcapl.run()
+    assert done.returncode == 2
+    assert done.stderr == f"error: another run.py is at work in {mcapl.bundle}\n"
+    assert mcapl.run().returncode == 0
+
+
+def test_ajpf_starts_where_there_is_nothing_but_what_it_is_given(mcapl: Mcapl) -> None:
+    """Java PathFinder reads a `jpf.properties` where it starts."""
+    mcapl.write(mcapl.bundle / "jpf.properties", "search.depth_limit = 1\n")
+    mcapl.write(mcapl.bundle / "run/jpf.properties", "search.depth_limit = 1\n")
+    script = (mcapl.folder / "bin/java").read_text(encoding="utf-8")
+    mcapl.tool("java", script.replace("name=$(base", 'ls > "$SAID/beside"; name=$(base'))
+    assert mcapl.run().returncode == 0
+    beside = (mcapl.folder / "said/beside").read_text(encoding="utf-8").split()
+    assert beside == sorted([*EXPECTED, "SIF.ail", "SIF_mutant.ail"])
 
 
 # What is run, and how --------------------------------------------------------------------------
@@ -269,9 +318,10 @@ def test_all_paths_that_ajpf_reads_are_absolute(mcapl: Mcapl) -> None:
 def test_modules_that_stand_beside_it_are_not_imported(mcapl: Mcapl) -> None:
     for name in ("json", "hashlib", "argparse", "subprocess", "dataclasses", "__future__"):
         mcapl.write(mcapl.bundle / f"{name}.py", "raise SystemExit(0)")
-    done = mcapl.run()
-    assert done.returncode == 0
-    assert "AJPF says all that is expected of it" in done.stdout
+    for path in ("", f"{os.pathsep}{mcapl.bundle}", str(mcapl.bundle)):
+        done = mcapl.run(PYTHONPATH=path)
+        assert done.returncode == 0
+        assert "AJPF says all that is expected of it" in done.stdout
 
 
 def test_an_agent_of_ones_own_is_checked_where_that_is_asked_for(mcapl: Mcapl) -> None:
