@@ -70,8 +70,7 @@ def is_utf8(text: str) -> bool:
 
 
 def _is_head(head: str) -> bool:
-    expected = f"from __future__ import annotations\n{kernel().imports}"
-    return ast.unparse(ast.parse(head)) == _normal(expected)
+    return ast.unparse(ast.parse(head)) == _normal(kernel().imports)
 
 
 # Helpers --------------------------------------------------------------------------------------
@@ -163,6 +162,7 @@ def _check_module(module: ast.Module) -> None:
     _demand(monitor.name == f"{title}Monitor" and _is_plain(rail) and _is_plain(monitor), monitor)
     _demand([ast.unparse(base) for base in (*rail.bases, *monitor.bases)] == ["Monitor"], monitor)
     _demand(_is(named, f"MONITOR: type[Monitor] = {monitor.name}"), named)
+    _check_annotations(module, title)
     _demand(_is(run, 'if __name__ == "__main__":\n    sys.exit(main(MONITOR))'), run)
     names, advance = _rail(rail)
     inputs = _monitor(monitor, rail.name, names)
@@ -170,6 +170,27 @@ def _check_module(module: ast.Module) -> None:
     _demand(reserved.isdisjoint(names.cells), rail)
     _demand(not any(cell.startswith("_") for cell in names.cells), rail)
     _check_advance(advance, names, inputs)
+
+
+def _check_annotations(module: ast.Module, title: str) -> None:
+    """They are evaluated when the text is executed: those that the generator writes do nothing."""
+    allowed = {*_ANNOTATIONS, f"{title}Rail"}
+    for node in ast.walk(module):
+        match node:
+            case ast.FunctionDef(returns=ast.expr() as annotation):
+                _demand(ast.unparse(annotation) in allowed, annotation)
+            case ast.AnnAssign(_, annotation) | ast.arg(_, ast.expr() as annotation):
+                _demand(ast.unparse(annotation) in allowed, annotation)
+
+
+_ANNOTATIONS = frozenset(
+    (
+        *("None", "bool", "int", "Truth", "Verdict", "tuple[Verdict, ...]", "type[Monitor]"),
+        *("tuple[Signals[bool], ...]", "tuple[Signals[int], ...]", "tuple[Marks, ...]"),
+        *("ClassVar[tuple[str, ...]]", "ClassVar[Mapping[str, str]]"),
+        *("Iterable[Sequence[Any]]", "Iterable[Row | Mapping[str, Truth]]"),
+    )
+)
 
 
 def _is_plain(node: ast.ClassDef) -> bool:

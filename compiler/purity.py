@@ -21,6 +21,7 @@ from types import ModuleType
 from typing import Any
 
 from compiler.layout import is_utf8
+from compiler.runtime import ALONE
 from compiler.runtime import interceptor as original
 from compiler.targets import interceptor
 from compiler.targets.interceptor import MARKER
@@ -28,7 +29,6 @@ from fretish.declarations import Form, Interception
 from monitors.loading import executed
 
 _IMPORTS = {
-    "__future__": {"annotations"},
     "dataclasses": {"dataclass", "replace"},
     "typing": {"NamedTuple"},
 }
@@ -100,6 +100,8 @@ def head(text: str) -> Head | str:
         if marked and "OPTIONS" not in names:
             return "its core has no `OPTIONS`"
         if marked:
+            if not _is_guarded(tree):
+                return "it may import what stands beside it: emit it again"
             _check_node(node)
             _check_whole(text, tree, node)
     except (SyntaxError, ValueError, RecursionError) as error:
@@ -263,9 +265,8 @@ class _Module:
 
     def check(self, tree: ast.Module) -> frozenset[str]:
         """The names that it binds."""
-        _demand(any(_is_future(node) for node in tree.body), tree)
         self._collect(tree)
-        for node in tree.body:
+        for node in _below_the_guard(tree):
             self._statement(node)
         self._check_ends()
         return frozenset(self.bound)
@@ -368,9 +369,14 @@ class _Module:
         return name
 
 
-def _is_future(node: ast.stmt) -> bool:
-    """With it annotations are not evaluated."""
-    return isinstance(node, ast.ImportFrom) and node.module == "__future__"
+def _is_guarded(tree: ast.Module) -> bool:
+    """Whether nothing beside the file is imported in place of the standard library."""
+    guard = ast.parse(ALONE).body
+    return list(map(ast.dump, tree.body[: len(guard)])) == list(map(ast.dump, guard))
+
+
+def _below_the_guard(tree: ast.Module) -> list[ast.stmt]:
+    return tree.body[len(ast.parse(ALONE).body) :] if _is_guarded(tree) else tree.body
 
 
 def _is_number(node: ast.AST) -> bool:

@@ -50,8 +50,10 @@ class Input:
     """Hash them at the same time as they are read, where that can be."""
     file: str | None
     """Its path, where it has one of its own."""
+    same: str | None
+    """Another path of the very file that is open, whatever has its name by now."""
     changed: Callable[[], bool] = lambda: False
-    """Whether somebody has written to it since it was opened."""
+    """Whether somebody has written to it since it was opened, or its name is another file's."""
 
 
 def is_url(path: str) -> bool:
@@ -111,11 +113,24 @@ def _opened(path: str, stack: ExitStack, block: int) -> Input | Diagnostic:
     before = os.fstat(stream.fileno())
 
     def changed() -> bool:
-        now = os.fstat(stream.fileno())
-        return (now.st_size, now.st_mtime_ns) != (before.st_size, before.st_mtime_ns)
+        try:
+            found = (os.fstat(stream.fileno()), os.stat(path))
+        except OSError:
+            return True
+        return any(_mark(now) != _mark(before) for now in found)
 
     digest = _Digest(stream.fileno(), before.st_size)
-    return Input(stream, before.st_size, digest.result, digest.begin, path, changed)
+    same = f"/proc/self/fd/{stream.fileno()}"
+    return Input(stream, before.st_size, digest.result, digest.begin, path, same, changed)
+
+
+def _mark(found: os.stat_result) -> tuple[int, ...]:
+    """What a write or another file of that name changes.
+
+    Whoever may write to a file can set `st_mtime` back, but `st_ctime` only by the machine's clock.
+    """
+    times = found.st_mtime_ns, found.st_ctime_ns
+    return (found.st_dev, found.st_ino, found.st_size, *times)
 
 
 class _Digest:
@@ -164,7 +179,7 @@ def _copy(stream: io.BufferedReader) -> Input:
     digest = hashlib.file_digest(stream, "sha256").hexdigest()
     size = stream.tell()
     stream.seek(0)
-    return Input(stream, size, lambda: digest, lambda: None, None)
+    return Input(stream, size, lambda: digest, lambda: None, None, None)
 
 
 # Standard input
@@ -269,7 +284,7 @@ def _remote(url: str, stack: ExitStack, block: int) -> Input | Diagnostic:
     hashed = _Hashed(file, about["size"])
     stream = stack.enter_context(io.BufferedReader(hashed, block))
     return Input(
-        cast("io.BufferedReader", stream), about["size"], hashed.sha256, lambda: None, None
+        cast("io.BufferedReader", stream), about["size"], hashed.sha256, lambda: None, None, None
     )
 
 

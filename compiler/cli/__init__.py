@@ -15,6 +15,7 @@ from pathlib import Path
 import click
 
 from compiler import __version__
+from compiler.children import shield
 from compiler.cli.bind import bind
 from compiler.cli.check import check
 from compiler.cli.evidence import verify_evidence
@@ -93,7 +94,11 @@ def main() -> None:
 
 
 def _prepare() -> None:
-    """Closed or narrow streams and a termination must cost neither the exit status nor files."""
+    """Closed or narrow streams and a termination must cost neither the exit status nor files.
+
+    Nor is anything executed that happens to lie in the present folder.
+    """
+    shield()
     for name in ("stdout", "stderr"):
         stream = getattr(sys, name)
         if stream is None:
