@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
+from functools import partial
 from pathlib import PurePath
 
 from compiler import __version__
@@ -117,10 +118,11 @@ def _emissions(sections: Sequence[RequirementView]) -> Iterable[Command]:
     for kinds, files in groups.items():
         if kinds:
             emits = " ".join(f"--emit {kind}" for kind in kinds)
-            yield from _made(
-                "Make the artefacts",
-                lambda files=files, emits=emits: f"fretc {words(files)} {emits} --output build",
-            )
+            yield from _made("Make the artefacts", partial(_emission, files, emits))
+
+
+def _emission(files: Sequence[str], emits: str) -> str:
+    return f"fretc {words(files)} {emits} --output build"
 
 
 def manifest(

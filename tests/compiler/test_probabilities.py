@@ -248,15 +248,10 @@ def test_a_log_that_was_written_again_counts_once(fretc: Fretc, integrity: str) 
         for topic, value in zip(("/c", "/r", "/note"), (*values, "7"), strict=True)
     ]
     unnoted = [one for one in sent if one.topic != "/note"]
-    for count, (messages, options) in enumerate(
-        [
-            (sent, {}),
-            (unnoted, {"per_chunk": 1}),
-            (unnoted, {"compression": CompressionType.NONE}),
-            (unnoted, {"data_crcs": True, "statistics": False}),
-        ]
-    ):
-        write_log(Path(f"runs/copy{count}.mcap"), messages, **options)
+    write_log(Path("runs/noted.mcap"), sent)
+    write_log(Path("runs/chunks.mcap"), unnoted, per_chunk=1)
+    write_log(Path("runs/loose.mcap"), unnoted, compression=CompressionType.NONE)
+    write_log(Path("runs/bare.mcap"), unnoted, data_crcs=True, statistics=False)
     assert fretc("audit", "runs", "--integrity", integrity).status == 3
     assert (counts(), told()["logs"]["copies"]) == ((28, 0, 0), 4)
 
