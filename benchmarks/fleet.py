@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import argparse
 import os
+import secrets
 import tempfile
 import time
 from collections.abc import Sequence
@@ -46,7 +47,7 @@ def linked(log: str, count: int, folder: Path) -> list[str]:
 
 def timed(judged: Plan, logs: Sequence[str], engine: Engine, folder: Path) -> tuple[float, Audit]:
     """Wall time of an audit, with its journal."""
-    journal = Journal(folder / "evidence.json", judged)
+    journal = Journal(folder / "evidence.json", judged, secrets.token_bytes(32))
     start = time.perf_counter()
     audit = audit_logs(judged, logs, engine, tell=lambda log, found: _kept(journal, log, found))
     journal.remove()

@@ -219,7 +219,7 @@ def audited(plan: Plan, log: str) -> Audited:
     names = tuple(dict.fromkeys(name for w in monitors for name in w.propositions))
     recording = read(log, declarations, signals_of(declarations, names), plan.integrity)
     if isinstance(recording, Diagnostic):
-        return _unread(plan, log, recording)
+        return _unread(plan, log, recording, before)
     recording = examined(recording, declarations, names)
     evidence = audit(recording, declarations, monitors, EVALUATIONS[plan.evaluation])
     phased = {e.requirement: e.phases for e in evidence if e.phases is not None}
@@ -258,11 +258,19 @@ def given_up(plan: Plan, log: str, how: str) -> Audited:
         log: its path.
         how: the process ended.
     """
-    return _unread(plan, log, was_killed(log, how))
+    return _unread(plan, log, was_killed(log, how), None)
 
 
-def _unread(plan: Plan, log: str, why: Diagnostic) -> Audited:
-    hashes = _hash_of(log)
+def _unread(plan: Plan, log: str, why: Diagnostic, before: Stamp | None) -> Audited:
+    """What is shown of a log that cannot be read.
+
+    Args:
+        plan: what it was to be judged by.
+        log: its path.
+        why: what keeps it from being read.
+        before: its stamp before that was tried; None: it is not known.
+    """
+    hashes = _hash_of(log, before)
     records = [
         unread(called(log), each.id, why, {**hashes, **each.hashes(plan.bindings)})
         for each in plan.named
@@ -270,10 +278,11 @@ def _unread(plan: Plan, log: str, why: Diagnostic) -> Audited:
     return Audited(tuple(records), (why,), read=False)
 
 
-def _hash_of(log: str) -> dict[str, str]:
-    """SHA-256 of a log that could not be read as one, where its bytes can be."""
+def _hash_of(log: str, before: Stamp | None) -> dict[str, str]:
+    """SHA-256 of a log that could not be read as one, where it is still what was tried."""
     digest = file_sha256(log)
-    return {} if digest is None else {"log": digest}
+    changed = before is not None and stamp(log) != before
+    return {} if digest is None or changed else {"log": digest}
 
 
 def _evidence(

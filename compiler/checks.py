@@ -7,6 +7,7 @@ any one file, and yet keeps the whole from showing what it is there to show.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from shlex import quote
 
 from compiler.ancestry import without_hazard
 from compiler.links import Node
@@ -162,7 +163,7 @@ def _changes(project: Project, standings: Sequence[Standing]) -> Iterator[Diagno
             f"{id} was reviewed on {standing.review.date}, and since then "
             f"{', '.join(map(_named, causes))} changed",
             places.get(id, Source("", "").span()),
-            help=f"look at `fretc diff`, then accept it: `fretc lock {id} ...`",
+            help=f"look at `fretc diff`, then accept it: `fretc lock {quote(id)} ...`",
             severity=Severity.WARNING,
         )
 

@@ -17,6 +17,8 @@ from multiprocessing.connection import Connection
 from multiprocessing.context import SpawnProcess
 from typing import Any, ParamSpec, TypeVar
 
+from compiler.children import shield
+
 P = ParamSpec("P")
 R = TypeVar("R")
 
@@ -66,6 +68,7 @@ def confined(
     Raises:
         Exception: what the function raises.
     """
+    shield()
     context = multiprocessing.get_context("spawn")
     ours, theirs = context.Pipe(duplex=False)
     call = (theirs, limits, function, args, kwargs)

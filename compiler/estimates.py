@@ -182,11 +182,15 @@ def _intact(results: Sequence[Mapping[str, Any]]) -> int:
 
 
 def _distinct(results: Sequence[Mapping[str, Any]]) -> list[Mapping[str, Any]]:
-    """Each content once: a copy of a log tells nothing new. What cannot be read has no hash."""
+    """Each content once: a copy of a log tells nothing new, nor does one that was written again.
+
+    What cannot be read has no hash.
+    """
     first: dict[str, Mapping[str, Any]] = {}
     for place, result in enumerate(results):
         hashes = result["hashes"]
-        first.setdefault(hashes.get("log") or hashes.get("log_summary") or f"{place}", result)
+        known = (hashes.get(name) for name in ("messages", "log", "log_summary"))
+        first.setdefault(next(filter(None, known), f"{place}"), result)
     return list(first.values())
 
 

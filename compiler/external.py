@@ -10,6 +10,8 @@ from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
+from compiler.children import shield
+
 _MOST_OUTPUT = 32 * 2**20
 """Bytes that a program may write to one file."""
 _LIMITED = f'ulimit -c 0; ulimit -f {_MOST_OUTPUT // 512}; ulimit -d "$0" && exec "$@"'
@@ -39,6 +41,7 @@ def run(command: Sequence[str], folder: Path, *, seconds: float, memory: int) ->
     Raises:
         OSError: the program cannot be started.
     """
+    shield()
     told = folder / "output.txt"
     with told.open("wb") as output:
         process = subprocess.Popen(

@@ -72,15 +72,16 @@ def _nearest(path: str) -> str:
 def write(files: Mapping[Path, str | bytes]) -> Diagnostic | None:
     """Write all of them: each under a temporary name first, then renamed.
 
-    Nothing half-written stays behind: when one cannot be written, none is put in place. A link is
-    followed, a file keeps its permissions, and what is no regular file is never replaced. A text
-    that begins with `#!` may also be run by whoever may read it.
+    Nothing half-written stays behind: when one cannot be written, none is put in place. A file
+    keeps its permissions, and what is no regular file is never replaced. A link is followed where
+    it stays in its folder. Until it is renamed, nobody else can read what is written. A text that
+    begins with `#!` may also be run by whoever may read it.
     """
     waiting: list[tuple[Path, Path]] = []
     path = Path()
     try:
         for path, content in files.items():
-            real = Path(os.path.realpath(path))
+            real = destination(path)
             real.parent.mkdir(parents=True, exist_ok=True)
             if real.exists() and not real.is_file():
                 kind = "a directory of that name" if real.is_dir() else "something else there"
@@ -106,12 +107,46 @@ def write(files: Mapping[Path, str | bytes]) -> Diagnostic | None:
 def _fill(temporary: Path, content: str | bytes, *, like: Path) -> None:
     """Write a new file, with the permissions of the one that it will replace, if there is one."""
     data = content.encode() if isinstance(content, str) else content
-    with temporary.open("xb") as file:
-        mode = stat.S_IMODE((like.stat() if like.exists() else os.fstat(file.fileno())).st_mode)
-        if data.startswith(b"#!"):
-            mode |= (mode & _READABLE) >> 2
-        os.fchmod(file.fileno(), mode)
+    mode = stat.S_IMODE(like.stat().st_mode) if like.exists() else _usual()
+    if data.startswith(b"#!"):
+        mode |= (mode & _READABLE) >> 2
+    made = os.open(temporary, os.O_CREAT | os.O_EXCL | os.O_NOFOLLOW | os.O_WRONLY, 0o600)
+    with os.fdopen(made, "wb") as file:
         file.write(data)
+        file.flush()
+        os.fchmod(made, mode)
+
+
+def _usual() -> int:
+    """The permissions of a new file."""
+    mask = os.umask(0o077)
+    os.umask(mask)
+    return 0o666 & ~mask
+
+
+def destination(path: Path) -> Path:
+    """Where an output goes, once links are followed.
+
+    What lies in the present folder may have come from somebody else, links too. A relative path is
+    one below that folder (or the one above that it names by `..`), an absolute one is the user's.
+
+    Raises:
+        OSError: a link leads out of there.
+    """
+    folder, real = Path(os.path.realpath(path.parent)), Path(os.path.realpath(path))
+    if not path.is_absolute():
+        base = Path.cwd()
+        for part in path.parts:
+            if part != "..":
+                break
+            base = base.parent
+        if not folder.is_relative_to(os.path.realpath(base)):
+            raise OSError(
+                None, f"`{path.parent}` is a link to `{folder}`: name that, if it is meant"
+            )
+    if not real.is_relative_to(folder):
+        raise OSError(None, f"it is a link to `{real}`: name that, if it is meant")
+    return real
 
 
 _READABLE = stat.S_IRUSR | stat.S_IRGRP | stat.S_IROTH

@@ -19,6 +19,7 @@ from typing import TYPE_CHECKING, Any
 from urllib.parse import urlsplit
 
 from compiler.auditing import EVALUATIONS, Audited, Engine, Found, audited, given_up
+from compiler.children import shield
 from compiler.edition import edition
 from compiler.plan import Plan, packed, unpacked
 from fretish.diagnostic import Code, Diagnostic
@@ -42,7 +43,9 @@ def engine(name: str, jobs: int) -> Engine | Diagnostic:
     if name != SCHEME and not (place.scheme == SCHEME and _is_address(place.netloc)):
         return _bad_engine(name)
     if find_spec("distributed") is None:
-        return _missing()
+        return _missing("distributed")
+    if name == SCHEME and find_spec("cryptography") is None:
+        return _missing("cryptography")
     if name == SCHEME:
         return partial(_audit, lambda: _own_cluster(jobs))
     return partial(_audit, lambda: _cluster_at(f"tcp://{place.netloc}"))
@@ -77,14 +80,20 @@ class _FleetError(Exception):
 
 @contextlib.contextmanager
 def _own_cluster(jobs: int) -> Iterator[Client]:
-    """A cluster of processes of this machine, as long as the context lasts."""
-    from dask import config
-    from distributed import Client, LocalCluster
+    """A cluster of processes of this machine, as long as the context lasts.
 
+    Whoever can send tasks to a worker executes code as its user, and sockets are open to all users
+    of a machine: each end has to show the key of a certificate that is made for this audit and is
+    never written. Of HTTP pages there are none.
+    """
+    from dask import config
+    from distributed import Client, LocalCluster, Security
+
+    shield()
     _be_quiet()
     with contextlib.ExitStack() as stack:
         # One death may be chance; what has died twice is tried once more, alone.
-        stack.enter_context(config.set({"distributed.scheduler.allowed-failures": 1}))
+        stack.enter_context(config.set({"distributed.scheduler.allowed-failures": 1, **_NO_PAGES}))
         with _deaf():
             cluster = LocalCluster(
                 n_workers=jobs,
@@ -92,11 +101,18 @@ def _own_cluster(jobs: int) -> Iterator[Client]:
                 memory_limit=0,  # the machine decides, as it does without Dask
                 dashboard_address="127.0.0.1:0",
                 silence_logs=logging.CRITICAL,
+                security=Security.temporary(),
             )
         stack.enter_context(cluster)
         client = stack.enter_context(Client(cluster))
         client.register_plugin(_deaf_worker())
         yield client
+
+
+_NO_PAGES: dict[str, list[str]] = {
+    "distributed.scheduler.http.routes": [],
+    "distributed.worker.http.routes": [],
+}
 
 
 @contextlib.contextmanager
@@ -251,10 +267,10 @@ def _bad_engine(name: str) -> Diagnostic:
     )
 
 
-def _missing() -> Diagnostic:
+def _missing(what: str) -> Diagnostic:
     return Diagnostic(
         Code.MISSING_EXTRA,
-        "a fleet needs `distributed`",
+        f"a fleet needs `{what}`",
         help="install the extra: pip install 'fretc[fleet]' "
         "(in a checkout: .venv/bin/pip install '.[fleet]')",
     )

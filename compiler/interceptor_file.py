@@ -15,7 +15,7 @@ from types import ModuleType
 from typing import Any
 
 from compiler.encoding import is_utf8
-from compiler.purity import StrangeError, bound_names
+from compiler.purity import StrangeError, bound_names, is_guarded
 from compiler.runtime import interceptor as original
 from compiler.targets import interceptor
 from compiler.targets.interceptor import MARKER
@@ -77,6 +77,8 @@ def head(text: str) -> Head | str:
         if marked and "OPTIONS" not in names:
             return "its core has no `OPTIONS`"
         if marked:
+            if not is_guarded(tree):
+                return "it may import what stands beside it: emit it again"
             _check_node(node)
             _check_whole(text, tree, node)
     except (SyntaxError, ValueError, RecursionError) as error:
@@ -110,7 +112,7 @@ def is_original(text: str) -> bool:
     above, _, _ = text.partition(f"{MARKER}\n")
     parts = [part for part in ast.parse(above).body if not _is_options(part)]
     written = ast.parse(f"{original().imports}\n{original().text}").body
-    return [ast.dump(part) for part in parts[1:]] == [ast.dump(part) for part in written]
+    return [ast.dump(part) for part in parts] == [ast.dump(part) for part in written]
 
 
 def _around(text: str) -> tuple[list[str], str | None]:

@@ -2,46 +2,58 @@
 
 JSON lines: a head that names the plan, then one line for each log. A line is appended whole, so
 that whatever stops the audit, all lines but the last are good, and a last one without its end does
-not count.
+not count. Verdicts are taken from it, so each line has a check that only the user's key can make
+(`userkey`), for this place and this plan: a journal that came with somebody's files is not
+believed.
 """
 
 from __future__ import annotations
 
 import fcntl
+import hmac
 import json
 import os
+import stat
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import astuple
 from pathlib import Path
 from typing import Any
 
 from compiler.auditing import Audited
-from compiler.files import Stamp, file_sha256, sha256, stamp
+from compiler.files import Stamp, destination, file_sha256, stamp
 from compiler.plan import Plan
 from fretish.diagnostic import Code, Diagnostic, Severity
 from fretish.source import Source, Span
 
-SCHEMA = "fretc-journal-1"
+SCHEMA = "fretc-journal-2"
 _CODES = {code.number: code for code in Code}
 
 
 class Journal:
     """The journal of one audit. It becomes a file with the first log that is kept."""
 
-    def __init__(self, evidence: Path, plan: Plan) -> None:
+    def __init__(self, evidence: Path, plan: Plan, key: bytes) -> None:
         """Nothing is read or written yet.
 
         Args:
             evidence: where the evidence will be.
             plan: lines of another plan are not used, and are lost when a log is kept.
+            key: of the user; what was kept with another one is not used.
         """
         self.path = evidence.with_name(f"{evidence.name}.journal")
         self._plan = plan
+        self._key = key
+        head = {"plan": plan.key, "place": os.path.realpath(self.path)}
+        self._head = _line({"schema": SCHEMA, **head}, key)
+        self._of_lines = hmac.digest(key, self._head, "sha256")
+        """The key of the lines below this head."""
         self._file: int | None = None
         self._good = 0
         """Bytes at the beginning of the file that are kept."""
         self.stale = False
         """Whether what was found is of another plan."""
+        self.foreign = False
+        """Whether some of what was found was not kept by this user, in this place."""
 
     def finished(self, logs: Sequence[str]) -> dict[str, Audited] | Diagnostic:
         """Those of the logs that need not be audited again, with what was shown of them.
@@ -78,7 +90,7 @@ class Journal:
                 self._open()
             if not self._good:
                 self._begin()
-            self._write(_entry(log, audited, self._plan))
+            self._write(_line(_entry(log, audited, self._plan), self._of_lines))
         except OSError as error:
             return self._wrong(error)
         return True
@@ -96,8 +108,12 @@ class Journal:
             self._file = None
 
     def _open(self) -> None:
-        self._file = os.open(self.path, os.O_RDWR | os.O_CREAT | os.O_APPEND | os.O_CLOEXEC, 0o644)
+        destination(self.path)
+        self._file = os.open(self.path, _OPENED, 0o600)
         try:
+            about = os.fstat(self._file)
+            if not stat.S_ISREG(about.st_mode) or about.st_nlink > 1:
+                raise OSError(None, "it is a link, or no regular file")
             fcntl.flock(self._file, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except OSError:
             self.close()
@@ -109,22 +125,26 @@ class Journal:
         with open(self._file, "rb", closefd=False) as file:
             file.seek(0)
             head = file.readline()
-            self.stale = bool(head) and head != self._head()
-            if head == self._head():
+            self.stale = head != self._head and self._is_ours(head)
+            self.foreign = bool(head) and head != self._head and not self.stale
+            if head == self._head:
                 self._good = file.tell()
-                while (line := file.readline()) and _whole(line):
+                while (line := file.readline()) and _whole(line, self._of_lines):
                     self._good = file.tell()
                     yield line
+                self.foreign = line.endswith(b"\n")
         if self._good:
             os.ftruncate(self._file, self._good)
 
-    def _head(self) -> bytes:
-        return _line({"schema": SCHEMA, "plan": self._plan.key})
+    def _is_ours(self, head: bytes) -> bool:
+        """Whether it is the head of another plan, kept by this user in this place."""
+        place = os.path.realpath(self.path)
+        return _whole(head, self._key) and json.loads(head).get("place") == place
 
     def _begin(self) -> None:
         assert self._file is not None
         os.ftruncate(self._file, 0)
-        self._write(self._head())
+        self._write(self._head)
 
     def _write(self, line: bytes) -> None:
         assert self._file is not None
@@ -157,13 +177,22 @@ class Journal:
         )
 
 
-def _whole(line: bytes) -> bool:
+_OPENED = os.O_RDWR | os.O_CREAT | os.O_APPEND | os.O_CLOEXEC | os.O_NOFOLLOW | os.O_NONBLOCK
+"""No link is followed: the folder may be somebody else's, and what is not believed is cut off."""
+
+
+def _whole(line: bytes, key: bytes) -> bool:
     """Whether the line has its end, and is what was written: verdicts are taken from it."""
     try:
         value = json.loads(line)
-    except ValueError:
+    except (ValueError, RecursionError):
         return False
-    return isinstance(value, dict) and line == _line({**value, "check": ""})
+    if not isinstance(value, dict):
+        return False
+    try:
+        return hmac.compare_digest(line, _line(value, key))
+    except ValueError:  # a number that JSON has not
+        return False
 
 
 def _unchanged(entry: Mapping[str, Any]) -> bool:
@@ -173,24 +202,23 @@ def _unchanged(entry: Mapping[str, Any]) -> bool:
     return (before.settled and now == before) or file_sha256(entry["log"]) == entry["sha256"]
 
 
-def _line(value: Mapping[str, Any]) -> bytes:
-    """With the SHA-256 of itself, but for that, at its end."""
+def _line(value: Mapping[str, Any], key: bytes) -> bytes:
+    """With the HMAC-SHA256 of itself, but for that, at its end."""
     unchecked = json.dumps({**value, "check": ""}, allow_nan=False)
-    return f"{json.dumps({**value, 'check': sha256(unchecked)}, allow_nan=False)}\n".encode()
+    check = hmac.digest(key, unchecked.encode(), "sha256").hex()
+    return f"{json.dumps({**value, 'check': check}, allow_nan=False)}\n".encode()
 
 
-def _entry(log: str, audited: Audited, plan: Plan) -> bytes:
+def _entry(log: str, audited: Audited, plan: Plan) -> dict[str, Any]:
     assert audited.stamp is not None
     bindings = plan.declarations.source
-    return _line(
-        {
-            "log": log,
-            "sha256": audited.results[0]["hashes"].get("log", ""),
-            "stamp": astuple(audited.stamp),
-            "results": audited.results,
-            "diagnostics": [_plain(diagnostic, bindings) for diagnostic in audited.diagnostics],
-        }
-    )
+    return {
+        "log": log,
+        "sha256": audited.results[0]["hashes"].get("log", ""),
+        "stamp": astuple(audited.stamp),
+        "results": audited.results,
+        "diagnostics": [_plain(diagnostic, bindings) for diagnostic in audited.diagnostics],
+    }
 
 
 def _plain(diagnostic: Diagnostic, bindings: Source) -> dict[str, Any]:

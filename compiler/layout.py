@@ -55,8 +55,7 @@ def own(text: str) -> ast.Module:
 
 
 def _is_head(head: str) -> bool:
-    expected = f"from __future__ import annotations\n{kernel().imports}"
-    return reads(ast.parse(head).body, expected)
+    return reads(ast.parse(head).body, kernel().imports)
 
 
 def _check_module(module: ast.Module) -> None:
@@ -70,6 +69,7 @@ def _check_module(module: ast.Module) -> None:
     demand(monitor.name == f"{title}Monitor" and _is_plain(rail) and _is_plain(monitor), monitor)
     demand([ast.unparse(base) for base in (*rail.bases, *monitor.bases)] == ["Monitor"], monitor)
     demand(is_one_of(named, f"MONITOR: type[Monitor] = {monitor.name}"), named)
+    _check_annotations(module, title)
     demand(is_one_of(run, 'if __name__ == "__main__":\n    sys.exit(main(MONITOR))'), run)
     names, advance = _rail(rail)
     inputs = _monitor(monitor, rail.name, names)
@@ -78,6 +78,27 @@ def _check_module(module: ast.Module) -> None:
     told = tuple(f"_{name}" for name in (*MARKS, *SIGNALS))
     demand(not any(cell.startswith("_") or cell.endswith(told) for cell in names.cells), rail)
     check_advance(advance, names, inputs)
+
+
+def _check_annotations(module: ast.Module, title: str) -> None:
+    """They are evaluated when the text is executed: those that the generator writes do nothing."""
+    allowed = {*_ANNOTATIONS, f"{title}Rail"}
+    for node in ast.walk(module):
+        match node:
+            case ast.FunctionDef(returns=ast.expr() as annotation):
+                demand(ast.unparse(annotation) in allowed, annotation)
+            case ast.AnnAssign(_, annotation) | ast.arg(_, ast.expr() as annotation):
+                demand(ast.unparse(annotation) in allowed, annotation)
+
+
+_ANNOTATIONS = frozenset(
+    (
+        *("None", "bool", "int", "Truth", "Verdict", "tuple[Verdict, ...]", "type[Monitor]"),
+        *("tuple[Signals[bool], ...]", "tuple[Signals[int], ...]", "tuple[Marks, ...]"),
+        *("ClassVar[tuple[str, ...]]", "ClassVar[Mapping[str, str]]"),
+        *("Iterable[Sequence[Any]]", "Iterable[Row | Mapping[str, Truth]]"),
+    )
+)
 
 
 def _is_plain(node: ast.ClassDef) -> bool:

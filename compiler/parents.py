@@ -47,6 +47,7 @@ def parents(settings: Settings) -> tuple[Mapping[str, Parent], tuple[Diagnostic,
     wrong = []
     for name in settings.parents:
         try:
+            _demand_within(settings, settings.folder / name)
             for parent in _read(settings.folder / name, name):
                 found.setdefault(parent.id, parent)
         except ModuleNotFoundError:
@@ -57,12 +58,28 @@ def parents(settings: Settings) -> tuple[Mapping[str, Parent], tuple[Diagnostic,
     return found, tuple(wrong)
 
 
+def _demand_within(settings: Settings, path: Path) -> None:
+    """The settings may be somebody else's: they make us read nothing outside of his project.
+
+    Raises:
+        UnreadableError: it, or a document in it, is outside.
+    """
+    for each in (path, *(sorted(path.glob("*.yml")) if path.is_dir() else ())):
+        if not settings.holds(each):
+            raise UnreadableError(_OUTSIDE)
+
+
+_OUTSIDE = "it lies outside of the project"
+
+
 def _unreadable(settings: Settings, name: str, why: str) -> Diagnostic:
     return Diagnostic(
         Code.BAD_PARENTS,
         f"the parents in `{name}` cannot be read: {why}",
         _place(settings, name),
-        help=_EXPORTS.get(Path(name).suffix.lower(), _EXPORTS[""]),
+        help="name its folder, if it is meant: `fretc --parents FOLDER COMMAND ...`"
+        if why == _OUTSIDE
+        else _EXPORTS.get(Path(name).suffix.lower(), _EXPORTS[""]),
     )
 
 

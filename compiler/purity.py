@@ -16,10 +16,10 @@ from collections.abc import Collection
 from functools import cache
 from math import isfinite
 
+from compiler.runtime import ALONE
 from compiler.runtime import interceptor as original
 
 _IMPORTS = {
-    "__future__": {"annotations"},
     "dataclasses": {"dataclass", "replace"},
     "typing": {"NamedTuple"},
 }
@@ -90,6 +90,17 @@ def _is_docstring(node: ast.AST) -> bool:
             return False
 
 
+def is_guarded(tree: ast.Module) -> bool:
+    """Whether nothing beside the file is imported in place of the standard library."""
+    guard = ast.parse(ALONE).body
+    return list(map(ast.dump, tree.body[: len(guard)])) == list(map(ast.dump, guard))
+
+
+def below_the_guard(tree: ast.Module) -> list[ast.stmt]:
+    """The statements but for those that `is_guarded` asks for."""
+    return tree.body[len(ast.parse(ALONE).body) :] if is_guarded(tree) else tree.body
+
+
 class _Module:
     """The statements of the core."""
 
@@ -104,9 +115,8 @@ class _Module:
 
     def check(self, tree: ast.Module) -> frozenset[str]:
         """The names that it binds."""
-        _demand(any(_is_future(node) for node in tree.body), tree)
         self._collect(tree)
-        for node in tree.body:
+        for node in below_the_guard(tree):
             self._statement(node)
         self._check_ends()
         return frozenset(self.bound)
@@ -208,11 +218,6 @@ class _Module:
             seen.add(name)
             name = min(self.functions[name] & rest)
         return name
-
-
-def _is_future(node: ast.stmt) -> bool:
-    """With it annotations are not evaluated."""
-    return isinstance(node, ast.ImportFrom) and node.module == "__future__"
 
 
 def _is_number(node: ast.AST) -> bool:

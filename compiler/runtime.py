@@ -8,6 +8,15 @@ from dataclasses import dataclass
 from functools import cache
 from importlib.resources import files
 
+ALONE = """\
+import sys
+
+if __name__ == "__main__" and not sys.flags.safe_path:
+    del sys.path[0]  # what stands beside this file is no library
+"""
+"""The first statements of whatever can be run as a file. Python would look for the standard library
+beside it first. `from __future__ import annotations` is an import, too, and can only come before
+it: so generated files have none, and neither have the modules that they are made of."""
 _MODULES = ("verdicts", "columns", "stepping", "outcomes", "tables", "command")
 """Of `monitors.kernel`, each after those that it needs."""
 
@@ -17,7 +26,7 @@ class Runtime:
     """Modules as one."""
 
     imports: str
-    """Of the standard library only."""
+    """Of the standard library only, below what keeps others from coming in its place."""
     text: str
 
 
@@ -63,13 +72,13 @@ def _collect(tree: ast.Module, imports: dict[str, set[str]]) -> int:
 
 
 def _head(imports: dict[str, set[str]]) -> str:
-    plain = [f"import {name}" for name in sorted(imports) if not name.startswith("from ")]
+    plain = [f"import {name}" for name in sorted(imports) if name != "sys" and " " not in name]
     some = [
         _from(name, sorted(found, key=_constants_first))
         for name, found in sorted(imports.items())
         if name.startswith("from ")
     ]
-    return "\n".join([*plain, *some])
+    return "\n".join([ALONE, *plain, *some])
 
 
 def _from(module: str, names: list[str]) -> str:

@@ -173,6 +173,8 @@ class Code(Enum):
     BUSY = ("F912", "another audit writes the same evidence")
     BAD_QUERY = ("F913", "the query cannot be answered")
     BAD_SCENARIO = ("F914", "the scenario of a simulation cannot be run")
+    NO_KEY = ("F920", "the user has no key, so nothing is kept of a stopped audit")
+    FOREIGN_PLACE = ("F921", "evidence names a log in a place that is not looked into")
     INTERNAL = ("F999", "fretc itself is at fault")
 
     @property

@@ -13,6 +13,7 @@ from monitors import kernel
 from monitors.evidence import Evidence, health
 from monitors.judgement import SHOWN, Engine, judged
 from monitors.kernel import Column, Monitor
+from monitors.likeness import fingerprint
 from monitors.margins import Margin, margins, worst
 from monitors.phases import Phases, phases
 from monitors.rates import slow_topics
@@ -154,6 +155,9 @@ def _evidence(
     evidence = replace(evidence, reason=_reason(evidence, recording))
     if watched.count is None:
         return evidence
+    alike = fingerprint(recording)
+    if alike is not None:
+        evidence = replace(evidence, hashes={**evidence.hashes, "messages": alike})
     return _counted(evidence, _trials(watched.count, columns, seen))
 
 

@@ -40,11 +40,12 @@ class Found:
     notes: tuple[Diagnostic, ...]
 
 
-def read(file: str, start: bytes, sink: Sink, place: Span) -> Found | Diagnostic:
+def read(file: str, same: str, start: bytes, sink: Sink, place: Span) -> Found | Diagnostic:
     """All messages of a bag, in order of time.
 
     Args:
         file: its path.
+        same: another path of it, which cannot become that of another file meanwhile.
         start: its first bytes, `BAG` or `DB3`.
         sink: what takes the messages.
         place: the bag, as the user named it.
@@ -57,7 +58,7 @@ def read(file: str, start: bytes, sink: Sink, place: Span) -> Found | Diagnostic
     except ModuleNotFoundError:
         return refusals.no_rosbags(place)
     bag = start.startswith(BAG)
-    reader = _bag(file) if bag else _db3(file)
+    reader = _bag(same) if bag else _db3(same)
     try:
         reader.open()
     except OSError:

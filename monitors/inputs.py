@@ -1,8 +1,9 @@
 """Where the bytes of a log come from: a file, standard input, or a URL.
 
 Standard input is copied to a temporary file without a name, which is gone with the process,
-however that ends. What is at a URL is read where it is, in blocks; of a server that only sends
-whole files a copy is made in the same way.
+however that ends. So is what is at a URL: a server could send other bytes when it is asked for the
+same again, and what is judged is what is hashed. Only where a log is read by its index, and not
+hashed, it is read where it is, in blocks.
 """
 
 from __future__ import annotations
@@ -16,6 +17,7 @@ import stat
 import sys
 import tempfile
 import threading
+import time
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
@@ -25,11 +27,15 @@ from urllib.parse import parse_qsl, urlencode, urlsplit, urlunsplit
 
 from fretish.diagnostic import Diagnostic
 from fretish.source import Source
-from monitors import findings, refusals
+from monitors import findings, refusals, web
 
 STDIN = "-"
 _BLOCK = 2**22
 """Bytes that are asked of a server at once."""
+_MOST = 2**36
+"""Bytes of a log that a server sends without saying how many there are."""
+_PATIENCE, _SLOWEST = 60, 10_000
+"""Seconds, after which a server has to have sent so many bytes a second."""
 _SMALL_BLOCK = 2**17
 """The same where most of the file is passed by."""
 _HASHED = 2**18
@@ -50,8 +56,10 @@ class Input:
     """Hash them at the same time as they are read, where that can be."""
     file: str | None
     """Its path, where it has one of its own."""
+    same: str | None
+    """Another path of the very file that is open, whatever has its name by now."""
     changed: Callable[[], bool] = lambda: False
-    """Whether somebody has written to it since it was opened."""
+    """Whether somebody has written to it since it was opened, or its name is another file's."""
 
 
 def is_url(path: str) -> bool:
@@ -89,7 +97,7 @@ def opened(path: str, *, whole: bool = True) -> Iterator[Input | Diagnostic]:
     """
     with ExitStack() as stack:
         try:
-            found = _opened(path, stack, _BLOCK if whole else _SMALL_BLOCK)
+            found = _opened(path, stack, whole=whole)
         except FileNotFoundError:
             found = findings.no_such_file(Source(shown(path), "").span())
         except OSError as error:
@@ -97,11 +105,11 @@ def opened(path: str, *, whole: bool = True) -> Iterator[Input | Diagnostic]:
         yield found
 
 
-def _opened(path: str, stack: ExitStack, block: int) -> Input | Diagnostic:
+def _opened(path: str, stack: ExitStack, *, whole: bool) -> Input | Diagnostic:
     if path == STDIN:
         return _stdin(stack)
     if is_url(path):
-        return _remote(path, stack, block)
+        return _remote(path, stack, whole=whole)
     mode = os.stat(path).st_mode
     if stat.S_ISDIR(mode):
         return findings.is_a_directory(Source(path, "").span())
@@ -111,11 +119,24 @@ def _opened(path: str, stack: ExitStack, block: int) -> Input | Diagnostic:
     before = os.fstat(stream.fileno())
 
     def changed() -> bool:
-        now = os.fstat(stream.fileno())
-        return (now.st_size, now.st_mtime_ns) != (before.st_size, before.st_mtime_ns)
+        try:
+            found = (os.fstat(stream.fileno()), os.stat(path))
+        except OSError:
+            return True
+        return any(_mark(now) != _mark(before) for now in found)
 
     digest = _Digest(stream.fileno(), before.st_size)
-    return Input(stream, before.st_size, digest.result, digest.begin, path, changed)
+    same = f"/proc/self/fd/{stream.fileno()}"
+    return Input(stream, before.st_size, digest.result, digest.begin, path, same, changed)
+
+
+def _mark(found: os.stat_result) -> tuple[int, ...]:
+    """What a write or another file of that name changes.
+
+    Whoever may write to a file can set `st_mtime` back, but `st_ctime` only by the machine's clock.
+    """
+    times = found.st_mtime_ns, found.st_ctime_ns
+    return (found.st_dev, found.st_ino, found.st_size, *times)
 
 
 class _Digest:
@@ -164,7 +185,7 @@ def _copy(stream: io.BufferedReader) -> Input:
     digest = hashlib.file_digest(stream, "sha256").hexdigest()
     size = stream.tell()
     stream.seek(0)
-    return Input(stream, size, lambda: digest, lambda: None, None)
+    return Input(stream, size, lambda: digest, lambda: None, None, None)
 
 
 # Standard input
@@ -247,44 +268,58 @@ class _Hashed(io.RawIOBase):
         return self._digest.hexdigest()
 
 
-def _remote(url: str, stack: ExitStack, block: int) -> Input | Diagnostic:
+def _remote(url: str, stack: ExitStack, *, whole: bool) -> Input | Diagnostic:
     place = Source(shown(url), "").span()
     try:
         import fsspec
     except ModuleNotFoundError:
         return refusals.no_fsspec(place)
     try:
-        system, path = fsspec.core.url_to_fs(url)
+        system, path = fsspec.core.url_to_fs(url, **web.options(url))
         about = system.info(path)
         if about.get("type") == "directory":
             return findings.is_a_directory(place)
-        if about.get("size") is None or about.get("partial") is False:
-            whole = stack.enter_context(system.open(path, "rb", block_size=0))
-            return _copy(_copied(_Raising(whole), stack))
-        file = stack.enter_context(system.open(path, "rb", block_size=block))
+        size = about.get("size")
+        if size is None or about.get("partial") is False:
+            file = stack.enter_context(system.open(path, "rb", block_size=0))
+            return _copy(_copied(_Limited(file, size), stack))
+        if whole:
+            file = stack.enter_context(system.open(path, "rb", block_size=_BLOCK))
+            return _copy(_copied(_Limited(file, size), stack))
+        file = stack.enter_context(system.open(path, "rb", block_size=_SMALL_BLOCK))
     except ImportError as error:
         return refusals.no_protocol_package(url.partition("://")[0], str(error), place)
     except Exception as error:  # each protocol has its own
         raise _as_os_error(error) from error
-    hashed = _Hashed(file, about["size"])
-    stream = stack.enter_context(io.BufferedReader(hashed, block))
-    return Input(
-        cast("io.BufferedReader", stream), about["size"], hashed.sha256, lambda: None, None
-    )
+    hashed = _Hashed(file, size)
+    stream = stack.enter_context(io.BufferedReader(hashed, _SMALL_BLOCK))
+    return Input(cast("io.BufferedReader", stream), size, hashed.sha256, lambda: None, None, None)
 
 
-class _Raising(io.BytesIO):
-    """A stream whose errors are those of the operating system."""
+class _Limited(io.BytesIO):
+    """What a server sends, as long as that is not endless; its errors are the operating system's.
 
-    def __init__(self, file: Any) -> None:
+    All of it comes, if the size is known, or an error.
+    """
+
+    def __init__(self, file: Any, size: int | None) -> None:
         super().__init__()
-        self._file = file
+        self._file, self._size = file, size
+        self._got, self._since = 0, time.monotonic()
 
     def read(self, length: int | None = -1) -> bytes:
         try:
-            return bytes(self._file.read(length))
+            data = bytes(self._file.read(length))
         except Exception as error:  # each protocol has its own
             raise _as_os_error(error) from error
+        self._got += len(data)
+        if self._got > (_MOST if self._size is None else self._size):
+            raise OSError(None, "the server sends more than a log has")
+        if not data and self._size not in (None, self._got):
+            raise OSError(None, f"nothing came from byte {self._got} on")
+        if time.monotonic() - self._since > _PATIENCE + self._got / _SLOWEST:
+            raise OSError(None, "the server sends next to nothing")
+        return data
 
 
 def _as_os_error(error: Exception) -> OSError:

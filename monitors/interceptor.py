@@ -10,8 +10,6 @@ Source of the latch and of the first three contracts: the Safe-ROS paper, its Da
 `cmd_vel_interceptor`.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 

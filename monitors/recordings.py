@@ -211,9 +211,9 @@ def _taken(log: Input, sink: Sink, integrity: Integrity, place: Span) -> Part | 
     if integrity is not Integrity.INDEX:
         log.begin()
     if start.startswith((bags.BAG, bags.DB3)):
-        if log.file is None:
+        if log.file is None or log.same is None:
             return refusals.bag_of_no_file(place)
-        found = bags.read(log.file, start, sink, place)
+        found = bags.read(log.file, log.same, start, sink, place)
         if isinstance(found, Diagnostic):
             return found
         damages = (*found.damages, *_reindexed(log.file, found.span))

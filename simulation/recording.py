@@ -5,6 +5,7 @@ carry the same time.
 """
 
 import os
+import secrets
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -166,13 +167,21 @@ def recording(
     Raises:
         OSError: the folder does not exist or cannot be written.
     """
-    partial = path.with_name(f".{path.name}.{os.getpid()}.partial")
+    partial = path.with_name(f".{path.name}.{secrets.token_hex(4)}.partial")
     try:
-        with partial.open("wb") as stream:
+        with open(partial, "xb", opener=_private) as stream:
             yield Recording(stream, encoding, faults, epoch)
         if faults.keep < 1:
             os.truncate(partial, round(partial.stat().st_size * faults.keep))
+        mask = os.umask(0o077)
+        os.umask(mask)
+        partial.chmod(0o666 & ~mask)
         partial.replace(path)
     except BaseException:
         partial.unlink(missing_ok=True)
         raise
+
+
+def _private(path: str, flags: int) -> int:
+    """Open a new file that nobody else reads before it is complete."""
+    return os.open(path, flags | os.O_NOFOLLOW, 0o600)

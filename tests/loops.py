@@ -14,7 +14,7 @@ EVENTUALLY = "whenever near the sw shall eventually satisfy stopped"
 LATCH = Settings(event_driven=True, latching=True)
 """The node of the Safe-ROS paper."""
 TIMER = Settings()
-CORE = f"from __future__ import annotations\n{interceptor().imports}\n\n{interceptor().text}\n"
+CORE = f"{interceptor().imports}\n\n{interceptor().text}\n"
 
 
 def case(

@@ -69,6 +69,7 @@ DOORS = {
         "simulation/recording.py",
     },
     "fsspec": {"monitors/inputs.py"},
+    "aiohttp": {"monitors/web.py"},
     "z3": {"compiler/bounds.py"},
     "reqif": {"compiler/parents.py", "compiler/report/forms/reqif.py"},
     "yaml": {"compiler/parents.py", "compiler/report/forms/gsn.py", "monitors/folders.py"},

@@ -15,6 +15,7 @@ from pathlib import Path
 import click
 
 from compiler import __version__
+from compiler.children import shield
 from compiler.cli.bind import bind
 from compiler.cli.check import check
 from compiler.cli.evidence import verify_evidence
@@ -34,12 +35,24 @@ from fretish.diagnostic import Code, Diagnostic
     cls=Commands, no_args_is_help=True, context_settings={"help_option_names": ["-h", "--help"]}
 )
 @click.version_option(__version__, prog_name="fretc", message="%(prog)s %(version)s")
-def cli() -> None:
+@click.option(
+    "--parents",
+    "folders",
+    multiple=True,
+    metavar="FOLDER",
+    help="Parents of requirements may be in this folder, too, outside of the project.",
+)
+def cli(folders: tuple[str, ...]) -> None:
     """From FRETish requirements to monitors, audited logs and a traceability report.
 
     `fretc FILE...` parses and formalizes requirements; with `--emit` it makes files of them:
     ltl, monitor, ajpf, smv, hoa, dot, prism, json, fret-json. `fretc FILE --help` says more.
     """
+    if folders:
+        from compiler.settings import OUTSIDE
+
+        before = OUTSIDE.set(folders)
+        click.get_current_context().call_on_close(lambda: OUTSIDE.reset(before))
 
 
 for _command in (
@@ -93,7 +106,11 @@ def main() -> None:
 
 
 def _prepare() -> None:
-    """Closed or narrow streams and a termination must cost neither the exit status nor files."""
+    """Closed or narrow streams and a termination must cost neither the exit status nor files.
+
+    Nor is anything executed that happens to lie in the present folder.
+    """
+    shield()
     for name in ("stdout", "stderr"):
         stream = getattr(sys, name)
         if stream is None:

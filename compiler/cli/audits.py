@@ -37,6 +37,8 @@ def audit_all(
     if resume:
         stale = journal is not None and journal.stale
         say_line(_resumed(len(known), len(logs), stale=stale))
+        if journal is not None and journal.foreign:
+            say_line(f"`{journal.path}` was not kept by you in this place: that is not used")
     kept = len(known)
 
     def keep(log: str, audited: Audited) -> None:

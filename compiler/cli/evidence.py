@@ -27,7 +27,15 @@ if TYPE_CHECKING:
     "--requirements", default="requirements", show_default=True, help="Folder, or one file."
 )
 @click.option("--bindings", help="bindings.toml; the one in the requirements' folder if not given.")
-@click.option("--logs", "folder", help="Look for the logs below this folder, by their names.")
+@click.option(
+    "--logs",
+    "places",
+    multiple=True,
+    metavar="FOLDER|URL",
+    help="Look for the logs below this folder, by their names; or open those of FILE whose URL "
+    "begins so. Else only files below the present folder are opened, and https.",
+)
+@click.option("--offline", is_flag=True, help="Ask nothing of any server.")
 @click.option("--report", help="An HTML report: it is made again from FILE, and compared.")
 @click.option(
     "--verification",
@@ -41,7 +49,8 @@ def verify_evidence(
     file: str,
     requirements: str,
     bindings: str | None,
-    folder: str | None,
+    places: tuple[str, ...],
+    offline: bool,
     report: str | None,
     verification: str | None,
     jobs: int,
@@ -64,7 +73,8 @@ def verify_evidence(
         assert isinstance(wrong, Diagnostic)
         stop(replace(wrong, severity=Severity.ERROR))
     project, plan = _plan(requirements, bindings)
-    found = _rechecked(source.text, plan, [result.run for result in audited.results], folder, jobs)
+    runs = list(dict.fromkeys(result.run for result in audited.results))
+    found = _rechecked(source.text, plan, _places(runs, places, offline=offline), jobs)
     made_from = (file, verification or written(), requirements)
     same = _report(project, report, *made_from) if report is not None else None
     if form == "json":
@@ -95,16 +105,44 @@ def _plan(requirements: str, bindings: str | None) -> tuple[Project, Plan]:
     return project, plan
 
 
-def _rechecked(
-    text: str, plan: Plan, runs: Sequence[str], folder: str | None, jobs: int
-) -> tuple[Rechecked, ...]:
-    from compiler.auditing import locally
-    from compiler.rechecking import located, rechecked
+def _places(runs: Sequence[str], named: Sequence[str], *, offline: bool) -> dict[str, str]:
+    """Run → where its log is, of those that may be opened; of the others it is said."""
+    from compiler.rechecking import located
+    from monitors.inputs import is_url, shown
+    from monitors.places import Places
 
-    if folder is not None and not Path(folder).is_dir():
-        mend = "name the folder that the logs are in"
-        stop(Diagnostic(Code.NO_SUCH_FILE, f"there is no folder `{folder}`", help=mend))
-    found = rechecked(text, plan, located(list(dict.fromkeys(runs)), folder), locally(jobs))
+    folders = [name for name in named if not is_url(name)]
+    for folder in folders:
+        if not Path(folder).is_dir():
+            mend = "name the folder that the logs are in"
+            stop(Diagnostic(Code.NO_SUCH_FILE, f"there is no folder `{folder}`", help=mend))
+    found: dict[str, str] = {}
+    for folder in folders:
+        found = {**located(runs, folder), **found}
+    if not folders or len(folders) < len(named):
+        found = {**located(runs, None), **found}
+    policy = Places(named, offline)
+    refused = {run: why for run, place in found.items() if (why := policy.refusal(place))}
+    mend = "name its folder, or the beginning of its URL, with `--logs`, if you trust it"
+    say(
+        [
+            Diagnostic(
+                Code.FOREIGN_PLACE,
+                f"`{shown(found[run])}` is not opened: {why}",
+                help=mend,
+                severity=Severity.WARNING,
+            )
+            for run, why in refused.items()
+        ]
+    )
+    return {run: place for run, place in found.items() if run not in refused}
+
+
+def _rechecked(text: str, plan: Plan, places: dict[str, str], jobs: int) -> tuple[Rechecked, ...]:
+    from compiler.auditing import locally
+    from compiler.rechecking import rechecked
+
+    found = rechecked(text, plan, places, locally(jobs))
     if isinstance(found, Diagnostic):
         stop(found)
     return found

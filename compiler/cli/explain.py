@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import re
 from pathlib import Path
+from shlex import quote
 from typing import TYPE_CHECKING
 
 import click
@@ -50,7 +51,7 @@ def explain(what: str, folder: str, bindings: str | None, form: str, picture: st
         return
     rules = _rules(what, folder, bindings, is_file=is_file)
     if picture is not None and len(rules) > 1:
-        mend = f"name one of them: `fretc explain {rules[0].id}`"
+        mend = f"name one of them: `fretc explain {quote(rules[0].id)}`"
         stop(Diagnostic(Code.BAD_USAGE, f"`{what}` holds several requirements", help=mend))
     _explain_rules(rules, form, picture)
 

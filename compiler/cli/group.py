@@ -11,7 +11,7 @@ import click
 from compiler.cli.output import stop
 from fretish.diagnostic import Code, Diagnostic, suggestion
 
-_OWN = ("-h", "--help", "--version")
+_OWN = ("-h", "--help", "--version", "--parents")
 """Options of `fretc` itself."""
 DEFAULT = "compile"
 """The command that `fretc FILE...` stands for."""
@@ -22,7 +22,7 @@ class Commands(click.Group):
 
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
         """Put the default command before a file."""
-        if args and args[0] not in self.commands and args[0] not in _OWN:
+        if args and args[0] not in self.commands and args[0].partition("=")[0] not in _OWN:
             if not args[0].startswith("-") and not _is_path(args[0]):
                 stop(_unknown_command(args[0], [*self.commands]))
             args = [DEFAULT, *args]

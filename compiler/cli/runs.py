@@ -30,6 +30,8 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from compiler.auditing import Audit, Engine
+    from compiler.journal import Journal
+    from compiler.plan import Plan
     from compiler.project import Project
 
 
@@ -144,7 +146,6 @@ def audit(
     if summary or query is not None:
         summarize(paths, query, form)
     _check_outputs(evidence, parquet, resume=resume)
-    from compiler.journal import Journal
     from compiler.logs import files_of
     from compiler.logs import logs as logs_of
     from compiler.plan import Plan, planned
@@ -167,7 +168,7 @@ def audit(
     plan = planned(project, evaluation, Integrity(integrity), confidence)
     if not isinstance(plan, Plan):
         stop(*(reason for reason in plan if reason not in project.diagnostics))
-    journal = Journal(Path(evidence), plan) if evidence != "-" and len(logs) > 1 else None
+    journal = _journal(evidence, plan) if evidence != "-" and len(logs) > 1 else None
     refused = [reason for reason in plan.refusals if reason not in project.diagnostics]
     say_also(refused, project.diagnostics)
     result = audit_all(plan, logs, _engine(engine, jobs), journal, resume=resume)
@@ -186,6 +187,18 @@ def audit(
     if plan.refused or has_errors((*project.diagnostics, *result.diagnostics)):
         raise SystemExit(BAD)
     raise SystemExit(VIOLATION if result.violated else SHOWN if result.shown else NOT_SHOWN)
+
+
+def _journal(evidence: str, plan: Plan) -> Journal | None:
+    """None where there is no key of the user: then nothing is kept for `--resume`."""
+    from compiler.journal import Journal
+    from compiler.userkey import user_key
+
+    key = user_key()
+    if isinstance(key, Diagnostic):
+        say([key])
+        return None
+    return Journal(Path(evidence), plan, key)
 
 
 def _marked(result: Audit, project: Project, folder: str | None) -> dict[Path, bytes]:

@@ -150,7 +150,12 @@ def _bad_scenario(name: str, why: str) -> Diagnostic:
 
 def _file(out: str) -> Path:
     """Where a file is to go, if it can."""
-    path = Path(os.path.realpath(out))
+    from compiler.files import destination
+
+    try:
+        path = destination(Path(out))
+    except OSError as error:
+        stop(not_written(out, error.strerror or str(error)))
     if out == "-":
         stop(not_written(out, "it is a file of its own"))
     if path.exists() and not path.is_file():

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-import shlex
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from functools import partial
 from pathlib import PurePath
 
 from compiler import __version__
@@ -14,6 +14,7 @@ from compiler.proven import Proofs
 from compiler.report import phrases
 from compiler.report.runs import Run
 from compiler.report.views import Command, Hash, RequirementView
+from compiler.shellwords import UnsayableError, check_of, is_sha256, unsayable, word, words
 from fretish.source import Source
 
 
@@ -25,20 +26,38 @@ def commands(
     proofs: Proofs | None,
     confidence: float = CONFIDENCE,
 ) -> tuple[Command, ...]:
-    """The commands, in the order in which they are to be run."""
-    proved = f" --verification {_quoted(proofs.file)}" if proofs else ""
-    from_here = _options(project)
-    logs = " ".join(_log(run.result.run) for run in runs) or "LOG..."
-    to = _quoted(evidence)
-    level = "" if confidence == CONFIDENCE else f" --confidence {confidence}"
-    audit = f"fretc audit {logs} {from_here}{level} --evidence {to}"
+    """The commands, in the order in which they are to be run.
+
+    Names come from evidence, which anybody may have written: each is quoted, and where one cannot
+    be pasted, a comment stands in the place of its command.
+    """
+
+    def audit() -> str:
+        logs = " ".join(_log(run.result.run) for run in runs) or "LOG..."
+        level = "" if confidence == CONFIDENCE else f" --confidence {confidence}"
+        return f"fretc audit {logs} {_options(project)}{level} --evidence {_quoted(evidence)}"
+
+    def report() -> str:
+        proved = f" --verification {_quoted(proofs.file)}" if proofs else ""
+        return f"fretc report {_options(project)} --evidence {_quoted(evidence)}{proved}"
+
     return (
         Command("Check the version of the tool", f"fretc --version   # fretc {__version__}"),
-        *_check(runs),
-        Command("Audit the runs", audit),
+        *_made("Check that the runs are those that were audited", lambda: _check(runs)),
+        *_made("Audit the runs", audit),
         *_emissions(sections),
-        Command("Write this report", f"fretc report {from_here} --evidence {to}{proved}"),
+        *_made("Write this report", report),
     )
+
+
+def _made(purpose: str, text: Callable[[], str]) -> Iterator[Command]:
+    """The command; none where its text is empty."""
+    try:
+        command = text()
+    except UnsayableError as error:
+        command = unsayable(str(error))
+    if command:
+        yield Command(purpose, command)
 
 
 def _log(run: str) -> str:
@@ -46,12 +65,12 @@ def _log(run: str) -> str:
 
 
 def _quoted(path: str) -> str:
-    return shlex.quote(phrases.place(path))
+    return word(phrases.place(path))
 
 
 def _options(project: Project) -> str:
     folder = folder_of(project)
-    options = [f"--requirements {shlex.quote(folder)}"]
+    options = [f"--requirements {word(folder)}"]
     bindings = project.declarations.source.name if project.declarations else ""
     if bindings and _folder(bindings) != folder:
         options.append(f"--bindings {_quoted(bindings)}")
@@ -75,12 +94,9 @@ def _files(project: Project) -> list[Source]:
     return list({r.wording.source.name: r.wording.source for r in project.requirements}.values())
 
 
-def _check(runs: Sequence[Run]) -> Iterable[Command]:
+def _check(runs: Sequence[Run]) -> str:
     known = [run.result for run in runs if "log" in run.result.hashes and _is_file(run.result.run)]
-    if known:
-        lines = [f"{result.hashes['log']}  {phrases.place(result.run)}" for result in known]
-        text = "\n".join(["sha256sum --check <<'END'", *lines, "END"])
-        yield Command("Check that the runs are those that were audited", text)
+    return check_of((result.hashes["log"], phrases.place(result.run)) for result in known)
 
 
 def _is_file(run: str) -> bool:
@@ -102,8 +118,11 @@ def _emissions(sections: Sequence[RequirementView]) -> Iterable[Command]:
     for kinds, files in groups.items():
         if kinds:
             emits = " ".join(f"--emit {kind}" for kind in kinds)
-            text = f"fretc {' '.join(map(shlex.quote, files))} {emits} --output build"
-            yield Command("Make the artefacts", text)
+            yield from _made("Make the artefacts", partial(_emission, files, emits))
+
+
+def _emission(files: Sequence[str], emits: str) -> str:
+    return f"fretc {words(files)} {emits} --output build"
 
 
 def manifest(
@@ -130,4 +149,4 @@ def manifest(
     lines.extend(
         Hash("run", phrases.place(run.result.run), run.result.hashes.get("log", "")) for run in runs
     )
-    return tuple(line for line in lines if line.sha256)
+    return tuple(line for line in lines if is_sha256(line.sha256))

@@ -6,8 +6,6 @@ log2 of the bound. Sources: `since` by the carry of an addition: Reynolds, in Wa
 Delight, 2013, section 2; windows by doubling: van Herk, Pattern Recognition Letters 13 (1992).
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterable, Iterator, Sequence
 from typing import NamedTuple
@@ -39,7 +37,7 @@ class Column(NamedTuple):
         """The truth value at one tick."""
         return None if self.unknown >> tick & 1 else bool(self.true >> tick & 1)
 
-    def followed(self, value: Truth, ticks: int) -> Column:
+    def followed(self, value: Truth, ticks: int) -> "Column":
         """The column with one more value, after its `ticks` others."""
         return Column(self.true | (value is True) << ticks, self.unknown | (value is None) << ticks)
 

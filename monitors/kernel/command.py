@@ -1,7 +1,5 @@
 """The command line of a generated monitor."""
 
-from __future__ import annotations
-
 import argparse
 import io
 import json

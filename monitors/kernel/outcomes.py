@@ -1,7 +1,5 @@
 """What whole traces show of the requirements, from the columns of their signals."""
 
-from __future__ import annotations
-
 from bisect import bisect_right
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass

@@ -7,8 +7,6 @@ are one. Source: Kleene, Introduction to Metamathematics, 1952, section 64 (stro
 logic).
 """
 
-from __future__ import annotations
-
 import hashlib
 import itertools
 import json

@@ -1,7 +1,5 @@
 """Reading tables of propositions: CSV with a header, or JSON lines; one row a tick."""
 
-from __future__ import annotations
-
 import csv
 import itertools
 import json

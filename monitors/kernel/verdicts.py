@@ -1,7 +1,5 @@
 """Truth with unknowns, verdicts, and what of a requirement is watched at each tick."""
 
-from __future__ import annotations
-
 from enum import StrEnum
 from typing import Generic, NamedTuple, TypeVar
 

@@ -147,8 +147,8 @@ def test_a_file_with_a_command_line_can_be_run_by_whoever_can_read_it(
     before = os.umask(mask)
     try:
         write("build/r_monitor.py", "")
-        write("target.ltl", "")
-        Path("build/r.ltl").symlink_to("../target.ltl")
+        write("build/target.ltl", "")
+        Path("build/r.ltl").symlink_to("target.ltl")
         path = write("r.fret", "the rover shall always satisfy q")
         assert fretc(path, "--emit", "monitor", "--emit", "ltl").status == 0
     finally:

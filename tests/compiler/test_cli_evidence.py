@@ -192,3 +192,51 @@ def test_wrong_use_is_told(audited: Fretc, arguments: tuple[str, ...], told: str
     run = audited("verify-evidence", *arguments)
     assert run.status == 2
     assert told in run.err
+
+
+# Places that evidence names -------------------------------------------------------------------
+
+
+def renamed(old: str, new: str) -> None:
+    """The evidence as somebody else may hand it over."""
+    text = Path("build/evidence.json").read_text()
+    write("build/evidence.json", text.replace(f'"{old}"', f'"{new}"'))
+
+
+@pytest.mark.parametrize("protocol", ["file://{}", "local://{}", "simplecache::file://{}", "{}"])
+def test_a_place_that_evidence_names_is_opened_below_the_present_folder_only(
+    audited: Fretc, tmp_path_factory: pytest.TempPathFactory, protocol: str
+) -> None:
+    elsewhere = tmp_path_factory.mktemp("elsewhere")
+    shutil.copy("logs/good.mcap", elsewhere / "good.mcap")
+    place = protocol.format(elsewhere / "good.mcap")
+    renamed("logs/good.mcap", place)
+    run = audited("verify-evidence")
+    assert run.status == 3
+    assert run.err.startswith("F921 warning: `")
+    assert "good.mcap` is not opened: it" in run.err
+    assert f"{place}\n  ? r1  not checked: its log is not found\n" in run.out
+
+
+def test_what_the_user_names_is_opened(
+    audited: Fretc, tmp_path_factory: pytest.TempPathFactory
+) -> None:
+    elsewhere = tmp_path_factory.mktemp("elsewhere")
+    shutil.copy("logs/good.mcap", elsewhere / "good.mcap")
+    renamed("logs/good.mcap", f"file://{elsewhere}/good.mcap")
+    run = audited("verify-evidence", "--logs", f"file://{elsewhere}")
+    assert (run.status, run.err) == (0, "")
+    run = audited("verify-evidence", "--logs", f"file://{elsewhere}", "--offline")
+    assert run.status == 3
+    assert run.err.startswith("F921 warning: ")
+
+
+def test_a_link_below_the_folder_leads_nowhere(
+    audited: Fretc, tmp_path_factory: pytest.TempPathFactory
+) -> None:
+    elsewhere = tmp_path_factory.mktemp("elsewhere")
+    shutil.move("logs/good.mcap", elsewhere / "good.mcap")
+    Path("logs/good.mcap").symlink_to(elsewhere / "good.mcap")
+    assert audited("verify-evidence", "--logs", "logs").status == 3
+    run = audited("verify-evidence", "--logs", "logs", "--logs", str(elsewhere))
+    assert (run.status, run.err) == (0, "")

@@ -343,7 +343,7 @@ def test_every_counterexample_replays(name: str) -> None:
         ("ZERO = Velocity()", "ZERO = Velocity()\nZERO = Velocity(1.0)", "`ZERO = Velocity(1.0)`"),
         ("ZERO = Velocity()", "ZERO = [].pop()", "`ZERO = [].pop()`"),
         ("    held: int\n", "    held: int = print()\n", "`held: int = print()`"),
-        ("from __future__ import annotations\n", "", '`"""What'),
+        ("del sys.path[0]", "del sys.path[:]", "`import sys`"),
         ("ZERO = Velocity()", "ZERO = Velocity(1.0)", "`ZERO = Velocity(1.0)`"),
         ("ZERO = Velocity()", "ZERO = Velocity()\nHOLD = Options(1, 0, 0, 0)", "`HOLD`"),
         (SCANNED, "    return replace(state, held=OPTIONS.hold), None", "`OPTIONS`"),

@@ -7,6 +7,7 @@ import socket
 import subprocess
 import sys
 import time
+import urllib.request
 import warnings
 from collections.abc import Iterator
 from pathlib import Path
@@ -230,3 +231,32 @@ def test_a_cluster_of_its_own_is_stopped_and_goes_on(fretc: Fretc) -> None:
     assert (run.returncode, said) == (130, words)
     assert fretc("audit", *LOGS, "--resume").err.startswith(f"{kept} of 12 logs are audited")
     assert Path("build/evidence.json").read_bytes() == evidence
+
+
+def test_nobody_else_on_the_machine_is_let_into_a_cluster_of_its_own() -> None:
+    """Who can connect can execute code as the one who audits."""
+    from distributed import Client, Security
+
+    with fleet._own_cluster(1) as client:
+        address = client.scheduler.address
+        assert address.startswith("tls://127.0.0.1:")
+        plain = address.replace("tls", "tcp")
+        for place, security in (
+            (plain, None),
+            (address, None),
+            (address, Security.temporary()),
+            (address, Security(require_encryption=True)),
+        ):
+            with pytest.raises((OSError, TypeError, ValueError, RuntimeError)):
+                Client(place, security=security, timeout=3, set_as_default=False)
+        assert client.submit(int, "7").result() == 7
+        (worker,) = client.scheduler_info()["workers"]
+        assert worker.startswith("tls://127.0.0.1:")
+
+
+def test_a_cluster_of_its_own_has_no_pages() -> None:
+    with fleet._own_cluster(1) as client:
+        port = client.scheduler_info()["services"].get("dashboard")
+        for path in ("/info/main/workers.html", "/json/counts.json", "/metrics", "/health"):
+            with pytest.raises(OSError, match="404"):
+                urllib.request.urlopen(f"http://127.0.0.1:{port}{path}", timeout=5)

@@ -1,13 +1,15 @@
 """What a stopped audit has finished is not audited again, where it would be the same."""
 
+import hashlib
 import json
 import os
 import shutil
 import signal
+import stat
 import subprocess
 import sys
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 import pytest
@@ -17,6 +19,7 @@ from compiler.auditing import Audit, Audited, audit_logs, audited
 from compiler.journal import Journal
 from compiler.plan import Plan, planned
 from compiler.project import beside, load, requirement_files
+from compiler.userkey import user_key
 from fretish.diagnostic import Code, Diagnostic
 from tests.command import Fretc
 
@@ -44,9 +47,15 @@ def plan(evaluation: str = "columns") -> Plan:
     return found
 
 
+def journal_of(plan: Plan, evidence: Path = EVIDENCE) -> Journal:
+    key = user_key()
+    assert isinstance(key, bytes)
+    return Journal(evidence, plan, key)
+
+
 def stopped(logs: Sequence[str] = LOGS[:2]) -> None:
     """Leave what an audit leaves that was stopped when these logs were finished."""
-    journal = Journal(EVIDENCE, plan())
+    journal = journal_of(plan())
     for log in logs:
         assert journal.keep(log, audited(plan(), log)) is True
     journal.close()
@@ -54,7 +63,7 @@ def stopped(logs: Sequence[str] = LOGS[:2]) -> None:
 
 def finished() -> list[str]:
     """The logs that need not be audited again."""
-    journal = Journal(EVIDENCE, plan())
+    journal = journal_of(plan())
     found = journal.finished(LOGS)
     assert not isinstance(found, Diagnostic)
     journal.close()
@@ -73,7 +82,7 @@ def damage(log: str) -> None:
 def test_what_is_finished_is_what_was_shown(fretc: Fretc) -> None:
     damage("b.mcap")
     stopped()
-    journal = Journal(EVIDENCE, plan())
+    journal = journal_of(plan())
     assert journal.finished(LOGS) == {log: audited(plan(), log) for log in LOGS[:2]}
 
 
@@ -95,7 +104,7 @@ def test_an_audit_that_goes_on_gives_the_evidence_of_one_that_was_not_stopped(
 
 def test_only_what_is_not_finished_is_audited(fretc: Fretc) -> None:
     stopped()
-    journal = Journal(EVIDENCE, plan())
+    journal = journal_of(plan())
     known = journal.finished(LOGS)
     assert not isinstance(known, Diagnostic)
     told: list[str] = []
@@ -140,7 +149,7 @@ def test_a_log_that_is_gone_is_not_known(fretc: Fretc) -> None:
 
 
 def test_a_log_that_could_not_be_read_or_has_changed_meanwhile_is_not_kept(fretc: Fretc) -> None:
-    journal = Journal(EVIDENCE, plan())
+    journal = journal_of(plan())
     assert journal.keep("no.mcap", audited(plan(), "no.mcap")) is False
     good = audited(plan(), "a.mcap")
     assert journal.keep("a.mcap", Audited(good.results, (), read=True, stamp=None)) is False
@@ -219,7 +228,7 @@ def test_a_line_cut_anywhere_leaves_those_before_it(fretc: Fretc) -> None:
 def test_without_resume_an_audit_begins_anew(fretc: Fretc) -> None:
     stopped()
     first = JOURNAL.read_bytes()
-    journal = Journal(EVIDENCE, plan())
+    journal = journal_of(plan())
     journal.keep("c.mcap", audited(plan(), "c.mcap"))
     journal.close()
     assert JOURNAL.read_bytes() != first
@@ -228,7 +237,7 @@ def test_without_resume_an_audit_begins_anew(fretc: Fretc) -> None:
 
 def test_two_audits_do_not_share_a_journal(fretc: Fretc) -> None:
     stopped()
-    other = Journal(EVIDENCE, plan())
+    other = journal_of(plan())
     assert other.finished(LOGS)
     run = fretc("audit", *LOGS, "--resume")
     assert (run.status, run.out) == (2, "")
@@ -243,7 +252,7 @@ def test_a_place_where_nothing_can_be_kept_is_told(fretc: Fretc) -> None:
     run = fretc("audit", *LOGS)
     assert run.status == 2
     assert run.err.startswith(f"F905 `{JOURNAL}` cannot be written: ")
-    kept = Journal(EVIDENCE, plan()).keep("a.mcap", audited(plan(), "a.mcap"))
+    kept = journal_of(plan()).keep("a.mcap", audited(plan(), "a.mcap"))
     assert isinstance(kept, Diagnostic)
     assert kept.code is Code.NOT_WRITTEN
 
@@ -300,3 +309,108 @@ def test_a_line_with_another_byte_is_not_believed(fretc: Fretc) -> None:
     for line in (b'{"log": "b.mcap"}', b'{"log": "b.mcap", "check": ""}', b"[]", b"1"):
         JOURNAL.write_bytes(data[:second] + line + b"\n")
         assert finished() == ["a.mcap"], line
+
+
+# A journal of somebody else -------------------------------------------------------------------
+
+
+FOREIGN = f"`{JOURNAL}` was not kept by you in this place: that is not used\n"
+
+
+def test_a_journal_that_another_user_has_kept_is_not_used_and_that_is_said(
+    fretc: Fretc, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    with monkeypatch.context() as other:
+        other.setenv("XDG_STATE_HOME", str(tmp_path / "other"))
+        stopped()
+    assert finished() == []
+    run = fretc("audit", *LOGS, "--resume")
+    assert run.err.startswith(f"no stopped audit was found: all logs are audited\n{FOREIGN}")
+    assert run.status == 0
+
+
+def test_lines_that_another_user_has_written_below_our_head_are_not_used(
+    fretc: Fretc, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    with monkeypatch.context() as other:
+        other.setenv("XDG_STATE_HOME", str(tmp_path / "other"))
+        stopped(LOGS)
+        lines = JOURNAL.read_bytes().splitlines(keepends=True)
+        JOURNAL.unlink()
+    stopped(["a.mcap"])
+    with JOURNAL.open("ab") as file:
+        file.write(lines[2])
+    assert finished() == ["a.mcap"]
+
+
+def test_a_check_without_a_key_is_not_believed(fretc: Fretc) -> None:
+    """As journals had it before: whoever wrote a line could write its check."""
+    stopped()
+    head, first, second = JOURNAL.read_bytes().splitlines()
+    told = json.loads(second)
+    unchecked = json.dumps({**told, "check": ""})
+    check = hashlib.sha256(unchecked.encode()).hexdigest()
+    line = json.dumps({**told, "check": check}).encode()
+    JOURNAL.write_bytes(b"\n".join([head, first, line, b""]))
+    assert finished() == ["a.mcap"]
+
+
+def test_a_journal_counts_in_its_place_only(fretc: Fretc) -> None:
+    stopped()
+    Path("elsewhere").mkdir()
+    shutil.move(JOURNAL, f"elsewhere/{JOURNAL.name}")
+    other = journal_of(plan(), Path("elsewhere") / EVIDENCE.name)
+    assert other.finished(LOGS) == {}
+    assert (other.stale, other.foreign) == (False, True)
+    other.close()
+
+
+def test_lines_of_another_plan_do_not_count_below_this_ones_head(fretc: Fretc) -> None:
+    journal = journal_of(plan("online"))
+    assert journal.keep("b.mcap", audited(plan("online"), "b.mcap")) is True
+    journal.close()
+    line = JOURNAL.read_bytes().splitlines(keepends=True)[1]
+    stopped(["a.mcap"])
+    with JOURNAL.open("ab") as file:
+        file.write(line)
+    assert finished() == ["a.mcap"]
+
+
+@pytest.mark.parametrize("link", [os.symlink, os.link])
+def test_a_journal_that_is_a_link_leaves_its_target_as_it_is(
+    fretc: Fretc, link: Callable[[str, Path], None]
+) -> None:
+    Path("build").mkdir()
+    Path("precious").write_text("precious")
+    link(os.path.abspath("precious"), JOURNAL)
+    for options in ([], ["--resume"]):
+        run = fretc("audit", *LOGS, *options)
+        assert run.status == 2
+        assert run.err.startswith(f"F905 `{JOURNAL}` cannot be written: ")
+        assert Path("precious").read_text() == "precious"
+
+
+def test_a_key_that_others_can_read_is_not_used_and_the_audit_goes_on(fretc: Fretc) -> None:
+    stopped()
+    path = Path(os.environ["XDG_STATE_HOME"]) / "fretc/journal.key"
+    path.chmod(0o644)
+    run = fretc("audit", *LOGS, "--resume")
+    assert run.status == 0
+    assert run.err.startswith(f"F920 warning: `{path}` cannot be used: others may read or write it")
+    path.chmod(0o600)
+    path.unlink()
+    path.symlink_to("/dev/zero")
+    assert fretc("audit", *LOGS).err.startswith(f"F920 warning: `{path}` cannot be used: ")
+
+
+def test_the_key_is_made_once_and_private(fretc: Fretc) -> None:
+    before = os.umask(0)
+    try:
+        first = user_key()
+    finally:
+        os.umask(before)
+    assert first == user_key()
+    path = Path(os.environ["XDG_STATE_HOME"]) / "fretc/journal.key"
+    assert stat.S_IMODE(path.stat().st_mode) == 0o600
+    assert stat.S_IMODE(path.parent.stat().st_mode) == 0o700
+    assert os.listdir(path.parent) == ["journal.key"]

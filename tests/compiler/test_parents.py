@@ -270,6 +270,53 @@ def test_settings_with_a_mistake_are_told(text: str, told: str) -> None:
     assert render(found).startswith(told)
 
 
+def test_settings_above_the_repository_are_anybodys() -> None:
+    write("pyproject.toml", '[tool.fretc]\nparents = ["/etc/passwd"]\n')
+    write("a/.git/HEAD", "")
+    write("a/requirements/r1.fret", "x")
+    assert settings("a/requirements") == Settings(Path.cwd() / "a/requirements")
+
+
+def test_a_worktree_is_a_repository_too() -> None:
+    write("pyproject.toml", '[tool.fretc]\nparents = ["a"]\n')
+    write("a/.git", "gitdir: elsewhere")
+    write("a/requirements/r1.fret", "x")
+    assert settings("a/requirements") == Settings(Path.cwd() / "a/requirements")
+
+
+def test_outside_of_a_repository_settings_above_the_present_folder_do_not_hold(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    write("pyproject.toml", '[tool.fretc]\nparents = ["a"]\n')
+    write("a/requirements/r1.fret", "x")
+    monkeypatch.chdir("a")
+    assert settings("requirements") == Settings(Path.cwd() / "requirements")
+    monkeypatch.chdir("requirements")
+    assert settings("../../a") == Settings(Path.cwd().parent)
+
+
+@pytest.mark.parametrize("name", ["../outside.json", "link.json", "way", "{}/outside.json"])
+@pytest.mark.parametrize("option", ["--parents {}", "--parents={}", ""])
+def test_parents_leave_the_project_only_where_the_command_line_says_so(
+    fretc: Fretc, monkeypatch: pytest.MonkeyPatch, name: str, option: str
+) -> None:
+    outside = Path.cwd()
+    write("outside.json", strictdoc())
+    write("exports/req.yml", "SAFE-1: {text: The robot stops., active: true, level: 1.0}\n")
+    path = name.format(outside)
+    write("a/pyproject.toml", f'[tool.fretc]\nparents = ["{path}"]\n')
+    write("a/.git/HEAD", "")
+    header = '+++\nid = "R1"\nparents = ["SAFE-1"]\n+++\n'
+    write("a/requirements/r1.fret", f"{header}the robot shall always satisfy stopped")
+    monkeypatch.chdir("a")
+    Path("link.json").symlink_to("../outside.json")
+    Path("way").mkdir()
+    Path("way/req.yml").symlink_to("../../exports/req.yml")
+    run = fretc(*option.format(outside).split(), "check")
+    refused = f"F521 the parents in `{path}` cannot be read: it lies outside of the project"
+    assert (refused in run.err + run.out) is (option == "")
+
+
 # The whole way ---------------------------------------------------------------------------------
 
 

@@ -10,6 +10,7 @@ from xml.etree import ElementTree
 
 import jsonschema  # type: ignore[import-untyped]
 import pytest
+from mcap.writer import CompressionType
 
 from tests.command import Fretc, write
 from tests.compiler.test_trials import fillings
@@ -235,6 +236,40 @@ def test_a_copy_of_a_log_counts_once(fretc: Fretc) -> None:
     shutil.copy("runs/000.mcap", "runs/copy.mcap")
     assert fretc("audit", "runs").status == 3
     assert (counts(), told()["logs"]["copies"]) == ((28, 0, 0), 1)
+
+
+@pytest.mark.parametrize("integrity", ["index", "hash", "full"])
+def test_a_log_that_was_written_again_counts_once(fretc: Fretc, integrity: str) -> None:
+    """The same messages with other chunks, another compression, and a topic that nobody reads."""
+    logs(28, "1000", "0100")
+    sent = [
+        number(float(value), 1000 * S + tick * 100 * MS, topic)
+        for tick, values in enumerate(zip("1000", "0100", strict=True))
+        for topic, value in zip(("/c", "/r", "/note"), (*values, "7"), strict=True)
+    ]
+    unnoted = [one for one in sent if one.topic != "/note"]
+    write_log(Path("runs/noted.mcap"), sent)
+    write_log(Path("runs/chunks.mcap"), unnoted, per_chunk=1)
+    write_log(Path("runs/loose.mcap"), unnoted, compression=CompressionType.NONE)
+    write_log(Path("runs/bare.mcap"), unnoted, data_crcs=True, statistics=False)
+    assert fretc("audit", "runs", "--integrity", integrity).status == 3
+    assert (counts(), told()["logs"]["copies"]) == ((28, 0, 0), 4)
+
+
+def test_runs_that_differ_in_a_value_or_a_time_are_no_copies(fretc: Fretc) -> None:
+    log("runs/a.mcap", "1000", "0100")
+    log("runs/b.mcap", "1000", "0010")
+    write_log(
+        Path("runs/c.mcap"),
+        [
+            number(float(value), 2000 * S + tick * 100 * MS, topic)
+            for tick, values in enumerate(zip("1000", "0100", strict=True))
+            for topic, value in zip(("/c", "/r"), values, strict=True)
+        ],
+    )
+    fretc("audit", "runs")
+    assert told()["logs"]["copies"] == 0
+    assert told()["logs"]["counted"] == 3
 
 
 def test_the_order_of_the_logs_changes_nothing(fretc: Fretc) -> None:

@@ -9,6 +9,7 @@ import subprocess
 import sys
 import tempfile
 import threading
+import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
@@ -369,13 +370,50 @@ def test_a_log_that_is_written_to_while_it_is_read_shows_nothing(
     assert found.code is Code.UNREADABLE
 
 
-def test_the_hash_is_that_of_the_file_that_was_read(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+@pytest.mark.parametrize("integrity", list(Integrity))
+def test_a_log_that_is_swapped_while_it_is_read_shows_nothing(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, integrity: Integrity
 ) -> None:
     path = write(tmp_path / "log.mcap", TWELVE)
     other = write(tmp_path / "other.mcap", TWELVE[:4])
-    sha256 = hashlib.sha256(path.read_bytes()).hexdigest()
     written_to(monkeypatch, lambda: other.replace(path))
+    found = read(str(path), X, ["x"], integrity)
+    assert isinstance(found, Diagnostic)
+    assert found.code is Code.UNREADABLE
+
+
+def test_nor_does_one_whose_time_is_set_back_after_it_was_written_to(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path = write(tmp_path / "log.mcap", TWELVE)
+    os.utime(path, ns=(0, 0))
+    data = path.read_bytes()
+
+    def change() -> None:
+        with path.open("r+b") as file:  # as long as before
+            file.write(data[:-1] + b"?")
+        os.utime(path, ns=(0, 0))
+
+    time.sleep(0.05)  # a tick of the file system's clock
+    written_to(monkeypatch, change)
     found = read(str(path), X, ["x"])
-    assert isinstance(found, Recording)
-    assert (len(values(found, "x")), found.sha256) == (12, sha256)
+    assert isinstance(found, Diagnostic)
+    assert found.code is Code.UNREADABLE
+
+
+def test_nor_does_one_that_is_another_file_for_a_moment(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path, other = write(tmp_path / "log.mcap", TWELVE), write(tmp_path / "other.mcap", TWELVE[:4])
+
+    def swap() -> None:
+        path.rename(tmp_path / "away")
+        other.rename(path)
+        path.rename(other)
+        (tmp_path / "away").rename(path)
+
+    time.sleep(0.05)
+    written_to(monkeypatch, swap)
+    found = read(str(path), X, ["x"])
+    assert isinstance(found, Diagnostic)
+    assert found.code is Code.UNREADABLE
