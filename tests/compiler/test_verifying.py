@@ -373,14 +373,14 @@ HIDDEN: dict[str, list[tuple[str, str]]] = {
     "the rail that may": [(SINCE, "            since_1 = oldest_1 >= 3 or doubt\n")],
     "unknown values as they are not": [
         (
-            "                known = False\n                p = doubt\n",
-            "                known = False\n                p = False\n",
+            "                    known = False\n                    p = doubt\n",
+            "                    known = False\n                    p = False\n",
         )
     ],
     "an unknown value that is known": [
         (
-            "                known = False\n                p = doubt\n",
-            "                p = doubt\n",
+            "                    known = False\n                    p = doubt\n",
+            "                    p = doubt\n",
         )
     ],
     "other rows": [("for (p, q) in rows", "for (q, p) in rows")],
