@@ -75,7 +75,7 @@ def _by_index(stream: BufferedReader, index: Index, sink: Sink, integrity: Integ
     span = statistics.message_start_time, statistics.message_end_time
     if integrity is Integrity.HASH:
         return Contents((), span, None, projection.checked, unprotected)
-    stream.seek(index.summary)
+    stream.seek(index.data_end)  # its CRC of the data is the first thing that follows
     digest = hashlib.file_digest(stream, "sha256").hexdigest()
     checked = replace(projection.checked, hashed=False)
     return Contents((), span, None, checked, unprotected, digest)
