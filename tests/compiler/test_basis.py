@@ -1,6 +1,7 @@
 """What has changed: single changes of a project, with and without a new audit.
 
-`python -m tests.compiler.test_basis` prints them as a table. What each command has to say is
+`python -m tests.compiler.test_basis` prints them as a table: what a change touches, whose evidence
+is then of something else, and whose review no longer stands. What each command has to say is
 computed from the links below, which are written down here, and nowhere taken from the program.
 """
 
@@ -8,12 +9,18 @@ import json
 import re
 import shutil
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import pytest
 from mcap.writer import Writer
 
+from compiler.lock import Lock
+from compiler.lock import read as read_lock
+from compiler.lock import text as lock_text
+from compiler.project import whole
+from compiler.report import make
+from fretish.diagnostic import Diagnostic
 from tests.command import Fretc, write
 
 MS, START = 10**6, 10**9
@@ -104,7 +111,7 @@ def links() -> Iterator[tuple[str, str]]:
     """What follows from what, from hazards to reviews."""
     yield from (("HAZ-1", "text R1"), ("text R1", "text R2"), ("HAZ-2", "text R3"))
     for id in IDS:
-        for above in ("sentence", "params", "bindings", "record"):
+        for above in ("sentence", "params", "bindings", "monitor", "record"):
             yield f"{above} {id}", f"verdict {id}"
         for above in ("clock", "topics", "fretc", "log"):
             yield above, f"verdict {id}"
@@ -222,7 +229,8 @@ SENTENCES = [
     changed("a name for another", put(R3, "satisfy fine", "satisfy q"), "sentence R3"),
     changed("a line break", put(R1, "shall within", "shall\n    within")),
     changed("more white space", put(R1, "satisfy q", "satisfy   q")),
-    changed("no article", put(R1, "p the sw", "p sw")),
+    # Monitors quote their sentence as it is written.
+    changed("no article", put(R1, "p the sw", "p sw"), "monitor R1"),
     changed("an empty line at the end", append(R1, "\n\n")),
 ]
 HEADERS = [
@@ -307,7 +315,7 @@ PROPOSITIONS = [
     changed("a text", after(BINDINGS, Q, 'text = "y"'), "words R1"),
     changed("its role", put(BINDINGS, '"input"', '"internal"'), "words R1"),
     changed("its kind", after(BINDINGS, Q, 'kind = "belief"'), "words R1"),
-    changed("its modality", after(BINDINGS, Q, 'modality = "G"'), "artefact R1"),
+    changed("its modality", after(BINDINGS, "[proposition.fine]", 'modality = "G"'), "artefact R3"),
     changed("the bound in metres", put(BINDINGS, "50 cm", "0.5 m")),
     changed("the bound in km", put(BINDINGS, "50 cm", "0.0005 km")),
     changed("the bound as a sum", put(BINDINGS, "50 cm", "500 mm")),
@@ -339,7 +347,7 @@ def log(path: str, *values: float) -> None:
                 ("/c", {"x": value}),
             ):
                 writer.add_message(channels[topic], time, json.dumps(told).encode(), time)
-        writer.finish()
+        writer.finish()  # type: ignore[no-untyped-call]
 
 
 def logged(path: str, *values: float) -> Callable[[], None]:
@@ -420,10 +428,13 @@ class Said:
 def asked(fretc: Fretc) -> Said:
     diff = json.loads(fretc("diff", "--format", "json").out)
     check = fretc("check").err
-    assert fretc("report", "--json", "report.json").status in (0, 2)
-    report = json.loads(Path("report.json").read_text())["requirements"]
-    verify = fretc("verify-evidence", "--format", "json")
-    again = json.loads(verify.out)["results"] if verify.out else []
+    known = whole("requirements")
+    assert not isinstance(known, Diagnostic)
+    made = make(known, "build/evidence.json", lock="requirements/fretc.lock")
+    report = json.loads(made.json or "")["requirements"]
+    verify = fretc("verify-evidence", "--format", "json").out
+    again = [one for one in json.loads(verify)["results"] if one["finding"] == "differs"]
+    everywhere = any("this is fretc" in reason for one in again for reason in one["reasons"])
     return Said(
         {
             "check": set(re.findall(r"F504 warning: the evidence of (\S+) is suspect", check)),
@@ -434,24 +445,215 @@ def asked(fretc: Fretc) -> Said:
             "check": set(re.findall(r"F512 warning: (\S+) was reviewed", check)),
             "report": {v["id"] for v in report if v["review"]["mark"]["word"] != "reviewed"},
         },
-        {one["requirement"] for one in again if one["finding"] == "differs"} - {""},
+        set(IDS) if everywhere else {one["requirement"] for one in again} - {""},
     )
 
 
-@pytest.mark.parametrize("audited", [False, True], ids=["as it is", "audited again"])
 @pytest.mark.parametrize("name", CHANGES)
-def test_a_change_reaches_what_is_made_of_it_and_nothing_else(
-    reviewed: Fretc, name: str, audited: bool
-) -> None:
+def test_a_change_reaches_what_is_made_of_it_and_nothing_else(reviewed: Fretc, name: str) -> None:
     change = CHANGES[name]
     change.make()
-    if audited:
-        reviewed("audit", "logs")
-    said = asked(reviewed)
-    assert said.stale == dict.fromkeys(("check", "report"), change.stale(audited))
-    assert said.suspect == dict.fromkeys(("diff", "check", "report"), change.suspect(audited))
-    assert said.differs == change.differs(audited)
+    for audited in (False, True):
+        if audited:
+            reviewed("audit", "logs")
+        said = asked(reviewed)
+        assert said.stale == dict.fromkeys(("check", "report"), change.stale(audited))
+        assert said.suspect == dict.fromkeys(("diff", "check", "report"), change.suspect(audited))
+        assert said.differs == change.differs(audited)
 
 
 def test_there_are_more_changes_than_were_once_tried_by_hand() -> None:
     assert len(CHANGES) >= 82
+
+
+def test_evidence_of_what_has_come_back_is_still_of_something_else(reviewed: Fretc) -> None:
+    before = Path(BINDINGS).read_text()
+    put(BINDINGS, "x > 1 m", "x > 2 m")()
+    reviewed("audit", "logs")
+    Path(BINDINGS).write_text(before)
+    said = asked(reviewed)
+    assert list(said.stale.values()) == [{"R1"}] * 2
+    assert list(said.suspect.values()) == [{"R1"}] * 3
+    assert said.differs == {"R1"}
+
+
+def test_evidence_of_something_else_is_not_accepted(reviewed: Fretc) -> None:
+    put(BINDINGS, "x > 1 m", "x > 2 m")()
+    before = Path("requirements/fretc.lock").read_text()
+    run = reviewed("lock", *BY)
+    assert run.status == 2
+    told = "F541 what was shown of R1 is about something else than what is here now: bindings R1\n"
+    assert told in run.err
+    assert Path("requirements/fretc.lock").read_text() == before
+    assert reviewed("lock", "R2", *BY).status == 0, "of the others nothing is asked"
+    reviewed("audit", "logs")
+    assert reviewed("lock", *BY, "--accept-violations").status == 0
+    assert reviewed("diff").status == 0
+
+
+def test_a_log_that_nothing_identifies_is_not_accepted(reviewed: Fretc) -> None:
+    shutil.rmtree("logs")
+    hashed("log", None)()
+    run = reviewed("lock", *BY)
+    assert run.status == 2
+    assert "F542 nothing tells the log `logs/a.mcap` of R1 from another one: there is no" in run.err
+
+
+@pytest.mark.parametrize("audited", [False, True])
+def test_a_log_that_is_gone_is_told(reviewed: Fretc, audited: bool) -> None:
+    Path(LOGS[1]).unlink()
+    if audited:
+        reviewed("audit", "logs")
+        told = json.loads(reviewed("diff", "--format", "json").out)
+        assert {one["requirement"] for one in told if one["suspect_links"]} == set(IDS)
+    else:
+        assert reviewed("verify-evidence").status == 3
+
+
+# What is claimed no more ------------------------------------------------------------------------
+
+
+def removed() -> None:
+    Path(R3).unlink()
+
+
+def renamed() -> None:
+    put(R3, '"R3"', '"R3b"')()
+
+
+def split() -> None:
+    text = Path(R3).read_text()
+    removed()
+    for part in "ab":
+        write(f"requirements/r3{part}.fret", text.replace('"R3"', f'"R3{part}"'))
+
+
+def retired() -> None:
+    put(R3, '"approved"', '"retired"')()
+
+
+def all_retired() -> None:
+    retired()
+    put(R2, '"approved"', '"retired"')()
+    put(R1, '"draft"', '"retired"')()
+
+
+WITHDRAWN = {
+    "removed": (removed, {"R3"}),
+    "renamed": (renamed, {"R3"}),
+    "split": (split, {"R3"}),
+    "retired": (retired, {"R3"}),
+    "all retired": (all_retired, set(IDS)),
+}
+
+
+@pytest.mark.parametrize("audited", [False, True])
+@pytest.mark.parametrize("name", WITHDRAWN)
+def test_what_was_claimed_and_is_not_any_more_is_never_lost(
+    reviewed: Fretc, name: str, audited: bool
+) -> None:
+    make_it, gone = WITHDRAWN[name]
+    make_it()
+    if audited:
+        reviewed("audit", "logs")
+    diff = json.loads(reviewed("diff", "--format", "json").out)
+    found = {one["requirement"] for one in diff if one["suspect_links"] or one["state"] == "gone"}
+    assert found == gone
+    assert set(re.findall(r"F5(?:11|40) warning: (\S+) was", reviewed("check").err)) == gone
+    run = reviewed("report", "--strict", "--json", "r.json", "--junit", "r.xml")
+    report = json.loads(Path("r.json").read_text())
+    assert run.status == 1
+    assert {one["requirement"] for one in report["withdrawn"]} == gone
+    assert report["overall"]["headline"] != "Everything that was claimed is shown."
+    assert all(any(id in said for said in report["overall"]["sentences"]) for id in gone)
+    cases = re.findall(r'name="(\w+)[^"]*"[^>]*>\s*<failure message="withdrawn: ', _xml("r.xml"))
+    assert set(cases) == gone
+    if not audited:
+        again = json.loads(reviewed("verify-evidence", "--format", "json").out or '{"results": []}')
+        told = {r["requirement"] for r in again["results"] if r["finding"] == "differs"} - {""}
+        assert told == (gone if name != "all retired" else set())
+
+
+def _xml(path: str) -> str:
+    return Path(path).read_text()
+
+
+@pytest.mark.parametrize("name", WITHDRAWN)
+def test_who_accepts_that_something_is_claimed_no_more_hears_of_it_no_more(
+    reviewed: Fretc, name: str
+) -> None:
+    make_it, gone = WITHDRAWN[name]
+    make_it()
+    if name != "all retired":
+        reviewed("audit", "logs")
+        assert reviewed("lock", "R1", *BY).status == 0
+        assert reviewed("report", "--strict").status == 1, "R3 is still to be accepted"
+        assert reviewed("lock", *sorted(gone), *BY).status == 0
+        assert json.loads(reviewed("diff", "--format", "json").out)[-1]["state"] != "gone"
+        assert "was reviewed" not in reviewed("check").err
+
+
+def test_what_was_renamed_is_found_by_its_sentence(reviewed: Fretc) -> None:
+    renamed()
+    assert (
+        "F511 warning: R3 was reviewed (satisfied in 2 runs) and is not among the requirements "
+        "any more; R3b has its sentence\n"
+    ) in reviewed("check").err
+
+
+def test_a_requirement_without_a_review_is_told_where_others_have_one(reviewed: Fretc) -> None:
+    renamed()
+    assert "F544 warning: R3b was never reviewed\n" in reviewed("check").err
+
+
+def test_a_project_in_which_all_is_retired_shows_nothing(reviewed: Fretc) -> None:
+    all_retired()
+    Path("requirements/fretc.lock").unlink()
+    assert reviewed("report", "--strict").status == 3
+
+
+# What nobody can have reviewed ------------------------------------------------------------------
+
+LOCK = "requirements/fretc.lock"
+LOCKS: dict[str, Callable[[], None]] = {
+    "reviewer": put(LOCK, 'reviewer = "A"', 'reviewer = "B"'),
+    "verdict": put(LOCK, '"logs/a.mcap" = "satisfied"', '"logs/a.mcap" = "violated"'),
+    "date": put(LOCK, 'date = "2026-01-02"', 'date = "2026-01-01"'),
+    "form": put(LOCK, '"fretc-lock-2"', '"fretc-lock-1"'),
+    "a review under another name": put(LOCK, "[review.R3]", "[review.R4]"),
+    "in the year 3000": lambda: _dated("3000-01-01"),
+}
+
+
+def _dated(day: str) -> None:
+    known = read_lock(LOCK)
+    assert isinstance(known, Lock)
+    text = lock_text(Lock({id: replace(one, date=day) for id, one in known.reviews.items()}))
+    Path(LOCK).write_text(text)
+
+
+@pytest.mark.parametrize("name", LOCKS)
+def test_a_lock_that_nobody_can_have_written_is_refused_by_all(reviewed: Fretc, name: str) -> None:
+    LOCKS[name]()
+    for command in (("diff",), ("check",), ("report",), ("lock", *BY)):
+        run = reviewed(*command)
+        assert run.status == 2
+        assert "F510 " in run.err
+    assert reviewed("verify-evidence").status == 0, "evidence does not depend on reviews"
+
+
+def test_nobody_reviews_on_a_day_to_come(reviewed: Fretc) -> None:
+    run = reviewed("lock", *BY[:-1], "3000-01-01")
+    assert (run.status, run.err.splitlines()[0]) == (
+        2,
+        "F907 `3000-01-01` is still to come, and nobody can have reviewed then",
+    )
+
+
+# The table --------------------------------------------------------------------------------------
+
+if __name__ == "__main__":
+    for name, change in CHANGES.items():
+        told = [*sorted(change.touches)] or ["nothing"]
+        stale, suspect = sorted(change.stale(False)), sorted(change.suspect(True))
+        print(f"{name:<44} {', '.join(told):<24} {' '.join(stale):<10} {' '.join(suspect)}")
