@@ -99,8 +99,8 @@ def test_by_its_index_alone_a_log_is_known_by_its_summary_and_its_crcs(tmp_path:
 
 def test_by_its_index_alone_a_log_of_the_same_lengths_is_another_one(tmp_path: Path) -> None:
     one, other = (
-        write(tmp_path / f"{name}.mcap", [number(i + more, i * S) for i in range(4)], per_chunk=4)
-        for name, more in (("one", 0.0), ("other", 0.5))
+        write(tmp_path / name, [number(x, i * S) for i in range(4)], per_chunk=4, compression=NONE)
+        for name, x in (("one.mcap", 1.0), ("other.mcap", 2.0))
     )
     assert one.stat().st_size == other.stat().st_size
     found = [checked(path, Integrity.INDEX) for path in (one, other)]
