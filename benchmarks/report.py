@@ -8,14 +8,18 @@ import random
 import resource
 import tempfile
 import time
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+from compiler import __version__
+from compiler.basis import BINDINGS as BOUND
+from compiler.basis import of_all
 from compiler.files import sha256
-from compiler.project import Project, fingerprint, load
+from compiler.plan import bases
+from compiler.project import Project, load
 from compiler.record import wording
 from compiler.report import make
-from compiler.targets import monitor
 from monitors.evidence import SCHEMA
 
 BINDINGS = """\
@@ -80,18 +84,20 @@ def evidence(known: Project, runs: int, share: float) -> dict[str, Any]:
     """What an audit would have written: of each requirement a share of runs is violated."""
     assert known.declarations is not None
     choose = random.Random(1)
-    bindings = fingerprint(known.declarations)
-    monitors = [sha256(monitor.text(rule)) for rule in known.rules]
+    known_bases = bases(known)
+    rests_on = [known_bases[id(rule.requirement)] for rule in known.rules]
+    named = zip(known.rules, rests_on, strict=True)
+    bindings = of_all({rule.id: basis[BOUND] for rule, basis in named})
     results = [
-        _result(choose, rule, hashed, bindings, run, violated=choose.random() < share)
+        _result(choose, rule, basis, run, violated=choose.random() < share)
         for run in range(runs)
-        for rule, hashed in zip(known.rules, monitors, strict=True)
+        for rule, basis in zip(known.rules, rests_on, strict=True)
     ]
     texts = [
         {"id": rule.id, "sentence": wording(rule.requirement), "sha256": rule.fingerprint}
         for rule in known.rules
     ]
-    head = {"schema": SCHEMA, "fretc": "0", "bindings": {"file": "b", "sha256": bindings}}
+    head = {"schema": SCHEMA, "fretc": __version__, "bindings": {"file": "b", "sha256": bindings}}
     return {**head, "requirements": texts, "results": results}
 
 
@@ -100,7 +106,7 @@ def _moment(tick: int) -> dict[str, Any]:
 
 
 def _result(
-    choose: random.Random, rule: Any, hashed: str, bindings: str, run: int, *, violated: bool
+    choose: random.Random, rule: Any, basis: Mapping[str, str], run: int, *, violated: bool
 ) -> dict[str, Any]:
     triggers = sorted(choose.sample(range(TICKS - 200), 40))
     broken = triggers[:8] if violated else []
@@ -130,12 +136,7 @@ def _result(
         ],
         "units": {"clearance": "m", "vx": "m/s"},
         "assumptions": [],
-        "hashes": {
-            "log": sha256(str(run)),
-            "sentence": rule.fingerprint,
-            "bindings": bindings,
-            "monitor": hashed,
-        },
+        "hashes": {"log": sha256(str(run)), **basis},
         "health": {
             "intact": True,
             "size": 12_345_678,

@@ -23,6 +23,7 @@ from mcap.well_known import MessageEncoding, SchemaEncoding
 from mcap.writer import Writer
 
 from compiler import __version__
+from compiler.basis import BINDINGS, CLOCK, MONITOR, PARAMS, SENTENCE, TOPICS
 from compiler.logs import ANNOTATIONS
 from compiler.record import wording
 from compiler.rule import Rule
@@ -148,12 +149,13 @@ def _metadata(results: Sequence[Mapping[str, Any]]) -> dict[str, str]:
     """What was judged, by what, and how it came out."""
     first = results[0]
     found = {"fretc": __version__, "run": first["run"], "clock": first["clock"]}
-    names = ("log", "log_summary", "bindings")
+    names = ("log", "log_summary", CLOCK, TOPICS)
     found |= {f"sha256.{n}": first["hashes"][n] for n in names if n in first["hashes"]}
     for result in results:
         id, hashes = result["requirement"], result["hashes"]
         found |= {f"{id}.verdict": result["verdict"], f"{id}.reason": result["reason"]}
-        found |= {f"{id}.sha256.{name}": hashes[name] for name in ("sentence", "monitor")}
+        parts = [name for name in (SENTENCE, PARAMS, BINDINGS, MONITOR) if name in hashes]
+        found |= {f"{id}.sha256.{name}": hashes[name] for name in parts}
     return found
 
 

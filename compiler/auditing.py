@@ -10,6 +10,7 @@ from types import MappingProxyType
 from typing import Any
 
 from compiler import __version__
+from compiler.basis import BINDINGS, SENTENCE, of_all
 from compiler.constancy import never_changed, tallies_of
 from compiler.estimates import GLYPHS as ANSWERS
 from compiler.estimates import Estimated, estimates, warnings
@@ -245,7 +246,7 @@ def _left_out(plan: Plan, beside: Mapping[str, Any]) -> Iterator[Mapping[str, An
             beside["run"],
             refused.id,
             f"not judged: {'; '.join(f'{d.code.number} {d.message}' for d in refused.why)}",
-            {**log, **refused.hashes(plan.bindings)},
+            {**log, **refused.basis},
             beside["health"],
         )
 
@@ -271,10 +272,7 @@ def _unread(plan: Plan, log: str, why: Diagnostic, before: Stamp | None) -> Audi
         before: its stamp before that was tried; None: it is not known.
     """
     hashes = _hash_of(log, before)
-    records = [
-        unread(called(log), each.id, why, {**hashes, **each.hashes(plan.bindings)})
-        for each in plan.named
-    ]
+    records = [unread(called(log), each.id, why, {**hashes, **each.basis}) for each in plan.named]
     return Audited(tuple(records), (why,), read=False)
 
 
@@ -292,9 +290,13 @@ def _evidence(
     content: dict[str, Any] = {
         "schema": SCHEMA,
         "fretc": __version__,
-        "bindings": {"file": plan.declarations.source.name, "sha256": plan.bindings},
+        "bindings": {
+            "file": plan.declarations.source.name,
+            "sha256": of_all({each.id: each.basis[BINDINGS] for each in plan.named}),
+        },
         "requirements": [
-            {"id": each.id, "sentence": each.sentence, "sha256": each.sha256} for each in plan.named
+            {"id": each.id, "sentence": each.sentence, "sha256": each.basis[SENTENCE]}
+            for each in plan.named
         ],
         "results": list(results),
     }

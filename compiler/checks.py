@@ -168,5 +168,18 @@ def _changes(project: Project, standings: Sequence[Standing]) -> Iterator[Diagno
         )
 
 
+def unreviewed(project: Project, standings: Sequence[Standing]) -> Iterator[Diagnostic]:
+    """F544 for each requirement in force without a review; for a project that has a lock."""
+    for requirement, standing in zip(project.requirements, standings, strict=True):
+        if standing.review is None and requirement.status != "retired":
+            yield Diagnostic(
+                Code.NOT_REVIEWED,
+                f"{requirement.id} was never reviewed",
+                requirement.place("id"),
+                help=f"review it, then accept it: `fretc lock {requirement.id} ...`",
+                severity=Severity.WARNING,
+            )
+
+
 def _named(node: Node) -> str:
     return "the clock" if node.kind == "clock" else f"{node.kind} {node.name}"

@@ -42,7 +42,7 @@ def difference(standing: Standing) -> Difference:
         return Difference(chain.requirement, "new", (), (), verdicts)
     changes = tuple((node, _how(node, chain.prints, review.prints)) for node in standing.changes)
     verdicts = _verdicts(review.verdicts, chain.verdicts)
-    state = "changed" if changes or verdicts else "same"
+    state = "changed" if changes or verdicts or standing.suspects else "same"
     return Difference(chain.requirement, state, changes, standing.suspects, verdicts)
 
 

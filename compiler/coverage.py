@@ -19,6 +19,7 @@ from fretish.rendering import as_json, visible
 from monitors.audit import examined, signals_of
 from monitors.phases import Phases, phases
 from monitors.recordings import read
+from monitors.samples import Recording
 from monitors.tallies import NOTHING, Tally, tally
 from monitors.traces import trace
 
@@ -207,6 +208,23 @@ def _seen(log: str, declarations: Declarations, plan: Plan | None) -> Seen:
     seen = trace(declarations, recording, names)
     ticks = len(seen.timeline.times)
     tallies = {name: tally(column, ticks) for name, column in seen.columns.items()}
-    monitors = [w.monitor for w in watched(plan)] if plan is not None else []
-    found = phases(declarations, recording, monitors)
+    found = _phases(log, declarations, recording, plan) if plan is not None else {}
     return Seen(log, ticks, tallies, recording.findings, found)
+
+
+def _phases(
+    log: str, declarations: Declarations, recording: Recording, plan: Plan
+) -> Mapping[str, Phases]:
+    """By the ticks of an audit: they begin with the messages that the requirements read."""
+    monitors = [w.monitor for w in watched(plan)]
+    if _topics(plan.declarations) != _topics(declarations):
+        names = tuple(plan.declarations.signals)
+        again = read(log, plan.declarations, names)
+        if isinstance(again, Diagnostic):
+            return {}
+        recording = again
+    return phases(plan.declarations, recording, monitors)
+
+
+def _topics(declarations: Declarations) -> set[str]:
+    return {signal.path.topic for signal in declarations.signals.values()}

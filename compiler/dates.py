@@ -6,7 +6,7 @@ Source: reproducible-builds.org, SOURCE_DATE_EPOCH specification 1.1.
 from __future__ import annotations
 
 import os
-from datetime import UTC, datetime
+from datetime import UTC, date, datetime, timedelta
 
 
 def source_date() -> datetime | None:
@@ -15,3 +15,25 @@ def source_date() -> datetime | None:
     if epoch.isascii() and epoch.isdecimal() and int(epoch) < 10**11:
         return datetime.fromtimestamp(int(epoch), UTC)
     return None
+
+
+def today() -> str:
+    """The day of `SOURCE_DATE_EPOCH` where that is set, so that a report can be made again; UTC."""
+    return _now().date().isoformat()
+
+
+def is_to_come(day: str) -> bool:
+    """Whether a day, as `2026-11-22`, has begun nowhere on Earth: at UTC+14 it begins first."""
+    return date.fromisoformat(day) > (_now() + timedelta(hours=14)).date()
+
+
+def is_date(text: str) -> bool:
+    """Whether it is a date as `2026-11-22`."""
+    try:
+        return date.fromisoformat(text).isoformat() == text
+    except ValueError:
+        return False
+
+
+def _now() -> datetime:
+    return source_date() or datetime.now(UTC)

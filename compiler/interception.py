@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import hashlib
-import json
-import tomllib
+from dataclasses import asdict
 
+from compiler.canonical import clock, digest
 from fretish.declarations import Assumed, Declarations, Form, Interception, Requests
 from monitors.interceptor import Options
 
@@ -36,13 +35,13 @@ ASSUMED = "[interceptor] and [assume]"
 def assumed(declarations: Declarations) -> str:
     """SHA-256 of what the bindings say of the interceptor and of what is assumed; "" if nothing.
 
-    White space, comments and order do not count; the clock does, for times are told in ticks.
+    Their meaning counts, not how it is written; the clock does, for times are told in ticks.
     """
-    data = tomllib.loads(declarations.source.text)
-    told = {name: data[name] for name in ("clock", "interceptor", "assume") if name in data}
-    if "assume" not in told:
+    if declarations.assumed is None:
         return ""
-    return hashlib.sha256(json.dumps(told, sort_keys=True).encode()).hexdigest()
+    loop = (declarations.interceptor, declarations.assumed)
+    told = [{**asdict(part), "span": None} if part else None for part in loop]
+    return digest([clock(declarations.clock), *told])
 
 
 def ticks(duration: int, period: int) -> int:

@@ -9,27 +9,27 @@ that can be followed both ways; Doorstop and StrictDoc call a link suspect whose
 
 from __future__ import annotations
 
-import hashlib
-import json
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, field
 from typing import Any
 
-from compiler import printing
+from compiler import __version__, basis, printing
+from compiler.basis import Basis
+from compiler.canonical import described, digest
 from compiler.evidence import Evidence, Result, by_requirement
+from compiler.plan import bases
 from compiler.products import Product, shared_products
 from compiler.products import products as _made
-from compiler.project import Project, bound_to_logs
+from compiler.project import Project
 from compiler.proven import Proof
 from compiler.rule import Rule
 from fretish.documents import Requirement
 
-HAZARD, PARENT = "hazard", "parent"
-TEXT, PARAMS, SENTENCE = "text", "params", "sentence"
-CLOCK, BINDINGS, FORMULAS, ARTEFACT = "clock", "bindings", "formulas", "artefact"
+HAZARD, PARENT, STATUS, PLAN = "hazard", "parent", "status", "plan"
+TEXT, WORDS, FORMULAS, ARTEFACT = "text", "words", "formulas", "artefact"
 LOG, VERDICT, REVIEW = "log", "verdict", "review"
 PROOF, SHARED = "proof", "shared"
-_ADDED = (LOG, VERDICT, PROOF, SHARED)
+_ADDED = (LOG, VERDICT, PROOF, SHARED, PLAN, ARTEFACT, basis.TOPICS)
 """What may come after a review without changing anything that was reviewed."""
 _READINGS = ("ltl", "json")
 """Targets that only show what the formulas are: those have fingerprints of their own."""
@@ -65,6 +65,10 @@ class Chain:
     links: tuple[Link, ...]
     verdicts: Mapping[str, str]
     """Run → the word of its verdict."""
+    outdated: Mapping[Node, tuple[Node, ...]] = field(default_factory=dict)
+    """Each verdict and proof that is about something else than what is here now → what differs."""
+    unhashed: tuple[str, ...] = ()
+    """Runs of whose log nothing is known that tells it from another one."""
 
 
 def chains(
@@ -82,9 +86,9 @@ def chains(
         proofs: what verification has found.
     """
     rules = {id(rule.requirement): rule for rule in project.rules}
-    results, common = by_requirement(evidence), _common(project, proofs)
+    results, common = by_requirement(evidence), _common(project, evidence, proofs)
     return tuple(
-        _Chain(common).of(
+        _Chain(common, requirement).of(
             requirement,
             rules.get(id(requirement)),
             _made(rules.get(id(requirement))) if made is None else made.get(id(requirement), ()),
@@ -101,18 +105,20 @@ class _Common:
 
     project: Project
     texts: Mapping[str, Requirement]
-    bindings: Mapping[str, Any]
+    bases: Mapping[int, Basis]
+    audited_by: str
+    """The version of fretc that made the evidence."""
     shared: Mapping[str, str]
     """Name of what is made of the bindings alone → its SHA-256; nothing where nothing is proved."""
 
 
-def _common(project: Project, proofs: Sequence[Proof]) -> _Common:
-    declared = project.declarations
-    shared = shared_products(declared) if proofs else ()
+def _common(project: Project, evidence: Evidence | None, proofs: Sequence[Proof]) -> _Common:
+    shared = shared_products(project.declarations) if proofs else ()
     return _Common(
         project,
         {requirement.id: requirement for requirement in project.requirements},
-        bound_to_logs(declared) if declared is not None else {},
+        bases(project),
+        evidence.fretc if evidence else "",
         {product.file: product.sha256 for product in shared},
     )
 
@@ -120,10 +126,12 @@ def _common(project: Project, proofs: Sequence[Proof]) -> _Common:
 class _Chain:
     """Collects nodes and links of one requirement."""
 
-    def __init__(self, common: _Common) -> None:
-        self._common, self._project, self._bindings = common, common.project, common.bindings
+    def __init__(self, common: _Common, requirement: Requirement) -> None:
+        self._common, self._project, self._id = common, common.project, requirement.id
+        self._basis = common.bases[id(requirement)]
         self._prints: dict[Node, str] = {}
         self._links: dict[Link, None] = {}
+        self._outdated: dict[Node, tuple[Node, ...]] = {}
 
     def of(
         self,
@@ -133,105 +141,127 @@ class _Chain:
         results: Sequence[Result],
         proofs: Sequence[Proof],
     ) -> Chain:
-        verdicts = {result.run: result.verdict for result in results}
         self._above(requirement, {requirement.id})
-        sentence = Node(SENTENCE, requirement.id)
-        self._add(sentence, rule.fingerprint if rule else _plain(requirement.wording.text))
+        self._beside(requirement)
+        sentence = Node(basis.SENTENCE, requirement.id)
+        self._add(sentence, self._basis[basis.SENTENCE])
         self._link(Node(TEXT, requirement.id), sentence)
+        artefacts = self._below(rule, sentence, made) if rule is not None else {}
+        sources = self._sources(artefacts.get("monitor"), audited=bool(results))
+        for result in results:
+            self._judged(result, sources)
         if rule is not None:
-            self._below(rule, sentence, made, results)
             self._proved(rule, proofs)
         review = Node(REVIEW, requirement.id)
-        sources = {link.source for link in self._links}
-        ends = [node for node in self._prints if node not in sources]
-        for node in ends:
+        sent = {link.source for link in self._links}
+        for node in [node for node in self._prints if node not in sent]:
             self._link(node, review)
-        return Chain(requirement.id, self._prints, tuple(sorted(self._links)), verdicts)
+        return Chain(
+            requirement.id,
+            self._prints,
+            tuple(sorted(self._links)),
+            {result.run: result.verdict for result in results},
+            self._outdated,
+            tuple(result.run for result in results if not _print_of_log(result)),
+        )
+
+    def _beside(self, requirement: Requirement) -> None:
+        """What no log depends on, and a review does: whether it is claimed, and how it is shown."""
+        retired = requirement.status == "retired"
+        self._add(in_force(self._id), digest("retired") if retired else IN_FORCE)
+        for method in requirement.verify:
+            self._add(Node(PLAN, f"{self._id} {method}"), digest(method))
 
     def _above(self, requirement: Requirement, seen: set[str]) -> None:
         """Hazards and requirements that it traces to, all the way up."""
         text = Node(TEXT, requirement.id)
-        self._add(text, _fingerprint(_said(requirement)))
+        self._add(text, digest(_said(requirement)))
         for parent in requirement.parents:
             hazard, above = self._project.hazards.get(parent), self._common.texts.get(parent)
             if hazard is not None:
-                self._add(Node(HAZARD, parent), _fingerprint(_normal(asdict(hazard))))
+                self._add(Node(HAZARD, parent), digest(_normal(asdict(hazard))))
                 self._link(Node(HAZARD, parent), text)
             elif parent in self._project.parents:
                 outside = self._project.parents[parent]
                 told = _normal([outside.title, outside.text])
-                self._add(Node(PARENT, parent), _fingerprint(told))
+                self._add(Node(PARENT, parent), digest(told))
                 self._link(Node(PARENT, parent), text)
             elif above is not None and parent not in seen:
                 seen.add(parent)
                 self._above(above, seen)
                 self._link(Node(TEXT, parent), text)
 
-    def _below(
-        self, rule: Rule, sentence: Node, made: Iterable[Product], results: Iterable[Result]
-    ) -> None:
-        formulas = Node(FORMULAS, rule.id)
+    def _below(self, rule: Rule, sentence: Node, made: Iterable[Product]) -> Mapping[str, Node]:
+        """Formulas, words and artefacts; gives the artefact of each target."""
+        formulas, words = Node(FORMULAS, rule.id), Node(WORDS, rule.id)
+        clock, fretc = self._clock(), Node(basis.FRETC, _VERSION)
         self._add(formulas, _formulas(rule))
+        self._add(fretc, digest(__version__))
         self._link(sentence, formulas)
-        clock = Node(CLOCK, "clock")
-        self._add(clock, _fingerprint(self._bindings.get("clock")))
         if rule.ticks is not None:
             self._link(clock, formulas)
-        monitor = self._artefacts(made, formulas)
-        bound = Node(BINDINGS, rule.id)
-        self._add(bound, _fingerprint(_normal(self._bound(rule))))
-        sources = [monitor, bound, clock] if monitor else [bound, clock]
-        if rule.requirement.params:
-            params = Node(PARAMS, rule.id)
-            self._add(params, _fingerprint(_normal(dict(rule.requirement.params))))
-            sources.append(params)
-        for result in results:
-            self._judged(result, sources)
-
-    def _artefacts(self, made: Iterable[Product], formulas: Node) -> Node | None:
-        """A node for each file that can be made; gives that of the monitor."""
-        monitor = None
+        told = described(self._project.declarations, rule.watched)
+        if told:
+            self._add(words, digest(told))
+        found = {}
         for product in made:
             if product.refusal or product.target in _READINGS:
                 continue
-            node = Node(ARTEFACT, product.file)
+            node = found[product.target] = Node(ARTEFACT, product.file)
             self._add(node, product.sha256)
-            self._link(formulas, node)
-            monitor = node if product.target == "monitor" else monitor
-        return monitor
+            for source in (formulas, fretc, *([clock] if product.target == "monitor" else ())):
+                self._link(source, node)
+        return found
 
-    def _judged(self, result: Result, sources: Iterable[Node]) -> None:
+    def _clock(self) -> Node:
+        node = Node(basis.CLOCK, "clock")
+        self._add(node, self._basis[basis.CLOCK])
+        return node
+
+    def _sources(self, monitor: Node | None, *, audited: bool) -> Mapping[str, Node]:
+        """What a verdict rests on, by its kind."""
+        found = {
+            basis.FRETC: Node(basis.FRETC, _VERSION),
+            basis.SENTENCE: Node(basis.SENTENCE, self._id),
+            basis.PARAMS: Node(basis.PARAMS, self._id),
+            basis.CLOCK: self._clock(),
+            basis.TOPICS: Node(basis.TOPICS, "audited"),
+            basis.BINDINGS: Node(basis.BINDINGS, self._id),
+            basis.MONITOR: monitor or Node(basis.MONITOR, self._id),
+        }
+        for kind in (basis.PARAMS, basis.BINDINGS, *([basis.TOPICS] if audited else ())):
+            self._add(found[kind], self._basis[kind])
+        return found
+
+    def _judged(self, result: Result, sources: Mapping[str, Node]) -> None:
         verdict, log = Node(VERDICT, f"{result.requirement} {result.run}"), Node(LOG, result.run)
-        self._add(log, result.hashes.get("log", ""))
-        self._add(verdict, _fingerprint(_judgement(result)))
-        for source in (*sources, log):
-            self._link(source, verdict)
+        self._add(log, _print_of_log(result))
+        self._add(verdict, digest(_judgement(result)))
+        follows = sources[basis.MONITOR] in self._prints
+        for kind, source in sources.items():
+            if source in self._prints and not (follows and kind == basis.SENTENCE):
+                self._link(source, verdict)
+        self._link(log, verdict)
+        old = outdated(result, self._common.audited_by, self._basis)
+        if old:
+            self._outdated[verdict] = tuple(sources[kind] for kind in old)
 
     def _proved(self, rule: Rule, proofs: Sequence[Proof]) -> None:
         """Each claim, with the texts and assumptions that it is about, as they are now."""
         now = self._common.shared
         for proof in proofs:
             node = Node(PROOF, f"{rule.id} {proof.layer}: {proof.claim}")
-            self._add(node, _fingerprint([proof.result, sorted(proof.assumptions)]))
+            self._add(node, digest([proof.result, sorted(proof.assumptions)]))
             self._link(Node(FORMULAS, rule.id), node)
-            for name in proof.artefacts:
+            for name, looked_at in proof.artefacts.items():
+                source = Node(SHARED, name) if name in now else Node(ARTEFACT, name)
                 if name in now:
-                    self._add(Node(SHARED, name), now[name])
-                    self._link(Node(SHARED, name), node)
-                elif Node(ARTEFACT, name) in self._prints:
-                    self._link(Node(ARTEFACT, name), node)
-
-    def _bound(self, rule: Rule) -> dict[str, Any]:
-        """What the bindings say of its propositions, and of the signals that these read."""
-        declared = self._project.declarations
-        if declared is None:
-            return {}
-        known = [declared.propositions[n] for n in rule.watched if n in declared.propositions]
-        signals = dict.fromkeys(signal for proposition in known for signal in proposition.signals)
-        return {
-            "proposition": {p.name: self._bindings["proposition"][p.name] for p in known},
-            "signal": {name: self._bindings["signal"][name] for name in signals},
-        }
+                    self._add(source, now[name])
+                if source not in self._prints:
+                    continue
+                self._link(source, node)
+                if self._prints[source] != looked_at:
+                    self._outdated[node] = (*self._outdated.get(node, ()), source)
 
     def _add(self, node: Node, fingerprint: str) -> None:
         self._prints[node] = fingerprint
@@ -242,9 +272,29 @@ class _Chain:
 
 # Fingerprints ----------------------------------------------------------------------------------
 
+_VERSION = "version"
+IN_FORCE = digest("in force")
+"""The fingerprint of the status of a requirement that is claimed, as a draft or approved."""
+
+
+def in_force(requirement: str) -> Node:
+    """Whether a requirement is claimed, or retired."""
+    return Node(STATUS, requirement)
+
+
+def outdated(result: Result, audited_by: str, now: Basis) -> tuple[str, ...]:
+    """The kinds of what a result rests on that are not as they were when it was audited."""
+    recorded = {**result.hashes, basis.FRETC: audited_by}
+    return basis.outdated(recorded, {**now, basis.FRETC: __version__})
+
+
+def _print_of_log(result: Result) -> str:
+    """SHA-256 of the log; of its summary, where it was read by its index; "": neither is known."""
+    return result.hashes.get("log") or result.hashes.get("log_summary") or ""
+
 
 def _said(requirement: Requirement) -> dict[str, Any]:
-    """What a person says of it; its status and planned methods are no part of the claim."""
+    """What a person says of it; its planned methods and whether it is claimed are no part of it."""
     texts = (requirement.title, requirement.text, requirement.rationale)
     return {"texts": _normal(list(texts)), "parents": sorted(requirement.parents)}
 
@@ -261,11 +311,7 @@ def _judgement(result: Result) -> dict[str, Any]:
 
 def _formulas(rule: Rule) -> str:
     told = [rule.ft_infinite, rule.ft_finite, rule.pt]
-    return _fingerprint([printing.readable(formula) for formula in told])
-
-
-def _plain(text: str) -> str:
-    return _fingerprint(_normal(text))
+    return digest([printing.readable(formula) for formula in told])
 
 
 def _normal(value: Any) -> Any:
@@ -279,10 +325,6 @@ def _normal(value: Any) -> Any:
             return [_normal(item) for item in value]
         case _:
             return value
-
-
-def _fingerprint(value: Any) -> str:
-    return hashlib.sha256(json.dumps(value, sort_keys=True).encode()).hexdigest()
 
 
 # Suspects --------------------------------------------------------------------------------------
@@ -307,6 +349,9 @@ def changed(prints: Mapping[Node, str], locked: Mapping[Node, str]) -> tuple[Nod
 def suspects(chain: Chain, locked: Mapping[Node, str]) -> tuple[Suspect, ...]:
     """The links downstream of what has changed since the lock, those nearest to it first.
 
+    What is about something else than what is here now is suspect too, whatever was locked: a
+    verdict of another binding stays one when the binding of the review has come back.
+
     Args:
         chain: as it is now.
         locked: the fingerprints that were accepted.
@@ -315,11 +360,20 @@ def suspects(chain: Chain, locked: Mapping[Node, str]) -> tuple[Suspect, ...]:
         node for node in changed(chain.prints, locked) if node in locked or node.kind not in _ADDED
     }
     upstream = _upstream(chain)
-    found = []
-    for link in sorted(chain.links, key=lambda link: (len(upstream[link.source]), link)):
-        causes = wrong & {link.source, *upstream[link.source]}
-        if causes:
-            found.append(Suspect(link, tuple(sorted(_first(causes, upstream)))))
+    causes_of: dict[Link, set[Node]] = {}
+    for link in chain.links:
+        above = {link.source, *upstream[link.source]}
+        causes_of[link] = wrong & above
+        for node in chain.outdated.keys() & above & locked.keys():
+            causes_of[link] |= {*chain.outdated[node]}
+    for node in chain.outdated.keys() & locked.keys():
+        for source in chain.outdated[node]:
+            causes_of.setdefault(Link(source, node), set()).add(source)
+    found = [
+        Suspect(link, tuple(sorted(_first(causes_of[link], upstream))))
+        for link in sorted(causes_of, key=lambda link: (len(upstream.get(link.source, ())), link))
+        if causes_of[link]
+    ]
     gone = tuple(sorted(node for node in locked if node not in chain.prints))
     review = Node(REVIEW, chain.requirement)
     found.extend(Suspect(Link(node, review), (node,)) for node in gone)
@@ -328,7 +382,7 @@ def suspects(chain: Chain, locked: Mapping[Node, str]) -> tuple[Suspect, ...]:
 
 def _first(causes: set[Node], upstream: Mapping[Node, frozenset[Node]]) -> Iterator[Node]:
     """Those that no other cause explains."""
-    return (cause for cause in causes if not upstream[cause] & causes)
+    return (cause for cause in causes if not upstream.get(cause, frozenset()) & causes)
 
 
 def _upstream(chain: Chain) -> dict[Node, frozenset[Node]]:

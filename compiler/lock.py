@@ -8,17 +8,20 @@ by `fretc lock` only; a person's reason not to have something shown yet is a wai
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from datetime import date
 from typing import Any
 
 import tomli_w
 
+from compiler.basis import SENTENCE
+from compiler.canonical import digest
+from compiler.dates import is_date, is_to_come
 from compiler.evidence import VERDICTS
 from compiler.files import read as read_text
-from compiler.links import REVIEW, Chain, Node, Suspect, changed, suspects
-from fretish.diagnostic import Code, Diagnostic, Severity, suggestion
+from compiler.links import IN_FORCE, REVIEW, Chain, Node, Suspect, changed, in_force, suspects
+from fretish.diagnostic import Code, Diagnostic, Severity
+from fretish.documents import Requirement
 from fretish.ordering import natural
 from fretish.source import Source
 from fretish.tables import Tables
@@ -26,7 +29,9 @@ from fretish.tables import read as read_tables
 from monitors import kernel
 
 NAME = "fretc.lock"
-SCHEMA = "fretc-lock-1"
+SCHEMA = "fretc-lock-2"
+_OLDER = ("fretc-lock-1",)
+_TABLE = "review"
 _TEXTS = ("reviewer", "role", "date", "comment")
 _SHA256 = re.compile(r"[0-9a-f]{64}|")
 _HEAD = "# Written by `fretc lock`: what was reviewed, and what it was like then.\n\n"
@@ -47,6 +52,18 @@ class Review:
     verdicts: Mapping[str, str]
     """Run → the word of its verdict."""
 
+    @property
+    def was_in_force(self) -> bool:
+        """Whether the requirement was claimed then."""
+        return self.prints.get(in_force(self.requirement)) == IN_FORCE
+
+    @property
+    def seal(self) -> str:
+        """SHA-256 of all of it: a review that is edited by hand is nobody's."""
+        told = {name: getattr(self, name) for name in ("requirement", *_TEXTS)}
+        prints = {str(node): sha for node, sha in self.prints.items()}
+        return digest([told, prints, dict(self.verdicts)])
+
 
 @dataclass(frozen=True, slots=True)
 class Lock:
@@ -62,9 +79,13 @@ def accepted(chain: Chain, reviewer: str, role: str, date: str, comment: str) ->
 
 def verdicts_of(chain: Chain) -> str:
     """The verdicts that a review of it would accept, in words, the worst first."""
+    return _in_words(chain.verdicts)
+
+
+def _in_words(verdicts: Mapping[str, str]) -> str:
     told = []
     for word in VERDICTS:
-        runs = sorted(run for run, verdict in chain.verdicts.items() if verdict == word)
+        runs = sorted(run for run, verdict in verdicts.items() if verdict == word)
         if not runs:
             continue
         named = ", ".join(runs[:_NAMED]) if word == kernel.VIOLATED else ""
@@ -99,13 +120,42 @@ def unnamed_violations(chosen: Sequence[Chain], refuted: Collection[str]) -> tup
     )
 
 
+def outdated_results(chosen: Sequence[Chain]) -> tuple[Diagnostic, ...]:
+    """F541 for each requirement whose evidence is about something else; F542 for unknown logs."""
+    found = []
+    for chain in chosen:
+        causes = dict.fromkeys(cause for nodes in chain.outdated.values() for cause in nodes)
+        if causes:
+            what = ", ".join(f"{cause.kind} {cause.name}" for cause in causes)
+            found.append(
+                Diagnostic(
+                    Code.OUTDATED_RESULT,
+                    f"what was shown of {chain.requirement} is about something else than what is "
+                    f"here now: {what}",
+                    help="audit again, and verify again what was proved; then lock",
+                )
+            )
+        if chain.unhashed:
+            found.append(
+                Diagnostic(
+                    Code.UNKNOWN_LOG,
+                    f"nothing tells the log `{chain.unhashed[0]}` of {chain.requirement} from "
+                    "another one: there is no SHA-256 of it",
+                    help="audit again where the log can be read, then lock",
+                )
+            )
+    return tuple(found)
+
+
 def text(lock: Lock) -> str:
     """The file."""
-    tables: dict[str, Any] = {"schema": SCHEMA}
+    reviews: dict[str, Any] = {}
+    tables: dict[str, Any] = {"schema": SCHEMA, _TABLE: reviews}
     for id in sorted(lock.reviews, key=natural):
         review = lock.reviews[id]
-        tables[id] = {
+        reviews[id] = {
             **{name: getattr(review, name) for name in _TEXTS},
+            "seal": review.seal,
             "fingerprints": {str(n): sha for n, sha in sorted(review.prints.items())},
             "verdicts": dict(sorted(review.verdicts.items())),
         }
@@ -126,7 +176,8 @@ def read(path: str) -> Lock | Diagnostic:
     wrong = next(_mistakes(tables), None)
     if wrong is not None:
         return wrong
-    return Lock({id: _review(id, told) for id, told in _reviews(tables)})
+    lock = Lock({id: _review(id, told) for id, told in _reviews(tables)})
+    return next(_broken(tables, lock), lock)
 
 
 def _none_yet(path: str) -> Diagnostic:
@@ -138,26 +189,34 @@ def _none_yet(path: str) -> Diagnostic:
     )
 
 
-def _reviews(tables: Tables) -> Iterator[tuple[str, Mapping[str, Any]]]:
-    return ((id, told) for id, told in tables.data.items() if id != "schema")
+def _reviews(tables: Tables) -> Iterable[tuple[str, Any]]:
+    told = tables.data.get(_TABLE, {})
+    return told.items() if isinstance(told, dict) else ()
 
 
 def _mistakes(tables: Tables) -> Iterator[Diagnostic]:
-    if tables.data.get("schema") != SCHEMA:
+    schema = tables.data.get("schema")
+    if schema in _OLDER or isinstance(schema, dict):  # a review of a requirement called `schema`
+        yield _older(tables)
+        return
+    if schema != SCHEMA:
         yield _wrong(tables, f"the lock is not of the form `{SCHEMA}`", "schema")
+    for name, value in tables.data.items():
+        if name not in ("schema", _TABLE) or (name == _TABLE and not isinstance(value, dict)):
+            yield _wrong(tables, f"`{name}` is no part of a lock", name)
     for id, told in _reviews(tables):
         if not isinstance(told, dict):
-            yield _wrong(tables, f"`{id}` is no review", id)
+            yield _wrong(tables, f"`{id}` is no review", _TABLE, id)
             continue
-        for name in _TEXTS:
+        for name in (*_TEXTS, "seal"):
             if not isinstance(told.get(name), str):
-                yield _wrong(tables, f"the review of {id} has no `{name}`", id, name)
+                yield _wrong(tables, f"the review of {id} has no `{name}`", _TABLE, id, name)
         if isinstance(told.get("date"), str) and not is_date(told["date"]):
-            yield _wrong(tables, f"`{told['date']}` is no date", id, "date")
+            yield _wrong(tables, f"`{told['date']}` is no date", _TABLE, id, "date")
         for name in ("fingerprints", "verdicts"):
             table = told.get(name)
             if not isinstance(table, dict) or not all(isinstance(v, str) for v in table.values()):
-                yield _wrong(tables, f"`{name}` of {id} must be a table of texts", id, name)
+                yield _wrong(tables, f"`{name}` of {id} must be a table of texts", _TABLE, id, name)
             elif name == "fingerprints":
                 yield from _no_prints(tables, id, table)
 
@@ -165,7 +224,29 @@ def _mistakes(tables: Tables) -> Iterator[Diagnostic]:
 def _no_prints(tables: Tables, id: str, table: Mapping[str, str]) -> Iterator[Diagnostic]:
     for name, sha in table.items():
         if ":" not in name or not _SHA256.fullmatch(sha):
-            yield _wrong(tables, f"`{name}` of {id} is no fingerprint", id, "fingerprints", name)
+            path = (_TABLE, id, "fingerprints", name)
+            yield _wrong(tables, f"`{name}` of {id} is no fingerprint", *path)
+
+
+def _broken(tables: Tables, lock: Lock) -> Iterator[Diagnostic]:
+    """Reviews that nobody can have made."""
+    for id, review in lock.reviews.items():
+        told = tables.data[_TABLE][id]
+        if told["seal"] != review.seal:
+            what = f"the review of {id} is not as `fretc lock` wrote it: somebody has edited it"
+            yield _wrong(tables, what, _TABLE, id, "seal")
+        elif is_to_come(review.date):
+            what = f"the review of {id} is of {review.date}, a day that is still to come"
+            yield _wrong(tables, what, _TABLE, id, "date")
+
+
+def _older(tables: Tables) -> Diagnostic:
+    return Diagnostic(
+        Code.BAD_LOCK,
+        "the lock was written by an earlier version of fretc, whose fingerprints are others",
+        tables.place("schema"),
+        help="keep it under another name, look at what was accepted, and review anew: `fretc lock`",
+    )
 
 
 def _wrong(tables: Tables, what: str, *path: str) -> Diagnostic:
@@ -175,14 +256,6 @@ def _wrong(tables: Tables, what: str, *path: str) -> Diagnostic:
         tables.place(*path),
         help="take the file from your repository again, or review anew: `fretc lock`",
     )
-
-
-def is_date(text: str) -> bool:
-    """Whether it is a date as `2026-11-22`."""
-    try:
-        return date.fromisoformat(text).isoformat() == text
-    except ValueError:
-        return False
 
 
 def _review(id: str, told: Mapping[str, Any]) -> Review:
@@ -234,20 +307,61 @@ def _standing(chain: Chain, review: Review | None) -> Standing:
     return Standing(chain, review, suspects(chain, known), changed(chain.prints, known))
 
 
-def orphaned(chains: Sequence[Chain], lock: Lock, path: str) -> tuple[Diagnostic, ...]:
-    """F511 for each review of a requirement that is not there any more."""
-    known = [chain.requirement for chain in chains]
-    found = []
-    for id in lock.reviews:
-        if id not in known:
-            near = suggestion(id, known)
-            found.append(
-                Diagnostic(
-                    Code.ORPHANED_REVIEW,
-                    f"{id} was reviewed, and is not among the requirements",
-                    Source(path, "").span(),
-                    help=f"was it renamed to `{near}`?" if near else "lock again without it",
-                    severity=Severity.WARNING,
-                )
-            )
-    return tuple(found)
+@dataclass(frozen=True, slots=True)
+class Withdrawn:
+    """A requirement that was reviewed when it was claimed, and is claimed no more."""
+
+    review: Review
+    retired: bool
+    """It is still there, and was retired since; else it is not among the requirements."""
+    successor: str = ""
+    """The requirement that has its sentence now, and had none when it was reviewed."""
+
+    @property
+    def text(self) -> str:
+        """In a sentence, with what the runs had shown of it."""
+        how = "is retired now" if self.retired else "is not among the requirements any more"
+        renamed = f"; {self.successor} has its sentence" if self.successor else ""
+        return f"{self.review.requirement} was reviewed ({self.shown}) and {how}{renamed}"
+
+    @property
+    def shown(self) -> str:
+        """What was accepted, in words."""
+        return _in_words(self.review.verdicts)
+
+
+def withdrawn(
+    requirements: Iterable[Requirement], chains: Iterable[Chain], lock: Lock | None
+) -> tuple[Withdrawn, ...]:
+    """What the lock says was claimed, and is not any more: removed, renamed, split or retired."""
+    if lock is None:
+        return ()
+    status = {requirement.id: requirement.status for requirement in requirements}
+    new = {
+        chain.prints.get(Node(SENTENCE, chain.requirement)): chain.requirement
+        for chain in chains
+        if chain.requirement not in lock.reviews
+    }
+    return tuple(
+        Withdrawn(
+            review,
+            id in status,
+            new.get(review.prints.get(Node(SENTENCE, id)), "") if id not in status else "",
+        )
+        for id, review in lock.reviews.items()
+        if review.was_in_force and status.get(id, "retired") == "retired"
+    )
+
+
+def told(found: Sequence[Withdrawn], path: str) -> tuple[Diagnostic, ...]:
+    """F511 or F540 for each requirement that was withdrawn since its review."""
+    return tuple(
+        Diagnostic(
+            Code.RETIRED_SINCE_REVIEW if one.retired else Code.ORPHANED_REVIEW,
+            one.text,
+            Source(path, "").span(),
+            help=f"if that is meant, accept it: `fretc lock {one.review.requirement} ...`",
+            severity=Severity.WARNING,
+        )
+        for one in found
+    )

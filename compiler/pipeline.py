@@ -170,7 +170,7 @@ def drift(requirement: Requirement, declarations: Declarations) -> Iterator[Diag
                 help="name the proposition that the number belongs to, and bind it",
             )
             continue
-        stated = _quantity(text)
+        stated = units.quantity(text)
         if stated is None:
             yield Diagnostic(
                 Code.BAD_FIELD,
@@ -189,15 +189,6 @@ def drift(requirement: Requirement, declarations: Declarations) -> Iterator[Diag
 
 
 _Exact = tuple[units.Dimension, Fraction]
-
-
-def _quantity(text: str) -> _Exact | None:
-    digits, _, name = text.strip().partition(" ")
-    unit = units.unit(name) if name else units.ONE
-    try:
-        return None if unit is None else (unit.dimension, Fraction(digits) * unit.factor)
-    except ValueError:
-        return None
 
 
 def _constants(expression: e.Expression) -> set[_Exact]:

@@ -5,16 +5,16 @@ from __future__ import annotations
 import hashlib
 import json
 import pickle
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import astuple, dataclass, field, replace
 from functools import lru_cache, partial
 
 from compiler import odds
+from compiler.basis import Basis, basis
 from compiler.edition import edition
-from compiler.files import sha256
 from compiler.missing import demand
 from compiler.pipeline import unbound
-from compiler.project import Project, fingerprint
+from compiler.project import Project
 from compiler.record import wording
 from compiler.rule import Rule
 from compiler.targets import monitor as monitors
@@ -36,17 +36,13 @@ class Claim:
 
     id: str
     sentence: str
-    sha256: str
-    """Of the canonical wording."""
+    basis: Basis = field(compare=False)
+    """SHA-256 of all that a verdict on it rests on, but for the log."""
     monitor: str
     demand: Demand
     """What is missing where it is violated."""
     chance: Chance | None = None
     """With a probability: all runs together are judged, and no run alone."""
-
-    def hashes(self, bindings: str) -> dict[str, str]:
-        """SHA-256 of all that a verdict on it is made from, but for the log."""
-        return {"sentence": self.sha256, "bindings": bindings, "monitor": sha256(self.monitor)}
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,15 +51,9 @@ class Refused:
 
     id: str
     sentence: str
-    sha256: str
-    """Of the canonical wording; of the wording as it is, where that cannot be formalized."""
-    monitor: str
-    """SHA-256 of the monitor; of an empty text where there is none."""
+    basis: Basis = field(compare=False)
+    """As that of a claim; of the wording as it is, where that cannot be formalized."""
     why: tuple[Diagnostic, ...]
-
-    def hashes(self, bindings: str) -> dict[str, str]:
-        """As those of a claim."""
-        return {"sentence": self.sha256, "bindings": bindings, "monitor": self.monitor}
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,8 +62,7 @@ class Plan:
 
     claims: tuple[Claim, ...]
     declarations: Declarations = field(compare=False, repr=False)
-    bindings: str
-    """SHA-256 of what the bindings say; comments and order do not count."""
+    """Only the signals that the claims read: no log is judged by another one."""
     evaluation: str
     """How the monitors are run: a key of `compiler.auditing.EVALUATIONS`."""
     integrity: Integrity
@@ -120,12 +109,29 @@ def planned(
     wrong = tuple(dict.fromkeys(reason for _, why in refused for reason in why))
     if declarations is None or not rules:
         return wrong or (Diagnostic(Code.NOTHING_TO_DO, "there is no requirement to audit"),)
-    claims = tuple(_claim(rule) for rule in rules)
-    left = tuple(_left(project, requirement, why) for requirement, why in refused)
-    key = _key(claims, left, declarations, evaluation, integrity)
-    bindings = fingerprint(declarations)
+    known = bases(project)
+    claims = tuple(_claim(rule, known[id(rule.requirement)]) for rule in rules)
+    left = tuple(_left(known, requirement, why) for requirement, why in refused)
+    read = declarations.reading(name for rule in rules for name in rule.watched)
+    key = _key(claims, left, read, evaluation, integrity)
     one_each = tuple({each.id: each for each in reversed(left)}.values())[::-1]
-    return Plan(claims, declarations, bindings, evaluation, integrity, key, confidence, one_each)
+    return Plan(claims, read, evaluation, integrity, key, confidence, one_each)
+
+
+def bases(project: Project) -> Mapping[int, Basis]:
+    """What a verdict on each requirement rests on, by its `id()`: those in force and all others."""
+    declarations = project.declarations
+    refused = {id(requirement) for requirement, _ in refusals(project)}
+    read = [rule for rule in _in_force(project) if id(rule.requirement) not in refused]
+    topics: set[str] = set()
+    if declarations is not None:
+        used = declarations.reading(name for rule in read for name in rule.watched)
+        topics = {signal.path.topic for signal in used.signals.values()}
+    rules = {id(rule.requirement): rule for rule in project.rules}
+    return {
+        id(each): basis(each, rules.get(id(each)), declarations, topics)
+        for each in project.requirements
+    }
 
 
 def refusals(project: Project) -> tuple[tuple[Requirement, tuple[Diagnostic, ...]], ...]:
@@ -155,20 +161,17 @@ def _in_force(project: Project) -> list[Rule]:
     return [rule for rule in project.rules if rule.requirement.status != "retired"]
 
 
-def _left(project: Project, requirement: Requirement, why: tuple[Diagnostic, ...]) -> Refused:
-    rule = next((each for each in project.rules if each.requirement is requirement), None)
-    if rule is None:
-        text = wording(requirement)
-        return Refused(requirement.id, text, sha256(text), sha256(""), why)
-    made = sha256(monitors.text(rule))
-    return Refused(rule.id, wording(requirement), rule.fingerprint, made, why)
+def _left(
+    known: Mapping[int, Basis], requirement: Requirement, why: tuple[Diagnostic, ...]
+) -> Refused:
+    return Refused(requirement.id, wording(requirement), known[id(requirement)], why)
 
 
-def _claim(rule: Rule) -> Claim:
+def _claim(rule: Rule, rests_on: Basis) -> Claim:
     return Claim(
         rule.id,
         wording(rule.requirement),
-        rule.fingerprint,
+        rests_on,
         monitors.text(rule),
         demand(rule),
         chance(rule),
@@ -185,8 +188,8 @@ def _key(
 ) -> str:
     """The bindings count with their places too: findings tell lines of them."""
     digest = hashlib.sha256(pickle.dumps(declarations, protocol=5))
-    texts = [(c.id, c.sentence, c.sha256, c.monitor, astuple(c.demand)) for c in claims]
-    left = [(r.id, r.sentence, r.sha256, r.monitor, [d.message for d in r.why]) for r in refused]
+    texts = [(c.id, c.sentence, dict(c.basis), c.monitor, astuple(c.demand)) for c in claims]
+    left = [(r.id, r.sentence, dict(r.basis), [d.message for d in r.why]) for r in refused]
     told = [SCHEMA, edition(), evaluation, integrity, texts, left]
     digest.update(json.dumps(told).encode())
     return digest.hexdigest()
@@ -212,7 +215,7 @@ def watched(plan: Plan) -> tuple[Watched, ...]:
     return tuple(
         Watched(
             load(f"{claim.id}_monitor", claim.monitor),
-            claim.hashes(plan.bindings),
+            claim.basis,
             claim.demand,
             partial(trials, claim.chance.obligation) if claim.chance else None,
             claim.chance.obligation.atoms if claim.chance else (),

@@ -2,10 +2,7 @@
 
 from __future__ import annotations
 
-import hashlib
-import json
 import os
-import tomllib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -254,31 +251,6 @@ def _declarations(
         return None, ()
     source = read(path)
     return (None, (source,)) if isinstance(source, Diagnostic) else read_bindings(source)
-
-
-def fingerprint(declarations: Declarations) -> str:
-    """SHA-256 of what the bindings say: comments, order and white space do not count.
-
-    Nor does what is about the interceptor, the closed loop and agents: what a log shows does not
-    depend on it, and evidence must not grow stale where only that changes.
-    """
-    data = bound_to_logs(declarations)
-    return hashlib.sha256(json.dumps(data, sort_keys=True).encode()).hexdigest()
-
-
-def bound_to_logs(declarations: Declarations) -> dict[str, Any]:
-    """What the bindings say, as far as a log is judged by it."""
-    data = tomllib.loads(declarations.source.text)
-    told = {name: table for name, table in data.items() if name not in _OF_THE_LOOP}
-    for kind in ("proposition", "variable"):
-        for fields in told.get(kind, {}).values():
-            for name in _OF_AGENTS:
-                fields.pop(name, None)
-    return told
-
-
-_OF_THE_LOOP = ("interceptor", "assume")
-_OF_AGENTS = ("modality", "action")
 
 
 def _hazards(path: str) -> tuple[dict[str, Hazard], tuple[Diagnostic, ...]]:

@@ -16,12 +16,18 @@ from typing import Any
 
 from compiler import __version__
 from compiler.auditing import Audit, Engine, audit_logs
+from compiler.basis import BINDINGS, KINDS, SENTENCE, of_all, outdated, why
 from compiler.estimates import estimates
-from compiler.files import file_sha256
+from compiler.files import file_sha256, sha256
 from compiler.plan import Claim, Plan
 from fretish.diagnostic import Diagnostic
 from fretish.ordering import natural
+from fretish.parser import parse
+from fretish.printer import canonical
+from fretish.source import Source
 from monitors.inputs import shown as called
+from monitors.integrity import Integrity
+from monitors.recordings import read
 
 
 class Finding(StrEnum):
@@ -91,11 +97,12 @@ def rechecked(
     audit = audit_logs(plan, logs, engine)
     if isinstance(audit, Diagnostic):
         return audit
-    now = {(result["run"], result["requirement"]): result for result in audit.results}
+    now = _Now(plan, places, {(r["run"], r["requirement"]): r for r in audit.results})
     return (
         *_beginning(whole, plan),
-        *(_compared(result, now, places) for result in told),
+        *(each for result in told for each in _result(result, now)),
         *_left_out(whole),
+        *_found(whole, now),
         *_together(whole, plan, audit, places),
     )
 
@@ -111,22 +118,30 @@ _DOUBT = (0.5, 0.999)
 def _beginning(whole: Mapping[str, Any], plan: Plan) -> Iterator[Rechecked]:
     """What is said before the results, where it is not as it is now; and whether there are any."""
     claims = {claim.id: claim for claim in plan.claims}
+    named = [str(told.get("id")) for told in _objects(whole.get("requirements"))]
+    bound = of_all({id: claims[id].basis[BINDINGS] for id in named if id in claims})
     if not whole["results"]:
         yield Rechecked(FILE, "", Finding.UNKNOWN, ("it tells of no run",))
     if whole["fretc"] != __version__:
         yield Rechecked(FILE, "", Finding.DIFFERS, (f"this is fretc {__version__}",))
-    if _within(whole.get("bindings"), "sha256") != plan.bindings:
+    if _within(whole.get("bindings"), "sha256") != bound:
         yield Rechecked(FILE, "", Finding.DIFFERS, ("what the bindings say has changed",))
     for told in _objects(whole.get("requirements")):
         claim = claims.get(str(told.get("id")))
-        said = (told.get("sentence"), told.get("sha256"))
+        sentence = str(told.get("sentence"))
         if claim is None:
             why = "it is not claimed any more"
-        elif said != (claim.sentence, claim.sha256):
+        elif {told.get("sha256"), _meant(sentence)} != {claim.basis[SENTENCE]}:
             why = "the sentence has changed"
         else:
             continue
         yield Rechecked(FILE, str(told.get("id")), Finding.DIFFERS, (why,))
+
+
+def _meant(sentence: str) -> str:
+    """SHA-256 of the canonical wording; empty where it is no sentence."""
+    tree = parse(Source("evidence", sentence).span())
+    return "" if isinstance(tree, Diagnostic) else sha256(canonical(tree))
 
 
 def _left_out(whole: Mapping[str, Any]) -> Iterator[Rechecked]:
@@ -192,41 +207,92 @@ def _within(value: Any, name: str) -> Any:
 # One result -------------------------------------------------------------------------------------
 
 
-def _compared(
-    told: Mapping[str, Any],
-    now: Mapping[tuple[str, str], Mapping[str, Any]],
-    places: Mapping[str, str],
-) -> Rechecked:
+@dataclass(frozen=True, slots=True)
+class _Now:
+    """What is made of the logs now."""
+
+    plan: Plan
+    places: Mapping[str, str]
+    """Run → where its log is."""
+    results: Mapping[tuple[str, str], Mapping[str, Any]]
+
+
+def _result(told: Mapping[str, Any], now: _Now) -> Iterator[Rechecked]:
     run, requirement = told["run"], told["requirement"]
-    place = places.get(run)
+    place = now.places.get(run)
     if place is None:
-        return Rechecked(run, requirement, Finding.UNKNOWN, ("its log is not found",))
-    found = now.get((called(place), requirement))
+        yield Rechecked(run, requirement, Finding.UNKNOWN, ("its log is not found",))
+        return
+    found = now.results.get((called(place), requirement))
     if found is None:
-        return Rechecked(run, requirement, Finding.DIFFERS, ("it is not claimed any more",))
-    reasons = tuple(_differences(told, found, place))
-    return Rechecked(run, requirement, Finding.DIFFERS if reasons else Finding.STANDS, reasons)
+        yield Rechecked(run, requirement, Finding.DIFFERS, ("it is not claimed any more",))
+        return
+    reasons = tuple(_differences(told, found, place, now.plan))
+    yield Rechecked(run, requirement, Finding.DIFFERS if reasons else Finding.STANDS, reasons)
 
 
-def _differences(told: Mapping[str, Any], now: Mapping[str, Any], place: str) -> Iterator[str]:
-    names = {"log": "the log", "sentence": "the sentence", "bindings": "what the bindings say"}
-    for name in (*names, "monitor"):
-        before, after = told["hashes"].get(name), now["hashes"].get(name)
-        if name == "log" and after is None:
-            after = file_sha256(place)
-        if name == "log" and before is None:
-            continue  # by its index a log is read without being hashed
-        if before != after:
-            yield f"{names.get(name, 'the monitor')} has changed"
+def _differences(
+    told: Mapping[str, Any], now: Mapping[str, Any], place: str, plan: Plan
+) -> Iterator[str]:
+    if _is_another_log(told["hashes"], now["hashes"], place, plan):
+        yield "the log has changed"
+    yield from map(why, outdated(told["hashes"], {kind: now["hashes"][kind] for kind in KINDS}))
     if told["verdict"] != now["verdict"]:
         yield f"the verdict is {now['verdict']}, and was {told['verdict']}"
-    fields = sorted({*told, *now} - {"run", "requirement", "verdict", "hashes", "health"})
-    others = [name for name in fields if told.get(name) != now.get(name)]
+    others = [name for name in sorted({*told, *now} - _APART) if told.get(name) != now.get(name)]
     if _health(told) != _health(now):
         others.append("health")
+    if ({*told["assumptions"]} ^ {*now["assumptions"]}) - _defaults(plan):
+        others.append("assumptions")
     if others:
         yield f"it differs in {', '.join(others)}"
 
 
+def _is_another_log(
+    told: Mapping[str, str], now: Mapping[str, str], place: str, plan: Plan
+) -> bool:
+    """Where it was read by its index only its summary was hashed: that of now is, too."""
+    if "log" in told:
+        return told["log"] != (now.get("log") or file_sha256(place))
+    if "log_summary" not in told:
+        return False
+    recording = read(place, plan.declarations, tuple(plan.declarations.signals), Integrity.INDEX)
+    if isinstance(recording, Diagnostic) or recording.checked.hashed:
+        return True  # it is not as its index says, and it was
+    return told["log_summary"] != recording.sha256
+
+
+def _defaults(plan: Plan) -> set[str]:
+    """Whether a default is taken or written out is no difference."""
+    return {default.text for default in plan.declarations.defaults}
+
+
+_APART = {"run", "requirement", "verdict", "hashes", "health", "assumptions"}
+"""What is compared in a way of its own."""
+
+
 def _health(result: Mapping[str, Any]) -> dict[str, Any]:
-    return {name: value for name, value in result["health"].items() if name != "checked"}
+    """But for how much was looked at, and for what was found, which is about the whole run."""
+    apart = ("checked", "findings")
+    return {name: value for name, value in result["health"].items() if name not in apart}
+
+
+def _found(whole: Mapping[str, Any], now: _Now) -> Iterator[Rechecked]:
+    """What was found of each run, whichever requirement it is about."""
+    results: dict[str, list[Mapping[str, Any]]] = {}
+    for told in whole["results"]:
+        results.setdefault(told["run"], []).append(told)
+    of_now = {run: _findings(result) for (run, _), result in now.results.items()}
+    for run, told in results.items():
+        known = of_now.get(called(now.places[run])) if run in now.places else None
+        if known is not None and any(_findings(result) != known for result in told):
+            yield Rechecked(run, "", Finding.DIFFERS, ("what is found of its log differs",))
+
+
+def _findings(result: Mapping[str, Any]) -> list[dict[str, Any]]:
+    """But for where in the bindings they point to: a comment above moves that."""
+    places = ("file", "line", "column")
+    return [
+        {name: value for name, value in finding.items() if name not in places}
+        for finding in result["health"]["findings"]
+    ]

@@ -10,6 +10,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+from compiler.evidence import VERDICTS
 from fretish.diagnostic import Code, Diagnostic, Severity
 from monitors import kernel
 
@@ -35,31 +36,40 @@ _COUNTS = ", ".join(
     f"count(*) FILTER (verdict = '{verdict}') AS {name}" for name, verdict in COUNTED.items()
 )
 _NOT_SHOWN = f"verdict NOT IN ('{kernel.SATISFIED}', '{kernel.VIOLATED}')"
+_CONTENT = "coalesce(log_sha256, log_summary_sha256, run)"
+"""What tells a log from another one: copies of it have the same."""
+_RANKED = ", ".join(f"verdict = '{verdict}' DESC" for verdict in VERDICTS)
+_COUNTED = f"""
+    CREATE TABLE counted AS SELECT DISTINCT ON (requirement, content) *
+    FROM (SELECT *, {_CONTENT} AS content FROM results)
+    ORDER BY requirement, content, {_RANKED}, run, reason, sentence_sha256, bindings_sha256"""
+"""Each log once for each requirement: a copy tells nothing new. The worst verdict stays."""
 _WHOLE = """
-    SELECT count(DISTINCT run) AS runs, count(DISTINCT requirement) AS requirements,
+    SELECT count(DISTINCT content) AS runs, count(DISTINCT requirement) AS requirements,
         (SELECT round(coalesce(sum(seconds), 0.0), 3) FROM (
             SELECT max(end_ns::DOUBLE - start_ns::DOUBLE) / 1e9 AS seconds
-            FROM results GROUP BY run, log_sha256)) AS seconds,
-        count(DISTINCT run) FILTER (NOT intact) AS damaged
-    FROM results"""
+            FROM counted GROUP BY content)) AS seconds,
+        count(DISTINCT content) FILTER (NOT intact) AS damaged
+    FROM counted"""
 _REQUIREMENTS = f"""
     SELECT requirement, count(*) AS runs, {_COUNTS}, sum(triggers)::BIGINT AS triggers,
         sum(violations)::BIGINT AS violations, max(latency_max_s) AS latency_max_s
-    FROM results GROUP BY requirement ORDER BY requirement"""
+    FROM counted GROUP BY requirement ORDER BY requirement"""
 _FAILED = f"""
-    SELECT run, count(*) FILTER (verdict = '{kernel.VIOLATED}') AS violated,
+    SELECT min(run) AS run, count(*) FILTER (verdict = '{kernel.VIOLATED}') AS violated,
         count(*) FILTER ({_NOT_SHOWN}) AS not_shown, sum(violations)::BIGINT AS violations,
         min(first_violation_s) AS first_violation_s,
         arg_min(reason, (verdict = '{kernel.SATISFIED}', verdict <> '{kernel.VIOLATED}',
             first_violation_s, requirement)) AS reason
-    FROM results GROUP BY run HAVING violated + not_shown > 0
+    FROM counted GROUP BY content HAVING violated + not_shown > 0
     ORDER BY violated DESC, violations DESC, not_shown DESC, run"""
 _SLOWEST = f"""
     SELECT run, requirement, latency_max_s, latency_median_s, answers
-    FROM results WHERE latency_max_s IS NOT NULL
+    FROM counted WHERE latency_max_s IS NOT NULL
     ORDER BY latency_max_s DESC, run, requirement LIMIT {MOST}"""
 _MIXED = """
-    SELECT requirement, count(DISTINCT (sentence_sha256, bindings_sha256, monitor_sha256)) AS kinds
+    SELECT requirement, count(DISTINCT (sentence_sha256, bindings_sha256, monitor_sha256, fretc))
+        AS kinds
     FROM results GROUP BY requirement HAVING kinds > 1 ORDER BY requirement"""
 
 
@@ -113,6 +123,7 @@ class Summary:
 def summarized(table: Table) -> Summary:
     """The summary of a table."""
     with _asked(table) as ask:
+        ask.execute(_COUNTED)
         (whole,) = _answer(ask, _WHOLE).records
         return Summary(
             whole,
@@ -159,8 +170,8 @@ def _asked(table: Table) -> Iterator[duckdb.DuckDBPyConnection]:
 def _mixed(requirement: str, kinds: int) -> Diagnostic:
     return Diagnostic(
         Code.STALE_EVIDENCE,
-        f"{requirement} was audited as {kinds} different requirements: its sentence, its bindings "
-        "or its monitor have changed between these runs",
+        f"{requirement} was audited as {kinds} different requirements: its sentence, its bindings, "
+        "its monitor or fretc have changed between these runs",
         help="audit the runs again, or tell them apart: `--query` with `sentence_sha256`",
         severity=Severity.WARNING,
     )

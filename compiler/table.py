@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     import pyarrow
     from pyarrow import Table as Table
 
-SCHEMA = "fretc-table-1"
+SCHEMA = "fretc-table-2"
 _TYPES = {
     "run": "string",
     "requirement": "string",
@@ -47,6 +47,7 @@ _TYPES = {
     "gaps": "int64",
     "findings": "int64",
     "log_sha256": "string",
+    "log_summary_sha256": "string",
     "sentence_sha256": "string",
     "bindings_sha256": "string",
     "monitor_sha256": "string",
@@ -193,6 +194,7 @@ def _row(result: Mapping[str, Any], fretc: str) -> dict[str, Any]:
         "gaps": len(health["gaps"]),
         "findings": len(health["findings"]),
         "log_sha256": hashes.get("log"),
+        "log_summary_sha256": hashes.get("log_summary"),
         "sentence_sha256": hashes["sentence"],
         "bindings_sha256": hashes["bindings"],
         "monitor_sha256": hashes["monitor"],

@@ -6,19 +6,33 @@ A waiver hides nothing: the verdict that it covers is shown beside it. It ends b
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
-from datetime import UTC, date, datetime
+from dataclasses import dataclass, field
+from datetime import date
 from typing import Any
 
-from compiler.dates import source_date
+from compiler.dates import is_date
 from compiler.files import read as read_text
-from compiler.lock import is_date
+from compiler.odds import REFUTED
 from fretish.diagnostic import Code, Diagnostic, Severity, suggestion
+from fretish.source import Span
 from fretish.tables import Tables, unknown_key
 from fretish.tables import read as read_tables
+from monitors import kernel
 
 NAME = "waivers.toml"
-_FIELDS = ("reason", "by", "role", "granted", "expires")
+_FIELDS = ("verdict", "reason", "by", "role", "granted", "expires")
+UNFORMALIZED, NOT_EXERCISED = "unformalized", "not exercised"
+VERDICTS = (
+    kernel.VIOLATED,
+    REFUTED,
+    UNFORMALIZED,
+    kernel.NO_DATA,
+    kernel.INCONCLUSIVE,
+    kernel.VACUOUS,
+    NOT_EXERCISED,
+)
+"""What a waiver may cover: verdicts that do not show a requirement. That something has changed
+since is none of them: what somebody waived was another thing."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,21 +40,19 @@ class Waiver:
     """One requirement, and why it need not be shown up to a day."""
 
     requirement: str
+    verdict: str
+    """The one that it covers: one of `VERDICTS`."""
     reason: str
     by: str
     role: str
     granted: str
     expires: str
     """The last day on which it counts; both dates as `2026-11-22`."""
+    span: Span | None = field(default=None, compare=False, repr=False)
 
     def covers(self, day: str) -> bool:
         """Whether it counts on that day."""
         return self.granted <= day <= self.expires
-
-
-def today() -> str:
-    """The day of `SOURCE_DATE_EPOCH` where that is set, so that a report can be made again; UTC."""
-    return (source_date() or datetime.now(UTC)).date().isoformat()
 
 
 def read(
@@ -62,7 +74,9 @@ def read(
     wrong = tuple(d for id, told in tables.data.items() for d in _mistakes(tables, id, told, known))
     if wrong:
         return {}, wrong
-    waivers = {id: Waiver(id, **told) for id, told in tables.data.items()}
+    waivers = {
+        id: Waiver(id, **told, span=tables.value(id, "verdict")) for id, told in tables.data.items()
+    }
     return waivers, tuple(
         _ended(tables, waiver) for waiver in waivers.values() if not waiver.covers(day)
     )
@@ -81,13 +95,38 @@ def _mistakes(tables: Tables, id: str, told: Any, known: Sequence[str]) -> Itera
             yield unknown_key(Code.BAD_WAIVER, key, _FIELDS, tables.place(id, key), f"[{id}]")
     for name in _FIELDS:
         value = told.get(name)
-        if not isinstance(value, str) or not value.strip():
+        if name == "verdict" and value not in VERDICTS:
+            yield _no_verdict(tables, id, value)
+        elif not isinstance(value, str) or not value.strip():
             yield _wrong(
                 tables, f"the waiver of {id} needs `{name}`", f'add `{name} = "..."`', id, name
             )
         elif name in ("granted", "expires") and not is_date(value):
             mend = f'write it as `"{date(2026, 11, 22).isoformat()}"`'
             yield _wrong(tables, f"`{value}` is no date", mend, id, name)
+
+
+def _no_verdict(tables: Tables, id: str, value: object) -> Diagnostic:
+    """A waiver that named none would excuse whatever comes later."""
+    listed = ", ".join(f"`{word}`" for word in VERDICTS)
+    if value is None:
+        what, mend = f"the waiver of {id} does not say which verdict it covers", 'add `verdict = "'
+        return _wrong(tables, what, f'{mend}no data"`; it may be {listed}', id, "reason")
+    near = suggestion(str(value), VERDICTS)
+    mend = f"did you mean `{near}`?" if near else f"it may be {listed}"
+    return _wrong(tables, f"`{value}` is no verdict that can be waived", mend, id, "verdict")
+
+
+def idle(waiver: Waiver, verdict: str) -> Diagnostic:
+    """F543: the requirement has another verdict than the one that is waived."""
+    return Diagnostic(
+        Code.IDLE_WAIVER,
+        f"the waiver of {waiver.requirement} is for `{waiver.verdict}`, and the verdict is "
+        f"`{verdict}`: it covers nothing",
+        waiver.span,
+        help="take it out, or have one granted for what is there now",
+        severity=Severity.WARNING,
+    )
 
 
 def _wrong(tables: Tables, what: str, mend: str, *path: str) -> Diagnostic:

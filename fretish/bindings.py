@@ -14,6 +14,7 @@ from fretish.declarations import (
     REP_117,
     Aggregate,
     Declarations,
+    Default,
     Invalid,
     Modality,
     Path,
@@ -67,7 +68,7 @@ class _Reader(Fields):
 
     def __init__(self, tables: Tables) -> None:
         super().__init__(tables)
-        self.assumptions: list[str] = []
+        self.defaults: list[Default] = []
         self.told: set[str] = set()
 
     def declarations(self) -> Declarations:
@@ -88,7 +89,7 @@ class _Reader(Fields):
             read,
             {name: value for name, value in propositions.items() if value is not None},
             {name: self._variable(name, f) for name, f in self._tables("variable").items()},
-            tuple(self.assumptions),
+            tuple(self.defaults),
             loop.interceptor(),
             loop.assumed(tuple(self._tables("proposition"))),
         )
@@ -144,8 +145,9 @@ class _Reader(Fields):
             return Clock(10**9)
         self._known(table, _CLOCK, "[clock]", "clock")
         for name, default in (("time", TimeSource.LOG_TIME), ("end", End.INCONCLUSIVE)):
-            if name not in table:
-                self.assumptions.append(f"clock: {name} is {default}, the default")
+            if table.get(name, default) == default:
+                text = f"clock: {name} is {default}, the default"
+                self.defaults.append(Default(("clock", ""), text, name in table))
         period, topic = self._tick(table)
         return Clock(
             period,
@@ -266,9 +268,10 @@ class _Reader(Fields):
         scan = type_ is not None and type_.endswith("/LaserScan")
         default = REP_117 if scan else Invalid()
         fields = self._field(table, (*at, "invalid"), dict, "a table of readings")
+        words = "as REP 117 says" if scan else "unknown"
+        text = f"signal {at[1]}: readings that are no measurement are {words}"
         if fields is None:
-            words = "as REP 117 says" if scan else "unknown"
-            self.assumptions.append(f"signal {at[1]}: readings that are no measurement are {words}")
+            self.defaults.append(Default((at[0], at[1]), text))
             return default
         self._known(fields, (*_INVALID, "empty"), "`invalid`", *at, "invalid")
         place = (*at, "invalid")
@@ -282,12 +285,16 @@ class _Reader(Fields):
             attribute: self._choice(fields, (*place, key), Reading, getattr(default, attribute))
             for key, attribute in _INVALID.items()
         }
-        return Invalid(**values)
+        invalid = Invalid(**values)
+        if invalid == default:
+            self.defaults.append(Default((at[0], at[1]), text, stated=True))
+        return invalid
 
     def _max_age(self, table: Mapping[str, Any], at: tuple[str, ...]) -> int | None:
         text = self._field(table, (*at, "max_age"), str, 'a duration: `"300 ms"`')
         if "max_age" not in table:
-            self.assumptions.append(f"signal {at[1]}: a sample never grows too old (no max_age)")
+            old = f"signal {at[1]}: a sample never grows too old (no max_age)"
+            self.defaults.append(Default((at[0], at[1]), old))
         age = units.nanoseconds(text) if text is not None else None
         if text is not None and not age:
             self._say(
@@ -342,8 +349,9 @@ class _Reader(Fields):
         expression = self._expression(table, (*at, "expr"))
         if expression is None or not self._is_truth(expression, at, signals):
             return None
-        if "agg" not in table:
-            self.assumptions.append(f"proposition {name}: the last sample of a tick counts")
+        if table.get("agg", Aggregate.LAST) == Aggregate.LAST:
+            last = f"proposition {name}: the last sample of a tick counts"
+            self.defaults.append(Default(("proposition", name), last, "agg" in table))
         return Proposition(
             name,
             expression,
@@ -438,10 +446,9 @@ class _Reader(Fields):
         if value == "unknown":
             return None
         if isinstance(value, bool):
-            self.assumptions.append(
-                f"proposition {at[1]}: where its signals are unknown it counts as "
-                f"{str(value).lower()}"
-            )
+            word = str(value).lower()
+            text = f"proposition {at[1]}: where its signals are unknown it counts as {word}"
+            self.defaults.append(Default((at[0], at[1]), text))
             return value
         self._say(
             Code.BAD_BINDING_FIELD,

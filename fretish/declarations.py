@@ -7,8 +7,8 @@ what a sentence names).
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field, replace
 from enum import StrEnum
 from fractions import Fraction
 from typing import Any
@@ -269,6 +269,17 @@ class Assumed:
 
 
 @dataclass(frozen=True, slots=True)
+class Default:
+    """A value that is the default, in words."""
+
+    part: tuple[str, str]
+    """`("signal", "vx")`, `("proposition", "near")` or `("clock", "")`."""
+    text: str
+    stated: bool = False
+    """Whether it is written in the bindings all the same."""
+
+
+@dataclass(frozen=True, slots=True)
 class Declarations:
     """Everything that the bindings declare."""
 
@@ -277,7 +288,24 @@ class Declarations:
     signals: Mapping[str, Signal]
     propositions: Mapping[str, Proposition]
     variables: Mapping[str, Variable] = field(default_factory=dict)
-    assumptions: tuple[str, ...] = ()
-    """Defaults that were taken, in words, for the report."""
+    defaults: tuple[Default, ...] = ()
     interceptor: Interception | None = None
     assumed: Assumed | None = None
+
+    def reading(self, propositions: Iterable[str]) -> Declarations:
+        """The same without the signals that none of the propositions reads."""
+        known = [self.propositions[name] for name in propositions if name in self.propositions]
+        read = {signal for proposition in known for signal in proposition.signals}
+        parts = {("clock", "")}
+        parts |= {("signal", name) for name in read}
+        parts |= {("proposition", proposition.name) for proposition in known}
+        return replace(
+            self,
+            signals={name: signal for name, signal in self.signals.items() if name in read},
+            defaults=tuple(default for default in self.defaults if default.part in parts),
+        )
+
+    @property
+    def assumptions(self) -> tuple[str, ...]:
+        """Defaults that were taken, in words, for the report."""
+        return tuple(default.text for default in self.defaults if not default.stated)

@@ -135,6 +135,11 @@ class Code(Enum):
     UNREVIEWED_VIOLATION = ("F529", "a lock would accept a violation that nobody has named")
     MERGED_VARIABLE = ("F530", "two variables of an export become one")
     RENAMED = ("F531", "a requirement of an export has another id now")
+    RETIRED_SINCE_REVIEW = ("F540", "a requirement was retired since its review")
+    OUTDATED_RESULT = ("F541", "a lock would accept a result about something else")
+    UNKNOWN_LOG = ("F542", "a lock would accept a verdict on a log that nothing identifies")
+    IDLE_WAIVER = ("F543", "a waiver covers nothing")
+    NOT_REVIEWED = ("F544", "a requirement was never reviewed, and others were")
     NO_SUCH_REQUIREMENT = ("F515", "no requirement and no diagnostic has that name")
 
     NOT_EXPRESSIBLE = ("F601", "the target cannot express the requirement")

@@ -97,6 +97,16 @@ def unit(text: str) -> Unit | None:
     return result
 
 
+def quantity(text: str) -> tuple[Dimension, Fraction] | None:
+    """`5 cm` → its dimension and 1/20, exactly, in base units; None where it is no quantity."""
+    digits, _, name = text.strip().partition(" ")
+    known = unit(name) if name else ONE
+    try:
+        return None if known is None else (known.dimension, Fraction(digits) * known.factor)
+    except (ValueError, ZeroDivisionError):
+        return None
+
+
 def base_name(dimension: Dimension) -> str:
     """`m/s` for (1, 0, -1, 0, 0, 0); empty for a plain number."""
     above = [_power(b, n) for b, n in zip(_BASES, dimension, strict=True) if n > 0]

@@ -150,7 +150,7 @@ def _evidence(
         units={name: base_name(declarations.signals[name].unit.dimension) for name in signals},
         hashes={_hashed(recording): recording.sha256, **watched.hashes},
         health=health(recording),
-        assumptions=declarations.assumptions,
+        assumptions=declarations.reading(watched.propositions).assumptions,
     )
     evidence = replace(evidence, reason=_reason(evidence, recording))
     if watched.count is None:

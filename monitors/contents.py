@@ -11,7 +11,7 @@ import zlib
 from dataclasses import dataclass, replace
 from io import BufferedReader
 
-from monitors.container import BLOCK, BrokenError, summary
+from monitors.container import BLOCK, HEAD, BrokenError, summary
 from monitors.damage import Damage
 from monitors.index import Index, indexed
 from monitors.integrity import Checked, Integrity
@@ -35,7 +35,7 @@ class Contents:
     unprotected: bool = False
     """Whether messages were read that no CRC covers."""
     summary_sha256: str = ""
-    """Of all that follows the data; only where nothing else tells one log from another."""
+    """Of what tells one log from another where it is not hashed (`_identity`)."""
 
 
 def contents(stream: BufferedReader, size: int, sink: Sink, integrity: Integrity) -> Contents:
@@ -75,10 +75,28 @@ def _by_index(stream: BufferedReader, index: Index, sink: Sink, integrity: Integ
     span = statistics.message_start_time, statistics.message_end_time
     if integrity is Integrity.HASH:
         return Contents((), span, None, projection.checked, unprotected)
-    stream.seek(index.summary)
-    digest = hashlib.file_digest(stream, "sha256").hexdigest()
     checked = replace(projection.checked, hashed=False)
-    return Contents((), span, None, checked, unprotected, digest)
+    return Contents((), span, None, checked, unprotected, _identity(stream, index))
+
+
+def _identity(stream: BufferedReader, index: Index) -> str:
+    """SHA-256 of all that follows the data, and of the CRC that each chunk states.
+
+    A summary says where messages are, and not what they hold: with values of the same length it is
+    the same for another log. What the CRCs say covers the messages.
+    """
+    digest = hashlib.sha256()
+    for chunk in index.chunks:
+        stream.seek(chunk.chunk_start_offset + HEAD.size + _CHUNK_CRC)
+        digest.update(stream.read(4))
+    stream.seek(index.data_end)  # the CRC of the data, if one is stated, is what follows first
+    while block := stream.read(BLOCK):
+        digest.update(block)
+    return digest.hexdigest()
+
+
+_CHUNK_CRC = 24
+"""Bytes before it in a chunk: two times and a size of eight bytes each."""
 
 
 def _crc32(stream: BufferedReader, size: int) -> int:

@@ -28,19 +28,21 @@ def check(
 
     Mistakes in requirements, bindings, hazards, lock and waivers; everything that an audit would
     refuse; numbers that have drifted apart; requirements that hold whatever happens; planned
-    methods that can give no result; links that are missing; what has changed since its review.
+    methods that can give no result; links that are missing; what has changed since its review,
+    or since its audit; what was reviewed and is claimed no more; waivers that cover nothing.
     Exit status: 0 nothing to say, 3 warnings, 2 mistakes.
     """
-    from compiler.checks import checks
+    from compiler.checks import checks, unreviewed
+    from compiler.dates import today
     from compiler.evidence import read as read_evidence
-    from compiler.links import chains
-    from compiler.lock import Lock, orphaned, standings
+    from compiler.lock import Lock, told, withdrawn
     from compiler.lock import read as read_lock
     from compiler.plan import refusals
     from compiler.project import beside, whole
     from compiler.proven import known as proven
+    from compiler.report.assembly import stale
+    from compiler.report.claims import claims, idle_waivers
     from compiler.waivers import read as read_waivers
-    from compiler.waivers import today
 
     project = whole(requirements, bindings, hazards)
     if isinstance(project, Diagnostic):
@@ -53,19 +55,29 @@ def check(
     if isinstance(proofs, Diagnostic):
         said.append(proofs)
         proofs = ()
-    found = chains(project, None if isinstance(audited, Diagnostic) else audited, proofs=proofs)
+    results = None if isinstance(audited, Diagnostic) else audited
     lock, path = None, beside(requirements, "fretc.lock")
     if path is not None:
         known = read_lock(path)
         lock = known if isinstance(known, Lock) else None
-        said.extend(orphaned(found, known, path) if isinstance(known, Lock) else (known,))
-    waived = beside(requirements, "waivers.toml")
+        said.extend([] if isinstance(known, Lock) else [known])
+    waivers, waived = {}, beside(requirements, "waivers.toml")
     if waived is not None:
-        said.extend(read_waivers(waived, [r.id for r in project.requirements], today())[1])
+        found, wrong = read_waivers(waived, [r.id for r in project.requirements], today())
+        waivers = {id: waiver for id, waiver in found.items() if waiver.covers(today())}
+        said.extend(wrong)
+    claimed = claims(project, results, lock, waivers, proofs)
+    standings = [claim.standing for claim in claimed]
+    if path is not None:
+        chains = [standing.chain for standing in standings]
+        said.extend(told(withdrawn(project.requirements, chains, lock), path))
+    said.extend(stale(claimed, results, evidence))
+    said.extend(idle_waivers(claimed))
     flawed = has_errors(said)
     said.extend(reason for _, why in refusals(project) for reason in why)
     if not flawed:
-        said.extend(checks(project, standings(found, lock)))
+        said.extend(checks(project, standings))
+        said.extend(unreviewed(project, standings) if lock is not None and lock.reviews else ())
     _finish(tuple(dict.fromkeys(said)), len(project.requirements))
 
 

@@ -180,4 +180,7 @@ def _status(whole: Report) -> int:
     words = {view.mark.word for view in whole.requirements}
     if words & {"violated", "refuted", "suspect"} or any(map(is_refuted, whole.requirements)):
         return VIOLATION
-    return SHOWN if words <= {"satisfied", "supported", "waived", "retired"} else NOT_SHOWN
+    if whole.withdrawn:
+        return VIOLATION
+    claimed = words - {"retired"}
+    return SHOWN if claimed and claimed <= {"satisfied", "supported", "waived"} else NOT_SHOWN

@@ -14,7 +14,7 @@ from fretish.ordering import natural
 from fretish.rendering import visible
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Collection, Sequence
 
     from compiler.links import Chain
     from compiler.lock import Lock
@@ -59,10 +59,19 @@ def lock(
     audited run with its verdict, go into `fretc.lock`. Any later change makes the links downstream
     of it suspect. Without an ID all requirements are accepted; of the others the reviews stay.
     What the runs say of each is named; a violation is accepted only with `--accept-violations`.
+    Evidence of something else than what is here now is not accepted. A review of a requirement
+    that is not there any more stays until its ID is given, or none.
     """
+    from compiler.dates import is_date, is_to_come, today
     from compiler.evidence import refuted
-    from compiler.lock import Lock, accepted, is_date, text, unnamed_violations, verdicts_of
-    from compiler.waivers import today
+    from compiler.lock import (
+        Lock,
+        accepted,
+        outdated_results,
+        text,
+        unnamed_violations,
+        verdicts_of,
+    )
 
     for name, said in (("--reviewer", reviewer), ("--role", role), ("--comment", comment)):
         if not said.strip():
@@ -70,23 +79,28 @@ def lock(
     day = day or today()
     if not is_date(day):
         stop(Diagnostic(Code.BAD_USAGE, f"`{day}` is no date", help="write it as `2026-11-22`"))
+    if is_to_come(day):
+        told = f"`{day}` is still to come, and nobody can have reviewed then"
+        stop(Diagnostic(Code.BAD_USAGE, told, help="leave `--date` out: then it is today"))
     project, chains = _chains(requirements, evidence, verification)
     if has_errors(project.diagnostics):
         raise SystemExit(BAD)
-    chosen = _chosen(chains, ids)
-    violations = unnamed_violations(chosen, refuted(evidence))
-    if violations and not accept_violations:
-        stop(*violations)
     where = path or _beside(requirements)
     before = _read(where, must=False)
     kept = before.reviews if before is not None else {}
-    known = {chain.requirement for chain in chains}
-    reviews = {id: review for id, review in kept.items() if id in known}
+    gone = kept.keys() - {chain.requirement for chain in chains}
+    chosen = _chosen(chains, ids, gone)
+    violations = () if accept_violations else unnamed_violations(chosen, refuted(evidence))
+    refused = (*outdated_results(chosen), *violations)
+    if refused:
+        stop(*refused)
+    left = {id for id in gone if not ids or id in ids}
+    reviews = {id: review for id, review in kept.items() if id not in left}
     reviews |= {c.requirement: accepted(c, reviewer, role, day, comment) for c in chosen}
     deliver({Path(where): text(Lock(reviews))})
     for chain in chosen:
         say_line(visible(f"accepted {chain.requirement}: {verdicts_of(chain)}"))
-    for id in sorted(kept.keys() - known, key=natural):
+    for id in sorted(left, key=natural):
         say_line(f"left out {id}: it is not among the requirements")
 
 
@@ -149,8 +163,11 @@ def _chains(
     return project, chains(project, audited, proofs=proofs)
 
 
-def _chosen(chains: Sequence[Chain], ids: tuple[str, ...]) -> Sequence[Chain]:
-    known = [chain.requirement for chain in chains]
+def _chosen(
+    chains: Sequence[Chain], ids: tuple[str, ...], gone: Collection[str]
+) -> Sequence[Chain]:
+    """The requirements that are named, or all; one that is gone may be named, to let it go."""
+    known = [*(chain.requirement for chain in chains), *gone]
     for id in ids:
         if id not in known:
             near = suggestion(id, known)

@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 
 from compiler.ajpf_results import evidence as ajpf_evidence
+from compiler.dates import today
 from compiler.evidence import read
 from compiler.lock import read as read_lock
 from compiler.project import Project
@@ -15,7 +16,7 @@ from compiler.report.html import html
 from compiler.report.views import Report
 from compiler.rule import Rule
 from compiler.templating import to_json
-from compiler.waivers import Waiver, today
+from compiler.waivers import Waiver
 from compiler.waivers import read as read_waivers
 from fretish.diagnostic import Diagnostic
 

@@ -11,7 +11,7 @@ from compiler.ajpf_results import merged
 from compiler.checks import checks
 from compiler.estimates import AVERAGE
 from compiler.evidence import Evidence
-from compiler.lock import Lock
+from compiler.lock import Lock, Withdrawn, withdrawn
 from compiler.odds import CONFIDENCE, REFUTED, SUPPORTED
 from compiler.products import shared_products
 from compiler.project import Project
@@ -27,6 +27,7 @@ from compiler.report.claims import (
     WAIVED,
     Claim,
     claims,
+    idle_waivers,
 )
 from compiler.report.matrix import hazard_views, matrix, orphans, strangers
 from compiler.report.proofs import SHARED, is_refuted, proof_views
@@ -42,6 +43,7 @@ from compiler.report.views import (
     Planned,
     Report,
     RequirementView,
+    Withdrawal,
 )
 from compiler.verification import Evidence as Line
 from compiler.waivers import Waiver
@@ -73,6 +75,8 @@ def report(
     found = runs(evidence)
     proved = merged(proofs.proofs if proofs else (), ajpf)
     claimed = claims(project, evidence, lock, waivers, proved)
+    chains = [claim.standing.chain for claim in claimed]
+    gone = withdrawn(project.requirements, chains, lock)
     anchors = {claim.id: claim.anchor for claim in reversed(claimed)}
     audited = evidence is not None
     common = shared_products(project.declarations) if proved else ()
@@ -91,7 +95,7 @@ def report(
         components=tuple(sorted({rule.sentence.component for rule in project.rules})),
         evidence=phrases.place(path) if evidence else "",
         audited_by=evidence.fretc if evidence else "",
-        overall=_overall(project, claimed, sections, tuple(found.values()), reservations),
+        overall=_overall(project, claimed, sections, tuple(found.values()), reservations, gone),
         runs=run_views(found.values(), project),
         claims=_claims(claimed, len(found)),
         counts=_counts(claimed),
@@ -105,7 +109,8 @@ def report(
         matrix=matrix(project, claimed, sections, found),
         orphans=orphans(project, claimed, evidence),
         reviewed=reviews.reviewed(claimed),
-        changes=reviews.changes(claimed),
+        changes=(*reviews.changes(claimed), *reviews.gone(gone)),
+        withdrawn=tuple(Withdrawal(one.review.requirement, one.text) for one in gone),
         waivers=tuple(view.waiver for view in sections if view.waiver),
         requirements=sections,
         assumptions=_assumptions(project, evidence),
@@ -113,7 +118,7 @@ def report(
             project, sections, tuple(found.values()), path, proofs, _confidence(evidence)
         ),
         manifest=manifest(project, sections, tuple(found.values()), evidence, proofs),
-    ), _stale(claimed, evidence, path)
+    ), (*stale(claimed, evidence, path), *idle_waivers(claimed))
 
 
 def _confidence(evidence: Evidence | None) -> float:
@@ -148,6 +153,7 @@ def _overall(
     sections: Sequence[RequirementView],
     runs: Sequence[Run],
     reservations: Sequence[str],
+    gone: Sequence[Withdrawn],
 ) -> Overall:
     active = [claim for claim in claimed if claim.verdict != RETIRED]
     inforce = [view for view in sections if view.status != RETIRED]
@@ -161,6 +167,7 @@ def _overall(
             None,
             (
                 *_held(active, good, len(runs)),
+                *(f"{one.text}." for one in gone),
                 _refuted(refuted),
                 *_few(reservations),
                 _waived(active),
@@ -177,7 +184,7 @@ def _overall(
         return Overall(_BROKEN, f"{names} {verb} {_how(broken)}.", said)
     if not good:
         return Overall(_NONE, "Nothing that was claimed is shown.", said)
-    if len(good) < len(active) or flawed:
+    if len(good) < len(active) or flawed or gone:
         return Overall(_PART, "Not everything that was claimed is shown.", said)
     if refuted:
         return Overall(_PART, "What was audited held; verification found counterexamples.", said)
@@ -321,9 +328,8 @@ def _assumptions(project: Project, evidence: Evidence | None) -> tuple[str, ...]
 # F504 ------------------------------------------------------------------------------------------
 
 
-def _stale(
-    claimed: Sequence[Claim], evidence: Evidence | None, path: str
-) -> tuple[Diagnostic, ...]:
+def stale(claimed: Sequence[Claim], evidence: Evidence | None, path: str) -> tuple[Diagnostic, ...]:
+    """F504 for each requirement with evidence of something else, and each id that is unknown."""
     again = f"audit again: `fretc audit LOG... --evidence {path}`"
     suspect = [
         Diagnostic(

@@ -6,21 +6,22 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from types import MappingProxyType
 
+from compiler.basis import Basis, why
 from compiler.estimates import Estimated
 from compiler.evidence import Evidence, Result, by_requirement
-from compiler.files import sha256
-from compiler.links import chains
+from compiler.links import chains, outdated
 from compiler.lock import Lock, Standing, standings
 from compiler.odds import REFUTED, SUPPORTED
+from compiler.plan import bases
 from compiler.products import Product, products
-from compiler.project import Project, fingerprint
+from compiler.project import Project
 from compiler.proven import Proof
 from compiler.report.probabilities import ANSWERS, contradictions
 from compiler.report.views import Mark
 from compiler.rule import Rule
 from compiler.targets import monitor
 from compiler.trials import plain
-from compiler.waivers import Waiver
+from compiler.waivers import Waiver, idle
 from fretish.declarations import Declarations
 from fretish.diagnostic import Diagnostic
 from fretish.documents import Requirement
@@ -114,10 +115,10 @@ class Claim:
     def verdict(self) -> str:
         """The worst of its runs, or what they say together, or why it has none.
 
-        `waived` where a waiver covers that.
+        `waived` where a waiver covers that verdict.
         """
         found = self.unwaived
-        return WAIVED if self.waiver and found not in (*SHOWN, RETIRED) else found
+        return WAIVED if self.waiver and found == self.waiver.verdict else found
 
     @property
     def unwaived(self) -> str:
@@ -177,7 +178,7 @@ def claims(
     rules = {id(rule.requirement): rule for rule in project.rules}
     failed = {id(each.requirement): each.diagnostic for each in project.failed}
     results = by_requirement(evidence)
-    bindings = fingerprint(project.declarations) if project.declarations else None
+    rests_on = bases(project)
     made = {id: products(rule) for id, rule in rules.items()}
     standing = standings(chains(project, evidence, made, proofs), lock)
     anchors: list[str] = []
@@ -185,7 +186,7 @@ def claims(
     for requirement, stands in zip(project.requirements, standing, strict=True):
         anchors.append(_anchor(requirement.id, anchors))
         rule = rules.get(id(requirement))
-        judge = _Judge(rule, bindings)
+        judge = _Judge(rests_on[id(requirement)], evidence)
         mine = results.get(requirement.id, ())
         judged = tuple(Judged(result, tuple(judge.suspicions(result))) for result in mine)
         found.append(
@@ -203,6 +204,15 @@ def claims(
             )
         )
     return tuple(found)
+
+
+def idle_waivers(claims: Sequence[Claim]) -> tuple[Diagnostic, ...]:
+    """F543 for each waiver of another verdict than the one that is there."""
+    return tuple(
+        idle(claim.waiver, claim.verdict)
+        for claim in claims
+        if claim.waiver is not None and claim.verdict != WAIVED
+    )
 
 
 def _together(
@@ -236,31 +246,16 @@ def _anchor(id: str, taken: Sequence[str]) -> str:
 
 
 class _Judge:
-    """Compares evidence with what the requirement, its bindings and its monitor are now."""
+    """Compares evidence with what its verdict would rest on now."""
 
-    def __init__(self, rule: Rule | None, bindings: str | None) -> None:
-        self.sentence, self.bindings = rule.fingerprint if rule else None, bindings
-        self.monitor = sha256(monitor.text(rule)) if rule else None
+    def __init__(self, now: Basis, evidence: Evidence | None) -> None:
+        self._now, self._audited_by = now, evidence.fretc if evidence else ""
 
     def suspicions(self, result: Result) -> list[str]:
         """Why a result does not count; empty where it does."""
-        reasons = self._stale(result)
+        reasons = [why(kind) for kind in outdated(result, self._audited_by, self._now)]
         if result.verdict in (kernel.SATISFIED, kernel.VACUOUS) and not result.health.intact:
             reasons.append("the log is damaged, and a damaged log cannot show this")
         if result.verdict == kernel.SATISFIED and result.violations:
             reasons.append("the evidence contradicts itself: it lists violations")
-        return reasons
-
-    def _stale(self, result: Result) -> list[str]:
-        if self.sentence is None:
-            return ["the sentence cannot be formalized now"]
-        reasons = []
-        if result.hashes["sentence"] != self.sentence:
-            reasons.append("the sentence has changed since the audit")
-        if self.bindings is None:
-            reasons.append("there are no bindings now to compare with")
-        elif result.hashes["bindings"] != self.bindings:
-            reasons.append("the bindings have changed since the audit")
-        if not reasons and result.hashes["monitor"] != self.monitor:
-            reasons.append("the monitor that is made now is not the one of the audit")
         return reasons

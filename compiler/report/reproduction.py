@@ -7,9 +7,11 @@ from functools import partial
 from pathlib import PurePath
 
 from compiler import __version__
+from compiler.basis import BINDINGS, of_all
 from compiler.evidence import Evidence
 from compiler.odds import CONFIDENCE
-from compiler.project import Project, fingerprint
+from compiler.plan import bases
+from compiler.project import Project
 from compiler.proven import Proofs
 from compiler.report import phrases
 from compiler.report.runs import Run
@@ -125,6 +127,13 @@ def _emission(files: Sequence[str], emits: str) -> str:
     return f"fretc {words(files)} {emits} --output build"
 
 
+def _of_bindings(project: Project) -> str:
+    """As it stands in evidence: of what the requirements in force read of the bindings."""
+    known = bases(project)
+    inforce = [each for each in project.requirements if each.status != "retired"]
+    return of_all({each.id: known[id(each)][BINDINGS] for each in inforce})
+
+
 def manifest(
     project: Project,
     sections: Sequence[RequirementView],
@@ -136,7 +145,7 @@ def manifest(
     bindings = project.declarations
     lines = [Hash("sentence", section.id, section.fingerprint) for section in sections]
     if bindings is not None:
-        lines.append(Hash("bindings", phrases.place(bindings.source.name), fingerprint(bindings)))
+        lines.append(Hash("bindings", phrases.place(bindings.source.name), _of_bindings(project)))
     lines.extend(
         Hash(artefact.target, artefact.file, artefact.sha256)
         for section in sections

@@ -6,6 +6,7 @@ from collections.abc import Iterator, Sequence
 
 from compiler.comparison import Difference, difference
 from compiler.links import Node, Suspect
+from compiler.lock import Withdrawn
 from compiler.report import phrases
 from compiler.report.claims import MARKS, SUSPECT, Claim
 from compiler.report.views import Change, Listing, Mark, ReviewView, WaiverView
@@ -52,6 +53,22 @@ def changes(claims: Sequence[Claim]) -> tuple[Change, ...]:
     """What is not as it was reviewed; requirements that are as they were are left out."""
     pairs = [(claim, difference(claim.standing)) for claim in claims if claim.standing.review]
     return tuple(_change(claim, found) for claim, found in pairs if found.state != "same")
+
+
+def gone(found: Sequence[Withdrawn]) -> tuple[Change, ...]:
+    """What was reviewed and is not there any more; one that was retired since is a change."""
+    return tuple(
+        Change(
+            one.review.requirement,
+            "",
+            "gone",
+            (one.text,),
+            Listing((), 0),
+            tuple((run, then, "none") for run, then in sorted(one.review.verdicts.items())),
+        )
+        for one in found
+        if not one.retired
+    )
 
 
 def _change(claim: Claim, found: Difference) -> Change:

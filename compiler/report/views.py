@@ -179,6 +179,14 @@ class Change:
 
 
 @dataclass(frozen=True, slots=True)
+class Withdrawal:
+    """A requirement that was reviewed and is claimed no more, and how, in a sentence."""
+
+    requirement: str
+    text: str
+
+
+@dataclass(frozen=True, slots=True)
 class ReviewView:
     """Who has accepted a requirement, and whether that still stands."""
 
@@ -444,6 +452,8 @@ class Report:
     reviewed: str
     """How many requirements have been reviewed, and whether that stands."""
     changes: tuple[Change, ...]
+    withdrawn: tuple[Withdrawal, ...]
+    """What was claimed when it was reviewed, and is not any more."""
     waivers: tuple[WaiverView, ...]
     requirements: tuple[RequirementView, ...]
     assumptions: tuple[str, ...]

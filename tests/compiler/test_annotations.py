@@ -117,10 +117,10 @@ def test_the_metadata_say_what_was_judged_and_by_what() -> None:
         "run": "a.mcap",
         "clock": "1 s, by log_time",
         "sha256.log": "aa",
-        "sha256.bindings": "bb",
         "R1.verdict": "violated",
         "R1.reason": "broken",
         "R1.sha256.sentence": "cc",
+        "R1.sha256.bindings": "bb",
         "R1.sha256.monitor": "dd",
     }
 

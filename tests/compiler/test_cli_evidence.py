@@ -69,6 +69,30 @@ def test_another_log_under_the_same_name_is_found(audited: Fretc) -> None:
     assert "differs: the log has changed; the verdict is satisfied, and was violated" in run.out
 
 
+@pytest.mark.parametrize("looked", ["index", "hash", "full"])
+def test_another_log_of_the_same_verdicts_is_found(audited: Fretc, looked: str) -> None:
+    assert audited("audit", "logs", "--integrity", looked).status == 1
+    log("logs/good.mcap", 0, 1.5, 3, 0, 0, 0.5)
+    run = audited("verify-evidence")
+    assert run.status == 1
+    assert "logs/good.mcap\n  ✘ r1  differs: the log has changed" in run.out
+
+
+def test_a_default_that_is_written_out_is_no_difference(audited: Fretc) -> None:
+    write("requirements/bindings.toml", BINDINGS.replace("[clock]", "# as it is\n[clock]"))
+    text = Path("requirements/bindings.toml").read_text()
+    assert 'end = "inconclusive"' not in text
+    write("requirements/bindings.toml", text.replace("tick =", 'end = "inconclusive"\ntick ='))
+    assert audited("verify-evidence").status == 0
+
+
+def test_an_assumption_that_was_put_in_by_hand_is_found(audited: Fretc) -> None:
+    known = json.loads(Path("build/evidence.json").read_text())
+    known["results"][0]["assumptions"].append("the brake holds")
+    write("build/evidence.json", json.dumps(known))
+    assert "differs: it differs in assumptions\n" in audited("verify-evidence").out
+
+
 def test_a_hash_that_was_put_in_by_hand_does_not_help(audited: Fretc) -> None:
     known = json.loads(Path("build/evidence.json").read_text())
     log("logs/bad.mcap", 0, 1.5, 3, 0, 0, 0)

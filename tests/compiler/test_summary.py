@@ -96,7 +96,11 @@ def test_the_exit_status_is_that_of_the_audit(fretc: Fretc, results: list[dict[s
 def test_only_the_worst_of_many_runs_are_listed(
     fretc: Fretc, results: list[dict[str, Any]]
 ) -> None:
-    many = [{**results[4], "run": f"{number:02}.mcap"} for number in range(25)]
+    known = results[4]["hashes"]
+    many = [
+        {**results[4], "run": f"{number:02}.mcap", "hashes": {**known, "log": f"{number:064x}"}}
+        for number in range(25)
+    ]
     Path("many.parquet").write_bytes(parquet(many, "1"))
     run = fretc("audit", "--summary", "many.parquet")
     assert "worst runs (10 of 25)\n" in run.out
@@ -111,6 +115,35 @@ def test_two_versions_of_a_requirement_are_not_counted_as_one_in_silence(
     Path("two.parquet").write_bytes(parquet([*results, other], "1"))
     run = fretc("audit", "--summary", "two.parquet")
     assert run.err.startswith("F504 warning: R1 was audited as 2 different requirements: ")
+
+
+@pytest.mark.parametrize("known_by", ["log", "log_summary"])
+def test_a_copy_of_a_log_under_another_name_counts_once_in_head_and_rows(
+    fretc: Fretc, results: list[dict[str, Any]], known_by: str
+) -> None:
+    def named(one: dict[str, Any], run: str) -> dict[str, Any]:
+        hashes = dict(one["hashes"])
+        log = hashes.pop("log")
+        return {**one, "run": run, "hashes": {**hashes, known_by: log}}
+
+    first = [named(one, one["run"]) for one in results]
+    copies = [named(one, f"copy/{one['run']}") for one in results]
+    Path("one.parquet").write_bytes(parquet(first, "1"))
+    Path("two.parquet").write_bytes(parquet(copies, "1"))
+    assert fretc("audit", "--summary", "one.parquet", "two.parquet").out == SUMMARY
+
+
+def test_of_two_verdicts_on_one_log_the_worst_counts(
+    fretc: Fretc, results: list[dict[str, Any]]
+) -> None:
+    good, bad = results[0], {**results[0], "verdict": "violated", "run": "copy.mcap"}
+    for order in ([good, bad], [bad, good]):
+        Path("both.parquet").write_bytes(parquet(order, "1"))
+        run = fretc("audit", "--summary", "both.parquet", "--format", "json")
+        told = json.loads(run.out)
+        (row,) = told["by_requirement"]
+        assert (run.status, told["runs"], row["runs"]) == (1, 1, 1)
+        assert (row["satisfied"], row["violated"]) == (0, 1)
 
 
 def test_a_query_is_answered_for_a_person_and_for_a_program(

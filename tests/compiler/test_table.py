@@ -74,6 +74,7 @@ def test_a_row_has_the_numbers_of_its_run() -> None:
         "gaps": 0,
         "findings": 0,
         "log_sha256": LOG,
+        "log_summary_sha256": None,
         "sentence_sha256": hashes["sentence"],
         "bindings_sha256": hashes["bindings"],
         "monitor_sha256": hashes["monitor"],
@@ -90,6 +91,7 @@ def test_what_a_run_does_not_have_is_null() -> None:
     assert absent >= {
         "finite", "start_ns", "end_ns", "first_violation_ns", "first_violation_s", "size",
         "log_sha256",
+        "log_summary_sha256",
     }  # fmt: skip
     assert row["intact"] is False
 
@@ -149,7 +151,7 @@ def test_a_damaged_or_foreign_parquet_file_is_told() -> None:
         Path("cut.parquet").write_bytes(good[:part])
         assert code("cut.parquet")[0] == "F503"
     files.write_table(pyarrow.table({"run": ["a"]}), "other.parquet")
-    assert code("other.parquet") == ("F503", "`other.parquet` is no table of `fretc-table-1`")
+    assert code("other.parquet") == ("F503", "`other.parquet` is no table of `fretc-table-2`")
 
 
 @pytest.mark.parametrize("options", [["--summary"], ["--query", "SELECT 1"]])

@@ -1,11 +1,14 @@
 import pytest
 
-from compiler.waivers import Waiver, read, today
+from compiler.dates import today
+from compiler.report.claims import MARKS
+from compiler.waivers import VERDICTS, Waiver, read
 from fretish.rendering import render
 from tests.command import write
 
 GOOD = """\
 [R1]
+verdict = "no data"
 reason  = "the lidar is being replaced"
 by      = "A. Meier"
 role    = "safety engineer"
@@ -25,6 +28,7 @@ def test_a_waiver_counts_from_its_first_to_its_last_day() -> None:
     assert waivers == {
         "R1": Waiver(
             "R1",
+            "no data",
             "the lidar is being replaced",
             "A. Meier",
             "safety engineer",
@@ -40,7 +44,7 @@ def test_a_waiver_that_has_ended_is_told() -> None:
     _, (said,) = read(write("waivers.toml", GOOD), ["R1"], "2027-01-01")
     assert render(said) == (
         "F514 warning: the waiver of R1 counts from 2026-11-01 to 2026-12-31 only\n"
-        "  --> waivers.toml:6:11\n"
+        "  --> waivers.toml:7:11\n"
         '   | expires = "2026-12-31"\n'
         "   |           ^^^^^^^^^^^^\n"
         "help: show the requirement, or have the waiver granted anew"
@@ -54,6 +58,11 @@ def test_a_waiver_that_has_ended_is_told() -> None:
         ('by      = "A. Meier"\n', "", "the waiver of R1 needs `by`"),
         ('"A. Meier"', '" "', "the waiver of R1 needs `by`"),
         ('"2026-12-31"', '"31.12.2026"', "`31.12.2026` is no date"),
+        ('verdict = "no data"\n', "", "the waiver of R1 does not say which verdict it covers"),
+        ('"no data"', '"nodata"', "`nodata` is no verdict that can be waived"),
+        ('"no data"', '"satisfied"', "`satisfied` is no verdict that can be waived"),
+        ('"no data"', '"suspect"', "`suspect` is no verdict that can be waived"),
+        ('"no data"', "7", "`7` is no verdict that can be waived"),
         ("reason", "raeson", "`raeson` is no field of [R1]"),
     ],
 )
@@ -66,3 +75,14 @@ def test_a_waiver_with_a_mistake_waives_nothing(old: str, new: str, message: str
 def test_the_day_is_that_of_source_date_epoch(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("SOURCE_DATE_EPOCH", "1700000000")
     assert today() == "2023-11-14"
+
+
+def test_what_a_waiver_may_cover_is_what_does_not_show_a_requirement() -> None:
+    shown = {"satisfied", "supported", "retired", "waived", "suspect"}
+    assert set(VERDICTS) == {word for word in MARKS if word not in shown}
+
+
+def test_an_older_waiver_is_told_with_its_mend() -> None:
+    _, (said,) = read(write("waivers.toml", GOOD.replace('verdict = "no data"\n', "")), ["R1"], "")
+    assert said.help is not None
+    assert said.help.startswith('add `verdict = "no data"`; it may be `violated`, `refuted`, ')

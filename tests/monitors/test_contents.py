@@ -2,11 +2,14 @@
 
 import hashlib
 import random
+import struct
 from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from mcap.reader import make_reader
+from mcap.opcode import Opcode
+from mcap.records import Chunk, DataEnd
+from mcap.stream_reader import StreamReader
 from mcap.writer import IndexType
 
 from monitors.integrity import Checked, Integrity
@@ -75,17 +78,34 @@ def test_chunks_without_a_crc_are_told(tmp_path: Path) -> None:
     assert checked(path, Integrity.FULL).checked == Checked(by_index=False, chunks=3, without_crc=3)
 
 
-def test_by_its_index_alone_a_log_is_known_by_its_summary(tmp_path: Path) -> None:
+def test_by_its_index_alone_a_log_is_known_by_its_summary_and_its_crcs(tmp_path: Path) -> None:
     path = write(tmp_path / "log.mcap", TWELVE, per_chunk=4, compression=ZSTD)
     found, hashed = checked(path, Integrity.INDEX), checked(path)
+    whole = path.read_bytes()
     with path.open("rb") as stream:
-        reader = make_reader(stream)
-        assert reader.get_summary() is not None
-        stream.seek(-28, 2)
-        start = int.from_bytes(stream.read(8), "little")
-    assert found.sha256 == hashlib.sha256(path.read_bytes()[start:]).hexdigest()
+        records = list(StreamReader(stream, emit_chunks=True).records)
+    crcs = b"".join(
+        struct.pack("<I", record.uncompressed_crc)
+        for record in records
+        if isinstance(record, Chunk)
+    )
+    (end,) = (record for record in records if isinstance(record, DataEnd))
+    at = whole.rindex(struct.pack("<BQI", Opcode.DATA_END, 4, end.data_section_crc))
+    assert len(crcs) == 12
+    assert found.sha256 == hashlib.sha256(crcs + whole[at:]).hexdigest()
     assert found.checked == replace(hashed.checked, hashed=False)
     assert values(found, "x") == values(hashed, "x")
+
+
+def test_by_its_index_alone_a_log_of_the_same_lengths_is_another_one(tmp_path: Path) -> None:
+    one, other = (
+        write(tmp_path / name, [number(x, i * S) for i in range(4)], per_chunk=4, compression=NONE)
+        for name, x in (("one.mcap", 1.0), ("other.mcap", 2.0))
+    )
+    assert one.stat().st_size == other.stat().st_size
+    found = [checked(path, Integrity.INDEX) for path in (one, other)]
+    assert all(each.checked.by_index and not each.checked.hashed for each in found)
+    assert found[0].sha256 != found[1].sha256
 
 
 @pytest.mark.parametrize("index", [IndexType.NONE, IndexType.CHUNK, IndexType.MESSAGE])

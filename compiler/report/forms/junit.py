@@ -44,11 +44,17 @@ def junit(report: Report, *, strict: bool) -> str:
     """
     kinds = {**_KINDS, SUSPECT: "failure"} if strict else _KINDS
     root = ElementTree.Element("testsuites", name="fretc report")
-    counts = counted([kinds.get(view.mark.word) for view in report.requirements])
+    gone = {one.requirement: one.text for one in report.withdrawn}
+    views = [view for view in report.requirements if view.id not in gone]
+    known = [(view, kinds.get(view.mark.word)) for view in views]
+    counts = counted([*(kind for _, kind in known), *(kinds[SUSPECT] for _ in gone)])
     name = valid(report.project)
     suite = ElementTree.SubElement(root, "testsuite", {"name": name, **counts})
-    for view in report.requirements:
-        _case(suite, view, kinds.get(view.mark.word), name)
+    for view, kind in known:
+        _case(suite, view, kind, name)
+    for id, text in gone.items():
+        case = ElementTree.SubElement(suite, "testcase", name=valid(id), classname=name, time="0")
+        ElementTree.SubElement(case, kinds[SUSPECT], message=valid(f"withdrawn: {text}"))
     return as_text(root)
 
 

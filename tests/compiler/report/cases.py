@@ -5,11 +5,12 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from compiler.files import sha256
-from compiler.project import Project, fingerprint, load
+from compiler.basis import BINDINGS as BINDINGS_PART
+from compiler.basis import KINDS, of_all
+from compiler.plan import bases
+from compiler.project import Project, load
 from compiler.record import wording
 from compiler.report import Made, make
-from compiler.targets import monitor
 
 BINDINGS = """\
 [clock]
@@ -163,13 +164,7 @@ def result(
     `changes` replace fields; those of `hashes` and `health` are put into the present ones.
     """
     assert known.declarations is not None
-    rule = next((rule for rule in known.rules if rule.id == id), None)
-    made = {
-        "log": LOG,
-        "sentence": rule.fingerprint if rule else "",
-        "bindings": fingerprint(known.declarations),
-        "monitor": sha256(monitor.text(rule)) if rule else "",
-    }
+    made = {"log": LOG, **basis(known, id)}
     health = {
         "intact": True,
         "size": 1234567,
@@ -215,6 +210,13 @@ def result(
     }
 
 
+def basis(known: Project, name: str) -> Mapping[str, str]:
+    """What an audit would record of a requirement now."""
+    found = bases(known)
+    mine = next((each for each in known.requirements if each.id == name), None)
+    return found[id(mine)] if mine is not None else dict.fromkeys(KINDS, "")
+
+
 ODOM = {
     "type": "nav_msgs/msg/Odometry",
     "count": 501,
@@ -232,11 +234,11 @@ ODOM = {
 
 def evidence(known: Project, *results: Mapping[str, Any]) -> dict[str, Any]:
     """A whole evidence file."""
-    assert known.declarations is not None
+    bound = {rule.id: basis(known, rule.id)[BINDINGS_PART] for rule in known.rules}
     return {
         "schema": "fretc-evidence-1",
         "fretc": "0.1.0",
-        "bindings": {"file": "bindings.toml", "sha256": fingerprint(known.declarations)},
+        "bindings": {"file": "bindings.toml", "sha256": of_all(bound)},
         "requirements": [
             {"id": rule.id, "sentence": wording(rule.requirement), "sha256": rule.fingerprint}
             for rule in known.rules

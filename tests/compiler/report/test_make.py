@@ -259,7 +259,7 @@ def test_without_bindings_nothing_is_compared_and_nothing_counts(tmp_path: Path)
     (tmp_path / "bindings.toml").unlink()
     content = said(make(project(tmp_path, R1, bindings=None), str(tmp_path / "evidence.json")))
     (shown,) = content["requirements"][0]["results"]
-    assert shown["suspicions"] == ["there are no bindings now to compare with"]
+    assert shown["suspicions"] == ["the bindings have changed since the audit"]
     assert content["requirements"][0]["propositions"][0]["is_bound"] is False
 
 

@@ -11,7 +11,7 @@ from compiler.links import chains
 from compiler.lock import Lock, accepted, text
 from compiler.project import Project
 from compiler.report import make
-from fretish.diagnostic import Diagnostic
+from fretish.diagnostic import Code, Diagnostic
 from tests.compiler.report.cases import (
     BINDINGS,
     R1,
@@ -25,6 +25,7 @@ from tests.compiler.report.cases import (
 
 WAIVER = """\
 [R1]
+verdict = "violated"
 reason = "the brake is being replaced"
 by = "A. Meier"
 role = "safety engineer"
@@ -136,6 +137,28 @@ def test_a_waiver_of_what_is_shown_covers_nothing(tmp_path: Path) -> None:
     assert (
         only(reported(known, tmp_path, result(known, "satisfied")))["mark"]["word"] == "satisfied"
     )
+
+
+@pytest.mark.parametrize("verdict", ["no data", "inconclusive", "vacuous", "violated"])
+@pytest.mark.parametrize("waived", ["no data", "inconclusive", "vacuous", "violated"])
+def test_a_waiver_covers_the_verdict_that_it_names_and_no_other(
+    tmp_path: Path, verdict: str, waived: str
+) -> None:
+    known = project(tmp_path)
+    (tmp_path / "waivers.toml").write_text(WAIVER.replace("violated", waived))
+    broken = [violation(14, 20, 11)] if verdict == "violated" else []
+    (tmp_path / "evidence.json").write_text(
+        json.dumps(evidence(known, result(known, verdict, violations=broken)))
+    )
+    made = make(known, str(tmp_path / "evidence.json"), waivers=str(tmp_path / "waivers.toml"))
+    idle = [d.message for d in made.diagnostics if d.code is Code.IDLE_WAIVER]
+    if verdict == waived:
+        assert (only(said(made))["mark"]["word"], idle) == ("waived", [])
+    else:
+        assert only(said(made))["mark"]["word"] == verdict
+        assert idle == [
+            f"the waiver of R1 is for `{waived}`, and the verdict is `{verdict}`: it covers nothing"
+        ]
 
 
 def test_a_waiver_that_has_ended_covers_nothing(

@@ -16,8 +16,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from compiler.canonical import bound
 from compiler.interception import options as counted
-from compiler.project import fingerprint
 from compiler.runtime import interceptor as core
 from compiler.targets import TARGETS
 from compiler.targets.interceptor import MARKER, text
@@ -162,14 +162,13 @@ def test_what_can_go_wrong_is_said() -> None:
 
 
 def test_evidence_does_not_grow_stale_where_only_the_interceptor_changes() -> None:
-    plain = fingerprint(declared(""))
-    assert fingerprint(declared(f'{TABLE}period = "50 ms"\n')) == plain
-    assert (
-        fingerprint(declared('[assume]\nstands = "p"\nlatency = "0 s"\nbraking = "0 s"\n')) == plain
-    )
+    plain = bound(declared(""), ["p"])
+    assert bound(declared(f'{TABLE}period = "50 ms"\n'), ["p"]) == plain
+    assume = '[assume]\nstands = "p"\nlatency = "0 s"\nbraking = "0 s"\n'
+    assert bound(declared(assume), ["p"]) == plain
     found, _ = read_bindings(Source("bindings.toml", BINDINGS.replace("x > 0", "x > 1")))
     assert found is not None
-    assert fingerprint(found) != plain
+    assert bound(found, ["p"]) != plain
 
 
 # The node -------------------------------------------------------------------------------------

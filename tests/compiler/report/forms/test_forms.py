@@ -26,7 +26,8 @@ TEXTS = (
     requirement("R5", "the robot shall never satisfy near", status="retired"),
 )
 WAIVER = (
-    '[R3]\nreason = "later"\nby = "A"\nrole = "B"\ngranted = "2000-01-01"\nexpires = "2099-01-01"\n'
+    '[R3]\nverdict = "not exercised"\nreason = "later"\nby = "A"\nrole = "B"\n'
+    'granted = "2000-01-01"\nexpires = "2099-01-01"\n'
 )
 
 

@@ -49,7 +49,8 @@ TEXTS = (
 )
 MORE = f'{HAZARDS}\n[HAZ-2]\ntitle = "It tips <over>"\n\n[HAZ-3]\ntitle = "Nothing is below"\n'
 WAIVER = (
-    '[R3]\nreason = "later"\nby = "A"\nrole = "B"\ngranted = "2000-01-01"\nexpires = "2099-01-01"\n'
+    '[R3]\nverdict = "not exercised"\nreason = "later"\nby = "A"\nrole = "B"\n'
+    'granted = "2000-01-01"\nexpires = "2099-01-01"\n'
 )
 IDS = ("HAZ-1", "HAZ-2", "HAZ-3", "R1", "R2", "R3", "R4", "R_5.a-b")
 
