@@ -437,7 +437,7 @@ class _Reader(Fields):
         if isinstance(value, bool):
             self.assumptions.append(
                 f"proposition {at[1]}: where its signals are unknown it counts as "
-                f"{str(value).lower()}"
+                f"{str(value).lower()}, as the bindings declare"
             )
             return value
         self._say(

@@ -278,6 +278,6 @@ class Declarations:
     propositions: Mapping[str, Proposition]
     variables: Mapping[str, Variable] = field(default_factory=dict)
     assumptions: tuple[str, ...] = ()
-    """Defaults that were taken, in words, for the report."""
+    """Defaults that were taken, and what is declared of unknown values, in words."""
     interceptor: Interception | None = None
     assumed: Assumed | None = None
