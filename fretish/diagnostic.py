@@ -133,6 +133,7 @@ class Code(Enum):
     UNREVIEWED_VIOLATION = ("F529", "a lock would accept a violation that nobody has named")
     MERGED_VARIABLE = ("F530", "two variables of an export become one")
     RENAMED = ("F531", "a requirement of an export has another id now")
+    SEVERAL_VERDICTS = ("F555", "audits of one log have several verdicts of a requirement")
     NO_SUCH_REQUIREMENT = ("F515", "no requirement and no diagnostic has that name")
 
     NOT_EXPRESSIBLE = ("F601", "the target cannot express the requirement")

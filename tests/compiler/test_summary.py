@@ -68,6 +68,70 @@ def test_evidence_is_summarized_as_its_table_and_a_row_counts_once(
     assert fretc("audit", "--summary", "evidence.json", "runs.parquet").out == SUMMARY
 
 
+def renamed(results: list[dict[str, Any]], **hashes: str) -> list[dict[str, Any]]:
+    """The same logs under other names."""
+    return [
+        {**one, "run": f"copies/{one['run']}", "hashes": one["hashes"] | hashes} for one in results
+    ]
+
+
+def test_a_log_counts_once_whatever_its_name_in_the_head_and_in_the_rows(
+    fretc: Fretc, results: list[dict[str, Any]]
+) -> None:
+    Path("copies.parquet").write_bytes(parquet(renamed(results), "2"))
+    for tables in (("runs.parquet", "copies.parquet"), ("copies.parquet", "evidence.json")):
+        assert fretc("audit", "--summary", *tables) == Run(1, SUMMARY, "")
+
+
+def test_other_logs_under_the_same_names_count_as_others(
+    fretc: Fretc, results: list[dict[str, Any]]
+) -> None:
+    others = [
+        {**one, "hashes": one["hashes"] | {"log": f"{number // 2 + 100:064x}"}}
+        for number, one in enumerate(results)
+    ]
+    Path("others.parquet").write_bytes(parquet(others, "1"))
+    run = fretc("audit", "--summary", "runs.parquet", "others.parquet", "--format", "json")
+    told = json.loads(run.out)
+    assert (told["runs"], told["seconds"], told["damaged"]) == (6, 21600.0, 2)
+    assert [row["runs"] for row in told["by_requirement"]] == [6, 6]
+    assert (told["failed_runs"], [row["violated"] for row in told["by_requirement"]]) == (4, [2, 0])
+
+
+def test_a_log_that_was_not_hashed_is_told_by_its_summary_and_an_unread_one_by_its_name(
+    fretc: Fretc, results: list[dict[str, Any]]
+) -> None:
+    def unhashed(**others: str) -> list[dict[str, Any]]:
+        kept = {k: v for k, v in results[2]["hashes"].items() if k != "log"}
+        return [{**results[2], "hashes": {**kept, **others}}]
+
+    Path("a.parquet").write_bytes(parquet(unhashed(log_summary="1" * 64), "1"))
+    copy = {**unhashed(log_summary="1" * 64)[0], "run": "x.mcap"}
+    Path("b.parquet").write_bytes(parquet([copy, *unhashed(), {**copy, **unhashed()[0]}], "1"))
+    run = fretc("audit", "--summary", "a.parquet", "b.parquet", "--format", "json")
+    told = json.loads(run.out)
+    assert told["runs"] == told["by_requirement"][0]["runs"] == 2
+
+
+def test_the_worst_of_several_verdicts_of_a_log_counts_and_that_is_said(
+    fretc: Fretc, results: list[dict[str, Any]]
+) -> None:
+    order = ["violated", "no data", "inconclusive", "vacuous", "satisfied"]
+    for place, worse in enumerate(order):
+        for better in order[place + 1 :]:
+            for first, second in ((worse, better), (better, worse)):
+                Path("1.parquet").write_bytes(parquet([{**results[0], "verdict": first}], "1"))
+                Path("2.parquet").write_bytes(parquet([{**results[0], "verdict": second}], "2"))
+                run = fretc("audit", "--summary", "1.parquet", "2.parquet", "--format", "json")
+                (row,) = json.loads(run.out)["by_requirement"]
+                assert (row["runs"], row[worse.replace(" ", "_")]) == (1, 1)
+                told = " and ".join(sorted((worse, better)))
+                assert run.err.startswith(
+                    f"F555 warning: R1 has several verdicts of the log of a.mcap: {told}; the "
+                    "worst of each log counts\n"
+                )
+
+
 def test_a_summary_as_json(fretc: Fretc, results: list[dict[str, Any]]) -> None:
     told = json.loads(fretc("audit", "--summary", "runs.parquet", "--format", "json").out)
     assert told["by_requirement"][1] == {
@@ -96,7 +160,10 @@ def test_the_exit_status_is_that_of_the_audit(fretc: Fretc, results: list[dict[s
 def test_only_the_worst_of_many_runs_are_listed(
     fretc: Fretc, results: list[dict[str, Any]]
 ) -> None:
-    many = [{**results[4], "run": f"{number:02}.mcap"} for number in range(25)]
+    many = [
+        {**results[4], "run": f"{n:02}.mcap", "hashes": results[4]["hashes"] | {"log": f"{n:064x}"}}
+        for n in range(25)
+    ]
     Path("many.parquet").write_bytes(parquet(many, "1"))
     run = fretc("audit", "--summary", "many.parquet")
     assert "worst runs (10 of 25)\n" in run.out
