@@ -58,15 +58,22 @@ _SUBJECTS: Mapping[str, str] = MappingProxyType(
     {
         Layer.MONITOR: "The monitor of {id} decides it as its sentence means",
         Layer.LOOP: "Monitor and interceptor keep {id} in the modelled loop",
-        Layer.BOUNDS: "Monitor and interceptor keep {id} at every bound and latency of the model",
-        Layer.INTERCEPTOR: "The interceptor keeps its contracts",
-        Layer.AGENT: "The agent has the properties of its property file in its model",
+        Layer.BOUNDS: "What is claimed of {id} at other bounds and latencies holds in the loop",
+        Layer.INTERCEPTOR: "The interceptor of {id} keeps its contracts",
+        Layer.AGENT: "The agent keeps {id} in its model",
         Layer.AJPF: "The agent keeps {id} by the verdict of AJPF",
     }
 )
-"""What is supported by a proof of each layer, and no more."""
+"""What the proofs of each layer are about, and no more."""
+_SHARED_SUBJECTS: Mapping[str, str] = MappingProxyType(
+    {
+        "interceptor": "The interceptor keeps its contracts",
+        "agent": "The agent has the properties of its property file in its model",
+    }
+)
+"""The same for proofs that are about no single requirement."""
 _NAMED = 3
-"""Runs and claims that one element names; it counts the others."""
+"""Violating runs that an element names; it counts the others."""
 
 
 def argument(report: Report) -> tuple[Element, ...]:
@@ -115,7 +122,7 @@ class _Argument:
             yield from self._requirements(loose)
         for name, proofs in self._shared.items():
             if proofs:
-                yield from _subject(_id("G_shared", name), name, proofs)
+                yield from _subject(_id("G_shared", name), _SHARED_SUBJECTS[name], proofs)
 
     def _hazard(self, id: str, title: str, anchors: Sequence[str]) -> Iterator[Element]:
         below = tuple(_id("G", anchor) for anchor in dict.fromkeys(anchors))
@@ -164,7 +171,8 @@ class _Argument:
         elif subjects:
             yield Element(runs, Kind.GOAL, f"The audited runs show {view.id}", undeveloped=True)
         for layer, proofs in layers.items():
-            yield from _subject(f"{goal}_{layer}", view.id, proofs)
+            subject = _SUBJECTS[layer].format(id=view.id)
+            yield from _subject(f"{goal}_{layer}", subject, proofs)
 
     def _relied_upon(self, view: RequirementView) -> list[str]:
         """What all requirements share, where a planned method of this one is shown by it."""
@@ -241,7 +249,7 @@ def _of_layer(proofs: Sequence[ProofView], layer: str) -> list[ProofView]:
     return [proof for proof in proofs if proof.layer == layer]
 
 
-def _subject(goal: str, id: str, proofs: Sequence[ProofView]) -> Iterator[Element]:
+def _subject(goal: str, text: str, proofs: Sequence[ProofView]) -> Iterator[Element]:
     """What proofs of one layer are about: claims that are proved, refuted, and left open."""
     proved = [proof for proof in proofs if proof.mark.word == PROVED]
     against = [proof for proof in proofs if _result(proof) == COUNTEREXAMPLE]
@@ -253,7 +261,7 @@ def _subject(goal: str, id: str, proofs: Sequence[ProofView]) -> Iterator[Elemen
     yield Element(
         goal,
         Kind.GOAL,
-        _SUBJECTS[proofs[0].layer].format(id=id),
+        text,
         below,
         (assumption,) if assumed else (),
         undeveloped=not below,
@@ -276,13 +284,11 @@ def _result(proof: ProofView) -> str:
 
 
 def _claims(head: str, proofs: Sequence[ProofView]) -> str:
-    told = [
-        f"{proof.claim} ({'; '.join([proof.engine, *proof.suspicions])})"
-        for proof in proofs[:_NAMED]
-    ]
-    left = len(proofs) - len(told)
-    more = [f"and {phrases.times(left, 'more claim')}"] if left else []
-    return f"{head} {'; '.join([*told, *more])}"
+    """`Proved: it stops; it moves again (by Spot 2.13)`."""
+    by = dict.fromkeys(proof.engine for proof in proofs)
+    why = dict.fromkeys(why for proof in proofs for why in proof.suspicions)
+    said = "; ".join([f"by {phrases.joined(list(by))}", *why])
+    return f"{head} {'; '.join(proof.claim for proof in proofs)} ({said})"
 
 
 def _id(prefix: str, name: str) -> str:

@@ -27,8 +27,10 @@ def reading(signal: str, violation: Violation, result: Result, ages: Mapping[str
     age = _age(signal, violation)
     if known is None or age is None or limit is None or round(age, 9) <= limit:
         return value
-    old = f"is {phrases.seconds(age)} old, and counts for {phrases.seconds(limit)}"
-    return f"unknown: {value} {old}"
+    old, most = phrases.seconds(age), phrases.seconds(limit)
+    return (
+        f"unknown: {value} is {'just over ' if old == most else ''}{old} old, and counts for {most}"
+    )
 
 
 def _value(signal: str, violation: Violation) -> float | str | None:

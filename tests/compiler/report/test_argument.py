@@ -28,7 +28,7 @@ from tests.compiler.report.test_proofs import proof
 
 SENTENCE = "whenever near the robot shall within 30 ticks satisfy stopped"
 R1 = requirement("R1", SENTENCE)
-CLAIM = "the monitor means what the sentence says (fretc)"
+CLAIM = "the monitor means what the sentence says (by fretc)"
 
 
 def reported(
@@ -180,8 +180,8 @@ def test_claims_of_one_layer_are_proved_refuted_and_left_open_apart(tmp_path: Pa
     goal = found["G_req_2d_R1_monitor"]
     assert goal.defeated
     assert goal.supported_by == ("Sn_req_2d_R1_monitor", "G_req_2d_R1_monitor_rest")
-    assert found["CSn_req_2d_R1_monitor"].text == "Counterexample to it is quick (fretc)"
-    assert found["G_req_2d_R1_monitor_rest"].text == "Not shown: it is small (fretc)"
+    assert found["CSn_req_2d_R1_monitor"].text == "Counterexample to it is quick (by fretc)"
+    assert found["G_req_2d_R1_monitor_rest"].text == "Not shown: it is small (by fretc)"
     assert found["G_req_2d_R1_monitor_rest"].undeveloped
 
 
@@ -206,7 +206,7 @@ def test_what_all_requirements_share_stands_below_the_top_and_those_that_plan_it
     assert found["G_top"].supported_by == ("S_hazards", "G_shared_interceptor")
     assert found["G_req_2d_R1"].supported_by == ("Sn_req_2d_R1", "G_shared_interceptor")
     assert found["G_shared_interceptor"].text == "The interceptor keeps its contracts"
-    assert found["Sn_shared_interceptor"].text == "Proved: it stops (fretc)"
+    assert found["Sn_shared_interceptor"].text == "Proved: it stops (by fretc)"
 
 
 UNVIOLABLE = requirement("R1", "whenever near the robot shall eventually satisfy stopped")

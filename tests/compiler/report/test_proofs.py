@@ -86,7 +86,7 @@ def test_the_worst_claim_decides(tmp_path: Path) -> None:
 def test_the_argument_rests_on_proofs_and_on_nothing_that_is_refuted(tmp_path: Path) -> None:
     report = reported(tmp_path, {}, {"layer": "loop"}, verify=[]).report
     assert report is not None
-    claim = "the monitor means what the sentence says (fretc)"
+    claim = "the monitor means what the sentence says (by fretc)"
     assert [each.text for each in argument(report) if each.kind is Kind.SOLUTION] == [
         "R1 is satisfied in 1 audited run",
         f"Proved: {claim}",
