@@ -101,16 +101,16 @@ def test_other_logs_under_the_same_names_count_as_others(
 def test_a_log_that_was_not_hashed_is_told_by_its_summary_and_an_unread_one_by_its_name(
     fretc: Fretc, results: list[dict[str, Any]]
 ) -> None:
-    def unhashed(**others: str) -> list[dict[str, Any]]:
-        kept = {k: v for k, v in results[2]["hashes"].items() if k != "log"}
-        return [{**results[2], "hashes": {**kept, **others}}]
-
-    Path("a.parquet").write_bytes(parquet(unhashed(log_summary="1" * 64), "1"))
-    copy = {**unhashed(log_summary="1" * 64)[0], "run": "x.mcap"}
-    Path("b.parquet").write_bytes(parquet([copy, *unhashed(), {**copy, **unhashed()[0]}], "1"))
+    kept = {k: v for k, v in results[2]["hashes"].items() if k != "log"}
+    one = {**results[2], "hashes": {**kept, "log_summary": "1" * 64}}
+    other = {**results[2], "hashes": {**kept, "log_summary": "2" * 64}}
+    unread = {**results[2], "hashes": kept, "run": "unread.mcap"}
+    copies = [{**one, "run": name} for name in ("x.mcap", "y.mcap")]
+    Path("a.parquet").write_bytes(parquet([one, unread], "1"))
+    Path("b.parquet").write_bytes(parquet([*copies, other, unread], "2"))
     run = fretc("audit", "--summary", "a.parquet", "b.parquet", "--format", "json")
     told = json.loads(run.out)
-    assert told["runs"] == told["by_requirement"][0]["runs"] == 2
+    assert told["runs"] == told["by_requirement"][0]["runs"] == 3
 
 
 def test_the_worst_of_several_verdicts_of_a_log_counts_and_that_is_said(

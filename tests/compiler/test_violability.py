@@ -58,6 +58,12 @@ def test_where_the_end_violates_some_short_run_does_exactly_if_it_is_violable(sc
         assert is_violable(made) is found, template.sentence
 
 
+def test_what_whatever_happens_keeps_is_not_violated_by_the_end_either() -> None:
+    clock = Clock(10**8, end=End.VIOLATED)
+    assert not is_violable(rule("the sw shall always satisfy q | !q", clock=clock))
+    assert is_violable(rule("the sw shall eventually satisfy q", clock=clock))
+
+
 @pytest.mark.parametrize(
     ("sentence", "words"),
     [
