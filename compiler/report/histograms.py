@@ -199,7 +199,7 @@ def _below(value: float, width: float) -> int:
     return max(0, ceil(value / width - 1e-9) - 1)
 
 
-_FROM, _UP_TO = "{count} from {low} to below {high}", "{count} above {low} and up to {high}"
+_FROM, _UP_TO = "{count} from {low} to below {high}", "{count} {above} {low} up to {high}"
 
 
 def _in_words(bins: Sequence[Bin], unit: str, form: str) -> str:
@@ -210,6 +210,7 @@ def _in_words(bins: Sequence[Bin], unit: str, form: str) -> str:
         form.format(
             count=phrases.whole(each.count),
             low=phrases.decimal(each.low),
+            above="above" if each.low > 0 else "from",
             high=phrases.value(each.high, unit),
         )
         for each in told
