@@ -5,12 +5,11 @@ The only module that imports duckdb.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from compiler.evidence import VERDICTS
 from fretish.diagnostic import Code, Diagnostic, Severity
 from monitors import kernel
 
@@ -36,20 +35,29 @@ _COUNTS = ", ".join(
     f"count(*) FILTER (verdict = '{verdict}') AS {name}" for name, verdict in COUNTED.items()
 )
 _NOT_SHOWN = f"verdict NOT IN ('{kernel.SATISFIED}', '{kernel.VIOLATED}')"
-_CONTENT = "coalesce(log_sha256, log_summary_sha256, run)"
-"""What tells a log from another one: copies of it have the same."""
-_RANKED = ", ".join(f"verdict = '{verdict}' DESC" for verdict in VERDICTS)
+_LOG = "coalesce('log ' || log_sha256, 'summary ' || log_summary_sha256, 'run ' || run)"
+"""What tells a log from another one: copies have the same; of one that was not read, its name."""
+_WORST_FIRST = " ".join(
+    f"WHEN '{verdict}' THEN {rank}"
+    for rank, verdict in enumerate(
+        (kernel.VIOLATED, kernel.NO_DATA, kernel.INCONCLUSIVE, kernel.VACUOUS, kernel.SATISFIED)
+    )
+)
 _COUNTED = f"""
-    CREATE TABLE counted AS SELECT DISTINCT ON (requirement, content) *
-    FROM (SELECT *, {_CONTENT} AS content FROM results)
-    ORDER BY requirement, content, {_RANKED}, run, reason, sentence_sha256, bindings_sha256"""
-"""Each log once for each requirement: a copy tells nothing new. The worst verdict stays."""
+    CREATE TABLE counted AS
+    SELECT * EXCLUDE place REPLACE (min(run) OVER (PARTITION BY log) AS run)
+    FROM (SELECT *, rowid AS place, {_LOG} AS log FROM results)
+    QUALIFY row_number() OVER (
+        PARTITION BY log, requirement
+        ORDER BY CASE verdict {_WORST_FIRST} END, violations DESC, place) = 1
+    ORDER BY run, requirement"""
+"""Each log once for a requirement: the worst of what several audits say, under one name."""
 _WHOLE = """
-    SELECT count(DISTINCT content) AS runs, count(DISTINCT requirement) AS requirements,
+    SELECT count(DISTINCT log) AS runs, count(DISTINCT requirement) AS requirements,
         (SELECT round(coalesce(sum(seconds), 0.0), 3) FROM (
             SELECT max(end_ns::DOUBLE - start_ns::DOUBLE) / 1e9 AS seconds
-            FROM counted GROUP BY content)) AS seconds,
-        count(DISTINCT content) FILTER (NOT intact) AS damaged
+            FROM counted GROUP BY log)) AS seconds,
+        count(DISTINCT log) FILTER (NOT intact) AS damaged
     FROM counted"""
 _REQUIREMENTS = f"""
     SELECT requirement, count(*) AS runs, {_COUNTS}, sum(triggers)::BIGINT AS triggers,
@@ -61,7 +69,7 @@ _FAILED = f"""
         min(first_violation_s) AS first_violation_s,
         arg_min(reason, (verdict = '{kernel.SATISFIED}', verdict <> '{kernel.VIOLATED}',
             first_violation_s, requirement)) AS reason
-    FROM counted GROUP BY content HAVING violated + not_shown > 0
+    FROM counted GROUP BY log HAVING violated + not_shown > 0
     ORDER BY violated DESC, violations DESC, not_shown DESC, run"""
 _SLOWEST = f"""
     SELECT run, requirement, latency_max_s, latency_median_s, answers
@@ -71,6 +79,10 @@ _MIXED = """
     SELECT requirement, count(DISTINCT (sentence_sha256, bindings_sha256, monitor_sha256, fretc))
         AS kinds
     FROM results GROUP BY requirement HAVING kinds > 1 ORDER BY requirement"""
+_TORN = f"""
+    SELECT requirement, min(run) AS run, list(DISTINCT verdict ORDER BY verdict) AS verdicts
+    FROM (SELECT *, {_LOG} AS log FROM results)
+    GROUP BY requirement, log HAVING len(verdicts) > 1 ORDER BY requirement, run"""
 
 
 @dataclass(frozen=True, slots=True)
@@ -95,7 +107,8 @@ class Summary:
     failed: Answer
     """Runs in which not every requirement is satisfied, the worst first."""
     slowest: Answer
-    mixed: tuple[Diagnostic, ...]
+    remarks: tuple[Diagnostic, ...]
+    """Requirements that were audited as different ones, and logs with several verdicts."""
 
     @property
     def violated(self) -> bool:
@@ -122,15 +135,17 @@ class Summary:
 
 def summarized(table: Table) -> Summary:
     """The summary of a table."""
-    with _asked(table) as ask:
-        ask.execute(_COUNTED)
+    with _asked(table, _COUNTED) as ask:
         (whole,) = _answer(ask, _WHOLE).records
         return Summary(
             whole,
             _answer(ask, _REQUIREMENTS),
             _answer(ask, _FAILED),
             _answer(ask, _SLOWEST),
-            tuple(_mixed(row["requirement"], row["kinds"]) for row in _answer(ask, _MIXED).records),
+            (
+                *(_mixed(row["requirement"], row["kinds"]) for row in _answer(ask, _MIXED).records),
+                *_torn(_answer(ask, _TORN).records),
+            ),
         )
 
 
@@ -154,8 +169,8 @@ def _answer(ask: duckdb.DuckDBPyConnection, query: str) -> Answer:
 
 
 @contextmanager
-def _asked(table: Table) -> Iterator[duckdb.DuckDBPyConnection]:
-    """A connection with the table, each row once: files that are given twice count once."""
+def _asked(table: Table, *more: str) -> Iterator[duckdb.DuckDBPyConnection]:
+    """A connection with the table, each row once; `more` are statements that make others of it."""
     import duckdb
 
     # A query reads no file, writes none, and fetches no extension from anywhere.
@@ -163,6 +178,8 @@ def _asked(table: Table) -> Iterator[duckdb.DuckDBPyConnection]:
         connection.register("given", table)
         connection.execute("CREATE TABLE results AS SELECT DISTINCT * FROM given ORDER BY ALL")
         connection.unregister("given")
+        for statement in more:
+            connection.execute(statement)
         connection.execute("SET lock_configuration = true")
         yield connection
 
@@ -170,11 +187,28 @@ def _asked(table: Table) -> Iterator[duckdb.DuckDBPyConnection]:
 def _mixed(requirement: str, kinds: int) -> Diagnostic:
     return Diagnostic(
         Code.STALE_EVIDENCE,
-        f"{requirement} was audited as {kinds} different requirements: its sentence, its bindings, "
-        "its monitor or fretc have changed between these runs",
+        f"{requirement} was audited as {kinds} different requirements: its sentence, its bindings "
+        "or its monitor have changed between these runs",
         help="audit the runs again, or tell them apart: `--query` with `sentence_sha256`",
         severity=Severity.WARNING,
     )
+
+
+def _torn(found: Sequence[Mapping[str, Any]]) -> Iterator[Diagnostic]:
+    """F555, once for each requirement."""
+    of_requirement: dict[str, list[Mapping[str, Any]]] = {}
+    for row in found:
+        of_requirement.setdefault(row["requirement"], []).append(row)
+    for requirement, rows in of_requirement.items():
+        first = rows[0]
+        others = "" if len(rows) == 1 else f", and so it is with {len(rows) - 1:,} more"
+        yield Diagnostic(
+            Code.SEVERAL_VERDICTS,
+            f"{requirement} has several verdicts of the log of {first['run']}: "
+            f"{' and '.join(first['verdicts'])}{others}; the worst of each log counts",
+            help="audit these logs again, and summarize that table alone",
+            severity=Severity.WARNING,
+        )
 
 
 def _bad_query(message: str) -> Diagnostic:

@@ -21,7 +21,8 @@ if TYPE_CHECKING:
     import pyarrow
     from pyarrow import Table as Table
 
-SCHEMA = "fretc-table-2"
+SCHEMA, OLDER = "fretc-table-2", "fretc-table-1"
+"""The older one does not have the last column, and is read all the same."""
 _TYPES = {
     "run": "string",
     "requirement": "string",
@@ -47,11 +48,11 @@ _TYPES = {
     "gaps": "int64",
     "findings": "int64",
     "log_sha256": "string",
-    "log_summary_sha256": "string",
     "sentence_sha256": "string",
     "bindings_sha256": "string",
     "monitor_sha256": "string",
     "fretc": "string",
+    "log_summary_sha256": "string",
 }
 """Column → its type. The meaning of each is in `docs/audit.md`."""
 
@@ -132,7 +133,11 @@ def _read_parquet(path: str) -> Table | Diagnostic:
     except (pyarrow.ArrowException, OSError) as error:
         return _no_table(path, f"is a damaged table: {str(error).splitlines()[0]}")
     known = (table.schema.metadata or {}).get(b"schema", b"").decode(errors="replace")
-    if known != SCHEMA or not table.schema.equals(_schema()):
+    schema = _schema()
+    if known == OLDER and table.schema.equals(schema.remove(len(schema) - 1)):
+        last = schema.field(len(schema) - 1)
+        return table.append_column(last, pyarrow.nulls(len(table), last.type)).cast(schema)
+    if known != SCHEMA or not table.schema.equals(schema):
         return _no_table(path, f"is no table of `{SCHEMA}`")
     return table
 
@@ -194,11 +199,11 @@ def _row(result: Mapping[str, Any], fretc: str) -> dict[str, Any]:
         "gaps": len(health["gaps"]),
         "findings": len(health["findings"]),
         "log_sha256": hashes.get("log"),
-        "log_summary_sha256": hashes.get("log_summary"),
         "sentence_sha256": hashes["sentence"],
         "bindings_sha256": hashes["bindings"],
         "monitor_sha256": hashes["monitor"],
         "fretc": fretc,
+        "log_summary_sha256": hashes.get("log_summary"),
     }
 
 

@@ -446,8 +446,10 @@ class _Reader(Fields):
         if value == "unknown":
             return None
         if isinstance(value, bool):
-            word = str(value).lower()
-            text = f"proposition {at[1]}: where its signals are unknown it counts as {word}"
+            text = (
+                f"proposition {at[1]}: where its signals are unknown it counts as "
+                f"{str(value).lower()}, as the bindings declare"
+            )
             self.defaults.append(Default((at[0], at[1]), text))
             return value
         self._say(

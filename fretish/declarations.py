@@ -307,5 +307,5 @@ class Declarations:
 
     @property
     def assumptions(self) -> tuple[str, ...]:
-        """Defaults that were taken, in words, for the report."""
+        """Defaults that were taken, and what is declared of unknown values, in words."""
         return tuple(default.text for default in self.defaults if not default.stated)

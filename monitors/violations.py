@@ -19,6 +19,8 @@ SURROUNDINGS = 10**9
 """Nanoseconds before the trigger and after the deadline that are shown with a violation."""
 MOST_SAMPLES = 50
 """Of one signal around one violation."""
+EVEN_SAMPLES = MOST_SAMPLES - 3
+"""Of more than that the ones that are kept at even distances."""
 MOST_WINDOWS = 100
 """Violations of one run and requirement that are told with their samples."""
 
@@ -147,29 +149,37 @@ def _window(
     start = min(trigger.ns, broken.ns) - SURROUNDINGS
     end = max(due.ns, broken.ns) + SURROUNDINGS
     samples = {
-        name: _around(recording.samples[name], start, end)
+        name: _around(recording.samples[name], start, end, broken.ns)
         for name in signals
         if name in recording.samples
     }
     return Window(start, end, samples)
 
 
-def _around(samples: Samples, start: int, end: int) -> Samples:
-    """The samples of a stretch of time, and the one in force at its start; not too many."""
+def _around(samples: Samples, start: int, end: int, broken: int) -> Samples:
+    """The samples of a stretch of time, and the one in force at its start; not too many.
+
+    The one that is the last at the time `broken` is always among them: its age is told.
+    """
     first = max(0, int(np.searchsorted(samples.times, start, "right")) - 1)
     upto = int(np.searchsorted(samples.times, end, "right"))
     times, values = samples.times[first:upto], samples.values[first:upto]
-    kept = _thinned(values)
+    kept = _thinned(values, max(0, int(np.searchsorted(times, broken, "right")) - 1))
     return Samples(times[kept], values[kept], samples.scale)
 
 
-def _thinned(values: Values) -> NDArray[np.intp]:
-    """The places of at most `MOST_SAMPLES` values: evenly, with the least and the greatest."""
+def _thinned(values: Values, wanted: int) -> NDArray[np.intp]:
+    """The places of at most `MOST_SAMPLES` values: evenly, with the least and the greatest.
+
+    Args:
+        values: of one signal.
+        wanted: the place of one that is kept.
+    """
     count = len(values)
     if count <= MOST_SAMPLES:
         return np.arange(count)
-    even = np.linspace(0, count - 1, MOST_SAMPLES - 2).round().astype(np.intp)
-    if np.isnan(values).all():
-        return even
-    ends = np.array([np.nanargmin(values), np.nanargmax(values)], np.intp)
-    return np.unique(np.concatenate([even, ends]))
+    even = np.linspace(0, count - 1, EVEN_SAMPLES).round().astype(np.intp)
+    chosen = [wanted]
+    if not np.isnan(values).all():
+        chosen += [int(np.nanargmin(values)), int(np.nanargmax(values))]
+    return np.unique(np.concatenate([even, np.array(chosen, np.intp)]))

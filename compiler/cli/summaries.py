@@ -37,7 +37,7 @@ def summarize(paths: Sequence[str], query: str | None, form: str) -> NoReturn:
         click.echo(_json(answer.records) if form == "json" else _listed(answer), nl=False)
         raise SystemExit(SHOWN)
     summary = summarized(table)
-    say(summary.mixed)
+    say(summary.remarks)
     click.echo(_json(summary.as_record) if form == "json" else _text(summary), nl=False)
     raise SystemExit(VIOLATION if summary.violated else SHOWN if summary.shown else NOT_SHOWN)
 

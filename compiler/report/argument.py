@@ -1,21 +1,27 @@
 """The assurance argument: hazards are controlled because requirements hold, as the evidence shows.
 
-Goals that nothing shows stay undeveloped: an argument never says more than the report.
-Source: GSN Community Standard, version 3 (2021), part 1.
+An argument never says more than the report. A goal that nothing shows is undeveloped; counter-
+evidence stands in the argument as a solution that challenges its goal, and defeats it where it is
+about what stands there now. A proof supports what it is about: one about the text of the monitor
+supports the monitor.
+Source: GSN Community Standard, version 3 (2021), part 1, with its dialectic extension.
 """
 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
+from types import MappingProxyType
 
+from compiler.odds import REFUTED, SUPPORTED
 from compiler.report import phrases
 from compiler.report.claims import SHOWN
-from compiler.report.proofs import is_refuted
-from compiler.report.views import Report, RequirementView
-from compiler.verification import PROVED
+from compiler.report.proofs import SHARED, covering
+from compiler.report.views import ProofView, Report, RequirementView, ResultView
+from compiler.verification import COUNTEREXAMPLE, METHODS, PROVED, Layer
+from monitors import kernel
 
 
 class Kind(StrEnum):
@@ -27,6 +33,7 @@ class Kind(StrEnum):
     CONTEXT = "C"
     ASSUMPTION = "A"
     JUSTIFICATION = "J"
+    COUNTER_SOLUTION = "CSn"
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,6 +46,34 @@ class Element:
     supported_by: tuple[str, ...] = ()
     in_context_of: tuple[str, ...] = ()
     undeveloped: bool = False
+    challenges: str = ""
+    """Of a counter-solution: the goal that it is evidence against."""
+    defeated: bool = False
+    """Of a goal: evidence that is current stands against it."""
+    name: str = ""
+    """What it is called where it is referred to again; empty: its text."""
+
+
+_SUBJECTS: Mapping[str, str] = MappingProxyType(
+    {
+        Layer.MONITOR: "The monitor of {id} decides it as its sentence means",
+        Layer.LOOP: "Monitor and interceptor keep {id} in the modelled loop",
+        Layer.BOUNDS: "What is claimed of {id} at other bounds and latencies holds in the loop",
+        Layer.INTERCEPTOR: "The interceptor of {id} keeps its contracts",
+        Layer.AGENT: "The agent keeps {id} in its model",
+        Layer.AJPF: "The agent keeps {id} by the verdict of AJPF",
+    }
+)
+"""What the proofs of each layer are about, and no more."""
+_SHARED_SUBJECTS: Mapping[str, str] = MappingProxyType(
+    {
+        "interceptor": "The interceptor keeps its contracts",
+        "agent": "The agent has the properties of its property file in its model",
+    }
+)
+"""The same for proofs that are about no single requirement."""
+_NAMED = 3
+"""Violating runs that an element names; it counts the others."""
 
 
 def argument(report: Report) -> tuple[Element, ...]:
@@ -50,14 +85,21 @@ class _Argument:
     def __init__(self, report: Report) -> None:
         self._report = report
         self._views = {view.anchor: view for view in report.requirements}
-        self._told: set[str] = set()
+        self._shared = {
+            name: [proof for proof in report.proofs if proof.requirement == name] for name in SHARED
+        }
+        self._made: set[str] = set()
 
     def elements(self) -> Iterator[Element]:
         report = self._report
         hazards = [hazard.id for hazard in report.hazards]
         loose = [row.anchor for row in report.matrix if not row.hazard]
         name = ", ".join(report.components) or report.project
-        below = (*(["S_hazards"] if hazards else []), *(["S_others"] if loose else []))
+        below = (
+            *(["S_hazards"] if hazards else []),
+            *(["S_others"] if loose else []),
+            *(_id("G_shared", name) for name, proofs in self._shared.items() if proofs),
+        )
         assumed = [f"A_{number}" for number, _ in enumerate(report.assumptions, 1)]
         context = ("C_project", *assumed)
         text = f"{name} keeps its safety requirements"
@@ -65,8 +107,8 @@ class _Argument:
         yield Element(
             "C_project", Kind.CONTEXT, f"Requirements in {report.project}; {report.claims}"
         )
-        for id, said in zip(assumed, report.assumptions, strict=True):
-            yield Element(id, Kind.ASSUMPTION, said)
+        for id, words in zip(assumed, report.assumptions, strict=True):
+            yield Element(id, Kind.ASSUMPTION, words)
         if hazards:
             goals = tuple(_id("G_hazard", hazard) for hazard in hazards)
             yield Element("S_hazards", Kind.STRATEGY, "Argument over each declared hazard", goals)
@@ -74,55 +116,179 @@ class _Argument:
                 anchors = [row.anchor for row in report.matrix if row.hazard == hazard.id]
                 yield from self._hazard(hazard.id, hazard.title, anchors)
         if loose:
-            goals = tuple(self._goal(anchor) for anchor in dict.fromkeys(loose))
-            said = "Argument over the requirements that trace to no hazard"
-            yield Element("S_others", Kind.STRATEGY, said, goals)
+            goals = tuple(_id("G", anchor) for anchor in dict.fromkeys(loose))
+            words = "Argument over the requirements that trace to no hazard"
+            yield Element("S_others", Kind.STRATEGY, words, goals)
             yield from self._requirements(loose)
+        for name, proofs in self._shared.items():
+            if proofs:
+                yield from _subject(_id("G_shared", name), _SHARED_SUBJECTS[name], proofs)
 
     def _hazard(self, id: str, title: str, anchors: Sequence[str]) -> Iterator[Element]:
-        below = tuple(self._goal(anchor) for anchor in dict.fromkeys(anchors))
+        below = tuple(_id("G", anchor) for anchor in dict.fromkeys(anchors))
         text = f"{id} is controlled: {title}"
-        yield Element(_id("G_hazard", id), Kind.GOAL, text, below, undeveloped=not below)
+        yield Element(
+            _id("G_hazard", id), Kind.GOAL, text, below, (), not below, name=f"{id} is controlled"
+        )
         yield from self._requirements(anchors)
 
     def _requirements(self, anchors: Sequence[str]) -> Iterator[Element]:
-        """Each once, however many hazards it controls."""
+        """Each once, however many hazards refer to it."""
         for anchor in anchors:
-            if anchor not in self._told:
-                self._told.add(anchor)
+            if anchor not in self._made:
+                self._made.add(anchor)
                 yield from self._requirement(self._views[anchor])
 
     def _requirement(self, view: RequirementView) -> Iterator[Element]:
-        goal = self._goal(view.anchor)
-        shown = view.mark.word in SHOWN and not is_refuted(view)
-        proved = [proof for proof in view.proofs if proof.mark.word == PROVED]
-        solution = goal.replace("G_", "Sn_", 1)
-        # A goal is developed or not: what is proved of one that is not shown is context.
-        proofs = f"{solution if shown else goal.replace('G_', 'C_', 1)}_proofs"
-        context = goal.replace("G_", "C_", 1)
-        waived = goal.replace("G_", "J_", 1)
-        around = [context] if view.meaning else []
-        around += [waived] if view.waiver else []
-        around += [proofs] if proved and not shown else []
-        text = f"{view.id} holds: {view.sentence}"
-        below = (solution, *([proofs] if proved else [])) if shown else ()
-        yield Element(goal, Kind.GOAL, text, below, tuple(around), undeveloped=not shown)
+        goal = _id("G", view.anchor)
+        shown = is_shown(view)
+        against = tuple(_against(view, goal.replace("G_", "CSn_", 1)))
+        layers = {proof.layer: _of_layer(view.proofs, proof.layer) for proof in view.proofs}
+        subjects = [f"{goal}_{layer}" for layer in layers] + self._relied_upon(view)
+        solution, runs = goal.replace("G_", "Sn_", 1), f"{goal}_runs"
+        # A goal is developed or not: where proofs develop it, what no run shows is a goal below it.
+        evidence = [solution] if shown else [runs] if subjects else []
+        context, waived = goal.replace("G_", "C_", 1), goal.replace("G_", "J_", 1)
+        yield Element(
+            goal,
+            Kind.GOAL,
+            f"{view.id} holds: {view.sentence}",
+            (*evidence, *subjects),
+            (*([context] if view.meaning else []), *([waived] if view.waiver else [])),
+            undeveloped=not (evidence or subjects),
+            defeated=any(each.is_current for each in against),
+            name=f"{view.id} holds",
+        )
         if view.meaning:
             yield Element(context, Kind.CONTEXT, view.meaning)
         if view.waiver:
-            said = f"Waived until {view.waiver.until} by {view.waiver.by}: {view.waiver.reason}"
-            yield Element(waived, Kind.JUSTIFICATION, said)
+            words = f"Waived until {view.waiver.until} by {view.waiver.by}: {view.waiver.reason}"
+            yield Element(waived, Kind.JUSTIFICATION, words)
+        for each in against:
+            yield Element(each.id, Kind.COUNTER_SOLUTION, each.text, challenges=goal)
         if shown:
-            runs = phrases.times(len(view.results), "audited run")
-            yield Element(solution, Kind.SOLUTION, f"{view.id} is {view.mark.word} in {runs}")
-        if proved:
-            layers = phrases.joined(list(dict.fromkeys(proof.layer for proof in proved)))
-            claims = phrases.times(len(proved), "claim")
-            kind = Kind.SOLUTION if shown else Kind.CONTEXT
-            yield Element(proofs, kind, f"{claims} about {view.id} proved ({layers})")
+            yield Element(solution, Kind.SOLUTION, _support(view))
+        elif subjects:
+            yield Element(runs, Kind.GOAL, f"The audited runs show {view.id}", undeveloped=True)
+        for layer, proofs in layers.items():
+            subject = _SUBJECTS[layer].format(id=view.id)
+            yield from _subject(f"{goal}_{layer}", subject, proofs)
 
-    def _goal(self, anchor: str) -> str:
-        return _id("G", anchor)
+    def _relied_upon(self, view: RequirementView) -> list[str]:
+        """What all requirements share, where a planned method of this one is shown by it."""
+        methods = [plan.method for plan in view.planned if plan.method in METHODS]
+        return [
+            _id("G_shared", name)
+            for name, proofs in self._shared.items()
+            if any(covering(method, proofs) for method in methods)
+        ]
+
+
+def is_shown(view: RequirementView) -> bool:
+    """Whether the report says that the runs show it, without a reason against that."""
+    return view.mark.word in SHOWN and not view.reasons
+
+
+# Runs ------------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True)
+class _Counter:
+    """Evidence against a goal."""
+
+    id: str
+    text: str
+    is_current: bool
+    """Whether it is about what stands there now."""
+
+
+def _support(view: RequirementView) -> str:
+    runs = phrases.times(len(view.results), "audited run")
+    if view.mark.word == SUPPORTED and view.probability is not None:
+        return f"{view.id} is {SUPPORTED} by {runs}: {view.probability.reason}"
+    limit = f". {view.limit}" if view.limit else ""
+    return f"{view.id} is {view.mark.word} in {runs}{limit}"
+
+
+def _against(view: RequirementView, id: str) -> Iterator[_Counter]:
+    """The runs that violate it; those of older texts apart. With a probability, all together."""
+    chance = view.probability
+    if chance is not None:
+        if chance.mark.word == REFUTED:
+            words = f"{view.id} is {REFUTED} over all runs: {chance.reason}"
+            yield _Counter(id, words, not chance.suspicions)
+        return
+    broken = [result for result in view.results if _verdict(result) == kernel.VIOLATED]
+    for old in (False, True):
+        found = [result for result in broken if bool(result.suspicions) is old]
+        if found:
+            yield _Counter(f"{id}_older" if old else id, _violated(view, found, old), not old)
+
+
+def _verdict(result: ResultView) -> str:
+    """What the audit said."""
+    return result.said.word if result.said else result.mark.word
+
+
+def _violated(view: RequirementView, found: Sequence[ResultView], old: bool) -> str:
+    runs = phrases.times(len(view.results), "audited run")
+    worst = sorted(found, key=lambda result: -result.violations_total)[:_NAMED]
+    left = len(found) - len(worst)
+    named = [f"{result.run_label}, {result.run_file}: {result.reason}" for result in worst]
+    more = [f"and {phrases.times(left, 'more run')}"] if left else []
+    why = phrases.joined(list(dict.fromkeys(why for each in found for why in each.suspicions)))
+    age = f", before a change ({why})" if old else ""
+    words = f"{view.id} is violated in {phrases.whole(len(found))} of {runs}{age}"
+    return "; ".join([f"{words}: {named[0]}", *named[1:], *more])
+
+
+# Proofs ----------------------------------------------------------------------------------------
+
+
+def _of_layer(proofs: Sequence[ProofView], layer: str) -> list[ProofView]:
+    return [proof for proof in proofs if proof.layer == layer]
+
+
+def _subject(goal: str, text: str, proofs: Sequence[ProofView]) -> Iterator[Element]:
+    """What proofs of one layer are about: claims that are proved, refuted, and left open."""
+    proved = [proof for proof in proofs if proof.mark.word == PROVED]
+    against = [proof for proof in proofs if _result(proof) == COUNTEREXAMPLE]
+    left = [proof for proof in proofs if proof not in proved and proof not in against]
+    solution, counter = goal.replace("G_", "Sn_", 1), goal.replace("G_", "CSn_", 1)
+    assumption, rest = goal.replace("G_", "A_", 1), f"{goal}_rest"
+    assumed = dict.fromkeys(each for proof in proved for each in proof.assumptions)
+    below = (*([solution] if proved else []), *([rest] if proved and left else []))
+    yield Element(
+        goal,
+        Kind.GOAL,
+        text,
+        below,
+        (assumption,) if assumed else (),
+        undeveloped=not below,
+        defeated=any(not proof.suspicions for proof in against),
+    )
+    if assumed:
+        yield Element(assumption, Kind.ASSUMPTION, "; ".join(assumed))
+    if against:
+        words = _claims("Counterexample to", against)
+        yield Element(counter, Kind.COUNTER_SOLUTION, words, challenges=goal)
+    if proved:
+        yield Element(solution, Kind.SOLUTION, _claims("Proved:", proved))
+    if rest in below:
+        yield Element(rest, Kind.GOAL, _claims("Not shown:", left), undeveloped=True)
+
+
+def _result(proof: ProofView) -> str:
+    """What the engine said."""
+    return proof.said.word if proof.said else proof.mark.word
+
+
+def _claims(head: str, proofs: Sequence[ProofView]) -> str:
+    """`Proved: it stops; it moves again (by Spot 2.13)`."""
+    by = dict.fromkeys(proof.engine for proof in proofs)
+    why = dict.fromkeys(why for proof in proofs for why in proof.suspicions)
+    said = "; ".join([f"by {phrases.joined(list(by))}", *why])
+    return f"{head} {'; '.join(proof.claim for proof in proofs)} ({said})"
 
 
 def _id(prefix: str, name: str) -> str:

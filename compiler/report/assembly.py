@@ -279,12 +279,13 @@ def _reservations(view: RequirementView) -> Sequence[str]:
         if result.latency and not result.latency.is_bounded
         if result.latency.at_once < result.latency.answered
     ]
+    unbounded = "" if view.limit else f"{view.id} sets no bound on its response. "
     late = [
-        f"{view.id} sets no bound on its response; in {run} the longest took {longest}."
+        f"{unbounded}The longest answer of {view.id} took {longest}, in {run}."
         for _, longest, run in sorted(waits, key=lambda wait: -wait[0])[:1]
     ]
     draft = [f"{view.id} is a draft."] if view.status == "draft" else []
-    return (*average, *late, *draft)
+    return (*average, *([view.limit] if view.limit else []), *late, *draft)
 
 
 def _claims(claimed: Sequence[Claim], runs: int) -> str:

@@ -54,9 +54,10 @@ SHOWN = (kernel.SATISFIED, SUPPORTED)
 """The verdicts that show a requirement."""
 UNBOUND, NOT_GENERATED = "unbound", "not generated"
 EXERCISED_PASS, EXERCISED_FAIL = "exercised, pass", "exercised, fail"
+EXERCISED_OPEN = "exercised, open"
 COVERAGE = (
-    UNFORMALIZED, UNBOUND, NOT_GENERATED, NOT_EXERCISED, EXERCISED_PASS, EXERCISED_FAIL,
-    SUSPECT, WAIVED, RETIRED,
+    UNFORMALIZED, UNBOUND, NOT_GENERATED, NOT_EXERCISED, EXERCISED_OPEN, EXERCISED_PASS,
+    EXERCISED_FAIL, SUSPECT, WAIVED, RETIRED,
 )  # fmt: skip
 """How far a requirement has come; the last three whatever else is known of it."""
 
@@ -151,7 +152,10 @@ class Claim:
             return UNBOUND
         if self.rule is None or monitor.refuse(plain(self.rule)) is not None:
             return NOT_GENERATED
-        return EXERCISED_PASS if verdict in SHOWN else NOT_EXERCISED
+        if verdict in SHOWN:
+            return EXERCISED_PASS
+        triggered = any(judged.result.triggers for judged in self.judged)
+        return EXERCISED_OPEN if triggered else NOT_EXERCISED
 
     @property
     def mark(self) -> Mark:

@@ -15,7 +15,7 @@ from compiler.report.phrases import visible
 from compiler.report.plots import drawing, histogram
 from compiler.report.scales import scale
 from compiler.report.selection import Selection, selection, slimmed
-from compiler.report.tree import MOST, grouped, pieces, placed, shortened
+from compiler.report.tree import MOST, NAMES, Placed, grouped, pieces, placed, shortened
 from compiler.report.views import Report
 from compiler.rule import Rule
 from compiler.templating import render
@@ -99,22 +99,24 @@ def _argument(report: Report) -> dict[str, Any]:
         "most": MOST,
         "is_short": len(drawn) < len(few),
         "pieces": [asdict(piece) for piece in pieces(drawn)],
-        "items": _nested([(each.depth, each.element.kind.name, each) for each in placed(drawn)]),
+        "items": _nested(placed(drawn)),
     }
 
 
-def _nested(flat: Sequence[tuple[int, str, Any]]) -> list[dict[str, Any]]:
+def _nested(flat: Sequence[Placed]) -> list[dict[str, Any]]:
     """Each element with how many lists open before it and close after it."""
     items = []
-    for i, (depth, kind, each) in enumerate(flat):
-        after = flat[i + 1][0] if i + 1 < len(flat) else 0
+    for i, each in enumerate(flat):
+        after = flat[i + 1].depth if i + 1 < len(flat) else 0
+        undeveloped = each.element.undeveloped and not each.is_reference
+        states = ["undeveloped" if undeveloped else "", each.state]
         items.append(
             {
-                "kind": kind.capitalize(),
-                "text": each.element.text,
-                "undeveloped": each.element.undeveloped,
-                "opens": after > depth,
-                "closes": max(0, depth - after),
+                "kind": NAMES[each.element.kind],
+                "text": each.text,
+                "state": ", ".join(filter(None, states)),
+                "opens": after > each.depth,
+                "closes": max(0, each.depth - after),
             }
         )
     return items

@@ -80,6 +80,7 @@ def _row(
         status=section.status,
         anchor=claim.anchor,
         mark=claim.mark,
+        limit=section.limit,
         artefacts=section.artefacts,
         cells=_cells(claim, runs),
     )

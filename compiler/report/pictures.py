@@ -83,7 +83,7 @@ class Timeline:
 
 @dataclass(frozen=True, slots=True)
 class Bin:
-    """Values from `low` on and below `high`, and how many there are."""
+    """Values from `low` on and below `high`; latencies above `low`, or 0, and up to `high`."""
 
     low: float
     high: float
@@ -103,3 +103,7 @@ class Histogram:
     text: str
     crossed: int = 0
     """Runs that have no value because they were beyond the bound."""
+    unanswered: int = 0
+    """Triggers that have no value because their time or their scope ended without an answer."""
+    open: int = 0
+    """Triggers that have no value because they still waited when the log ended."""

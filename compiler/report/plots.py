@@ -235,19 +235,21 @@ def _bands(piece: Piece, scale: _Scale, at: _Place) -> Iterator[str]:
 
 # Histograms ------------------------------------------------------------------------------------
 
-_TALL, _BASE, _CROSSED = 90, 116, 46
+_TALL, _BASE, _APART = 90, 116, 46
+"""Room for the bars, their foot, and the width of one that stands apart."""
 
 
 @dataclass(frozen=True, slots=True)
 class Column:
-    """One bar of a histogram, with its count above it."""
+    """One bar of a histogram, with its count above it; one that stands apart has a name below."""
 
     x: float
     y: float
     width: float
     height: float
     label: str
-    crossed: bool
+    kind: str
+    name: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -271,11 +273,22 @@ class DrawnHistogram:
 
 
 def histogram(found: Histogram, id: str) -> DrawnHistogram:
-    """The layout of a histogram; runs beyond the bound stand apart, on the left of it."""
-    left = 20 + (_CROSSED if found.crossed else 0)
-    right = WIDTH - 30
+    """The layout of a histogram; what has no value stands apart.
+
+    Runs beyond the bound stand on the left of it, triggers without an answer on the right of all.
+    """
+    late = [
+        (count, kind, name)
+        for count, kind, name in (
+            (found.unanswered, "unanswered", "none"),
+            (found.open, "open", "open"),
+        )
+        if count
+    ]
+    left = 20 + (_APART if found.crossed else 0)
+    right = WIDTH - 30 - _APART * len(late)
     low, high = found.bins[0].low, found.bins[-1].high
-    most = max([each.count for each in found.bins] + [found.crossed])
+    most = max([*(each.count for each in found.bins), found.crossed, *(n for n, _, _ in late)])
     scale = (right - left) / (high - low)
 
     def x(number: float) -> float:
@@ -285,7 +298,11 @@ def histogram(found: Histogram, id: str) -> DrawnHistogram:
         _column(x(each.low), x(each.high), each.count, most) for each in found.bins if each.count
     ]
     if found.crossed:
-        columns.append(_column(4, _CROSSED - 6, found.crossed, most, crossed=True))
+        columns.append(_column(4, _APART - 6, found.crossed, most, "crossed", "crossed"))
+    columns += [
+        _column(right + 14 + _APART * i, right + 6 + _APART * (i + 1), count, most, kind, name)
+        for i, (count, kind, name) in enumerate(late)
+    ]
     bound = None if found.bound is None else x(found.bound)
     return DrawnHistogram(
         id=id,
@@ -305,7 +322,9 @@ def histogram(found: Histogram, id: str) -> DrawnHistogram:
     )
 
 
-def _column(start: float, end: float, count: int, most: int, *, crossed: bool = False) -> Column:
+def _column(
+    start: float, end: float, count: int, most: int, kind: str = "column", name: str = ""
+) -> Column:
     height = round(max(_THINNEST, _TALL * count / most), 1)
     width = round(max(_THINNEST, end - start - 1), 1)
-    return Column(start, round(_BASE - height, 1), width, height, whole(count), crossed)
+    return Column(start, round(_BASE - height, 1), width, height, whole(count), kind, name)

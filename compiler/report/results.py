@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from itertools import groupby
 from statistics import median
 
 from compiler.evidence import Moment, Result, Threshold, Violation
 from compiler.report import phrases
 from compiler.report.claims import MARKS, Claim, Judged
+from compiler.report.readings import reading
 from compiler.report.runs import Key, Run, key
 from compiler.report.timeline import answered, timelines
 from compiler.report.views import Latency, Listing, ResultView, ThresholdView, ViolationView
@@ -46,7 +47,7 @@ def _view(
 ) -> ResultView:
     result = judged.result
     known = None if judged.is_stale else declared
-    tick = _tick(result, known.clock if known else None)
+    tick, ages = _tick(result, known.clock if known else None), _ages(known)
     return ResultView(
         anchor=result_anchor(claim, number),
         run=run.anchor,
@@ -60,11 +61,11 @@ def _view(
         exercised=_exercised(result),
         latency=_latency(result, claim.rule),
         thresholds=tuple(map(_threshold, result.thresholds)),
-        violations=tuple(_violation(v, result) for v in result.violations[:LISTED]),
+        violations=tuple(_violation(v, result, ages) for v in result.violations[:LISTED]),
         violations_total=len(result.violations),
         open=_open(result),
         unknown=_unknown(result),
-        timelines=timelines(result, tick, _ages(known)),
+        timelines=timelines(result, tick, ages),
     )
 
 
@@ -165,7 +166,7 @@ def _waits(result: Result) -> tuple[str, ...]:
 # Stretches -------------------------------------------------------------------------------------
 
 
-def _violation(violation: Violation, result: Result) -> ViolationView:
+def _violation(violation: Violation, result: Result, ages: Mapping[str, float]) -> ViolationView:
     first, last, trigger = violation.first, violation.last, violation.trigger
     ticks = f"{first.tick}" if first.tick == last.tick else f"{first.tick} to {last.tick}"
     return ViolationView(
@@ -175,10 +176,7 @@ def _violation(violation: Violation, result: Result) -> ViolationView:
         trigger=_at(trigger) if trigger else "none",
         deadline=_at(violation.deadline) if violation.deadline else "none",
         missing=violation.missing,
-        values=tuple(
-            (name, phrases.value(value, result.units.get(name, "")))
-            for name, value in violation.values.items()
-        ),
+        values=tuple((name, reading(name, violation, result, ages)) for name in violation.values),
     )
 
 

@@ -31,6 +31,7 @@ from compiler.report.views import (
     SignalView,
 )
 from compiler.rule import Rule
+from compiler.violability import limit
 from fretish.clock import Clock
 from fretish.declarations import Declarations, Proposition, Signal
 from fretish.diagnostic import Diagnostic
@@ -92,10 +93,16 @@ def section(
         histograms=histograms(claim),
         results=result_views(claim, runs, project.declarations),
         reasons=() if shown else reasons(claim, runs, audited=audited),
+        limit=_limit(rule),
         coverage=claim.coverage,
         review=review(claim),
         waiver=waiver(claim),
     )
+
+
+def _limit(rule: Rule | None) -> str:
+    """Of a probability many runs decide."""
+    return "" if rule is None or rule.sentence.probability is not None else limit(rule)
 
 
 def _probability(claim: Claim) -> ProbabilityView | None:

@@ -11,7 +11,7 @@ from compiler.evidence import Result, Threshold, Violation
 from compiler.report import phrases
 from compiler.report.pictures import Level, Panel, Piece, SpanMark
 from compiler.surroundings import Samples
-from monitors.violations import MOST_SAMPLES
+from monitors.violations import EVEN_SAMPLES
 
 MOST_PANELS = 4
 """Signals in one picture; those with a threshold come first."""
@@ -45,7 +45,13 @@ def panels(
         _panel(name, result.units.get(name, ""), bounds[name], stretches, start, end)
         for name in names
         for stretches in [
-            _stretches(violation.window.samples[name], ages.get(name, inf), start, end)
+            _stretches(
+                violation.window.samples[name],
+                ages.get(name, inf),
+                start,
+                end,
+                violation.first.seconds,
+            )
         ]
     )
 
@@ -80,8 +86,14 @@ def _levels(signal: str, bounds: Sequence[Threshold]) -> Iterator[Level]:
 # What is known when ----------------------------------------------------------------------------
 
 
-def _stretches(samples: Samples, age: float, start: float, end: float) -> list[Known]:
-    """The picture's time as stretches, in each of which one value is in force, or none."""
+def _stretches(
+    samples: Samples, age: float, start: float, end: float, broken: float
+) -> list[Known]:
+    """The picture's time as stretches, in each of which one value is in force, or none.
+
+    The sample that is the last at `broken` is never one that thinning put there: where it is too
+    old then, it ends when it grows too old.
+    """
     longest = _longest(samples, age)
     found: list[Known] = []
     following = (*samples.times[1:], inf)
@@ -89,7 +101,8 @@ def _stretches(samples: Samples, age: float, start: float, end: float) -> list[K
     if first > start:
         found.append((start, min(first, end), None))
     for begin, after, value in zip(samples.times, following, samples.values, strict=True):
-        until = min(after, begin + longest)
+        is_stale = begin <= broken < after and round(broken - begin, 9) > age
+        until = min(after, begin + (age if is_stale else longest))
         found.append((begin, until, value))
         if until < after:
             found.append((until, after, None))
@@ -99,7 +112,7 @@ def _stretches(samples: Samples, age: float, start: float, end: float) -> list[K
 
 def _longest(samples: Samples, age: float) -> float:
     """How long a sample is held: of thinned ones the distances are not those of the log."""
-    if len(samples.times) < MOST_SAMPLES - 2:
+    if len(samples.times) < EVEN_SAMPLES:
         return age
     usual = median(late - early for early, late in pairwise(samples.times))
     return max(age, _THINNED * usual)

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from math import floor, isinf, log10
+from math import floor, log10
 from types import MappingProxyType
 
 from compiler.evidence import Moment, Result, Violation
 from compiler.report.phrases import joined, seconds, times, value
 from compiler.report.pictures import Flag, Lane, Panel, SpanMark, Timeline
+from compiler.report.readings import reading
 from compiler.report.signals import left_out, panels
 
 DETAIL = 400
@@ -56,8 +57,9 @@ def _explained(
     """With the signals, the trigger, the deadline, the broken stretch, and the cause in words."""
     drawn = panels(violation, result, ages, plain.start, plain.end)
     broken = _violated(violation, tick)
+    why = cause(violation, result, ages)
     told = [
-        cause(violation, result),
+        why,
         plain.text,
         *(_panel_in_words(panel) for panel in drawn),
         _not_drawn(left_out(violation, drawn)),
@@ -68,7 +70,7 @@ def _explained(
         panels=drawn,
         flags=tuple(_flags(violation)),
         broken=_rounded(SpanMark(broken.start, broken.end, 1)),
-        cause=cause(violation, result),
+        cause=why,
     )
 
 
@@ -78,7 +80,7 @@ def _flags(violation: Violation) -> Iterable[Flag]:
             yield Flag(kind, round(moment.seconds, 6))
 
 
-def cause(violation: Violation, result: Result) -> str:
+def cause(violation: Violation, result: Result, ages: Mapping[str, float]) -> str:
     """Why it is a violation: what did not come, and what the signals were then."""
     start, end = violation.first.seconds, violation.last.seconds
     when = f"at {seconds(start)}" if start == end else f"from {seconds(start)} to {seconds(end)}"
@@ -89,18 +91,8 @@ def cause(violation: Violation, result: Result) -> str:
         what = f"`{missing}` did not hold {when}"
     if violation.trigger is not None:
         what += f", triggered at {seconds(violation.trigger.seconds)}"
-    values = [f"{name} was {_value_then(name, violation, result)}" for name in violation.values]
+    values = [f"{name} was {reading(name, violation, result, ages)}" for name in violation.values]
     return f"{what}; at {seconds(start)} {joined(values)}." if values else f"{what}."
-
-
-def _value_then(signal: str, violation: Violation, result: Result) -> str:
-    """The value at the first broken tick; the window also knows infinite ones."""
-    known = violation.values[signal]
-    if known is None and violation.window and signal in violation.window.samples:
-        found = violation.window.samples[signal].at(violation.first.seconds)
-        if found is not None and isinf(found):
-            return "+inf" if found > 0 else "-inf"
-    return value(known, result.units.get(signal, ""))
 
 
 def _panel_in_words(panel: Panel) -> str:

@@ -140,6 +140,8 @@ class Row:
     status: str
     anchor: str
     mark: Mark
+    limit: str
+    """Why no run can violate it; empty where one can."""
     artefacts: tuple[Product, ...]
     cells: tuple[Cell, ...]
 
@@ -398,6 +400,8 @@ class RequirementView:
     results: tuple[ResultView, ...]
     reasons: tuple[str, ...]
     """Why it is not shown; empty where it is."""
+    limit: str
+    """Why no run can violate it, in one sentence; empty where one can."""
     coverage: str
     """How far along the chain it is; one of `compiler.report.claims.COVERAGE`."""
     review: ReviewView

@@ -68,6 +68,70 @@ def test_evidence_is_summarized_as_its_table_and_a_row_counts_once(
     assert fretc("audit", "--summary", "evidence.json", "runs.parquet").out == SUMMARY
 
 
+def renamed(results: list[dict[str, Any]], **hashes: str) -> list[dict[str, Any]]:
+    """The same logs under other names."""
+    return [
+        {**one, "run": f"copies/{one['run']}", "hashes": one["hashes"] | hashes} for one in results
+    ]
+
+
+def test_a_log_counts_once_whatever_its_name_in_the_head_and_in_the_rows(
+    fretc: Fretc, results: list[dict[str, Any]]
+) -> None:
+    Path("copies.parquet").write_bytes(parquet(renamed(results), "2"))
+    for tables in (("runs.parquet", "copies.parquet"), ("copies.parquet", "evidence.json")):
+        assert fretc("audit", "--summary", *tables) == Run(1, SUMMARY, "")
+
+
+def test_other_logs_under_the_same_names_count_as_others(
+    fretc: Fretc, results: list[dict[str, Any]]
+) -> None:
+    others = [
+        {**one, "hashes": one["hashes"] | {"log": f"{number // 2 + 100:064x}"}}
+        for number, one in enumerate(results)
+    ]
+    Path("others.parquet").write_bytes(parquet(others, "1"))
+    run = fretc("audit", "--summary", "runs.parquet", "others.parquet", "--format", "json")
+    told = json.loads(run.out)
+    assert (told["runs"], told["seconds"], told["damaged"]) == (6, 21600.0, 2)
+    assert [row["runs"] for row in told["by_requirement"]] == [6, 6]
+    assert (told["failed_runs"], [row["violated"] for row in told["by_requirement"]]) == (4, [2, 0])
+
+
+def test_a_log_that_was_not_hashed_is_told_by_its_summary_and_an_unread_one_by_its_name(
+    fretc: Fretc, results: list[dict[str, Any]]
+) -> None:
+    kept = {k: v for k, v in results[2]["hashes"].items() if k != "log"}
+    one = {**results[2], "hashes": {**kept, "log_summary": "1" * 64}}
+    other = {**results[2], "hashes": {**kept, "log_summary": "2" * 64}}
+    unread = {**results[2], "hashes": kept, "run": "unread.mcap"}
+    copies = [{**one, "run": name} for name in ("x.mcap", "y.mcap")]
+    Path("a.parquet").write_bytes(parquet([one, unread], "1"))
+    Path("b.parquet").write_bytes(parquet([*copies, other, unread], "2"))
+    run = fretc("audit", "--summary", "a.parquet", "b.parquet", "--format", "json")
+    told = json.loads(run.out)
+    assert told["runs"] == told["by_requirement"][0]["runs"] == 3
+
+
+def test_the_worst_of_several_verdicts_of_a_log_counts_and_that_is_said(
+    fretc: Fretc, results: list[dict[str, Any]]
+) -> None:
+    order = ["violated", "no data", "inconclusive", "vacuous", "satisfied"]
+    for place, worse in enumerate(order):
+        for better in order[place + 1 :]:
+            for first, second in ((worse, better), (better, worse)):
+                Path("1.parquet").write_bytes(parquet([{**results[0], "verdict": first}], "1"))
+                Path("2.parquet").write_bytes(parquet([{**results[0], "verdict": second}], "2"))
+                run = fretc("audit", "--summary", "1.parquet", "2.parquet", "--format", "json")
+                (row,) = json.loads(run.out)["by_requirement"]
+                assert (row["runs"], row[worse.replace(" ", "_")]) == (1, 1)
+                told = " and ".join(sorted((worse, better)))
+                assert run.err.startswith(
+                    f"F555 warning: R1 has several verdicts of the log of a.mcap: {told}; the "
+                    "worst of each log counts\n"
+                )
+
+
 def test_a_summary_as_json(fretc: Fretc, results: list[dict[str, Any]]) -> None:
     told = json.loads(fretc("audit", "--summary", "runs.parquet", "--format", "json").out)
     assert told["by_requirement"][1] == {
@@ -96,10 +160,9 @@ def test_the_exit_status_is_that_of_the_audit(fretc: Fretc, results: list[dict[s
 def test_only_the_worst_of_many_runs_are_listed(
     fretc: Fretc, results: list[dict[str, Any]]
 ) -> None:
-    known = results[4]["hashes"]
     many = [
-        {**results[4], "run": f"{number:02}.mcap", "hashes": {**known, "log": f"{number:064x}"}}
-        for number in range(25)
+        {**results[4], "run": f"{n:02}.mcap", "hashes": results[4]["hashes"] | {"log": f"{n:064x}"}}
+        for n in range(25)
     ]
     Path("many.parquet").write_bytes(parquet(many, "1"))
     run = fretc("audit", "--summary", "many.parquet")
@@ -115,35 +178,6 @@ def test_two_versions_of_a_requirement_are_not_counted_as_one_in_silence(
     Path("two.parquet").write_bytes(parquet([*results, other], "1"))
     run = fretc("audit", "--summary", "two.parquet")
     assert run.err.startswith("F504 warning: R1 was audited as 2 different requirements: ")
-
-
-@pytest.mark.parametrize("known_by", ["log", "log_summary"])
-def test_a_copy_of_a_log_under_another_name_counts_once_in_head_and_rows(
-    fretc: Fretc, results: list[dict[str, Any]], known_by: str
-) -> None:
-    def named(one: dict[str, Any], run: str) -> dict[str, Any]:
-        hashes = dict(one["hashes"])
-        log = hashes.pop("log")
-        return {**one, "run": run, "hashes": {**hashes, known_by: log}}
-
-    first = [named(one, one["run"]) for one in results]
-    copies = [named(one, f"copy/{one['run']}") for one in results]
-    Path("one.parquet").write_bytes(parquet(first, "1"))
-    Path("two.parquet").write_bytes(parquet(copies, "1"))
-    assert fretc("audit", "--summary", "one.parquet", "two.parquet").out == SUMMARY
-
-
-def test_of_two_verdicts_on_one_log_the_worst_counts(
-    fretc: Fretc, results: list[dict[str, Any]]
-) -> None:
-    good, bad = results[0], {**results[0], "verdict": "violated", "run": "copy.mcap"}
-    for order in ([good, bad], [bad, good]):
-        Path("both.parquet").write_bytes(parquet(order, "1"))
-        run = fretc("audit", "--summary", "both.parquet", "--format", "json")
-        told = json.loads(run.out)
-        (row,) = told["by_requirement"]
-        assert (run.status, told["runs"], row["runs"]) == (1, 1, 1)
-        assert (row["satisfied"], row["violated"]) == (0, 1)
 
 
 def test_a_query_is_answered_for_a_person_and_for_a_program(

@@ -74,11 +74,11 @@ def test_a_row_has_the_numbers_of_its_run() -> None:
         "gaps": 0,
         "findings": 0,
         "log_sha256": LOG,
-        "log_summary_sha256": None,
         "sentence_sha256": hashes["sentence"],
         "bindings_sha256": hashes["bindings"],
         "monitor_sha256": hashes["monitor"],
         "fretc": "1.2.3",
+        "log_summary_sha256": None,
     }
 
 
@@ -100,6 +100,20 @@ def test_a_time_beyond_a_column_is_null_and_no_failure() -> None:
     known = project(Path("known"))
     (row,) = rows(result(known, "no data", start_ns=0, end_ns=2**64 - 1))
     assert (row["start_ns"], row["end_ns"]) == (0, None)
+
+
+def test_a_table_without_the_last_column_is_read_as_well() -> None:
+    (row,) = rows(result(project(Path("known")), "satisfied", hashes={"log_summary": "1" * 64}))
+    assert row["log_summary_sha256"] == "1" * 64
+    whole = files.read_table("runs.parquet")
+    older = whole.drop_columns(["log_summary_sha256"])
+    older = older.replace_schema_metadata({"schema": "fretc-table-1"})
+    files.write_table(older, "older.parquet")
+    found = read(["older.parquet", "runs.parquet"])
+    assert not isinstance(found, Diagnostic), found.message
+    assert found.to_pylist() == [{**row, "log_summary_sha256": None}, row]
+    files.write_table(older.replace_schema_metadata({"schema": "fretc-table-2"}), "odd.parquet")
+    assert code("odd.parquet")[0] == "F503"
 
 
 def test_fields_that_a_table_does_not_know_stay_in_the_evidence() -> None:

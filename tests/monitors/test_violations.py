@@ -171,6 +171,24 @@ def test_many_samples_are_thinned_evenly_with_the_least_and_the_greatest() -> No
     assert len(violation.window.samples["d"].times) <= MOST_SAMPLES
 
 
+@pytest.mark.parametrize("broken", [8, 9])
+def test_the_last_sample_at_the_broken_tick_is_kept_exactly(broken: int) -> None:
+    """Its age is told: the signal falls silent 0.437 s before that tick."""
+    silent = broken * S - 437 * S // 1000
+    times = np.concatenate([np.arange(0, silent + 1, S // 1000), np.arange(10, 12) * S])
+    log = Recording(
+        "a", "", 1, 0, 20 * S, {"d": Samples(times, np.sin(times / S))}, np.array([], np.int64),
+        (), {}, {}, (), True,
+    )  # fmt: skip
+    (violation,) = violations(
+        outcome([(broken, 12)], [4]), Demand(), 20, lambda t: Moment(t, t * S, float(t)), log, ["d"]
+    )
+    assert violation.window is not None
+    kept = violation.window.samples["d"].times
+    assert len(kept) <= MOST_SAMPLES
+    assert kept[kept <= broken * S][-1] == silent
+
+
 def test_only_the_first_violations_carry_their_samples() -> None:
     runs = [(2 * i, 2 * i) for i in range(MOST_WINDOWS + 5)]
     found = told(outcome(runs, [], ticks=300))

@@ -1,6 +1,7 @@
 """`--gsn`: the assurance argument as YAML that gsn2x reads.
 
-Source: gsn2x, Syntax in YAML.
+Counter-solutions and what they defeat are written as gsn2x reads the dialectic extension.
+Source: gsn2x, Syntax in YAML; Dialectic Extension.
 """
 
 from __future__ import annotations
@@ -28,4 +29,8 @@ def _attributes(element: Element) -> dict[str, Any]:
         found["inContextOf"] = list(element.in_context_of)
     if element.undeveloped:
         found["undeveloped"] = True
+    if element.challenges:
+        found["challenges"] = element.challenges
+    if element.defeated:
+        found["defeated"] = True
     return found

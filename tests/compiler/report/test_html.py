@@ -147,15 +147,35 @@ def test_the_parts_stand_in_their_order(tmp_path: Path) -> None:
     ]
 
 
+def test_what_the_bindings_declare_of_unknown_values_is_called_no_default(tmp_path: Path) -> None:
+    declared = BINDINGS.replace('agg = "any"', 'agg = "any"\non_unknown = false')
+    known = project(tmp_path, bindings=declared)
+    text = Page(made(known, tmp_path, result(known, "satisfied")).html or "").text
+    assert "Where the bindings say nothing, a default was taken; what they declare" in text
+    assert (
+        "proposition near: where its signals are unknown it counts as false, as the bindings "
+        "declare"
+    ) in text
+
+
+def test_a_requirement_that_no_run_can_violate_says_so_beside_its_verdict(tmp_path: Path) -> None:
+    known = project(tmp_path)
+    text = Page(made(known, tmp_path, result(known, "satisfied")).html or "").text
+    places = ("headline", "reservations", "section", "argument")
+    assert text.count("No run can violate R1: it sets no bound") == len(places)
+    assert "no run can violate it" in text
+
+
 def test_a_violation_has_its_picture_and_its_values(tmp_path: Path) -> None:
     text = Page(page(tmp_path)).text
-    cause = "stopped did not come by 1.4 s, triggered at 1.1 s; at 1.4 s clearance was 0.0318 m"
-    assert f"Violation 1. {cause} and vx was unknown." in text
+    cause = "stopped did not come by 1.4 s, triggered at 1.1 s; at 1.4 s clearance was unknown"
+    old = "0.0318 m is 0.4 s old, and counts for 0.3 s"
+    assert f"Violation 1. {cause}: {old} and vx was unknown." in text
     assert "From 0.1 s to 2 s: 2 ticks with a trigger (1 s to 1.2 s)" in text
     assert (
         "clearance is 0.0318 m, threshold < 0.05 m, unknown for 1.4 s, infinite for 0.3 s." in text
     )
-    assert "clearance = 0.0318 m" in text
+    assert f"clearance = unknown: {old}" in text
     assert "vx = unknown" in text
 
 

@@ -76,6 +76,11 @@ VERDICTS: list[tuple[str, dict[str, Any], str, str, str]] = [
 ]
 
 
+UNVIOLABLE = (
+    "No run can violate R1: it sets no bound, so an answer that has not come may always come later."
+)
+
+
 @pytest.mark.parametrize(("verdict", "changes", "word", "headline", "sentence"), VERDICTS)
 def test_each_verdict_has_its_overall_result(
     tmp_path: Path,
@@ -90,7 +95,8 @@ def test_each_verdict_has_its_overall_result(
     content = said(report)
     overall = content["overall"]
     assert (overall["mark"]["word"], overall["headline"]) == (word, headline)
-    assert overall["sentences"] == [sentence, "No damage was found in the run."]
+    limit = [UNVIOLABLE] if verdict == "satisfied" else []
+    assert overall["sentences"] == [sentence, *limit, "No damage was found in the run."]
     assert words(content["requirements"]) == [verdict]
     assert words(content["requirements"][0]["results"]) == [verdict]
     assert [line["requirement"] for line in content["not_shown"]] == (
@@ -351,7 +357,7 @@ def test_a_planned_method_without_a_result_is_told(tmp_path: Path) -> None:
     assert overall["overall"]["headline"] == (
         "What was audited held; not all that was planned is shown."
     )
-    assert overall["overall"]["sentences"][1] == (
+    assert overall["overall"]["sentences"][2] == (
         "No result is known of 2 planned methods: ajpf for R1 and inspection for R1."
     )
 
@@ -388,9 +394,21 @@ def test_a_response_without_a_bound_is_shown_with_a_reservation(tmp_path: Path) 
         "it however late it comes.",
         "waits": ["1 s to 3.5 s: 2 triggers, the first waited 2.5 s"],
     }
-    line = "R1 sets no bound on its response; in Run 1 the longest took 2.5 s, after the trigger"
-    assert content["reservations"] == [f"{line} at 1 s."]
-    assert content["overall"]["sentences"][1] == f"{line} at 1 s."
+    line = "The longest answer of R1 took 2.5 s, after the trigger at 1 s, in Run 1."
+    assert content["reservations"] == [UNVIOLABLE, line]
+    assert content["overall"]["sentences"][1:3] == [UNVIOLABLE, line]
+
+
+def test_where_the_end_of_a_log_violates_the_reservation_is_the_missing_bound(
+    tmp_path: Path,
+) -> None:
+    ends = BINDINGS.replace('end = "inconclusive"', 'end = "violated"')
+    known = project(tmp_path, bindings=ends)
+    content = said(made(known, tmp_path, result(known, "satisfied")))
+    assert content["reservations"] == [
+        "R1 sets no bound on its response. The longest answer of R1 took 2.5 s, after the "
+        "trigger at 1 s, in Run 1."
+    ]
 
 
 def test_a_bound_is_told_beside_the_latency(tmp_path: Path) -> None:
@@ -445,7 +463,10 @@ def test_violations_open_demands_and_unknown_ticks_are_listed(tmp_path: Path) ->
         "trigger": "1.1 s (tick 11)",
         "deadline": "1.4 s (tick 14)",
         "missing": "stopped",
-        "values": [["clearance", "0.0318 m"], ["vx", "unknown"]],
+        "values": [
+            ["clearance", "unknown: 0.0318 m is 0.4 s old, and counts for 0.3 s"],
+            ["vx", "unknown"],
+        ],
     }
     assert (shown["violations"][1]["ticks"], shown["violations"][1]["trigger"]) == ("60", "none")
     assert shown["open"] == {

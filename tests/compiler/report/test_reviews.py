@@ -176,6 +176,8 @@ def test_a_waiver_that_has_ended_covers_nothing(
         (R1, "satisfied", "exercised, pass"),
         (R1, "violated", "exercised, fail"),
         (R1, "vacuous", "not exercised"),
+        (R1, "inconclusive", "exercised, open"),
+        (R1, "no data", "exercised, open"),
         (R1, None, "not exercised"),
         (R1.replace("eventually satisfy stopped", "eventually satisfy gone"), None, "unbound"),
         (R1.replace("shall eventually", "shal eventually"), None, "unformalized"),
@@ -192,7 +194,8 @@ def test_how_far_a_requirement_has_come(
 ) -> None:
     known = project(tmp_path, text)
     broken = [violation(14, 20, 11)] if verdict == "violated" else []
-    results = [result(known, verdict, violations=broken)] if verdict else []
+    asked: dict[str, Any] = {"triggers": [], "latencies_s": []} if verdict == "vacuous" else {}
+    results = [result(known, verdict, violations=broken, **asked)] if verdict else []
     assert only(reported(known, tmp_path, *results))["coverage"] == state
 
 

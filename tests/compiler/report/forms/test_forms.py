@@ -141,31 +141,78 @@ def test_sarif_tells_suspect_evidence_as_such(reported: Fretc) -> None:
 
 # GSN, by the rules that gsn2x states ----------------------------------------------------------
 
+PREFIXES = ("CSn", "Sn", "G", "A", "J", "S", "C")
+"""Of an id, the longest first: `CSn` is a counter-solution, `Sn` no strategy."""
 SUPPORTS, AROUND = ("G", "Sn", "S"), ("J", "A", "C")
 
 
+def kind(id: str) -> str:
+    return next((prefix for prefix in PREFIXES if id.startswith(prefix)), "")
+
+
 def complaints(elements: dict[str, dict[str, Any]]) -> list[str]:
-    """V01 to V06 of gsn2x, references to nothing, circles, and goals that nobody refers to."""
+    """V01 to V06 and V10 of gsn2x, C01 to C04, and goals that nobody refers to."""
     found = []
-    known = {"text", "supportedBy", "inContextOf", "undeveloped"}
+    known = {"text", "supportedBy", "inContextOf", "undeveloped", "challenges", "defeated"}
+    challenged = [e["challenges"] for e in elements.values() if "challenges" in e]
     for id, element in elements.items():
         below, around = element.get("supportedBy", []), element.get("inContextOf", [])
-        if not re.match(r"Sn|[GAJSC]", id) or not element["text"] or element.keys() - known:
+        if not kind(id) or not element["text"] or element.keys() - known:
             found.append(id)
-        if (below or around) and id[0] not in "SG":
+        if (below or around) and kind(id) not in ("S", "G"):
             found.append(f"{id} refers")
-        found += [f"{id} {n}" for n in below if not n.startswith(SUPPORTS) or n not in elements]
-        found += [f"{id} {n}" for n in around if not n.startswith(AROUND) or n not in elements]
+        found += [f"{id} {n}" for n in below if kind(n) not in SUPPORTS or n not in elements]
+        found += [f"{id} {n}" for n in around if kind(n) not in AROUND or n not in elements]
         if len({*below, *around}) < len(below) + len(around) or id in (*below, *around):
             found.append(f"{id} twice")
-        developed = bool(below) or id.startswith(("Sn", "A", "J", "C"))
+        developed = bool(below) or kind(id) not in ("S", "G")
         if developed == element.get("undeveloped", False):
             found.append(f"{id} undeveloped")
+        if (kind(id) == "CSn") != (element.get("challenges", id) in elements.keys() - {id}):
+            found.append(f"{id} challenges")
+        if element.get("defeated") and id not in challenged:
+            found.append(f"{id} defeated")
     referred = {
         n for e in elements.values() for k in ("supportedBy", "inContextOf") for n in e.get(k, [])
     }
-    found += [f"{id} alone" for id in elements.keys() - referred - {"G_top"}]
+    alone = {id for id in elements if kind(id) != "CSn"} - referred
+    found += [f"{id} alone" for id in alone - {"G_top"}]
+    below = {id: element.get("supportedBy", []) for id, element in elements.items()}
+    found += [f"{id} in a circle" for id in below if id in _reached(below, id)]
     return found
+
+
+def _reached(below: dict[str, list[str]], id: str) -> set[str]:
+    seen: set[str] = set()
+    waiting = list(below[id])
+    while waiting:
+        if (found := waiting.pop()) not in seen:
+            seen.add(found)
+            waiting += below.get(found, [])
+    return seen
+
+
+@pytest.mark.parametrize(
+    ("wrong", "complaint"),
+    [
+        ({"X1": {"text": "x"}}, "X1"),
+        ({"G_top": {"text": "g"}}, "G_top undeveloped"),
+        ({"G_top": {"text": "g", "supportedBy": ["Sn"], "undeveloped": True}}, "G_top undeveloped"),
+        ({"G_top": {"text": "g", "supportedBy": ["C"]}}, "G_top C"),
+        ({"G_top": {"text": "g", "supportedBy": ["Sn", "Sn"]}}, "G_top twice"),
+        ({"G_top": {"text": "g", "supportedBy": ["G_top"]}}, "G_top in a circle"),
+        ({"G_top": {"text": "g", "supportedBy": ["Sn"], "defeated": True}}, "G_top defeated"),
+        ({"CSn1": {"text": "x", "challenges": "G_none"}}, "CSn1 challenges"),
+    ],
+)
+def test_each_rule_finds_what_it_is_about(wrong: dict[str, dict[str, Any]], complaint: str) -> None:
+    right: dict[str, dict[str, Any]] = {
+        "G_top": {"text": "g", "supportedBy": ["Sn"], "inContextOf": ["C"]},
+        "Sn": {"text": "s"},
+        "C": {"text": "c"},
+    }
+    assert complaints(right) == []
+    assert complaint in complaints({**right, **wrong})
 
 
 def test_gsn_is_an_argument_that_gsn2x_takes(reported: Fretc) -> None:
@@ -186,6 +233,12 @@ def test_gsn_claims_no_more_than_is_shown(reported: Fretc) -> None:
     goals = {id: below for id, below in shown.items() if id.startswith("G")}
     assert goals["G_req_2d_R1"] == ["Sn_req_2d_R1"]
     assert [goals[f"G_req_2d_R{n}"] for n in (2, 3, 4, 5)] == [None] * 4
+    defeated = [id for id, element in elements.items() if element.get("defeated")]
+    assert defeated == ["G_req_2d_R2"]
+    assert elements["CSn_req_2d_R2"] == {
+        "text": "R2 is violated in 1 of 1 audited run: Run 1, logs/a.mcap: reason of R2",
+        "challenges": "G_req_2d_R2",
+    }
     assert elements["J_req_2d_R3"]["text"].startswith("Waived until 2099-01-01 by A, B")
 
 
