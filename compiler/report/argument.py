@@ -12,10 +12,8 @@ from dataclasses import dataclass
 from enum import StrEnum
 
 from compiler.report import phrases
-from compiler.report.claims import SHOWN
-from compiler.report.proofs import is_refuted
+from compiler.report.proofs import is_proved, is_refuted
 from compiler.report.views import Report, RequirementView
-from compiler.verification import PROVED
 
 
 class Kind(StrEnum):
@@ -94,8 +92,8 @@ class _Argument:
 
     def _requirement(self, view: RequirementView) -> Iterator[Element]:
         goal = self._goal(view.anchor)
-        shown = view.mark.word in SHOWN and not is_refuted(view)
-        proved = [proof for proof in view.proofs if proof.mark.word == PROVED]
+        shown = view.mark.shows and not is_refuted(view)
+        proved = [proof for proof in view.proofs if is_proved(proof)]
         solution = goal.replace("G_", "Sn_", 1)
         # A goal is developed or not: what is proved of one that is not shown is context.
         proofs = f"{solution if shown else goal.replace('G_', 'C_', 1)}_proofs"
