@@ -15,8 +15,8 @@ from xml.etree import ElementTree
 
 from compiler import verdicts
 from compiler.estimates import AVERAGE, Estimated
-from compiler.values import declared_unit, scaled, value
 from compiler.verdicts import Level
+from fretish.amounts import declared_unit, scaled, value
 from fretish.declarations import Signal
 from fretish.documents import Requirement
 from fretish.source import Span

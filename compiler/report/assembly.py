@@ -10,6 +10,7 @@ from types import MappingProxyType
 from compiler import __version__
 from compiler.ajpf_results import merged
 from compiler.checks import checks
+from compiler.declared import in_declared_units
 from compiler.estimates import AVERAGE
 from compiler.evidence import Evidence
 from compiler.lock import Lock
@@ -37,7 +38,6 @@ from compiler.report.views import (
     verdict_mark,
     worst_first,
 )
-from compiler.values import in_declared_units
 from compiler.verdicts import NOT_EXERCISED, RETIRED, WAIVED
 from compiler.verification import Evidence as Line
 from compiler.waivers import Waiver

@@ -136,8 +136,8 @@ class Claim:
         known = [why for found, why in self._findings if word not in BROKEN or found == word]
         if word in BROKEN and not all(known):
             return ()
-        reviewed = since_review(self.standing)
-        return tuple(dict.fromkeys((*(w for why in known for w in why), *reviewed)))
+        found = tuple(dict.fromkeys(reason for why in known for reason in why))
+        return found or since_review(self.standing)
 
     @property
     def is_shown(self) -> bool:

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from datetime import UTC, datetime
 from pathlib import PurePosixPath, PureWindowsPath
 
-from compiler.values import value as value
+from fretish.amounts import value as value
 
 _NARROW = "\N{NARROW NO-BREAK SPACE}"
 

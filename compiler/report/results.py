@@ -13,9 +13,9 @@ from compiler.report.runs import Key, Run, key
 from compiler.report.timeline import answered, timelines
 from compiler.report.views import Latency, Listing, ResultView, ThresholdView, ViolationView
 from compiler.rule import Rule
-from compiler.values import exact
 from compiler.verdicts import NOT_EXERCISED, RETIRED, SUSPECT, UNFORMALIZED, severity
 from fretish import syntax
+from fretish.amounts import exact
 from fretish.clock import Clock
 from fretish.declarations import Declarations
 from fretish.meaning import span
@@ -270,7 +270,7 @@ def reasons(claim: Claim, runs: dict[Key, Run], *, audited: bool) -> tuple[str, 
     told = [text for _, text in sorted(lines, key=lambda line: line[0])]
     left = len(told) - _TOLD
     few = (*told[:_TOLD], f"and {phrases.times(left, 'more run')}") if left > 0 else tuple(told)
-    return (*few, *(f"{SUSPECT}, because {why}" for why in since_review(claim.standing)))
+    return (*few, *since_review(claim.standing))
 
 
 def _unformalized(claim: Claim) -> Iterator[str]:

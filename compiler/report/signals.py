@@ -10,7 +10,7 @@ from statistics import median
 from compiler.evidence import Result, Threshold, Violation
 from compiler.report.pictures import Level, Panel, Piece, SpanMark
 from compiler.surroundings import Samples
-from compiler.values import exact
+from fretish.amounts import exact
 from monitors.violations import MOST_SAMPLES
 
 MOST_PANELS = 4
