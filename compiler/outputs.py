@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping, Sequence
+from fractions import Fraction
 from itertools import groupby
 from types import MappingProxyType
 from typing import Any
@@ -96,13 +97,20 @@ def _case(
 def _lines(case: Mapping[str, Any], signals: Mapping[str, Signal]) -> Iterator[str]:
     """Each stretch at which the requirement was violated, with what the signals said."""
     units = {n: declared_unit(n, base, signals) for n, base in case["units"].items()}
+    bounds = {name: _bounds(case, name, factor) for name, (_, factor) in units.items()}
     for broken in case["violations"]:
         values = ", ".join(
-            f"{name} = {value(scaled(number, units[name][1]), units[name][0])}"
+            f"{name} = {value(scaled(number, units[name][1]), units[name][0], bounds[name])}"
             for name, number in broken["values"].items()
         )
         stretch = f"{broken['start_s']:.3f} s to {broken['end_s']:.3f} s"
         yield f"{stretch}: {values}" if values else stretch
+
+
+def _bounds(case: Mapping[str, Any], signal: str, factor: Fraction) -> list[float]:
+    """What a signal, or its absolute value, is compared with."""
+    found = (t for t in case["thresholds"] if t["signal"] in (signal, f"abs({signal})"))
+    return [sign * scaled(each["bound"], factor) for each in found for sign in (1, -1)]
 
 
 def valid(text: str) -> str:

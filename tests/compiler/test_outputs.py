@@ -23,6 +23,7 @@ def result(verdict: str, run: str = "a.mcap", id: str = "R1", **more: Any) -> di
         "end_ns": 3 * 10**9,
         "violations": [],
         "units": {"x": "m/s", "y": ""},
+        "thresholds": [],
         **more,
     }
 
@@ -66,7 +67,9 @@ def test_values_are_in_the_units_that_the_bindings_declare() -> None:
     told = '[signal.x]\npath = "/a.x"\nunit = "km/h"\n[signal.y]\npath = "/a.y"\n'
     bound = declare(f'[clock]\ntick = "1 s"\n{told}')
     broken = {"start_s": 1.5, "end_s": 2.0, "values": {"x": 5 / 3.6, "y": 2.0}}
-    text = junit([result("violated", violations=[broken])], signals=bound.signals)
+    near = [{"signal": "abs(y)", "bound": 2.0000001}]
+    case = result("violated", violations=[broken], thresholds=near)
+    text = junit([case], signals=bound.signals)
     assert ElementTree.fromstring(text)[0][0][0].text == "1.500 s to 2.000 s: x = 5 km/h, y = 2"
 
 
