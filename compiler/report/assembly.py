@@ -295,7 +295,7 @@ def _claims(claimed: Sequence[Claim], runs: int) -> str:
 def _counts(claimed: Sequence[Claim]) -> tuple[Count, ...]:
     active = [claim for claim in claimed if claim.verdict != RETIRED]
     of_claims = Counter(claim.mark for claim in claimed)
-    of_results = Counter(judged.mark for claim in active for judged in claim.judged)
+    of_results = Counter(judged.mark for claim in active for judged in claim.results)
     found = {*map(verdict_mark, _ALWAYS), *of_claims, *of_results}
     return tuple(
         Count(mark, of_claims[mark], of_results[mark])

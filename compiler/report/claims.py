@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from types import MappingProxyType
 
 from compiler.estimates import Estimated
@@ -70,6 +70,11 @@ class Judged:
         """Its verdict and its currency as they are shown."""
         return verdict_mark(self.verdict, suspect=self.is_stale)
 
+    def seen(self, standing: Standing) -> Judged:
+        """The same as one sees it beside a review: no run shows what is not as it was accepted."""
+        doubts = since_review(standing) if self.mark.shows else ()
+        return replace(self, suspicions=doubts) if doubts else self
+
 
 @dataclass(frozen=True, slots=True)
 class Together:
@@ -105,6 +110,11 @@ class Claim:
     def id(self) -> str:
         """The requirement's id."""
         return self.requirement.id
+
+    @property
+    def results(self) -> tuple[Judged, ...]:
+        """What each run shows, beside the review."""
+        return tuple(judged.seen(self.standing) for judged in self.judged)
 
     @property
     def verdict(self) -> str:

@@ -90,10 +90,10 @@ def _cells(claim: Claim, runs: dict[Key, Run]) -> tuple[Cell, ...]:
     """The worst first, one for each run; many of one verdict share one."""
     if not claim.judged:
         return (Cell(claim.mark, "", claim.anchor),)
-    counts = Counter(judged.mark for judged in claim.judged)
+    counts = Counter(judged.mark for judged in claim.results)
     single = [
         Cell(judged.mark, runs[key(judged.result)].label, result_anchor(claim, number))
-        for number, judged in enumerate(claim.judged, 1)
+        for number, judged in enumerate(claim.results, 1)
         if counts[judged.mark] <= _SINGLE
     ]
     shared = [

@@ -33,7 +33,7 @@ def result_views(
     """Every audit of a requirement, in the order of the runs."""
     return tuple(
         _view(judged, claim, number, runs[key(judged.result)], declared)
-        for number, judged in enumerate(claim.judged, 1)
+        for number, judged in enumerate(claim.results, 1)
     )
 
 
@@ -46,7 +46,7 @@ def _view(
     judged: Judged, claim: Claim, number: int, run: Run, declared: Declarations | None
 ) -> ResultView:
     result = judged.result
-    known = None if judged.is_stale else declared
+    known = None if claim.judged[number - 1].is_stale else declared
     tick = _tick(result, known.clock if known else None)
     return ResultView(
         anchor=result_anchor(claim, number),

@@ -33,15 +33,13 @@ def sarif(
 
 
 def _judged(report: Report, audited: Sequence[Mapping[str, Any]]) -> Iterator[Mapping[str, Any]]:
-    """With the verdict of the report; what would show a requirement is as suspect as that is."""
+    """With verdict and currency as the report has them."""
     views = {view.id: iter(view.results) for view in report.requirements}
-    why = {view.id: view.suspicions for view in report.requirements}
     for result in audited:
         view = next(views.get(result["requirement"], iter(())), None)
         if view is None:
             continue  # evidence of what is not among the requirements is a diagnostic
-        doubts = why[result["requirement"]] if view.mark.shows else view.suspicions
-        yield {**result, "verdict": view.mark.word, "suspicions": doubts}
+        yield {**result, "verdict": view.mark.word, "suspicions": view.suspicions}
 
 
 def _together(report: Report) -> Iterator[results.AllRuns]:

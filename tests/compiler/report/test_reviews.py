@@ -87,7 +87,10 @@ def test_what_changed_since_the_review_makes_the_requirement_suspect(tmp_path: P
     found = only(report)
     assert (found["mark"]["word"], found["mark"]["suspect"]) == ("satisfied", True)
     assert found["coverage"] == "suspect"
-    assert found["suspicions"] == ["bindings R1 changed since the review of 2026-09-01"]
+    why = "bindings R1 changed since the review of 2026-09-01"
+    assert found["suspicions"] == found["results"][0]["suspicions"] == found["reasons"] == [why]
+    assert report["matrix"][0]["cells"][0]["mark"]["suspect"]
+    assert [c["results"] for c in report["counts"] if c["mark"]["word"] == "satisfied"] == [1, 0]
     assert found["review"]["changes"] == ["bindings R1"]
     (change,) = report["changes"]
     assert change["lines"] == ["changed: bindings R1"]
