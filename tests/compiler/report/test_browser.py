@@ -134,10 +134,10 @@ def test_a_table_is_filtered_by_verdict(opened: Open) -> None:
 
 def test_a_filter_by_verdict_hides_no_suspect_one(opened: Open) -> None:
     runs = opened().locator("#req-R2")
-    for verdict, files in (("violated", ["2.mcap", "5.mcap"]), ("suspect", ["5.mcap"])):
+    for verdict, logs in (("violated", ["2.mcap", "5.mcap"]), ("suspect", ["5.mcap"])):
         runs.get_by_label("Verdict", exact=True).select_option(verdict)
         heads = runs.locator("table.sortable tbody tr:visible > th").all_inner_texts()
-        assert [text.split()[-1] for text in heads] == files
+        assert [text.split()[-1] for text in heads] == logs
 
 
 def test_a_table_is_sorted_by_keyboard_and_says_so(opened: Open) -> None:

@@ -1,6 +1,7 @@
 import json
 from pathlib import Path
 from typing import Any
+from xml.etree import ElementTree
 
 import pytest
 import yaml
@@ -12,6 +13,7 @@ from compiler.project import Project
 from compiler.report import Made, make
 from compiler.report.argument import Kind, argument
 from compiler.report.forms.gsn import gsn
+from compiler.report.forms.junit import junit
 from compiler.targets import monitor
 from fretish.diagnostic import Code
 from tests.command import Fretc, write
@@ -113,6 +115,11 @@ def test_what_is_proved_of_a_goal_that_is_not_shown_is_context(tmp_path: Path) -
 def test_a_counterexample_counts_also_where_no_method_was_planned(tmp_path: Path) -> None:
     report = reported(tmp_path, {"found": "counterexample"}, verify=[])
     assert said(report)["overall"]["mark"]["word"] == "not all shown"
+    assert report.report is not None
+    (case,) = ElementTree.fromstring(junit(report.report))[0]
+    assert [(child.tag, child.get("message")) for child in case] == [
+        ("failure", "satisfied: monitor: counterexample: the monitor means what the sentence says")
+    ]
 
 
 @pytest.mark.parametrize("found", ["vacuous", "not checked"])
