@@ -12,13 +12,13 @@ from typing import Any
 from compiler import __version__
 from compiler.basis import BINDINGS, SENTENCE, of_all
 from compiler.constancy import never_changed, tallies_of
-from compiler.estimates import GLYPHS as ANSWERS
 from compiler.estimates import Estimated, estimates, warnings
 from compiler.files import Stamp, file_sha256, stamp
 from compiler.odds import REFUTED, SUPPORTED
 from compiler.phasing import findings
 from compiler.plan import Plan, watched
 from compiler.templating import to_json
+from compiler.verdicts import VERDICTS
 from compiler.workers import Killed, each, was_killed
 from fretish.diagnostic import Diagnostic
 from fretish.rendering import visible
@@ -29,15 +29,6 @@ from monitors.inputs import STDIN
 from monitors.inputs import shown as called
 from monitors.judgement import Engine as Evaluation
 from monitors.recordings import read
-
-GLYPHS: Mapping[str, tuple[str, str]] = {
-    kernel.SATISFIED: ("✔", "green"),
-    kernel.VIOLATED: ("✘", "red"),
-    kernel.INCONCLUSIVE: ("◔", "yellow"),
-    kernel.VACUOUS: ("∅", "bright_black"),
-    kernel.NO_DATA: ("?", "magenta"),
-}
-"""Verdict → its sign and its colour."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -88,9 +79,10 @@ class Audit:
             if result["run"] != run:
                 run = result["run"]
                 lines.append((str(run), None))
-            glyph, colour = GLYPHS[result["verdict"]]
+            verdict = VERDICTS[result["verdict"]]
             name = f"{result['requirement']:<{width}}"
-            lines.append((f"  {glyph} {name}  {result['verdict']:<12}  {result['reason']}", colour))
+            line = f"  {verdict.glyph} {name}  {verdict.word:<12}  {result['reason']}"
+            lines.append((line, verdict.colour))
         for one in self.estimates:
             lines.extend(_block(one))
         return tuple((visible(line), colour) for line, colour in lines)
@@ -99,9 +91,9 @@ class Audit:
 def _block(one: Estimated) -> Iterator[tuple[str, str | None]]:
     """What all runs say of one requirement, the answer in its colour."""
     first, *rest = one.lines
-    glyph, colour = ANSWERS[one.answer]
+    verdict = VERDICTS[one.answer]
     yield f"{one.requirement} over all runs, {one.text}", None
-    yield f"  {glyph} {first}", colour
+    yield f"  {verdict.glyph} {first}", verdict.colour
     yield from ((f"    {line}", None) for line in rest)
 
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import get_args
 
-from compiler.estimates import GLYPHS, Estimated
-from compiler.odds import Bounds
+from compiler.estimates import Estimated
+from compiler.odds import ANSWERS, Bounds
 from compiler.shapes import Shape
 from fretish.expressions import ComparisonOperator
 from monitors.trials import Trials
@@ -20,7 +20,7 @@ def probability(at: Shape) -> Estimated:
         requirement=at.field("requirement").text(),
         operator=operators[at.field("operator").one_of(list(operators))],
         bound=_bound(at.field("bound")),
-        answer=at.field("answer").one_of(list(GLYPHS)),
+        answer=at.field("answer").one_of(ANSWERS),
         reason=at.field("reason").text(),
         confidence=_share(at.field("confidence")),
         answered=triggers.answered,

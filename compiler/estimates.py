@@ -9,18 +9,12 @@ from math import ceil, floor
 from typing import Any
 
 from compiler import odds
-from compiler.odds import INCONCLUSIVE, REFUTED, SUPPORTED, Bounds
+from compiler.odds import INCONCLUSIVE, SUPPORTED, Bounds
 from compiler.plan import Claim
 from fretish.diagnostic import Code, Diagnostic, Severity
 from fretish.expressions import ComparisonOperator
 from monitors.trials import NO_TRIALS, Trials
 
-GLYPHS: Mapping[str, tuple[str, str]] = {
-    SUPPORTED: ("✔", "green"),
-    REFUTED: ("✘", "red"),
-    INCONCLUSIVE: ("◔", "yellow"),
-}
-"""Answer → its sign and its colour."""
 AVERAGE = (
     "this is the average over the triggers seen; PCTL demands it of every reachable state with a "
     "trigger, which is more"

@@ -26,6 +26,8 @@ from fretish.source import Source
 STATUSES = {"completed": "approved", "deprecated": "retired"}
 """FRET's status → ours; every other one is a draft."""
 
+OWN = "fretc"
+"""Where a record of `--emit fret-json` has the title and the text, for which FRET has no field."""
 _KEPT = ("project", "comments", "status", "_id", "reqid")
 _VARIABLE_FIELDS = frozenset(
     "_id project component_name variable_name dataType idType description reqs".split()
@@ -164,8 +166,13 @@ def _header(
     parents = [ids.get((kept["project"], name), name) for name in named]
     if ", ".join(parents) != stated:
         kept["parent_reqid"] = stated
+    own = record.get(OWN)
+    told = (
+        {name: _text(own.get(name)) for name in ("title", "text")} if isinstance(own, dict) else {}
+    )
     header: dict[str, Any] = {
         "id": id,
+        **told,
         "parents": parents,
         "rationale": _text(record.get("rationale")),
         "status": STATUSES.get(kept["status"], "draft"),

@@ -34,6 +34,7 @@ from fretish.expressions import ComparisonOperator
 from monitors.trials import Trials
 
 SUPPORTED, REFUTED, INCONCLUSIVE = "supported", "refuted", "inconclusive"
+ANSWERS = (SUPPORTED, REFUTED, INCONCLUSIVE)
 """What runs say of a probability."""
 CONFIDENCE = 0.95
 _GRAIN = 10**9

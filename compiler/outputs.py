@@ -8,43 +8,43 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping, Sequence
+from fractions import Fraction
 from itertools import groupby
+from types import MappingProxyType
 from typing import Any
 from xml.etree import ElementTree
 
+from compiler import verdicts
 from compiler.estimates import AVERAGE, Estimated
-from compiler.odds import INCONCLUSIVE, REFUTED, SUPPORTED
+from compiler.verdicts import Level
+from fretish.amounts import declared_unit, scaled, value
+from fretish.declarations import Signal
 from fretish.documents import Requirement
 from fretish.source import Span
-from monitors import kernel
 
 _NOT_XML = re.compile("[^\t\n\r\u0020-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
-_KINDS: Mapping[str, str] = {
-    kernel.VIOLATED: "failure",
-    kernel.NO_DATA: "error",
-    kernel.INCONCLUSIVE: "skipped",
-    kernel.VACUOUS: "skipped",
-}
-"""What JUnit has for a verdict; nothing for one that is satisfied."""
-_LEVELS: Mapping[str, str] = {kernel.VIOLATED: "error", kernel.SATISFIED: "notice"}
-"""What GitHub has for it; a warning for what is not shown."""
-_OVER_ALL = {SUPPORTED: "notice", REFUTED: "error"}
+_GITHUB = {Level.ERROR: "error", Level.WARNING: "warning", Level.NONE: "notice"}
 
 
-def junit(results: Sequence[Mapping[str, Any]], together: Sequence[Estimated] = ()) -> str:
+def junit(
+    results: Sequence[Mapping[str, Any]],
+    together: Sequence[Estimated] = (),
+    signals: Mapping[str, Signal] = MappingProxyType({}),
+) -> str:
     """One test suite for each run, one test case for each requirement.
 
     Args:
         results: each of a run and a requirement, as in the evidence.
         together: those that are judged over all runs, which is a suite of its own.
+        signals: those of the bindings, in whose units numbers are shown.
     """
     root = ElementTree.Element("testsuites", name="fretc audit")
     for run, found in groupby(results, key=lambda result: str(result["run"])):
         cases = list(found)
-        counts = counted([_KINDS.get(case["verdict"]) for case in cases])
+        counts = counted([verdicts.junit(case["verdict"]) for case in cases])
         suite = ElementTree.SubElement(root, "testsuite", {"name": valid(run), **counts})
         for case in cases:
-            _case(suite, run, case)
+            _case(suite, run, case, signals)
     if together:
         _suite_of_all(root, together)
     return as_text(root)
@@ -57,26 +57,28 @@ def as_text(root: ElementTree.Element) -> str:
     return f'<?xml version="1.0" encoding="UTF-8"?>\n{text}\n'
 
 
-def counted(kinds: Sequence[str | None]) -> dict[str, str]:
-    """The attributes of a test suite with cases of these kinds; None: passed."""
+def counted(kinds: Sequence[str]) -> dict[str, str]:
+    """The attributes of a test suite with cases of these kinds; an empty one: passed."""
     names = {"failures": "failure", "errors": "error", "skipped": "skipped"}
     return {"tests": str(len(kinds))} | {n: str(kinds.count(k)) for n, k in names.items()}
 
 
 def _suite_of_all(root: ElementTree.Element, together: Sequence[Estimated]) -> None:
-    kinds = {REFUTED: "failure", INCONCLUSIVE: "skipped"}
-    counts = counted([kinds.get(one.answer) for one in together])
+    counts = counted([verdicts.junit(one.answer) for one in together])
     suite = ElementTree.SubElement(root, "testsuite", {"name": "all runs", **counts})
     for one in together:
         names = {"name": valid(one.requirement), "classname": "all runs", "time": "0.000"}
         node = ElementTree.SubElement(suite, "testcase", names)
-        if one.answer in kinds:
+        kind = verdicts.junit(one.answer)
+        if kind:
             message = valid(f"{one.answer}: {one.reason}")
-            told = ElementTree.SubElement(node, kinds[one.answer], message=message)
+            told = ElementTree.SubElement(node, kind, message=message)
             told.text = valid("\n".join(one.lines))
 
 
-def _case(suite: ElementTree.Element, run: str, case: Mapping[str, Any]) -> None:
+def _case(
+    suite: ElementTree.Element, run: str, case: Mapping[str, Any], signals: Mapping[str, Signal]
+) -> None:
     length = (case["end_ns"] or 0) - (case["start_ns"] or 0)
     node = ElementTree.SubElement(
         suite,
@@ -85,19 +87,30 @@ def _case(suite: ElementTree.Element, run: str, case: Mapping[str, Any]) -> None
         classname=valid(run),
         time=f"{length / 1e9:.3f}",
     )
-    kind = _KINDS.get(case["verdict"])
-    if kind is not None:
+    kind = verdicts.junit(case["verdict"])
+    if kind:
         message = valid(f"{case['verdict']}: {case['reason']}")
         told = ElementTree.SubElement(node, kind, message=message)
-        told.text = valid("\n".join(_lines(case)))
+        told.text = valid("\n".join(_lines(case, signals)))
 
 
-def _lines(case: Mapping[str, Any]) -> Iterator[str]:
+def _lines(case: Mapping[str, Any], signals: Mapping[str, Signal]) -> Iterator[str]:
     """Each stretch at which the requirement was violated, with what the signals said."""
+    units = {n: declared_unit(n, base, signals) for n, base in case["units"].items()}
+    bounds = {name: _bounds(case, name, factor) for name, (_, factor) in units.items()}
     for broken in case["violations"]:
-        values = ", ".join(f"{name} = {value}" for name, value in broken["values"].items())
+        values = ", ".join(
+            f"{name} = {value(scaled(number, units[name][1]), units[name][0], bounds[name])}"
+            for name, number in broken["values"].items()
+        )
         stretch = f"{broken['start_s']:.3f} s to {broken['end_s']:.3f} s"
         yield f"{stretch}: {values}" if values else stretch
+
+
+def _bounds(case: Mapping[str, Any], signal: str, factor: Fraction) -> list[float]:
+    """What a signal, or its absolute value, is compared with."""
+    found = (t for t in case["thresholds"] if t["signal"] in (signal, f"abs({signal})"))
+    return [sign * scaled(each["bound"], factor) for each in found for sign in (1, -1)]
 
 
 def valid(text: str) -> str:
@@ -117,12 +130,12 @@ def github(
     places = {requirement.id: requirement.wording for requirement in requirements}
     lines = []
     for result in results:
-        level = "notice" if "trials" in result else _LEVELS.get(result["verdict"], "warning")
+        level = "notice" if "trials" in result else _GITHUB[verdicts.level(result["verdict"])]
         title = f"{result['requirement']} {result['verdict']}"
         said = f"{result['run']}: {result['reason']}"
         lines.append(_annotation(level, places[result["requirement"]], title, said))
     for one in together:
-        level, title = _OVER_ALL.get(one.answer, "warning"), f"{one.requirement} {one.answer}"
+        level, title = _GITHUB[verdicts.level(one.answer)], f"{one.requirement} {one.answer}"
         said = f"all runs: {one.reason}; {one.lines[1]}; {AVERAGE}"
         lines.append(_annotation(level, places[one.requirement], title, said))
     return "".join(lines)

@@ -10,21 +10,21 @@ from __future__ import annotations
 import hashlib
 import os
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 from urllib.parse import quote
 
-from compiler import __version__
+from compiler import __version__, verdicts
 from compiler.estimates import Estimated
-from compiler.odds import REFUTED, SUPPORTED
 from compiler.record import wording
 from compiler.rule import Rule
 from compiler.templating import to_json
+from compiler.verdicts import CURRENT, SUSPECT, Level
 from fretish.diagnostic import Diagnostic
 from fretish.documents import Requirement
 from fretish.meaning import meaning
 from fretish.source import Span
-from monitors import kernel
 
 _SCHEMA = (
     "https://docs.oasis-open.org/sarif/sarif/v2.1.0/errata01/os/schemas/sarif-schema-2.1.0.json"
@@ -33,29 +33,43 @@ _ROOT = "%SRCROOT%"
 """What relative paths start from, as GitHub calls it: the folder in which fretc ran."""
 _RESERVED = "%/:?#[]@!$&'()*+,;="
 """What has a meaning in an address, and what is quoted in it already."""
-_SHOWN = {"kind": "pass", "level": "none"}
-_LEVELS: Mapping[str, Mapping[str, str]] = {
-    kernel.SATISFIED: _SHOWN,
-    kernel.VIOLATED: {"kind": "fail", "level": "error"},
+_LEVELS: Mapping[Level, Mapping[str, str]] = {
+    Level.NONE: {"kind": "pass", "level": "none"},
+    Level.WARNING: {"kind": "fail", "level": "warning"},
+    Level.ERROR: {"kind": "fail", "level": "error"},
 }
-_NOT_SHOWN = {"kind": "fail", "level": "warning"}
-"""Not `open`, which has no level and which services do not show: it was to be shown, and is not."""
+"""What is not shown is not `open`, which has no level and which services do not show."""
 _COUNTED = {"kind": "informational", "level": "none"}
 """A run that alone decides nothing: its triggers are counted with those of all others."""
-_OVER_ALL = {SUPPORTED: _SHOWN, REFUTED: _LEVELS[kernel.VIOLATED]}
+
+
+@dataclass(frozen=True, slots=True)
+class AllRuns:
+    """What all runs together say of a requirement, and why that does not count, if it does not."""
+
+    requirement: str
+    answer: str
+    text: str
+    suspicions: tuple[str, ...] = ()
+
+    @staticmethod
+    def of(one: Estimated) -> AllRuns:
+        """What an audit has just found."""
+        return AllRuns(one.requirement, one.answer, "; ".join((one.reason, *one.lines[1:])))
 
 
 def sarif(
     results: Sequence[Mapping[str, Any]],
     rules: Sequence[Rule],
     diagnostics: Sequence[Diagnostic] = (),
-    together: Sequence[Estimated] = (),
+    together: Sequence[AllRuns] = (),
     failed: Sequence[Requirement] = (),
 ) -> str:
     """One SARIF run; the same inputs give the same bytes.
 
     Args:
-        results: each of a run and a requirement, as in the evidence.
+        results: each of a run and a requirement, as in the evidence; with `suspicions` where it is
+            known to be about something else than what is there now.
         rules: all requirements of the results; others are left out.
         diagnostics: what there is to say of the logs.
         together: requirements that are judged over all runs: each gives one more result.
@@ -134,25 +148,37 @@ def _result(
     result: Mapping[str, Any], used: Sequence[Requirement], files: Sequence[str]
 ) -> dict[str, Any]:
     run = result["run"]
-    level = _COUNTED if "trials" in result else _LEVELS.get(result["verdict"], _NOT_SHOWN)
-    said = f"{run}: {result['verdict']}: {result['reason']}"
+    suspicions = result.get("suspicions", ())
+    level = _LEVELS[verdicts.level(result["verdict"], suspect=bool(suspicions))]
+    said = f"{run}: {result['verdict']}: {result['reason']}{_because(suspicions)}"
     return _at_sentence(result["requirement"], run, used, files) | {
-        **level,
+        **(_COUNTED if "trials" in result else level),
         "message": {"text": said},
         "analysisTarget": _place(run) | {"index": files.index(run)},
-        "properties": {"verdict": result["verdict"], "sha256": dict(result["hashes"])},
+        "properties": {
+            "verdict": result["verdict"],
+            "currency": _currency(suspicions),
+            "sha256": dict(result["hashes"]),
+        },
     }
 
 
 def _result_of_all(
-    one: Estimated, used: Sequence[Requirement], files: Sequence[str]
+    one: AllRuns, used: Sequence[Requirement], files: Sequence[str]
 ) -> dict[str, Any]:
-    said = "; ".join((one.reason, *one.lines[1:]))
     return _at_sentence(one.requirement, "", used, files) | {
-        **_OVER_ALL.get(one.answer, _NOT_SHOWN),
-        "message": {"text": f"all runs: {one.answer}: {said}"},
-        "properties": {"answer": one.answer},
+        **_LEVELS[verdicts.level(one.answer, suspect=bool(one.suspicions))],
+        "message": {"text": f"all runs: {one.answer}: {one.text}{_because(one.suspicions)}"},
+        "properties": {"answer": one.answer, "currency": _currency(one.suspicions)},
     }
+
+
+def _because(suspicions: Sequence[str]) -> str:
+    return f"; {SUSPECT}, because {'; '.join(suspicions)}" if suspicions else ""
+
+
+def _currency(suspicions: Sequence[str]) -> str:
+    return SUSPECT if suspicions else CURRENT
 
 
 def _at_sentence(

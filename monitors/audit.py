@@ -7,7 +7,9 @@ from dataclasses import dataclass, field, replace
 from functools import partial
 from statistics import median
 
-from fretish.declarations import Declarations
+from fretish.amounts import scaled, shared_unit, value
+from fretish.declarations import Declarations, Signal
+from fretish.printer import expression
 from fretish.units import base_name
 from monitors import kernel
 from monitors.evidence import Evidence, health
@@ -152,7 +154,7 @@ def _evidence(
         health=health(recording),
         assumptions=declarations.reading(watched.propositions).assumptions,
     )
-    evidence = replace(evidence, reason=_reason(evidence, recording))
+    evidence = replace(evidence, reason=_reason(evidence, recording, declarations))
     if watched.count is None:
         return evidence
     alike = fingerprint(recording)
@@ -194,7 +196,7 @@ def _moment(timeline: Timeline, tick: int) -> Moment:
     return Moment(tick, ns, round((ns - int(timeline.times[0])) / 1e9, 9))
 
 
-def _reason(evidence: Evidence, recording: Recording) -> str:
+def _reason(evidence: Evidence, recording: Recording, declarations: Declarations) -> str:
     """Why the verdict is what it is, in one sentence."""
     outcome = evidence.outcome
     match evidence.verdict:
@@ -213,7 +215,7 @@ def _reason(evidence: Evidence, recording: Recording) -> str:
         case _:
             return (
                 f"held, {_times(len(evidence.triggers), 'trigger')}{_latency(evidence)}"
-                f"{_margin(evidence)}"
+                f"{_margin(evidence, declarations.signals)}"
             )
 
 
@@ -264,20 +266,14 @@ def _latency(evidence: Evidence) -> str:
     )
 
 
-def _margin(evidence: Evidence) -> str:
+def _margin(evidence: Evidence, signals: Mapping[str, Signal]) -> str:
     """The threshold that was nearest, as a part of its bound; those that were crossed have none."""
     least = worst(evidence.margins)
     if least is None:
         return ""
-    threshold = least.threshold
-    return (
-        f", least margin {_quantity(least.distance, threshold.unit)} "
-        f"({threshold.text} {threshold.operator} {_quantity(threshold.bound, threshold.unit)})"
-    )
-
-
-def _quantity(value: float | None, unit: str) -> str:
-    return f"{value:.3g} {unit}".rstrip()
+    unit, factor = shared_unit(least.threshold.text, least.threshold.unit, signals)
+    margin = value(scaled(least.distance, factor), unit, [0.0])
+    return f", least margin {margin} ({expression(least.threshold.comparison)})"
 
 
 def _times(count: int, one: str, many: str = "") -> str:

@@ -107,7 +107,7 @@ def report(
     if made.report is None:
         raise SystemExit(BAD)
     wanted = {"html": html, **{name: path for name, path in forms.items() if path is not None}}
-    texts = _texts(made, project, evidence, strict=strict)
+    texts = _texts(made, project, evidence)
     read = filter(None, (bindings, hazards, verification, lock, waivers, *said))
     logs = [str(result["run"]) for result in _audited(evidence, made.report)]
     _deliver(wanted, texts, [evidence, *files, *companions(files), *read, *dict.fromkeys(logs)])
@@ -130,9 +130,7 @@ def _deliver(
     deliver(paths, read)
 
 
-def _texts(
-    made: Made, project: Project, evidence: str, *, strict: bool
-) -> dict[str, Callable[[], str]]:
+def _texts(made: Made, project: Project, evidence: str) -> dict[str, Callable[[], str]]:
     """How each form is made; none before it is wanted."""
     from compiler.report.forms.gsn import gsn
     from compiler.report.forms.junit import junit
@@ -147,7 +145,7 @@ def _texts(
         "html": lambda: made.html or "",
         "json_": lambda: made.json or "",
         "csv": lambda: csv_text(whole),
-        "junit": lambda: junit(whole, strict=strict),
+        "junit": lambda: junit(whole),
         "sarif": lambda: sarif(
             whole, _audited(evidence, whole), project.rules, said, project.without_rule
         ),
@@ -176,11 +174,15 @@ def _audited(evidence: str, whole: Report) -> Sequence[Mapping[str, Any]]:
 
 def _status(whole: Report) -> int:
     from compiler.report.proofs import is_refuted
+    from compiler.verdicts import BROKEN, RETIRED, WAIVED
 
-    words = {view.mark.word for view in whole.requirements}
-    if words & {"violated", "refuted", "suspect"} or any(map(is_refuted, whole.requirements)):
+    marks = {view.mark for view in whole.requirements}
+    if any(mark.word in BROKEN or mark.suspect for mark in marks) or any(
+        map(is_refuted, whole.requirements)
+    ):
         return VIOLATION
     if whole.withdrawn:
         return VIOLATION
-    claimed = words - {"retired"}
-    return SHOWN if claimed and claimed <= {"satisfied", "supported", "waived"} else NOT_SHOWN
+    claimed = [mark for mark in marks if mark.word != RETIRED]
+    shown = all(mark.shows or mark.word == WAIVED for mark in claimed)
+    return SHOWN if claimed and shown else NOT_SHOWN

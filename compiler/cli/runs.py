@@ -209,19 +209,21 @@ def _marked(result: Audit, project: Project, folder: str | None) -> dict[Path, b
 
 def _printed(result: Audit, project: Project, refused: Sequence[Diagnostic], form: str) -> str:
     from compiler.outputs import github, junit
-    from compiler.sarif import sarif
+    from compiler.sarif import AllRuns, sarif
 
+    signals = project.declarations.signals if project.declarations else {}
     match form:
         case "json":
             return result.as_json
         case "junit":
-            return junit(result.results, result.estimates)
+            return junit(result.results, result.estimates, signals)
         case "github":
             return github(result.results, project.requirements, result.estimates)
         case "sarif":
             said = (*project.diagnostics, *refused, *result.diagnostics)
             left = project.without_rule
-            return sarif(result.results, project.rules, said, result.estimates, left)
+            together = [AllRuns.of(one) for one in result.estimates]
+            return sarif(result.results, project.rules, said, together, left)
         case _:
             return coloured(result.text)
 

@@ -88,10 +88,11 @@ def _text(summary: Summary) -> str:
 
 
 def _verdicts(summary: Summary) -> tuple[list[str], list[list[str]]]:
-    from compiler.auditing import GLYPHS
     from compiler.summary import COUNTED
+    from compiler.verdicts import VERDICTS
 
-    head = ["requirement", "runs", *(f"{GLYPHS[v][0]} {v}" for v in COUNTED.values()), "violations"]
+    counted = (f"{VERDICTS[word].glyph} {word}" for word in COUNTED.values())
+    head = ["requirement", "runs", *counted, "violations"]
     rows = [
         [
             row["requirement"],

@@ -17,11 +17,10 @@ from types import MappingProxyType
 
 from compiler.odds import REFUTED, SUPPORTED
 from compiler.report import phrases
-from compiler.report.claims import SHOWN
-from compiler.report.proofs import SHARED, covering
+from compiler.report.proofs import SHARED, covering, is_proved
 from compiler.report.views import ProofView, Report, RequirementView, ResultView
-from compiler.verification import COUNTEREXAMPLE, METHODS, PROVED, Layer
-from monitors import kernel
+from compiler.verdicts import BROKEN
+from compiler.verification import COUNTEREXAMPLE, METHODS, Layer
 
 
 class Kind(StrEnum):
@@ -141,7 +140,7 @@ class _Argument:
 
     def _requirement(self, view: RequirementView) -> Iterator[Element]:
         goal = _id("G", view.anchor)
-        shown = is_shown(view)
+        shown = view.mark.shows
         against = tuple(_against(view, goal.replace("G_", "CSn_", 1)))
         layers = {proof.layer: _of_layer(view.proofs, proof.layer) for proof in view.proofs}
         subjects = [f"{goal}_{layer}" for layer in layers] + self._relied_upon(view)
@@ -184,11 +183,6 @@ class _Argument:
         ]
 
 
-def is_shown(view: RequirementView) -> bool:
-    """Whether the report says that the runs show it, without a reason against that."""
-    return view.mark.word in SHOWN and not view.reasons
-
-
 # Runs ------------------------------------------------------------------------------------------
 
 
@@ -218,16 +212,11 @@ def _against(view: RequirementView, id: str) -> Iterator[_Counter]:
             words = f"{view.id} is {REFUTED} over all runs: {chance.reason}"
             yield _Counter(id, words, not chance.suspicions)
         return
-    broken = [result for result in view.results if _verdict(result) == kernel.VIOLATED]
+    broken = [result for result in view.results if result.mark.word in BROKEN]
     for old in (False, True):
         found = [result for result in broken if bool(result.suspicions) is old]
         if found:
             yield _Counter(f"{id}_older" if old else id, _violated(view, found, old), not old)
-
-
-def _verdict(result: ResultView) -> str:
-    """What the audit said."""
-    return result.said.word if result.said else result.mark.word
 
 
 def _violated(view: RequirementView, found: Sequence[ResultView], old: bool) -> str:
@@ -251,8 +240,8 @@ def _of_layer(proofs: Sequence[ProofView], layer: str) -> list[ProofView]:
 
 def _subject(goal: str, text: str, proofs: Sequence[ProofView]) -> Iterator[Element]:
     """What proofs of one layer are about: claims that are proved, refuted, and left open."""
-    proved = [proof for proof in proofs if proof.mark.word == PROVED]
-    against = [proof for proof in proofs if _result(proof) == COUNTEREXAMPLE]
+    proved = [proof for proof in proofs if is_proved(proof)]
+    against = [proof for proof in proofs if proof.mark.word == COUNTEREXAMPLE]
     left = [proof for proof in proofs if proof not in proved and proof not in against]
     solution, counter = goal.replace("G_", "Sn_", 1), goal.replace("G_", "CSn_", 1)
     assumption, rest = goal.replace("G_", "A_", 1), f"{goal}_rest"
@@ -276,11 +265,6 @@ def _subject(goal: str, text: str, proofs: Sequence[ProofView]) -> Iterator[Elem
         yield Element(solution, Kind.SOLUTION, _claims("Proved:", proved))
     if rest in below:
         yield Element(rest, Kind.GOAL, _claims("Not shown:", left), undeveloped=True)
-
-
-def _result(proof: ProofView) -> str:
-    """What the engine said."""
-    return proof.said.word if proof.said else proof.mark.word
 
 
 def _claims(head: str, proofs: Sequence[ProofView]) -> str:

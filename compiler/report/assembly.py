@@ -4,31 +4,23 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 from types import MappingProxyType
 
 from compiler import __version__
 from compiler.ajpf_results import merged
 from compiler.checks import checks
+from compiler.declared import in_declared_units
 from compiler.estimates import AVERAGE
 from compiler.evidence import Evidence
 from compiler.lock import Lock, Withdrawn, withdrawn
-from compiler.odds import CONFIDENCE, REFUTED, SUPPORTED
+from compiler.odds import CONFIDENCE, SUPPORTED
 from compiler.products import shared_products
 from compiler.project import Project
 from compiler.proven import Proofs
 from compiler.report import phrases, reviews
-from compiler.report.claims import (
-    MARKS,
-    NOT_EXERCISED,
-    RETIRED,
-    SHOWN,
-    SUSPECT,
-    UNFORMALIZED,
-    WAIVED,
-    Claim,
-    claims,
-    idle_waivers,
-)
+from compiler.report.claims import Claim, claims, idle_waivers
+from compiler.report.headlines import broken, outdated
 from compiler.report.matrix import hazard_views, matrix, orphans, strangers
 from compiler.report.proofs import SHARED, is_refuted, proof_views
 from compiler.report.reproduction import commands, folder_of, manifest
@@ -44,7 +36,10 @@ from compiler.report.views import (
     Report,
     RequirementView,
     Withdrawal,
+    verdict_mark,
+    worst_first,
 )
+from compiler.verdicts import NOT_EXERCISED, RETIRED, WAIVED
 from compiler.verification import Evidence as Line
 from compiler.waivers import Waiver
 from fretish.diagnostic import Code, Diagnostic, Severity, has_errors
@@ -72,9 +67,10 @@ def report(
         proofs: None where nothing was verified.
         ajpf: what AJPF itself said, held against what is made now.
     """
-    found = runs(evidence)
+    measured = in_declared_units(evidence, project.declarations) if evidence else None
+    found = runs(measured)
     proved = merged(proofs.proofs if proofs else (), ajpf)
-    claimed = claims(project, evidence, lock, waivers, proved)
+    claimed = claims(project, measured, lock, waivers, proved)
     chains = [claim.standing.chain for claim in claimed]
     gone = withdrawn(project.requirements, chains, lock)
     anchors = {claim.id: claim.anchor for claim in reversed(claimed)}
@@ -99,7 +95,7 @@ def report(
         runs=run_views(found.values(), project),
         claims=_claims(claimed, len(found)),
         counts=_counts(claimed),
-        not_shown=tuple(_not_shown(view) for view in sections if view.reasons),
+        not_shown=tuple(_not_shown(view) for view in worst_first(sections) if view.reasons),
         reservations=reservations,
         planned=plans,
         proofs=proof_views((each for each in proved if each.requirement in SHARED), common),
@@ -159,13 +155,15 @@ def _overall(
     inforce = [view for view in sections if view.status != RETIRED]
     missing = [plan for view in inforce for plan in view.planned if not plan.has_result]
     refuted = [view.id for view in inforce if is_refuted(view)]
-    broken = [claim for claim in active if claim.verdict in (kernel.VIOLATED, REFUTED)]
-    good = [claim for claim in active if claim.verdict in SHOWN]
+    red = [claim for claim in active if claim.is_broken]
+    stale = outdated(active)
+    good = [claim for claim in active if claim.is_shown]
     flawed = has_errors(project.diagnostics)
     said = tuple(
         filter(
             None,
             (
+                *((stale,) if red else ()),
                 *_held(active, good, len(runs)),
                 *(f"{one.text}." for one in gone),
                 _refuted(refuted),
@@ -178,14 +176,13 @@ def _overall(
             ),
         )
     )
-    if broken:
-        verb = "is" if len(broken) == 1 else "are"
-        names = phrases.some([claim.id for claim in broken])
-        return Overall(_BROKEN, f"{names} {verb} {_how(broken)}.", said)
+    if red:
+        mark = replace(_BROKEN, suspect=all(claim.suspicions for claim in red))
+        return Overall(mark, broken(red), said)
     if not good:
-        return Overall(_NONE, "Nothing that was claimed is shown.", said)
+        return Overall(_NONE, _with("Nothing that was claimed is shown", stale), said)
     if len(good) < len(active) or flawed or gone:
-        return Overall(_PART, "Not everything that was claimed is shown.", said)
+        return Overall(_PART, _with("Not everything that was claimed is shown", stale), said)
     if refuted:
         return Overall(_PART, "What was audited held; verification found counterexamples.", said)
     if missing:
@@ -193,9 +190,9 @@ def _overall(
     return Overall(_ALL, "Everything that was claimed is shown.", said)
 
 
-def _how(broken: Sequence[Claim]) -> str:
-    words = dict.fromkeys(str(claim.verdict) for claim in broken)
-    return " or ".join(words)
+def _with(headline: str, stale: str) -> str:
+    """A headline, and what is suspect for which reason."""
+    return f"{headline}: {stale}" if stale else f"{headline}."
 
 
 def _held(active: Sequence[Claim], good: Sequence[Claim], runs: int) -> Iterator[str]:
@@ -205,7 +202,7 @@ def _held(active: Sequence[Claim], good: Sequence[Claim], runs: int) -> Iterator
     if alone or not chances:
         yield _held_alone(alone, [claim for claim in good if claim.together is None], runs)
     if chances:
-        count = sum(claim.verdict == SUPPORTED for claim in chances)
+        count = sum(claim.is_shown for claim in chances)
         yield (
             f"{count} of {phrases.times(len(chances), 'probability', 'probabilities')} "
             f"{'is' if len(chances) == 1 else 'are'} supported, on the average over the triggers "
@@ -238,7 +235,8 @@ def _waived(active: Sequence[Claim]) -> str:
     if not found:
         return ""
     verb = "is" if len(found) == 1 else "are"
-    return f"{phrases.some([claim.id for claim in found])} {verb} waived, and not shown."
+    names = phrases.some([f"{claim.id} ({claim.unwaived_mark.text})" for claim in found])
+    return f"{names} {verb} waived, and not shown."
 
 
 def _where(runs: int) -> str:
@@ -270,7 +268,7 @@ def _few(reservations: Sequence[str]) -> Sequence[str]:
 
 def _reservations(view: RequirementView) -> Sequence[str]:
     """What a reader has to know of a requirement that is shown."""
-    if view.mark.word not in SHOWN:
+    if not view.mark.shows:
         return ()
     average = [f"{view.id} is supported: {AVERAGE}."] if view.mark.word == SUPPORTED else []
     waits = [
@@ -303,17 +301,24 @@ def _claims(claimed: Sequence[Claim], runs: int) -> str:
 
 def _counts(claimed: Sequence[Claim]) -> tuple[Count, ...]:
     active = [claim for claim in claimed if claim.verdict != RETIRED]
-    of_claims = Counter(claim.verdict for claim in claimed)
-    of_results = Counter(judged.verdict for claim in active for judged in claim.judged)
-    best_first = (kernel.SATISFIED, *(word for word in MARKS if word != kernel.SATISFIED))
-    always = (kernel.SATISFIED, kernel.VIOLATED, kernel.INCONCLUSIVE, kernel.VACUOUS)
-    shown = (*always, kernel.NO_DATA, SUSPECT, NOT_EXERCISED)
-    rare = (UNFORMALIZED, WAIVED, RETIRED, SUPPORTED, REFUTED)
+    of_claims = Counter(claim.mark for claim in claimed)
+    of_results = Counter(judged.mark for claim in active for judged in claim.results)
+    found = {*map(verdict_mark, _ALWAYS), *of_claims, *of_results}
     return tuple(
-        Count(MARKS[word], of_claims[word], of_results[word])
-        for word in best_first
-        if word in shown or (word in rare and of_claims[word])
+        Count(mark, of_claims[mark], of_results[mark])
+        for mark in sorted(found, key=lambda mark: mark.severity)
     )
+
+
+_ALWAYS = (
+    kernel.VIOLATED,
+    kernel.NO_DATA,
+    kernel.INCONCLUSIVE,
+    kernel.VACUOUS,
+    NOT_EXERCISED,
+    kernel.SATISFIED,
+)
+"""Verdicts that are counted even where there are none."""
 
 
 def _assumptions(project: Project, evidence: Evidence | None) -> tuple[str, ...]:

@@ -3,24 +3,34 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from types import MappingProxyType
 
 from compiler.basis import Basis, why
 from compiler.estimates import Estimated
 from compiler.evidence import Evidence, Result, by_requirement
-from compiler.links import chains, outdated
+from compiler.links import Node, chains, outdated
 from compiler.lock import Lock, Standing, standings
-from compiler.odds import REFUTED, SUPPORTED
 from compiler.plan import bases
 from compiler.products import Product, products
 from compiler.project import Project
 from compiler.proven import Proof
-from compiler.report.probabilities import ANSWERS, contradictions
-from compiler.report.views import Mark
+from compiler.report import phrases
+from compiler.report.probabilities import contradictions
+from compiler.report.views import Mark, verdict_mark
 from compiler.rule import Rule
 from compiler.targets import monitor
 from compiler.trials import plain
+from compiler.verdicts import (
+    BROKEN,
+    NOT_EXERCISED,
+    RETIRED,
+    SHOWN,
+    SUSPECT,
+    UNFORMALIZED,
+    WAIVED,
+    severity,
+)
 from compiler.waivers import Waiver, idle
 from fretish.declarations import Declarations
 from fretish.diagnostic import Diagnostic
@@ -28,30 +38,6 @@ from fretish.documents import Requirement
 from monitors import kernel
 from monitors.trials import NO_TRIALS
 
-SUSPECT = "suspect"
-UNFORMALIZED = "unformalized"
-NOT_EXERCISED = "not exercised"
-RETIRED = "retired"
-WAIVED = "waived"
-
-MARKS: Mapping[str, Mark] = {
-    kernel.VIOLATED: Mark(kernel.VIOLATED, "✘", "violated"),
-    REFUTED: ANSWERS[REFUTED],
-    UNFORMALIZED: Mark(UNFORMALIZED, "!", "unformalized"),
-    SUSPECT: Mark(SUSPECT, "⚠", "suspect"),
-    kernel.NO_DATA: Mark(kernel.NO_DATA, "?", "no-data"),
-    kernel.INCONCLUSIVE: Mark(kernel.INCONCLUSIVE, "◔", "inconclusive"),
-    kernel.VACUOUS: Mark(kernel.VACUOUS, "∅", "vacuous"),
-    NOT_EXERCISED: Mark(NOT_EXERCISED, "○", "not-exercised"),
-    WAIVED: Mark(WAIVED, "w", "waived"),
-    SUPPORTED: ANSWERS[SUPPORTED],
-    kernel.SATISFIED: Mark(kernel.SATISFIED, "✔", "satisfied"),
-    RETIRED: Mark(RETIRED, "\N{EN DASH}", "retired"),
-}
-"""Every verdict of the report, the worst first: that of several runs is the worst of theirs."""
-
-SHOWN = (kernel.SATISFIED, SUPPORTED)
-"""The verdicts that show a requirement."""
 UNBOUND, NOT_GENERATED = "unbound", "not generated"
 EXERCISED_PASS, EXERCISED_FAIL = "exercised, pass", "exercised, fail"
 EXERCISED_OPEN = "exercised, open"
@@ -60,8 +46,6 @@ COVERAGE = (
     EXERCISED_FAIL, SUSPECT, WAIVED, RETIRED,
 )  # fmt: skip
 """How far a requirement has come; the last three whatever else is known of it."""
-
-_RANK = {word: rank for rank, word in enumerate(MARKS)}
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,13 +57,24 @@ class Judged:
 
     @property
     def verdict(self) -> str:
-        """The audit's verdict, or that it is suspect."""
-        return SUSPECT if self.suspicions else self.result.verdict
+        """The audit's verdict; a violation that is listed is one, whatever the word says."""
+        broken = self.result.violations and self.result.trials is None
+        return kernel.VIOLATED if broken else self.result.verdict
 
     @property
     def is_stale(self) -> bool:
         """Whether it is the evidence of something else."""
         return bool(self.suspicions)
+
+    @property
+    def mark(self) -> Mark:
+        """Its verdict and its currency as they are shown."""
+        return verdict_mark(self.verdict, suspect=self.is_stale)
+
+    def seen(self, standing: Standing) -> Judged:
+        """The same as one sees it beside a review: no run shows what is not as it was accepted."""
+        doubts = since_review(standing) if self.mark.shows else ()
+        return replace(self, suspicions=doubts) if doubts else self
 
 
 @dataclass(frozen=True, slots=True)
@@ -88,6 +83,11 @@ class Together:
 
     told: Estimated
     suspicions: tuple[str, ...]
+
+    @property
+    def mark(self) -> Mark:
+        """The answer and its currency as they are shown."""
+        return verdict_mark(self.told.answer, suspect=bool(self.suspicions))
 
 
 @dataclass(frozen=True, slots=True)
@@ -113,41 +113,77 @@ class Claim:
         return self.requirement.id
 
     @property
+    def results(self) -> tuple[Judged, ...]:
+        """What each run shows, beside the review."""
+        return tuple(judged.seen(self.standing) for judged in self.judged)
+
+    @property
     def verdict(self) -> str:
         """The worst of its runs, or what they say together, or why it has none.
 
         `waived` where a waiver covers that verdict.
         """
-        found = self.unwaived
-        return WAIVED if self.waiver and found == self.waiver.verdict else found
+        return WAIVED if self._is_waived else self.unwaived
 
     @property
     def unwaived(self) -> str:
         """The verdict without regard to a waiver."""
         if self.requirement.status == RETIRED:
             return RETIRED
-        if self.rule is None:
-            return UNFORMALIZED
-        verdicts = self._of_runs
-        if self.standing.is_suspect:
-            verdicts.append(SUSPECT)
-        return min(verdicts, key=_RANK.__getitem__)
+        found = [word for word, _ in self._findings] or [NOT_EXERCISED]
+        unformalized = [] if self.rule is not None else [UNFORMALIZED]
+        return min([*found, *unformalized], key=severity)
 
     @property
-    def _of_runs(self) -> list[str]:
-        """The verdicts of all runs; with a probability, the one of all together."""
-        if self.together is not None:
-            return [SUSPECT if self.together.suspicions else self.together.told.answer]
-        return [judged.verdict for judged in self.judged] or [NOT_EXERCISED]
+    def suspicions(self) -> tuple[str, ...]:
+        """Why its verdict is not that of the requirement as it is now and as it was accepted.
+
+        Of runs that violate it one that is current is enough: a violation is shown by any. What
+        all runs show together is suspect where one of them is, or where the review is.
+        """
+        word = self.unwaived
+        if word == RETIRED:
+            return ()
+        known = [why for found, why in self._findings if word not in BROKEN or found == word]
+        if word in BROKEN and not all(known):
+            return ()
+        found = tuple(dict.fromkeys(reason for why in known for reason in why))
+        return found or since_review(self.standing)
+
+    @property
+    def is_shown(self) -> bool:
+        """Whether the evidence shows that the requirement holds, as it is now."""
+        return self.mark.shows
+
+    @property
+    def is_broken(self) -> bool:
+        """Whether the evidence shows that it does not hold, and no waiver covers that."""
+        return self.verdict in BROKEN
+
+    @property
+    def _is_waived(self) -> bool:
+        return self.waiver is not None and self.unwaived == self.waiver.verdict
+
+    @property
+    def _findings(self) -> list[tuple[str, tuple[str, ...]]]:
+        """The verdicts of all runs with their suspicions; with a probability, that of all."""
+        runs = [(judged.verdict, judged.suspicions) for judged in self.judged]
+        if self.together is None:
+            return runs
+        answer = (self.together.told.answer, self.together.suspicions)
+        is_chance = self.rule is not None and self.rule.sentence.probability is not None
+        return [answer] if is_chance else [*runs, answer]
 
     @property
     def coverage(self) -> str:
         """How far along the chain from sentence to passing run it is: one of `COVERAGE`."""
         verdict = self.verdict
-        if verdict in (RETIRED, WAIVED, UNFORMALIZED, SUSPECT):
+        if verdict in (RETIRED, WAIVED, UNFORMALIZED):
             return verdict
-        if verdict in (kernel.VIOLATED, REFUTED):
+        if verdict in BROKEN:
             return EXERCISED_FAIL
+        if self.suspicions:
+            return SUSPECT
         if not self.is_bound:
             return UNBOUND
         if self.rule is None or monitor.refuse(plain(self.rule)) is not None:
@@ -159,8 +195,13 @@ class Claim:
 
     @property
     def mark(self) -> Mark:
-        """Its verdict as it is shown."""
-        return MARKS[self.verdict]
+        """Its verdict and its currency as they are shown."""
+        return verdict_mark(WAIVED) if self._is_waived else self.unwaived_mark
+
+    @property
+    def unwaived_mark(self) -> Mark:
+        """The same without regard to a waiver."""
+        return verdict_mark(self.unwaived, suspect=bool(self.suspicions))
 
 
 def claims(
@@ -204,7 +245,7 @@ def claims(
                 stands,
                 waivers.get(requirement.id),
                 rule is not None and _is_bound(rule, project.declarations),
-                _together(rule, evidence, judged),
+                _together(requirement.id, rule, evidence, judged),
             )
         )
     return tuple(found)
@@ -220,16 +261,17 @@ def idle_waivers(claims: Sequence[Claim]) -> tuple[Diagnostic, ...]:
 
 
 def _together(
-    rule: Rule | None, evidence: Evidence | None, judged: Sequence[Judged]
+    id: str, rule: Rule | None, evidence: Evidence | None, judged: Sequence[Judged]
 ) -> Together | None:
-    if rule is None or evidence is None or rule.sentence.probability is None:
-        return None
-    told = next((one for one in evidence.probabilities if one.requirement == rule.id), None)
+    answers = evidence.probabilities if evidence is not None else ()
+    told = next((one for one in answers if one.requirement == id), None)
     if told is None:
         return None
+    stale = [reason for each in judged for reason in each.suspicions]
+    if rule is None or rule.sentence.probability is None:
+        return Together(told, (*dict.fromkeys(stale), "the sentence gives no probability now"))
     runs = [(j.result.content, j.result.health.intact, j.result.trials) for j in judged]
     known = [(content, intact, trials or NO_TRIALS) for content, intact, trials in runs]
-    stale = [reason for each in judged for reason in each.suspicions]
     wrong = contradictions(told, rule.sentence.probability, known)
     return Together(told, tuple(dict.fromkeys((*stale, *wrong))))
 
@@ -237,6 +279,20 @@ def _together(
 def _is_bound(rule: Rule, declarations: Declarations | None) -> bool:
     known = declarations.propositions if declarations else {}
     return all(name in known for name in rule.watched)
+
+
+def since_review(standing: Standing) -> tuple[str, ...]:
+    """What has changed since its review, in one phrase; empty where the review stands."""
+    if standing.review is None or not standing.is_suspect:
+        return ()
+    causes = dict.fromkeys(cause for suspect in standing.suspects for cause in suspect.causes)
+    told = phrases.some([thing(cause) for cause in causes])
+    return (f"{told} changed since the review of {standing.review.date}",)
+
+
+def thing(node: Node) -> str:
+    """A thing of the chain as a reader calls it."""
+    return "the clock" if node.kind == "clock" else f"{node.kind} {phrases.place(node.name)}"
 
 
 def _anchor(id: str, taken: Sequence[str]) -> str:

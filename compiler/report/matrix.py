@@ -8,10 +8,11 @@ from collections.abc import Iterable, Sequence
 from compiler.evidence import Evidence
 from compiler.project import Project
 from compiler.report import phrases
-from compiler.report.claims import MARKS, RETIRED, Claim
+from compiler.report.claims import Claim
 from compiler.report.results import result_anchor
 from compiler.report.runs import Key, Run, key
 from compiler.report.views import Cell, HazardView, Orphans, RequirementView, Row
+from compiler.verdicts import RETIRED
 from fretish.ordering import natural
 
 _SINGLE = 6
@@ -87,21 +88,21 @@ def _row(
 
 
 def _cells(claim: Claim, runs: dict[Key, Run]) -> tuple[Cell, ...]:
-    """One for each run; many of one verdict share one, so that the others are seen."""
+    """The worst first, one for each run; many of one verdict share one."""
     if not claim.judged:
         return (Cell(claim.mark, "", claim.anchor),)
-    counts = Counter(judged.verdict for judged in claim.judged)
-    single = tuple(
-        Cell(MARKS[judged.verdict], runs[key(judged.result)].label, result_anchor(claim, number))
-        for number, judged in enumerate(claim.judged, 1)
-        if counts[judged.verdict] <= _SINGLE
-    )
-    shared = tuple(
-        Cell(mark, f"in {phrases.times(counts[word], 'run')}", claim.anchor)
-        for word, mark in MARKS.items()
-        if counts[word] > _SINGLE
-    )
-    return (*single, *shared)
+    counts = Counter(judged.mark for judged in claim.results)
+    single = [
+        Cell(judged.mark, runs[key(judged.result)].label, result_anchor(claim, number))
+        for number, judged in enumerate(claim.results, 1)
+        if counts[judged.mark] <= _SINGLE
+    ]
+    shared = [
+        Cell(mark, f"in {phrases.times(count, 'run')}", claim.anchor)
+        for mark, count in counts.items()
+        if count > _SINGLE
+    ]
+    return tuple(sorted([*single, *shared], key=lambda cell: cell.mark.severity))
 
 
 # Orphans ---------------------------------------------------------------------------------------

@@ -6,6 +6,8 @@ from collections.abc import Sequence
 from datetime import UTC, datetime
 from pathlib import PurePosixPath, PureWindowsPath
 
+from fretish.amounts import value as value
+
 _NARROW = "\N{NARROW NO-BREAK SPACE}"
 
 
@@ -41,13 +43,6 @@ def decimal(number: float) -> str:
 def seconds(number: float) -> str:
     """`39.8 s`."""
     return f"{decimal(number)} s"
-
-
-def value(number: float | str | None, unit: str) -> str:
-    """A signal's value: `0.0318 m`, `unknown`; an infinite one as it is written, `+inf`."""
-    if isinstance(number, str):
-        return number
-    return "unknown" if number is None else f"{number:.4g} {unit}".rstrip()
 
 
 def size(count: int | None) -> str:

@@ -6,10 +6,11 @@ from collections.abc import Sequence
 
 from compiler import verification
 from compiler.report import phrases
-from compiler.report.claims import UNFORMALIZED, Claim
-from compiler.report.proofs import covering, in_words, worst
+from compiler.report.claims import Claim
+from compiler.report.proofs import covering, in_words, is_proved, worst
 from compiler.report.views import Planned, ProofView
 from compiler.targets import TARGETS
+from compiler.verdicts import UNFORMALIZED
 from compiler.verification import METHODS
 
 _AUDIT = "audit"
@@ -36,18 +37,19 @@ def _planned(claim: Claim, method: str, proofs: Sequence[ProofView]) -> Planned:
 
 def _proved(claim: Claim, method: str, found: Sequence[ProofView]) -> Planned:
     """The worst of its proofs decides; what was not checked or says nothing is no result."""
-    word = worst(found).mark.word
-    known = word in (verification.PROVED, verification.COUNTEREXAMPLE)
-    refuted = word == verification.COUNTEREXAMPLE
+    decisive = worst(found)
+    refuted = decisive.mark.word == verification.COUNTEREXAMPLE
+    known = refuted or is_proved(decisive)
     return Planned(claim.id, claim.anchor, method, known, in_words(found), refuted)
 
 
 def _audit(claim: Claim) -> Planned:
     counted = [judged for judged in claim.judged if not judged.is_stale]
     if counted:
-        text = f"{phrases.times(len(counted), 'run')} audited: {claim.verdict}"
+        text = f"{phrases.times(len(counted), 'run')} audited: {claim.mark.text}"
         return Planned(claim.id, claim.anchor, _AUDIT, True, text)
-    text = "all its evidence is suspect" if claim.judged else "no run has been audited"
+    suspect = f"all its evidence is suspect; it said {claim.unwaived}"
+    text = suspect if claim.judged else "no run has been audited"
     return Planned(claim.id, claim.anchor, _AUDIT, False, text)
 
 

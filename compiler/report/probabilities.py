@@ -4,20 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from compiler.estimates import GLYPHS, Estimated, shown
-from compiler.odds import INCONCLUSIVE, REFUTED, SUPPORTED
-from compiler.report.views import BoundsView, Mark, ProbabilityView
+from compiler.estimates import Estimated, shown
+from compiler.odds import SUPPORTED
+from compiler.report.views import BoundsView, ProbabilityView, verdict_mark
 from fretish import syntax
-from monitors import kernel
 from monitors.trials import Trials
-
-_KINDS = {
-    SUPPORTED: str(kernel.SATISFIED),
-    REFUTED: str(kernel.VIOLATED),
-    INCONCLUSIVE: str(kernel.INCONCLUSIVE),
-}
-ANSWERS = {word: Mark(word, GLYPHS[word][0], kind) for word, kind in _KINDS.items()}
-"""Answer → how it is shown."""
 
 
 def contradictions(
@@ -51,7 +42,7 @@ def probability_view(told: Estimated, suspicions: Sequence[str]) -> ProbabilityV
     bars = (BoundsView("by whole logs", told.bounds.low, told.bounds.high),)
     share = "not known" if told.estimate is None else f"{told.estimate:.4f}"
     return ProbabilityView(
-        mark=ANSWERS[told.answer],
+        mark=verdict_mark(told.answer, suspect=bool(suspicions)),
         suspicions=tuple(suspicions),
         stated=told.text,
         bound=float(told.bound),

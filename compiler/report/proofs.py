@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import replace
 
 from compiler.interception import ASSUMED
 from compiler.products import Product
 from compiler.proven import Proof
 from compiler.report import phrases
-from compiler.report.claims import MARKS, SUSPECT
 from compiler.report.views import Mark, ProofView, RequirementView
 from compiler.verification import (
     ALL,
@@ -46,13 +46,11 @@ def proof_views(proofs: Iterable[Proof], made: Iterable[Product]) -> tuple[Proof
 
 def _view(proof: Proof, now: Mapping[str, str]) -> ProofView:
     suspicions = tuple(_suspicions(proof, now))
-    mark = _MARKS[proof.result]
     return ProofView(
         requirement=proof.requirement,
         layer=proof.layer,
         claim=proof.claim,
-        mark=MARKS[SUSPECT] if suspicions else mark,
-        said=mark if suspicions else None,
+        mark=replace(_MARKS[proof.result], suspect=bool(suspicions)),
         detail=proof.detail,
         assumptions=proof.assumptions,
         engine=proof.engine,
@@ -83,27 +81,29 @@ def covering(method: str, proofs: Sequence[ProofView]) -> list[ProofView]:
 
 def worst(proofs: Iterable[ProofView]) -> ProofView:
     """The one that decides."""
-    rank = [
-        COUNTEREXAMPLE,
-        SUSPECT,
-        NOT_CHECKED,
-        VACUOUS,
-        PROVED,
-    ]
-    return min(proofs, key=lambda proof: rank.index(proof.mark.word))
+    rank = list(_MARKS)
+    return min(proofs, key=lambda proof: (rank.index(proof.mark.word), not proof.mark.suspect))
 
 
 def in_words(proofs: Sequence[ProofView]) -> str:
     """`2 claims proved`; else what is in the way."""
     found = worst(proofs)
-    if found.mark.word == PROVED:
+    if is_proved(found):
         return f"{phrases.times(len(proofs), 'claim')} proved"
     why = found.suspicions[0] if found.suspicions else found.detail
-    return f"{found.mark.word}: {found.claim} ({why})"
+    return f"{found.mark.text}: {found.claim} ({why})"
+
+
+def is_proved(proof: ProofView) -> bool:
+    """Whether it is proved of what is there now."""
+    return proof.mark.word == PROVED and not proof.mark.suspect
 
 
 def is_refuted(view: RequirementView) -> bool:
     """Whether verification found a run against it, whatever the audited ones show."""
-    return any(plan.refuted for plan in view.planned) or any(
-        proof.mark.word == COUNTEREXAMPLE for proof in view.proofs
-    )
+    return any(plan.refuted for plan in view.planned) or bool(refutations(view))
+
+
+def refutations(view: RequirementView) -> tuple[ProofView, ...]:
+    """The counterexamples to it, suspect ones too."""
+    return tuple(proof for proof in view.proofs if proof.mark.word == COUNTEREXAMPLE)

@@ -23,7 +23,8 @@ def reading(signal: str, violation: Violation, result: Result, ages: Mapping[str
         ages: seconds after which a sample no longer counts, by the signal; absent: never.
     """
     known, limit = _value(signal, violation), ages.get(signal)
-    value = phrases.value(known, result.units.get(signal, ""))
+    bounds = _bounds(signal, result)
+    value = phrases.value(known, result.units.get(signal, ""), bounds)
     age = _age(signal, violation)
     if known is None or age is None or limit is None or round(age, 9) <= limit:
         return value
@@ -31,6 +32,17 @@ def reading(signal: str, violation: Violation, result: Result, ages: Mapping[str
     return (
         f"unknown: {value} is {'just over ' if old == most else ''}{old} old, and counts for {most}"
     )
+
+
+def _bounds(signal: str, result: Result) -> list[float]:
+    """What the signal itself, or its absolute value, is compared with."""
+    unit, found = result.units.get(signal), list[float]()
+    for each in result.thresholds:
+        if each.unit == unit and each.signal == signal:
+            found.append(each.bound)
+        elif each.unit == unit and each.signal == f"abs({signal})":
+            found.extend((each.bound, -each.bound))
+    return found
 
 
 def _value(signal: str, violation: Violation) -> float | str | None:

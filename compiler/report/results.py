@@ -2,23 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from itertools import groupby
 from statistics import median
 
 from compiler.evidence import Moment, Result, Threshold, Violation
 from compiler.report import phrases
-from compiler.report.claims import MARKS, Claim, Judged
+from compiler.report.claims import Claim, Judged, Together, since_review
 from compiler.report.readings import reading
 from compiler.report.runs import Key, Run, key
 from compiler.report.timeline import answered, timelines
 from compiler.report.views import Latency, Listing, ResultView, ThresholdView, ViolationView
 from compiler.rule import Rule
+from compiler.verdicts import NOT_EXERCISED, RETIRED, SUSPECT, UNFORMALIZED, severity
 from fretish import syntax
+from fretish.amounts import exact
 from fretish.clock import Clock
 from fretish.declarations import Declarations
 from fretish.meaning import span
-from monitors import kernel
 
 LISTED = 100
 """Violations, open demands and unknown stretches that are listed; the evidence has them all."""
@@ -33,7 +34,7 @@ def result_views(
     """Every audit of a requirement, in the order of the runs."""
     return tuple(
         _view(judged, claim, number, runs[key(judged.result)], declared)
-        for number, judged in enumerate(claim.judged, 1)
+        for number, judged in enumerate(claim.results, 1)
     )
 
 
@@ -46,15 +47,14 @@ def _view(
     judged: Judged, claim: Claim, number: int, run: Run, declared: Declarations | None
 ) -> ResultView:
     result = judged.result
-    known = None if judged.is_stale else declared
+    known = None if claim.judged[number - 1].is_stale else declared
     tick, ages = _tick(result, known.clock if known else None), _ages(known)
     return ResultView(
         anchor=result_anchor(claim, number),
         run=run.anchor,
         run_label=run.label,
         run_file=phrases.place(result.run),
-        mark=MARKS[judged.verdict],
-        said=MARKS[result.verdict] if judged.is_stale else None,
+        mark=judged.mark,
         suspicions=judged.suspicions,
         reason=result.reason,
         triggers=len(result.triggers),
@@ -185,15 +185,18 @@ def _at(moment: Moment) -> str:
 
 
 def _threshold(threshold: Threshold) -> ThresholdView:
-    kept, unit = threshold.comparison, threshold.unit
-    numbers = (threshold.bound, threshold.least, threshold.greatest)
-    bound, least, greatest = (phrases.value(each, unit) for each in numbers)
+    kept, unit, bound = threshold.comparison, threshold.unit, threshold.bound
+    least, greatest = (
+        phrases.value(each, unit, [bound]) for each in (threshold.least, threshold.greatest)
+    )
     margin = {None: "never known", "crossed": "crossed"}.get(kept) or (
-        "always out of range" if threshold.margin is None else phrases.value(threshold.margin, unit)
+        "always out of range"
+        if threshold.margin is None
+        else phrases.value(threshold.margin, unit, [0.0])
     )
     return ThresholdView(
         proposition=threshold.proposition,
-        comparison=f"{threshold.signal} {threshold.operator} {bound}",
+        comparison=f"{threshold.signal} {threshold.operator} {exact(bound, unit)}",
         values="unknown" if threshold.least is None else f"{least} to {greatest}",
         margin=margin,
         nearest="" if threshold.nearest is None else phrases.seconds(threshold.nearest),
@@ -239,21 +242,38 @@ def _unknown(result: Result) -> Listing:
 
 
 def reasons(claim: Claim, runs: dict[Key, Run], *, audited: bool) -> tuple[str, ...]:
-    """Why a requirement is not shown: a reason for each run, or the one for all of them."""
-    if claim.diagnostic is not None and claim.rule is None:
-        return (f"{claim.diagnostic.code.number}: {claim.diagnostic.message}",)
-    if not claim.judged:
-        return ("the audit did not cover it" if audited else "no run has been audited",)
+    """Why a requirement is not shown, the worst first; empty where it is, or is retired."""
+    if claim.is_shown or claim.unwaived == RETIRED:
+        return ()
+    lines = [(severity(UNFORMALIZED), text) for text in _unformalized(claim)]
     if claim.together is not None:
-        return claim.together.suspicions or (f"over all runs: {claim.together.told.reason}",)
-    against = [judged for judged in claim.judged if judged.verdict != kernel.SATISFIED]
-    lines = [f"{runs[key(j.result)].label}: {_against(j)}" for j in against[:_TOLD]]
-    left = len(against) - len(lines)
-    return (*lines, *([f"and {phrases.times(left, 'more run')}"] if left else []))
+        lines.append((claim.together.mark.severity, _over_all(claim.together)))
+    else:
+        lines += [(j.mark.severity, _against(j, runs)) for j in claim.judged if not j.mark.shows]
+        if not claim.judged and claim.rule is not None:
+            why = "the audit did not cover it" if audited else "no run has been audited"
+            lines.append((severity(NOT_EXERCISED), why))
+    told = [text for _, text in sorted(lines, key=lambda line: line[0])]
+    left = len(told) - _TOLD
+    few = (*told[:_TOLD], f"and {phrases.times(left, 'more run')}") if left > 0 else tuple(told)
+    return (*few, *since_review(claim.standing))
 
 
-def _against(judged: Judged) -> str:
+def _unformalized(claim: Claim) -> Iterator[str]:
+    if claim.diagnostic is not None and claim.rule is None:
+        yield f"{claim.diagnostic.code.number}: {claim.diagnostic.message}"
+
+
+def _over_all(together: Together) -> str:
+    told = together.told
+    return f"over all runs: {told.answer}, {told.reason}{_because(together.suspicions)}"
+
+
+def _against(judged: Judged, runs: dict[Key, Run]) -> str:
     result = judged.result
-    if judged.is_stale:
-        return f"suspect, because {phrases.joined(judged.suspicions)}; it said {result.verdict}"
-    return f"{result.verdict}, {result.reason}"
+    label = runs[key(result)].label
+    return f"{label}: {judged.verdict}, {result.reason}{_because(judged.suspicions)}"
+
+
+def _because(suspicions: Sequence[str]) -> str:
+    return f"; {SUSPECT}, because {phrases.joined(suspicions)}" if suspicions else ""

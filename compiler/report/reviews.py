@@ -5,15 +5,17 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from compiler.comparison import Difference, difference
-from compiler.links import Node, Suspect
+from compiler.links import Suspect
 from compiler.lock import Withdrawn
 from compiler.report import phrases
-from compiler.report.claims import MARKS, SUSPECT, Claim
+from compiler.report.claims import Claim, thing
 from compiler.report.views import Change, Listing, Mark, ReviewView, WaiverView
+from compiler.verdicts import SUSPECT
 
 _LISTED = 40
 _ACCEPTED = Mark("reviewed", "✔", "satisfied")
 _OPEN = Mark("not reviewed", "○", "not-exercised")
+_SUSPECT = Mark(SUSPECT, "⚠", SUSPECT)
 
 
 def review(claim: Claim) -> ReviewView:
@@ -25,7 +27,7 @@ def review(claim: Claim) -> ReviewView:
     if not claim.standing.is_suspect:
         return ReviewView(_ACCEPTED, by, found.comment, ())
     causes = dict.fromkeys(cause for s in claim.standing.suspects for cause in s.causes)
-    return ReviewView(MARKS[SUSPECT], by, found.comment, tuple(_thing(c) for c in causes))
+    return ReviewView(_SUSPECT, by, found.comment, tuple(map(thing, causes)))
 
 
 def waiver(claim: Claim) -> WaiverView | None:
@@ -34,7 +36,7 @@ def waiver(claim: Claim) -> WaiverView | None:
     if found is None:
         return None
     by = f"{found.by}, {found.role}, {found.granted}"
-    mark = MARKS[claim.unwaived]
+    mark = claim.unwaived_mark
     return WaiverView(claim.id, claim.anchor, found.reason, by, found.expires, mark)
 
 
@@ -72,7 +74,7 @@ def gone(found: Sequence[Withdrawn]) -> tuple[Change, ...]:
 
 
 def _change(claim: Claim, found: Difference) -> Change:
-    lines = tuple(f"{how}: {_thing(node)}" for node, how in found.changes)
+    lines = tuple(f"{how}: {thing(node)}" for node, how in found.changes)
     links = tuple(_link(suspect) for suspect in found.suspects[:_LISTED])
     verdicts = tuple((run, then or "none", now or "none") for run, then, now in found.verdicts)
     listing = Listing(links, len(found.suspects))
@@ -80,13 +82,9 @@ def _change(claim: Claim, found: Difference) -> Change:
 
 
 def _link(suspect: Suspect) -> str:
-    causes = phrases.joined([_thing(cause) for cause in suspect.causes])
-    source, target = _thing(suspect.link.source), _thing(suspect.link.target)
+    causes = phrases.joined([thing(cause) for cause in suspect.causes])
+    source, target = thing(suspect.link.source), thing(suspect.link.target)
     return f"{source} → {target}, because of {causes}"
-
-
-def _thing(node: Node) -> str:
-    return "the clock" if node.kind == "clock" else f"{node.kind} {phrases.place(node.name)}"
 
 
 def reservations(claim: Claim) -> Iterator[str]:

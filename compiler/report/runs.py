@@ -9,6 +9,7 @@ from compiler.evidence import Checked, Evidence, Finding, Result, Topic
 from compiler.project import Project
 from compiler.report import phrases
 from compiler.report.views import Mark, Remark, RunView, TopicView
+from fretish.diagnostic import Severity
 
 _NONE = "\N{EN DASH}"
 _INTACT = Mark("no damage found", "✔", "satisfied")
@@ -51,8 +52,20 @@ def runs(evidence: Evidence | None) -> dict[Key, Run]:
 
 
 def run_views(found: Iterable[Run], project: Project) -> tuple[RunView, ...]:
-    """Each run as it is shown."""
-    return tuple(_view(run, project) for run in found)
+    """Each run as it is shown, those with errors first."""
+    return tuple(_view(run, project) for run in sorted(found, key=_severity))
+
+
+def _severity(run: Run) -> tuple[bool, bool, bool, bool]:
+    """By which runs are sorted: errors, damage, other findings, gaps."""
+    health = run.result.health
+    return not _errors(run), health.intact, not health.findings, not health.gaps
+
+
+def _errors(run: Run) -> list[str]:
+    """The codes of its errors, each once."""
+    found = (f.code for f in run.result.health.findings if f.severity == Severity.ERROR)
+    return list(dict.fromkeys(found))
 
 
 def _view(run: Run, project: Project) -> RunView:
@@ -72,7 +85,7 @@ def _view(run: Run, project: Project) -> RunView:
         health=_INTACT if health.intact else _DAMAGED if health.topics else _UNREAD,
         checked=_checked(health.checked, hashed="log_summary" not in result.hashes),
         gaps=_gaps(result),
-        findings=tuple(_finding(finding) for finding in health.findings),
+        findings=tuple(map(_finding, sorted(health.findings, key=_badness))),
         topics=tuple(_topic(topic, project) for topic in health.topics),
     )
 
@@ -114,6 +127,11 @@ def _gaps(result: Result) -> tuple[str, ...]:
     )
 
 
+def _badness(finding: Finding) -> int:
+    """By which findings are sorted."""
+    return [str(severity) for severity in Severity].index(finding.severity)
+
+
 def _finding(finding: Finding) -> Remark:
     return Remark(finding.code, finding.severity, finding.message, help=finding.help)
 
@@ -145,15 +163,27 @@ def _rate(topic: Topic) -> str:
     return f"{rate:.1f} Hz" if rate >= 1 else f"{rate:.2g} Hz"
 
 
+def _named(run: Run) -> str:
+    """`Run 2`, with the codes of its errors."""
+    codes = ", ".join(_errors(run))
+    return f"{run.label} ({codes})" if codes else run.label
+
+
 def trust(found: Sequence[Run]) -> str:
     """Whether the runs can be trusted, in one sentence; empty where there are none."""
-    damaged = [run.label for run in found if not run.result.health.intact]
+    damaged = [_named(run) for run in found if not run.result.health.intact]
+    wrong = [_named(run) for run in found if run.result.health.intact and _errors(run)]
     told = [run.label for run in found if run.result.health.findings]
     if not found:
         return ""
-    if damaged:
+    if damaged or wrong:
         verb = "is" if len(damaged) == 1 else "are"
-        return f"{phrases.some(damaged)} {verb} damaged or could not be read."
+        had = "has an error" if len(wrong) == 1 else "have errors"
+        parts = [
+            f"{phrases.some(damaged)} {verb} damaged or could not be read" if damaged else "",
+            f"{phrases.some(wrong)} {had}: read them before the verdicts" if wrong else "",
+        ]
+        return f"{'; '.join(filter(None, parts))}."
     if told:
         verb = "has" if len(told) == 1 else "have"
         return f"{phrases.some(told)} {verb} findings: read them before the verdicts."

@@ -13,7 +13,7 @@ from compiler.project import Project
 from compiler.proven import Proof
 from compiler.record import wording
 from compiler.report import phrases
-from compiler.report.claims import RETIRED, SHOWN, Claim
+from compiler.report.claims import Claim
 from compiler.report.histograms import exercise, histograms
 from compiler.report.plans import planned
 from compiler.report.probabilities import probability_view
@@ -64,12 +64,12 @@ def section(
     mine = proof_views((p for p in proofs if p.requirement == claim.id), made)
     shared = proof_views((p for p in proofs if p.requirement in SHARED), common)
     clock = project.declarations.clock if project.declarations else None
-    shown = claim.verdict in (*SHOWN, RETIRED)
     return RequirementView(
         id=claim.id,
         anchor=claim.anchor,
         title=requirement.title,
         mark=claim.mark,
+        suspicions=claim.suspicions,
         status=requirement.status,
         source=f"{phrases.place(requirement.wording.source.name)}:{requirement.wording.line}",
         text=requirement.text,
@@ -92,7 +92,7 @@ def section(
         exercise=exercise(claim),
         histograms=histograms(claim),
         results=result_views(claim, runs, project.declarations),
-        reasons=() if shown else reasons(claim, runs, audited=audited),
+        reasons=reasons(claim, runs, audited=audited),
         limit=_limit(rule),
         coverage=claim.coverage,
         review=review(claim),

@@ -10,9 +10,8 @@ from dataclasses import dataclass, replace
 from itertools import zip_longest
 
 from compiler.report import phrases
-from compiler.report.claims import MARKS
 from compiler.report.views import Mark, Report, RequirementView, ResultView, RunView
-from monitors import kernel
+from compiler.verdicts import SUSPECT
 
 COMPACT = 5_000
 """More results than these, and only runs that are not satisfied have a row."""
@@ -29,7 +28,6 @@ _VIOLATIONS = 12
 _WHOLE = 200
 """More requirements than these, and a compact page tells of each only what it says and shows."""
 _REASONS = 3
-_RANK = {word: rank for rank, word in enumerate(MARKS)}
 
 
 @dataclass(frozen=True, slots=True)
@@ -90,7 +88,7 @@ def selection(report: Report) -> Selection:
         for view in report.requirements
     }
     many = len(report.runs) > _RUNS
-    rows = _first_runs(report.runs) if many else ()
+    rows = report.runs[:_TOLD_RUNS] if many else ()  # those with errors and damage come first
     alone = [run for run in report.runs if run.findings or run.gaps or not run.intact]
     sections = tuple(alone[:_RUNS]) if many else report.runs
     left = len(report.runs) - len(rows) if many else 0
@@ -108,15 +106,6 @@ def selection(report: Report) -> Selection:
         is_compact=compact,
         anchors=frozenset(anchors),
     )
-
-
-def _first_runs(runs: Sequence[RunView]) -> tuple[RunView, ...]:
-    """As many as a table has; those with damage before the others."""
-    if len(runs) <= _TOLD_RUNS:
-        return tuple(runs)
-    worst = sorted(runs, key=lambda run: (run.intact, not run.findings, not run.gaps))
-    kept = {run.anchor for run in worst[:_TOLD_RUNS]}
-    return tuple(run for run in runs if run.anchor in kept)
 
 
 def _runs_left_out(rows: int, sections: int) -> str:
@@ -148,7 +137,7 @@ def _notes(total: int, compact: bool, requirements: int) -> Iterator[str]:
 
 
 def _is_good(result: ResultView) -> bool:
-    return result.mark.word == kernel.SATISFIED
+    return result.mark.shows
 
 
 def _detailed(views: Sequence[RequirementView], listed: int | None) -> Mapping[str, ResultView]:
@@ -161,7 +150,7 @@ def _detailed(views: Sequence[RequirementView], listed: int | None) -> Mapping[s
     wanted = [
         sorted(
             (r for r in view.results if not _is_good(r) or len(view.results) == 1),
-            key=lambda result: _RANK[result.mark.word],
+            key=lambda result: result.mark.severity,
         )[:DETAILED]
         for view in views
     ]
@@ -189,7 +178,8 @@ def _shown(
     folded = tuple(filter(_is_good, rest)) if total <= _FOLDED else ()
     rows: Sequence[ResultView] = view.results if len(view.results) > 1 else ()
     if compact:
-        rows = [result for result in rows if not _is_good(result)][:_ROWS]
+        bad = [result for result in rows if not _is_good(result)]
+        rows = sorted(bad, key=lambda result: result.mark.severity)[:_ROWS]
     elif view.results and not (details or folded):
         rows = view.results  # a single one without details
     open_ = {result.anchor for result in (*details, *folded)}
@@ -204,7 +194,7 @@ def _shown(
 
 def _row(result: ResultView, has_details: bool) -> RunRow:
     latency = result.latency
-    why = "; ".join(result.suspicions) if result.said else result.reason
+    why = f"; {SUSPECT}, because {'; '.join(result.suspicions)}" if result.suspicions else ""
     return RunRow(
         anchor=result.anchor,
         run=result.run,
@@ -215,7 +205,7 @@ def _row(result: ResultView, has_details: bool) -> RunRow:
         violations=result.violations_total,
         longest=phrases.seconds(latency.longest_s) if latency else "\N{EN DASH}",
         longest_s=latency.longest_s if latency else -1.0,
-        reason=why,
+        reason=f"{result.reason}{why}",
         has_details=has_details,
     )
 

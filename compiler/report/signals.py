@@ -8,9 +8,9 @@ from math import inf, isinf
 from statistics import median
 
 from compiler.evidence import Result, Threshold, Violation
-from compiler.report import phrases
 from compiler.report.pictures import Level, Panel, Piece, SpanMark
 from compiler.surroundings import Samples
+from fretish.amounts import exact
 from monitors.violations import EVEN_SAMPLES
 
 MOST_PANELS = 4
@@ -75,7 +75,7 @@ def _bounds(signal: str, result: Result) -> tuple[Threshold, ...]:
 
 def _levels(signal: str, bounds: Sequence[Threshold]) -> Iterator[Level]:
     for each in bounds:
-        label = f"{each.operator} {phrases.value(each.bound, each.unit)}"
+        label = f"{each.operator} {exact(each.bound, each.unit)}"
         if each.signal == signal:
             yield Level(each.bound, label)
         else:
@@ -96,7 +96,7 @@ def _stretches(
     """
     longest = _longest(samples, age)
     found: list[Known] = []
-    following = (*samples.times[1:], inf)
+    following = (*samples.times[1:], inf)[: len(samples.times)]
     first = samples.times[0] if samples.times else end
     if first > start:
         found.append((start, min(first, end), None))

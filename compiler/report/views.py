@@ -6,11 +6,12 @@ are seconds from the first tick of a run, ticks count from 0, intervals include 
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 from compiler.products import Product
 from compiler.report.pictures import Histogram, Timeline
+from compiler.verdicts import SUSPECT, VERDICTS, severity, shows
 
 SCHEMA = "fretc-report-1"
 
@@ -22,6 +23,29 @@ class Mark:
     word: str
     glyph: str
     kind: str
+    suspect: bool = False
+    """Its currency: whether something that it rests on has changed."""
+
+    @property
+    def text(self) -> str:
+        """`violated`, or `violated, suspect`: verdict and currency."""
+        return f"{self.word}, {SUSPECT}" if self.suspect else self.word
+
+    @property
+    def shows(self) -> bool:
+        """Whether it shows its requirement: a suspect verdict never does."""
+        return shows(self.word, suspect=self.suspect)
+
+    @property
+    def severity(self) -> tuple[int, bool]:
+        """By which verdicts are sorted, the worst first."""
+        return severity(self.word, suspect=self.suspect)
+
+
+def verdict_mark(word: str, *, suspect: bool = False) -> Mark:
+    """A verdict as it is shown."""
+    found = VERDICTS[word]
+    return Mark(word, found.glyph, found.kind, suspect)
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,7 +110,7 @@ class RunView:
 
 @dataclass(frozen=True, slots=True)
 class Count:
-    """How many requirements, and how many single audits, have a verdict."""
+    """How many requirements, and how many single audits, have a verdict of one currency."""
 
     mark: Mark
     requirements: int
@@ -215,13 +239,12 @@ class WaiverView:
 
 @dataclass(frozen=True, slots=True)
 class ProofView:
-    """What `fretc verify` says of one claim; `said` is its result where it is suspect."""
+    """What `fretc verify` says of one claim, and why that does not count, if it does not."""
 
     requirement: str
     layer: str
     claim: str
     mark: Mark
-    said: Mark | None
     detail: str
     assumptions: tuple[str, ...]
     engine: str
@@ -319,14 +342,13 @@ class Listing:
 
 @dataclass(frozen=True, slots=True)
 class ResultView:
-    """What one run shows of one requirement; `said` is the audit's verdict where it is suspect."""
+    """What one run shows of one requirement; with suspicions it is about something else."""
 
     anchor: str
     run: str
     run_label: str
     run_file: str
     mark: Mark
-    said: Mark | None
     suspicions: tuple[str, ...]
     reason: str
     triggers: int
@@ -373,6 +395,8 @@ class RequirementView:
     anchor: str
     title: str
     mark: Mark
+    suspicions: tuple[str, ...]
+    """Why its verdict is not that of what is there now; empty where it is."""
     status: str
     source: str
     text: str
@@ -406,6 +430,11 @@ class RequirementView:
     """How far along the chain it is; one of `compiler.report.claims.COVERAGE`."""
     review: ReviewView
     waiver: WaiverView | None
+
+
+def worst_first(views: Iterable[RequirementView]) -> list[RequirementView]:
+    """By their verdicts, those of one verdict in their order."""
+    return sorted(views, key=lambda view: view.mark.severity)
 
 
 # 5: the means ----------------------------------------------------------------------------------

@@ -9,7 +9,7 @@ from typing import Any
 
 from compiler import printing
 from compiler.artifact import Artifact
-from compiler.exchange import STATUSES
+from compiler.exchange import OWN, STATUSES
 from compiler.rule import Rule
 from compiler.targets.target import DEFAULT, Options, Target
 from compiler.templating import render
@@ -56,10 +56,18 @@ def requirement(written: Requirement, rule: Rule | None) -> dict[str, Any]:
         "comments": kept.get("comments", ""),
         "status": _status(written),
         "fulltext": written.wording.text,
+        **_own(written),
         "semantics": semantics(rule) if rule else {"type": "freeForm"},
         "input": {},
         "_id": _id(written),
     }
+
+
+def _own(written: Requirement) -> dict[str, dict[str, str]]:
+    """What FRET has no field for, so that it is there again when the file is imported."""
+    texts = {"title": written.title, "text": written.text}
+    own = {name: text for name, text in texts.items() if text}
+    return {OWN: own} if own else {}
 
 
 def _status(written: Requirement) -> str:

@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 from compiler.outputs import github, junit
 from tests.compiler.junit_schema import MAY, complaints
 from tests.monitoring import rule
+from tests.monitors.logs import declare
 
 
 def result(verdict: str, run: str = "a.mcap", id: str = "R1", **more: Any) -> dict[str, Any]:
@@ -21,6 +22,8 @@ def result(verdict: str, run: str = "a.mcap", id: str = "R1", **more: Any) -> di
         "start_ns": 10**9,
         "end_ns": 3 * 10**9,
         "violations": [],
+        "units": {"x": "m/s", "y": ""},
+        "thresholds": [],
         **more,
     }
 
@@ -57,7 +60,17 @@ def test_the_elements_are_those_of_the_schema_that_jenkins_has() -> None:
 def test_a_violation_is_told_with_its_time_and_its_values() -> None:
     broken = {"start_s": 1.5, "end_s": 2.0, "values": {"x": 0.25, "y": None}}
     root = ElementTree.fromstring(junit([result("violated", violations=[broken])]))
-    assert root[0][0][0].text == "1.500 s to 2.000 s: x = 0.25, y = None"
+    assert root[0][0][0].text == "1.500 s to 2.000 s: x = 0.25 m/s, y = unknown"
+
+
+def test_values_are_in_the_units_that_the_bindings_declare() -> None:
+    told = '[signal.x]\npath = "/a.x"\nunit = "km/h"\n[signal.y]\npath = "/a.y"\n'
+    bound = declare(f'[clock]\ntick = "1 s"\n{told}')
+    broken = {"start_s": 1.5, "end_s": 2.0, "values": {"x": 5 / 3.6, "y": 2.0}}
+    near = [{"signal": "abs(y)", "bound": 2.0000001}]
+    case = result("violated", violations=[broken], thresholds=near)
+    text = junit([case], signals=bound.signals)
+    assert ElementTree.fromstring(text)[0][0][0].text == "1.500 s to 2.000 s: x = 5 km/h, y = 2"
 
 
 @given(st.text())

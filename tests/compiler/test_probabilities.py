@@ -422,7 +422,7 @@ def test_the_report_of_a_refuted_one_is_broken(fretc: Fretc) -> None:
     content = reported(fretc)
     assert content["overall"]["headline"] == "R7 is refuted."
     assert content["requirements"][0]["reasons"] == [
-        "over all runs: it lies between 0.0000 and 0.1070, so not >= 0.9"
+        "over all runs: refuted, it lies between 0.0000 and 0.1070, so not >= 0.9"
     ]
 
 
@@ -433,7 +433,7 @@ def test_evidence_that_does_not_add_up_is_suspect(fretc: Fretc) -> None:
     content["probabilities"][0]["triggers"]["failed"] = 3
     write("build/evidence.json", json.dumps(content))
     (section,) = reported(fretc)["requirements"]
-    assert section["mark"]["word"] == "suspect"
+    assert (section["mark"]["word"], section["mark"]["suspect"]) == ("supported", True)
     assert "do not add up" in section["probability"]["suspicions"][0]
 
 

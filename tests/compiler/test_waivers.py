@@ -1,7 +1,7 @@
 import pytest
 
+from compiler import verdicts
 from compiler.dates import today
-from compiler.report.claims import MARKS
 from compiler.waivers import VERDICTS, Waiver, read
 from fretish.rendering import render
 from tests.command import write
@@ -79,7 +79,7 @@ def test_the_day_is_that_of_source_date_epoch(monkeypatch: pytest.MonkeyPatch) -
 
 def test_what_a_waiver_may_cover_is_what_does_not_show_a_requirement() -> None:
     shown = {"satisfied", "supported", "retired", "waived", "suspect"}
-    assert set(VERDICTS) == {word for word in MARKS if word not in shown}
+    assert set(VERDICTS) == {word for word in verdicts.VERDICTS if word not in shown}
 
 
 def test_an_older_waiver_is_told_with_its_mend() -> None:

@@ -198,7 +198,7 @@ def test_only_the_first_violations_carry_their_samples() -> None:
 def test_a_satisfied_requirement_names_its_least_margin() -> None:
     always = "the rover shall always satisfy !near"
     evidence = audited(always, recorded([FAR, 0.08, FAR], [STILL] * 3))
-    assert evidence.reason.endswith(", least margin 0.03 m (d < 0.05 m)")
+    assert evidence.reason.endswith(", least margin 0.03 m (d < 5 cm)")
     record = as_record(evidence)
     assert record["thresholds"][0]["nearest"] == {"ns": S, "seconds": 1.0}
     assert record["propositions"] == {"near": {"true": 0, "false": 3, "unknown": 0, "changes": 0}}

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator, Mapping
 from enum import StrEnum
 
 from compiler.report import phrases
-from compiler.report.claims import MARKS
 from compiler.report.views import HazardView, RequirementView, ResultView
+from compiler.verdicts import CURRENT, SUSPECT, VERDICTS
 from fretish.documents import STATUSES
 
 _LISTED = 50
@@ -46,13 +47,18 @@ REQUIREMENT: Mapping[str, Kind] = {
     "Status": Kind.WORD,
     "Coverage": Kind.ID,  # two of its words have a comma, which tools read as two values
     "Verdict": Kind.WORD,
+    "Currency": Kind.WORD,
     "Reasons": Kind.TEXT,
     "Runs": Kind.TEXT,
     "Review": Kind.TEXT,
     "Fingerprint SHA-256": Kind.ID,
 }
 """In the order in which tools show them."""
-WORDS: Mapping[str, tuple[str, ...]] = {"Status": STATUSES, "Verdict": tuple(MARKS)}
+WORDS: Mapping[str, tuple[str, ...]] = {
+    "Status": STATUSES,
+    "Verdict": tuple(VERDICTS),
+    "Currency": (CURRENT, SUSPECT),
+}
 """Every word that an attribute of this kind may have."""
 _FORMULAS = {"FT": "Future time", "FT finite": "Future time, finite", "PT": "Past time"}
 
@@ -84,6 +90,7 @@ def of_requirement(view: RequirementView) -> Mapping[str, str]:
         "Status": view.status,
         "Coverage": view.coverage,
         "Verdict": view.mark.word,
+        "Currency": SUSPECT if view.mark.suspect else CURRENT,
         "Reasons": "\n".join((*_waived(view), *view.reasons)),
         "Runs": "\n".join(_runs(view)),
         "Review": f"{review.mark.word}: {review.by}" if review.by else review.mark.word,
@@ -96,22 +103,22 @@ def _waived(view: RequirementView) -> Iterator[str]:
     found = view.waiver
     if found is not None:
         yield f"waived until {found.until} by {found.by}: {found.reason}"
-        yield f"without the waiver: {found.covers.word}"
+        yield f"without the waiver: {found.covers.text}"
 
 
 def _runs(view: RequirementView) -> Iterator[str]:
     """How many have each verdict, what all say together, then each, those not satisfied first."""
-    words = [result.mark.word for result in view.results]
-    counts = [f"{word} in {phrases.times(words.count(word), 'run')}" for word in MARKS]
-    yield "; ".join(count for count, word in zip(counts, MARKS, strict=True) if word in words)
+    ordered = sorted(view.results, key=lambda result: result.mark.severity)
+    counts = Counter(result.mark.text for result in ordered)
+    yield "; ".join(f"{text} in {phrases.times(n, 'run')}" for text, n in counts.items())
     if view.probability:
-        yield f"all runs: {view.probability.mark.word}: {view.probability.reason}"
-    worst = list(MARKS)
-    ordered = sorted(view.results, key=lambda result: worst.index(result.mark.word))
+        yield f"all runs: {view.probability.mark.text}: {view.probability.reason}"
     yield from map(_run, ordered[:_LISTED])
     if len(ordered) > _LISTED:
         yield f"… and {phrases.times(len(ordered) - _LISTED, 'more run')}"
 
 
 def _run(result: ResultView) -> str:
-    return f"{result.run_file}: {result.mark.word}: {'; '.join(result.suspicions) or result.reason}"
+    return (
+        f"{result.run_file}: {result.mark.text}: {'; '.join([result.reason, *result.suspicions])}"
+    )

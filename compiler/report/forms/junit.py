@@ -5,62 +5,39 @@ Source: the JUnit schema of the Jenkins xUnit plugin, https://github.com/jenkins
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator
 from xml.etree import ElementTree
 
-from compiler.odds import REFUTED
+from compiler import verdicts
 from compiler.outputs import as_text, counted, valid
-from compiler.report.claims import (
-    NOT_EXERCISED,
-    RETIRED,
-    SUSPECT,
-    UNFORMALIZED,
-    WAIVED,
-)
+from compiler.report.proofs import is_refuted, refutations
 from compiler.report.views import Report, RequirementView
-from monitors import kernel
-
-_KINDS: Mapping[str, str] = {
-    kernel.VIOLATED: "failure",
-    REFUTED: "failure",
-    UNFORMALIZED: "error",
-    kernel.NO_DATA: "error",
-    SUSPECT: "skipped",
-    kernel.INCONCLUSIVE: "skipped",
-    kernel.VACUOUS: "skipped",
-    NOT_EXERCISED: "skipped",
-    WAIVED: "skipped",
-    RETIRED: "skipped",
-}
-"""What JUnit has for a verdict; nothing for one that shows the requirement."""
 
 
-def junit(report: Report, *, strict: bool) -> str:
-    """One test suite.
-
-    Args:
-        report: what it says.
-        strict: whether a suspect requirement is a failure.
-    """
-    kinds = {**_KINDS, SUSPECT: "failure"} if strict else _KINDS
+def junit(report: Report) -> str:
+    """One test suite; a case fails exactly where `--strict` would end with 1."""
     root = ElementTree.Element("testsuites", name="fretc report")
     gone = {one.requirement: one.text for one in report.withdrawn}
     views = [view for view in report.requirements if view.id not in gone]
-    known = [(view, kinds.get(view.mark.word)) for view in views]
-    counts = counted([*(kind for _, kind in known), *(kinds[SUSPECT] for _ in gone)])
+    counts = counted([*map(_kind, views), *("failure" for _ in gone)])
     name = valid(report.project)
     suite = ElementTree.SubElement(root, "testsuite", {"name": name, **counts})
-    for view, kind in known:
-        _case(suite, view, kind, name)
+    for view in views:
+        _case(suite, view, name)
     for id, text in gone.items():
         case = ElementTree.SubElement(suite, "testcase", name=valid(id), classname=name, time="0")
-        ElementTree.SubElement(case, kinds[SUSPECT], message=valid(f"withdrawn: {text}"))
+        ElementTree.SubElement(case, "failure", message=valid(f"withdrawn: {text}"))
     return as_text(root)
 
 
-def _case(
-    suite: ElementTree.Element, view: RequirementView, kind: str | None, project: str
-) -> None:
+def _kind(view: RequirementView) -> str:
+    """The element for it; empty: it passes."""
+    if is_refuted(view):
+        return "failure"
+    return verdicts.junit(view.mark.word, suspect=view.mark.suspect)
+
+
+def _case(suite: ElementTree.Element, view: RequirementView, project: str) -> None:
     case = ElementTree.SubElement(
         suite,
         "testcase",
@@ -68,11 +45,20 @@ def _case(
         classname=project,
         time="0",
     )
-    if kind is not None:
-        waiver = view.waiver
-        excused = [f"{waiver.reason} (it is {waiver.covers.word})"] if waiver else []
-        reasons = [*excused, *view.reasons]
-        message = valid(f"{view.mark.word}: {reasons[0]}" if reasons else view.mark.word)
+    kind = _kind(view)
+    if kind:
+        reasons = list(_reasons(view))
+        message = valid(f"{view.mark.text}: {reasons[0]}" if reasons else view.mark.text)
         told = ElementTree.SubElement(case, kind, message=message)
         if kind != "skipped":
-            told.text = valid("\n".join((view.sentence, *view.reasons)))
+            told.text = valid("\n".join((view.sentence, *reasons)))
+
+
+def _reasons(view: RequirementView) -> Iterator[str]:
+    """The waiver and the verdict behind it, the worst of the runs first, then counterexamples."""
+    if view.waiver:
+        yield f"{view.waiver.reason} (it is {view.waiver.covers.text})"
+    yield from view.reasons
+    if is_refuted(view):
+        yield from (f"{plan.method}: {plan.result}" for plan in view.planned if plan.refuted)
+        yield from (f"{p.layer}: {p.mark.text}: {p.claim}" for p in refutations(view))

@@ -9,7 +9,8 @@ import re
 from collections.abc import Iterator
 
 from compiler.report.phrases import visible
-from compiler.report.views import Report, RequirementView
+from compiler.report.views import Mark, Report, RequirementView, worst_first
+from compiler.verdicts import SUSPECT
 
 _MARKUP = re.compile(r"([\\`*_{}\[\]()<>#+!|~&:@-])")
 _LISTED = 50
@@ -29,12 +30,12 @@ def _lines(report: Report) -> Iterator[str]:
     yield ""
     yield "| requirement | verdict | coverage | review | why |"
     yield "|---|---|---|---|---|"
-    worst_first = sorted(report.requirements, key=lambda view: view.mark.word == "satisfied")
-    for view in worst_first[:_LISTED]:
+    ordered = worst_first(report.requirements)
+    for view in ordered[:_LISTED]:
         yield _row(view)
-    if len(worst_first) > _LISTED:
+    if len(ordered) > _LISTED:
         yield ""
-        yield f"… and {len(worst_first) - _LISTED} more requirements."
+        yield f"… and {len(ordered) - _LISTED} more requirements."
     yield from _changes(report)
     yield ""
     yield f"<sub>fretc {_plain(report.fretc)}</sub>"
@@ -45,12 +46,16 @@ def _row(view: RequirementView) -> str:
     more = f" (and {len(view.reasons) - 1} more)" if len(view.reasons) > 1 else ""
     cells = (
         f"**{_plain(view.id)}** {_plain(view.title)}",
-        f"{view.mark.glyph} {view.mark.word}",
+        _verdict(view.mark),
         view.coverage,
         view.review.mark.word,
         f"{_plain(why)}{more}",
     )
     return f"| {' | '.join(cells)} |"
+
+
+def _verdict(mark: Mark) -> str:
+    return f"{mark.glyph} {mark.word}, ⚠ {SUSPECT}" if mark.suspect else f"{mark.glyph} {mark.word}"
 
 
 def _changes(report: Report) -> Iterator[str]:

@@ -9,11 +9,13 @@ import csv
 import io
 from collections.abc import Iterator
 
-from compiler.report.views import Report, RequirementView, ResultView
+from compiler.report.views import Mark, Report, RequirementView, ResultView
+from compiler.verdicts import CURRENT, SUSPECT
 
 HEAD = (
-    "hazards", "requirement", "title", "status", "coverage", "verdict", "sentence", "review",
-    "run", "log_sha256", "run_verdict", "reason", "violations", "latency_median", "latency_longest",
+    "hazards", "requirement", "title", "status", "coverage", "verdict", "currency",
+    "suspect_because", "sentence", "review", "run", "log_sha256", "run_verdict", "run_currency",
+    "run_suspect_because", "reason", "violations", "latency_median", "latency_longest",
 )  # fmt: skip
 _EXECUTED = ("=", "+", "-", "@", "\t", "\r")
 
@@ -41,13 +43,15 @@ def _rows(
         view.status,
         view.coverage,
         view.mark.word,
+        _currency(view.mark),
+        "; ".join(view.suspicions),
         view.sentence,
         view.review.mark.word,
     )
     for result in view.results:
         yield (*head, *_run(result, hashes))
     if not view.results:
-        yield (*head, "", "", "", "; ".join(view.reasons), "", "", "")
+        yield (*head, "", "", "", "", "", "; ".join(view.reasons), "", "", "")
 
 
 def _run(result: ResultView, hashes: dict[str, str]) -> tuple[str, ...]:
@@ -56,11 +60,17 @@ def _run(result: ResultView, hashes: dict[str, str]) -> tuple[str, ...]:
         result.run_file,
         hashes.get(result.run, ""),
         result.mark.word,
+        _currency(result.mark),
+        "; ".join(result.suspicions),
         result.reason,
         str(result.violations_total),
         late.median if late else "",
         late.longest if late else "",
     )
+
+
+def _currency(mark: Mark) -> str:
+    return SUSPECT if mark.suspect else CURRENT
 
 
 def _harmless(cell: str) -> str:

@@ -1,4 +1,4 @@
-"""`--sarif`: what the runs show, for code scanning; suspect evidence is told as such."""
+"""`--sarif`: what the runs show, for code scanning, each verdict with its currency."""
 
 from __future__ import annotations
 
@@ -6,7 +6,6 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 from compiler import sarif as results
-from compiler.report.claims import SUSPECT
 from compiler.report.views import Report
 from compiler.rule import Rule
 from fretish.diagnostic import Diagnostic
@@ -29,17 +28,25 @@ def sarif(
         diagnostics: what there is to say of requirements and evidence.
         failed: requirements of the project without a rule.
     """
-    return results.sarif(list(_judged(report, audited)), rules, diagnostics, failed=failed)
+    together = list(_together(report))
+    return results.sarif(list(_judged(report, audited)), rules, diagnostics, together, failed)
 
 
 def _judged(report: Report, audited: Sequence[Mapping[str, Any]]) -> Iterator[Mapping[str, Any]]:
+    """With verdict and currency as the report has them."""
     views = {view.id: iter(view.results) for view in report.requirements}
     for result in audited:
         view = next(views.get(result["requirement"], iter(())), None)
         if view is None:
             continue  # evidence of what is not among the requirements is a diagnostic
-        if view.suspicions:
-            reason = f"{'; '.join(view.suspicions)}; it said {result['verdict']}"
-            yield {**result, "verdict": SUSPECT, "reason": reason}
-        else:
-            yield result
+        yield {**result, "verdict": view.mark.word, "suspicions": view.suspicions}
+
+
+def _together(report: Report) -> Iterator[results.AllRuns]:
+    """What all runs say of each requirement with a probability."""
+    for view in report.requirements:
+        told = view.probability
+        if told is not None:
+            text = "; ".join((told.reason, *told.lines))
+            why = told.suspicions or view.suspicions
+            yield results.AllRuns(view.id, told.mark.word, text, why)

@@ -262,5 +262,10 @@ def said(report: Made) -> dict[str, Any]:
 
 
 def words(marks: Sequence[Mapping[str, Any]]) -> list[str]:
-    """The verdicts of views that have one."""
-    return [each["mark"]["word"] for each in marks]
+    """The verdicts of views that have one, each with its currency where it is suspect."""
+    return [word(each["mark"]) for each in marks]
+
+
+def word(mark: Mapping[str, Any]) -> str:
+    """`violated`, or `violated, suspect`."""
+    return f"{mark['word']}, suspect" if mark["suspect"] else str(mark["word"])

@@ -73,7 +73,7 @@ def report(tmp_path_factory: pytest.TempPathFactory) -> Path:
             id,
             run=f"{run}.mcap",
             reason=HOSTILE[run % 3],
-            hashes={"log": f"{run:064x}"},
+            hashes={"log": f"{run:064x}", **({"sentence": 64 * "0"} if run == 5 else {})},
             violations=[violation(14, 20, 11)] if run in (2, 5) else [],
             latencies_s=[run / 10, 0.3],
             triggers=[moment(tick) for tick in range(10, 20 - run)],
@@ -130,6 +130,14 @@ def test_a_table_is_filtered_by_verdict(opened: Open) -> None:
     page = opened()
     page.locator("#matrix").get_by_label("Verdict", exact=True).select_option("not exercised")
     assert rows(page, "#matrix table") == ["R4"]
+
+
+def test_a_filter_by_verdict_hides_no_suspect_one(opened: Open) -> None:
+    runs = opened().locator("#req-R2")
+    for verdict, logs in (("violated", ["2.mcap", "5.mcap"]), ("suspect", ["5.mcap"])):
+        runs.get_by_label("Verdict", exact=True).select_option(verdict)
+        heads = runs.locator("table.sortable tbody tr:visible > th").all_inner_texts()
+        assert [text.split()[-1] for text in heads] == logs
 
 
 def test_a_table_is_sorted_by_keyboard_and_says_so(opened: Open) -> None:

@@ -19,7 +19,7 @@ def test_a_row_leads_from_hazard_to_verdict(tmp_path: Path) -> None:
     assert row["artefacts"][0]["sha256"] == result(known, "satisfied")["hashes"]["monitor"]
     assert row["cells"] == [
         {
-            "mark": {"word": "satisfied", "glyph": "✔", "kind": "satisfied"},
+            "mark": {"word": "satisfied", "glyph": "✔", "kind": "satisfied", "suspect": False},
             "label": "Run 1",
             "anchor": "result-R1.1",
         }

@@ -1,6 +1,7 @@
 import json
 from pathlib import Path
 from typing import Any
+from xml.etree import ElementTree
 
 import pytest
 from click.testing import CliRunner
@@ -10,6 +11,7 @@ from compiler.files import sha256
 from compiler.project import Project
 from compiler.report import Made, make
 from compiler.report.argument import Kind, argument
+from compiler.report.forms.junit import junit
 from compiler.targets import monitor
 from fretish.diagnostic import Code
 from tests.command import Fretc, write
@@ -21,6 +23,7 @@ from tests.compiler.report.cases import (
     requirement,
     result,
     said,
+    words,
 )
 from tests.compiler.report.test_make import validate
 
@@ -102,6 +105,11 @@ def test_the_argument_rests_on_proofs_and_on_nothing_that_is_refuted(tmp_path: P
 def test_a_counterexample_counts_also_where_no_method_was_planned(tmp_path: Path) -> None:
     report = reported(tmp_path, {"found": "counterexample"}, verify=[])
     assert said(report)["overall"]["mark"]["word"] == "not all shown"
+    assert report.report is not None
+    (case,) = ElementTree.fromstring(junit(report.report))[0]
+    assert [(child.tag, child.get("message")) for child in case] == [
+        ("failure", "satisfied: monitor: counterexample: the monitor means what the sentence says")
+    ]
 
 
 @pytest.mark.parametrize("found", ["vacuous", "not checked"])
@@ -123,7 +131,7 @@ def test_a_proof_of_another_text_is_suspect(
 ) -> None:
     report = reported(tmp_path, {"artefacts": artefacts}, verify=["verify"])
     (shown,) = said(report)["requirements"][0]["proofs"]
-    assert (shown["mark"]["word"], shown["said"]["word"]) == ("suspect", "proved")
+    assert words([shown]) == ["proved, suspect"]
     assert shown["suspicions"][0] == why
     assert plan(report)[1:] == (False, False)
 
@@ -209,10 +217,10 @@ def test_another_assumption_makes_what_was_proved_of_the_loop_suspect(fretc: Fre
     write(bindings, (BINDINGS + ASSUMING).replace('"100 ms"\nbraking', '"100 ms" # still\nbraking'))
     assert marks(fretc) == {"proved"}, "a comment is no change"
     write(bindings, (BINDINGS + ASSUMING).replace('braking = "200 ms"', 'braking = "900 ms"'))
-    assert marks(fretc) == {"suspect"}
+    assert marks(fretc) == {"proved, suspect"}
 
 
 def marks(fretc: Fretc) -> set[str]:
     fretc("report", "--json", "report.json")
     (view,) = json.loads(Path("report.json").read_text())["requirements"]
-    return {proof["mark"]["word"] for proof in view["proofs"]}
+    return set(words(view["proofs"]))

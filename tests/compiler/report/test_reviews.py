@@ -70,7 +70,7 @@ def test_a_review_that_stands_is_named(tmp_path: Path) -> None:
     report = reported(known, tmp_path, result(known, "satisfied"))
     assert report["reviewed"] == "1 of 1 requirement reviewed, and all stand."
     assert only(report)["review"] == {
-        "mark": {"word": "reviewed", "glyph": "✔", "kind": "satisfied"},
+        "mark": {"word": "reviewed", "glyph": "✔", "kind": "satisfied", "suspect": False},
         "by": "A, B, 2026-09-01",
         "comment": "c",
         "changes": [],
@@ -86,7 +86,12 @@ def test_what_changed_since_the_review_makes_the_requirement_suspect(tmp_path: P
     now = project(tmp_path, bindings=BINDINGS.replace("clearance < 5 cm", "clearance < 90 cm"))
     report = reported(now, tmp_path, result(now, "satisfied"))  # audited again after the change
     found = only(report)
-    assert (found["mark"]["word"], found["coverage"]) == ("suspect", "suspect")
+    assert (found["mark"]["word"], found["mark"]["suspect"]) == ("satisfied", True)
+    assert found["coverage"] == "suspect"
+    why = "bindings R1 changed since the review of 2026-09-01"
+    assert found["suspicions"] == found["results"][0]["suspicions"] == found["reasons"] == [why]
+    assert report["matrix"][0]["cells"][0]["mark"]["suspect"]
+    assert [c["results"] for c in report["counts"] if c["mark"]["word"] == "satisfied"] == [1, 0]
     assert found["review"]["changes"] == ["bindings R1"]
     (change,) = report["changes"]
     assert change["lines"] == ["changed: bindings R1"]
@@ -127,7 +132,7 @@ def test_a_waiver_covers_a_verdict_and_does_not_hide_it(tmp_path: Path) -> None:
     assert found["waiver"]["covers"]["word"] == "violated"
     assert found["waiver"]["by"] == "A. Meier, safety engineer, 2026-01-01"
     assert report["waivers"] == [found["waiver"]]
-    assert "R1 is waived, and not shown." in report["overall"]["sentences"]
+    assert "R1 (violated) is waived, and not shown." in report["overall"]["sentences"]
     assert report["overall"]["mark"]["word"] == "nothing shown"
 
 

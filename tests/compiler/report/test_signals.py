@@ -43,6 +43,12 @@ def test_before_the_first_sample_and_where_it_says_so_a_signal_is_unknown() -> N
     assert panel.unknown == (SpanMark(10.0, 11.0, 1), SpanMark(11.5, 12.0, 1))
 
 
+def test_a_signal_without_a_sample_is_unknown_throughout() -> None:
+    (panel,) = panels(broken(x=Samples((), ())), RESULT, {"x": 0.5}, 10.0, 12.0)
+    assert panel.unknown == (SpanMark(10.0, 12.0, 1),)
+    assert panel.pieces == ()
+
+
 def test_an_infinite_value_is_neither_drawn_as_a_number_nor_unknown() -> None:
     (panel,) = panels(broken(clearance=Samples((10.0, 11.0), (inf, 1.0))), RESULT, {}, 10.0, 12.0)
     assert panel.infinite == ((10.0, 11.0, "+inf"),)

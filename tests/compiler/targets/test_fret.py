@@ -7,6 +7,7 @@ from typing import Any
 
 import pytest
 
+from compiler.project import load
 from tests.command import Fretc, write
 
 
@@ -53,6 +54,7 @@ def test_a_requirement_is_a_record_of_fret(fretc: Fretc) -> None:
         "reqid": "R 1",
         "parent_reqid": "HAZ-1, SYS-2",
         "project": "Rover",
+        "fretc": {"title": "Stop"},
         "rationale": "Obstacles are hard.",
         "comments": "reviewed",
         "status": "completed",
@@ -427,3 +429,15 @@ def test_free_text_comes_back_letter_by_letter(fretc: Fretc) -> None:
 def test_free_text_alone_can_be_emitted(fretc: Fretc) -> None:
     _, again, _ = there_and_back(fretc, [EXPORT["requirements"][1]])
     assert [record["reqid"] for record in again["requirements"]] == ["R2"]
+
+
+def test_title_and_text_survive_an_export_and_an_import(fretc: Fretc) -> None:
+    said = 'title = "Stop: \\"near\\" things"\ntext = "It stops.\\nAt once."\n'
+    sentence = "the robot shall always satisfy stopped"
+    write("r1.fret", f'+++\nid = "R1"\n{said}status = "approved"\n+++\n{sentence}\n')
+    assert fretc("r1.fret", "--emit", "fret-json", "-o", "out").status == 0
+    assert fretc("import", "out/fret.json", "-o", "back").status == 0
+    (back,) = Path("back").glob("*.fret")
+    (known,) = load([str(back)]).requirements
+    assert known.title == 'Stop: "near" things'
+    assert known.text == "It stops.\nAt once."

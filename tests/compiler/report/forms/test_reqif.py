@@ -18,9 +18,8 @@ from reqif.parser import ReqIFParser
 
 from compiler.parents import Parent, parents
 from compiler.report import forms
-from compiler.report.claims import MARKS
 from compiler.report.forms.reqif import reqif as form
-from compiler.report.views import HazardView, Report
+from compiler.report.views import HazardView, Report, verdict_mark
 from compiler.settings import Settings
 from tests.command import Fretc, write
 from tests.compiler.report.cases import (
@@ -181,6 +180,7 @@ def test_each_object_has_what_is_known_of_it(exported: Callable[[], str]) -> Non
         "Status": "approved",
         "Coverage": "exercised, fail",
         "Verdict": "violated",
+        "Currency": "current",
         "Reasons": "Run 2: violated, reason of R2",
         "Runs": "violated in 1 run; satisfied in 1 run\n"
         "logs/b.mcap: violated: reason of R2\n"
@@ -216,10 +216,10 @@ def test_suspect_evidence_is_told_as_such(exported: Callable[[], str]) -> None:
     path = Path("requirements/bindings.toml")
     path.write_text(path.read_text().replace("< 5 cm", "< 6 cm"))
     values = read(exported()).objects["R1"]
-    assert values["Verdict"] == "suspect"
+    assert (values["Verdict"], values["Currency"]) == ("satisfied", "suspect")
     assert values["Runs"].splitlines()[:2] == [
-        "suspect in 2 runs",
-        "logs/a.mcap: suspect: the bindings have changed since the audit",
+        "satisfied, suspect in 2 runs",
+        "logs/a.mcap: satisfied, suspect: reason of R1; the bindings have changed since the audit",
     ]
 
 
@@ -348,7 +348,7 @@ def test_a_thousand_requirements_are_all_there(small: Report) -> None:
 def test_of_many_runs_the_worst_are_listed(small: Report) -> None:
     (view,) = small.requirements
     (good,) = view.results
-    bad = replace(good, mark=MARKS["violated"], run_file="logs/bad.mcap")
+    bad = replace(good, mark=verdict_mark("violated"), run_file="logs/bad.mcap")
     report = replace(small, requirements=(replace(view, results=(*(good,) * 60, bad)),))
     lines = read(form(report)).objects["R1"]["Runs"].splitlines()
     assert lines[0] == "violated in 1 run; satisfied in 60 runs"
