@@ -231,7 +231,7 @@ def claims(
     for requirement, stands in zip(project.requirements, standing, strict=True):
         anchors.append(_anchor(requirement.id, anchors))
         rule = rules.get(id(requirement))
-        judge = _Judge(rests_on[id(requirement)], evidence)
+        judge = _Judge(rule, rests_on[id(requirement)], evidence)
         mine = results.get(requirement.id, ())
         judged = tuple(Judged(result, tuple(judge.suspicions(result))) for result in mine)
         found.append(
@@ -308,12 +308,15 @@ def _anchor(id: str, taken: Sequence[str]) -> str:
 class _Judge:
     """Compares evidence with what its verdict would rest on now."""
 
-    def __init__(self, now: Basis, evidence: Evidence | None) -> None:
-        self._now, self._audited_by = now, evidence.fretc if evidence else ""
+    def __init__(self, rule: Rule | None, now: Basis, evidence: Evidence | None) -> None:
+        self._is_formal, self._now = rule is not None, now
+        self._audited_by = evidence.fretc if evidence else ""
 
     def suspicions(self, result: Result) -> list[str]:
         """Why a result does not count; empty where it does."""
-        reasons = [why(kind) for kind in outdated(result, self._audited_by, self._now)]
+        reasons = ["the sentence cannot be formalized now"]
+        if self._is_formal:
+            reasons = [why(kind) for kind in outdated(result, self._audited_by, self._now)]
         if result.verdict in (kernel.SATISFIED, kernel.VACUOUS) and not result.health.intact:
             reasons.append("the log is damaged, and a damaged log cannot show this")
         if result.verdict == kernel.SATISFIED and result.violations:

@@ -78,7 +78,7 @@ def renamed(results: list[dict[str, Any]], **hashes: str) -> list[dict[str, Any]
 def test_a_log_counts_once_whatever_its_name_in_the_head_and_in_the_rows(
     fretc: Fretc, results: list[dict[str, Any]]
 ) -> None:
-    Path("copies.parquet").write_bytes(parquet(renamed(results), "2"))
+    Path("copies.parquet").write_bytes(parquet(renamed(results), "1"))
     for tables in (("runs.parquet", "copies.parquet"), ("copies.parquet", "evidence.json")):
         assert fretc("audit", "--summary", *tables) == Run(1, SUMMARY, "")
 
@@ -121,7 +121,7 @@ def test_the_worst_of_several_verdicts_of_a_log_counts_and_that_is_said(
         for better in order[place + 1 :]:
             for first, second in ((worse, better), (better, worse)):
                 Path("1.parquet").write_bytes(parquet([{**results[0], "verdict": first}], "1"))
-                Path("2.parquet").write_bytes(parquet([{**results[0], "verdict": second}], "2"))
+                Path("2.parquet").write_bytes(parquet([{**results[0], "verdict": second}], "1"))
                 run = fretc("audit", "--summary", "1.parquet", "2.parquet", "--format", "json")
                 (row,) = json.loads(run.out)["by_requirement"]
                 assert (row["runs"], row[worse.replace(" ", "_")]) == (1, 1)

@@ -116,7 +116,7 @@ def test_junit_has_the_elements_of_the_schema_that_jenkins_has(reported: Fretc) 
 
 def test_a_suspect_requirement_fails_whatever_its_verdict(reported: Fretc) -> None:
     path = Path("requirements/bindings.toml")
-    path.write_text(path.read_text().replace("< 5 cm", "< 6 cm"))
+    path.write_text(path.read_text().replace("< 0.01 m/s", "< 0.02 m/s"))
     suite = ElementTree.fromstring(form(reported, "junit"))[0]
     told = [(child.tag, child.attrib["message"]) for case in suite for child in case]
     why = "reason of R{}; suspect, because the bindings have changed since the audit"
@@ -132,7 +132,7 @@ def test_sarif_tells_suspect_evidence_as_such(reported: Fretc) -> None:
     levels = [(one["ruleId"], one["level"]) for one in log["runs"][0]["results"]]
     assert levels == [("R1", "none"), ("R1", "none"), ("R2", "error")]
     path = Path("requirements/bindings.toml")
-    path.write_text(path.read_text().replace("< 5 cm", "< 6 cm"))
+    path.write_text(path.read_text().replace("< 0.01 m/s", "< 0.02 m/s"))
     log = json.loads(form(reported, "sarif"))
     jsonschema.validate(log, SARIF)
     first = log["runs"][0]["results"][0]
