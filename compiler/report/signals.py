@@ -138,7 +138,7 @@ def _panel(
 def _range(values: Sequence[float]) -> tuple[float, float]:
     """From the least to the greatest, with some room; never empty."""
     low, high = (min(values), max(values)) if values else (0.0, 1.0)
-    low, high = max(low, -_FAR), min(high, _FAR)
+    low, high = (min(max(end, -_FAR), _FAR) for end in (low, high))
     room = (high - low) * 0.08 or abs(high) * 0.1 or 1.0
     return low - room, high + room
 
