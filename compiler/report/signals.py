@@ -20,6 +20,8 @@ _COLUMNS = 240
 _THINNED = 2.5
 """Of thinned samples only so many times their median distance is a gap."""
 _EMPTY = 1e-9
+_FAR = 1e300
+"""Farther no axis goes: its length is a 64-bit float, too."""
 
 Known = tuple[float, float, float | None]
 """From, to, and the value in force."""
@@ -149,6 +151,7 @@ def _panel(
 def _range(values: Sequence[float]) -> tuple[float, float]:
     """From the least to the greatest, with some room; never empty."""
     low, high = (min(values), max(values)) if values else (0.0, 1.0)
+    low, high = (min(max(end, -_FAR), _FAR) for end in (low, high))
     room = (high - low) * 0.08 or abs(high) * 0.1 or 1.0
     return low - room, high + room
 
