@@ -104,8 +104,8 @@ def test_counter_evidence_of_an_older_text_challenges_and_does_not_defeat(tmp_pa
 def test_a_waiver_hides_no_counter_evidence(tmp_path: Path) -> None:
     known = project(tmp_path, R1)
     (tmp_path / "waivers.toml").write_text(
-        '[R1]\nverdict = "violated"\nreason = "later"\nby = "A"\nrole = "B"\ngranted = "2000-01-01"\n'
-        'expires = "2099-01-01"\n'
+        '[R1]\nverdict = "violated"\nreason = "later"\nby = "A"\nrole = "B"\n'
+        'granted = "2000-01-01"\nexpires = "2099-01-01"\n'
     )
     found = elements(reported(known, tmp_path, run(known, 1, "violated")))
     assert found["G_req_2d_R1"].defeated
