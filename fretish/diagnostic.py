@@ -171,6 +171,7 @@ class Code(Enum):
     BUSY = ("F912", "another audit writes the same evidence")
     BAD_QUERY = ("F913", "the query cannot be answered")
     BAD_SCENARIO = ("F914", "the scenario of a simulation cannot be run")
+    TOO_COSTLY = ("F930", "what is read takes more time or memory than it may")
     INTERNAL = ("F999", "fretc itself is at fault")
 
     @property

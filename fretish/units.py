@@ -79,21 +79,39 @@ _UNITS: dict[str, Unit] = {
     "Hz": Unit((0, 0, -1, 0, 0, 0), Fraction(1)),
 }
 NAMES = tuple(_UNITS)
-_FACTOR = re.compile(r"([A-Za-z%]+|1)(?:\^?(-?\d+))?")
+_FACTOR = re.compile(r"([A-Za-z%]+|1)(?:\^?(-?\d{1,2}))?")
+_MOST_FACTORS = 16
+"""No unit has more: a power of a power of ten is soon longer than any memory."""
 
 
 def unit(text: str) -> Unit | None:
     """Read `m`, `m/s`, `m/s^2`, `kg*m/s2`; None where a part is not known."""
     result = ONE
-    compact = re.sub(r"\s*([*/])\s*", r"\1", text.strip())
-    for position, factors in enumerate(compact.split("/")):
+    if text.count("*") + text.count("/") >= _MOST_FACTORS:
+        return None
+    for position, factors in enumerate(text.split("/")):
         for factor in factors.split("*"):
-            match = _FACTOR.fullmatch(factor)
+            match = _FACTOR.fullmatch(factor.strip())
             if match is None or match[1] not in _UNITS:
                 return None
             power = int(match[2] or 1) * (1 if position == 0 else -1)
             result = _times(result, _UNITS[match[1]], power)
     return result
+
+
+_NUMBER = re.compile(r"-?[0-9]{1,60}(?:\.[0-9]{1,60})?(?:[eE][+-]?[0-9]{1,3})?")
+
+
+def number(text: str) -> Fraction:
+    """`2.5`, `1e-3`, exactly.
+
+    Raises:
+        ValueError: it is no number, or one of more digits or a larger exponent than anybody means:
+            `1e999999999` has as many digits.
+    """
+    if _NUMBER.fullmatch(text) is None:
+        raise ValueError(f"`{text[:80]}` is no number of at most 60 digits and an exponent of 3")
+    return Fraction(text)
 
 
 def base_name(dimension: Dimension) -> str:
