@@ -12,7 +12,8 @@ from mcap.records import Channel, Chunk, Header, Schema
 from rosbags.rosbag1 import Writer
 
 from tests.costs import MEMORY, SECONDS, cost
-from tests.monitors.broken import FLOAT, MAGIC, TOPIC, ended, framed, made, raw
+from tests.monitors.broken import FLOAT, TOPIC, ended, made, raw
+from tests.monitors.conformance import MAGIC, framed
 from tests.monitors.logs import S
 
 N = 90_000
