@@ -63,14 +63,14 @@ stop_timeout = "500 ms"
 scan_timeout = "500 ms"
 """
 HAZARDS = '[HAZ-1]\ntitle = "It collides"\ntext = "Badly."\nseverity = "minor"\nsource = "us"\n'
-WAIVERS = """[[waiver]]
-requirement = "R1"
-verdict = "violated"
-reason = "known"
-by = "us"
-until = 2030-01-01
+WAIVERS = """[R1]
+reason = "the lidar is being replaced"
+by = "A. Meier"
+role = "safety engineer"
+granted = "2026-11-01"
+expires = "2026-12-31"
 """
-SCENARIO = 'text = "x"\nduration = 0.1\n\n[planner]\nspeed = 0.3\n'
+SCENARIO = (Path(__file__).parents[1] / "simulation/scenarios/nominal.toml").read_text("utf-8")
 EXPORT = """{"requirements": [{"reqid": "R1", "project": "P", "fulltext": "the sw shall satisfy p",
  "semantics": {"ft": "F p"}}], "variables": [{"project": "P", "variable_name": "p",
  "dataType": "boolean", "idType": "Output"}]}"""
@@ -80,10 +80,11 @@ NEEDS = """{"current_version": "1", "versions": {"1": {"needs": {"HAZ-1": {"id":
 STRICTDOC = """{"DOCUMENTS": [{"TITLE": "d", "NODES": [{"UID": "HAZ-1", "TITLE": "t",
  "STATEMENT": "s", "NODES": []}]}]}"""
 DOORSTOP = "HAZ-1:\n  active: true\n  header: h\n  level: 1.0\n  text: t\n  links: &a []\n  x: *a\n"
-REQIF = """<?xml version="1.0" encoding="UTF-8"?>
-<REQ-IF xmlns="http://www.omg.org/spec/ReqIF/20110401/reqif.xsd"><CORE-CONTENT><REQ-IF-CONTENT>
-<SPEC-OBJECTS><SPEC-OBJECT IDENTIFIER="HAZ-1" LONG-NAME="t" LAST-CHANGE="2020-01-01T00:00:00Z">
-<VALUES/></SPEC-OBJECT></SPEC-OBJECTS></REQ-IF-CONTENT></CORE-CONTENT></REQ-IF>"""
+REQIF = (Path(__file__).parent / "data/parents.reqif").read_text("utf-8")
+AJPF = """{"schema": "fretc-ajpf-result-1", "requirement": "R1", "weakened": null, "agent": null,
+ "mcapl": {"commit": null}, "java": "17", "files": {"a.psl": "00"}, "checks": [{"role": "property",
+ "key": "R1", "jpf": "a.jpf", "property": "[] (B(sw,p))", "expected": "HOLDS", "told": "HOLDS",
+ "why": "", "seconds": 1.5, "states": {"new": 3}, "trace": null}]}"""
 GWENDOLEN = """GWENDOLEN
 
 :name: sw
@@ -150,7 +151,7 @@ def _zipped(text: str) -> bytes:
 
 def readers(folder: Path) -> dict[str, Reader]:
     """All of them; files that fretc itself writes are made in the folder."""
-    project = {
+    project: dict[str, str | bytes] = {
         "requirements/r.fret": FRET,
         "requirements/bindings.toml": BINDINGS,
         "requirements/hazards.toml": HAZARDS,
@@ -193,8 +194,14 @@ def readers(folder: Path) -> dict[str, Reader]:
     add("hazards", "requirements/hazards.toml", HAZARDS, ("check",))
     add("waivers", "requirements/waivers.toml", WAIVERS, report, kept)
     add("lock", "requirements/fretc.lock", made_in(folder, "requirements/fretc.lock"), report, kept)
-    add("settings", "pyproject.toml", '[tool.fretc]\nparents = ["a.json"]\n', ("check",))
-    add("scenario", "s.toml", SCENARIO, ("simulate", "s.toml", "--duration", "0.01"))
+    above = {**own, "a.json": NEEDS}
+    add("settings", "pyproject.toml", '[tool.fretc]\nparents = ["a.json"]\n', ("check",), above)
+    add(
+        "scenario",
+        "s.toml",
+        SCENARIO,
+        ("simulate", "s.toml", "--duration", "0.01", "--out", "s.mcap"),
+    )
     add("FRET's JSON", "e.json", EXPORT, ("import", "e.json", "-o", "-"))
     add("FRET's CSV", "e.csv", TABLE, ("import", "e.csv", "-o", "-", "--id-column", "id"))
     for kind, file, text in (
@@ -210,11 +217,11 @@ def readers(folder: Path) -> dict[str, Reader]:
     add("evidence", "build/evidence.json", evidence, report)
     verified = made_in(folder, "build/verification.json")
     add("verification", "build/verification.json", verified, report, kept)
-    add("AJPF's result", "result.json", '{"schema": "x", "checks": []}',
-        ("verify", "--layer", "ajpf", "--ajpf", "result.json", "requirements/r.fret"))  # fmt: skip
-    agents = {"agent.fret": AGENT_FRET, "a.gwen": GWENDOLEN, "a.psl": PSL}
-    agent = ("verify", "--layer", "agent", "agent.fret", "--agent", "a.gwen")
-    agent = (*agent, "--properties", "a.psl")
+    concluded = ("verify", "--layer", "ajpf", "--ajpf", "result.json", "requirements/r.fret")
+    add("AJPF's result", "result.json", AJPF, concluded)
+    agents: dict[str, str | bytes] = {"agent.fret": AGENT_FRET, "a.gwen": GWENDOLEN, "a.psl": PSL}
+    texts = ("--agent", "a.gwen", "--properties", "a.psl")
+    agent = ("verify", "--layer", "agent", "agent.fret", *texts)
     add("psl", "a.psl", PSL, agent, agents)
     add("Gwendolen", "a.gwen", GWENDOLEN, agent, agents)
     monitor = next((folder / "build").glob("*_monitor.py")).read_bytes()
@@ -272,7 +279,7 @@ def command(folder: Path, *args: str) -> tuple[int, str, float]:
     finally:
         sys.argv = before
     out.flush()
-    text = out.buffer.getvalue().decode(errors="replace")  # type: ignore[attr-defined]
+    text = out.buffer.getvalue().decode(errors="replace")
     return int(str(status)), text, time.process_time() - start
 
 
