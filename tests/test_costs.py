@@ -109,6 +109,13 @@ def tree(prefix: str, many: str, last: str) -> str:
     return f"{prefix}{text}\n{'=' * 80}\nMSG: a/T9\n{last}\n"
 
 
+def wide() -> str:
+    """Nine types, each of which has the next one in ten fields."""
+    ten = ["\n".join(f"a/T{level} f{i}" for i in range(10)) for level in range(9)]
+    below = "".join(f"\n{'=' * 80}\nMSG: a/T{level - 1}\n{ten[level]}" for level in range(1, 9))
+    return f"{ten[0]}{below}\n{'=' * 80}\nMSG: a/T8\nfloat64 x\n"
+
+
 def zstd() -> bytes:
     """A chunk of a gigabyte."""
     content = framed(raw(2 * S, bytes(2**28)))
@@ -121,6 +128,7 @@ LOGS = {
     "ros1, an array of 10^9 numbers": log("ros1", "ros1msg", "a/B", "float64[1000000000] data\n"),
     "ros1, an array of 10^9 texts": log("ros1", "ros1msg", "a/B", "string[1000000000] data\n"),
     "ros1, a tree of types": log("ros1", "ros1msg", "a/B", tree("", "[100]", "float64 x")),
+    "ros1, types of ten fields": log("ros1", "ros1msg", "a/B", wide()),
     "ros2, a tree of empty types": log("cdr", "ros2msg", "a/msg/B", tree("", "[100]", "")),
     "idl, a text without an end": log("cdr", "ros2idl", "a/msg/B", '"' + '\\"' * (N // 2)),
     "idl, comments without an end": log("cdr", "ros2idl", "a/msg/B", "/*" * (N // 2)),
@@ -131,6 +139,8 @@ LOGS = {
 @pytest.mark.parametrize("data", LOGS.values(), ids=LOGS)
 def test_a_log_is_read_or_refused_within_the_limits(tmp_path: Path, data: bytes) -> None:
     hold(tmp_path, {"log.mcap": data}, "info", "log.mcap")
+    audited = bound("").items()
+    hold(tmp_path, {"log.mcap": data, **dict(audited)}, "audit", "log.mcap", "--jobs", "1")
 
 
 def test_a_bag_whose_chunk_unpacks_to_far_more_is_refused(tmp_path: Path) -> None:
