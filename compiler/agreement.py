@@ -12,6 +12,7 @@ from fractions import Fraction
 from compiler.demand import atom, variable
 from compiler.rule import Rule
 from fretish import expressions as e
+from fretish import units
 from fretish.checking import conditions
 from fretish.declarations import Declarations, Proposition
 from fretish.diagnostic import Code, Diagnostic
@@ -119,12 +120,20 @@ def _constant(expression: e.Expression) -> Fraction | None:
     """The number as it is written, whatever its unit; None for anything else."""
     match expression:
         case e.Number(digits) | e.Quantity(digits, _):
-            return Fraction(digits)
+            return _number(digits)
         case e.Negation(arg):
             number = _constant(arg)
             return None if number is None else -number
         case _:
             return None
+
+
+def _number(digits: str) -> Fraction | None:
+    """None where it has more digits than any binding can have: nothing is equal to it."""
+    try:
+        return units.number(digits)
+    except ValueError:
+        return None
 
 
 def _parts(expression: e.Expression) -> Iterator[e.Expression]:

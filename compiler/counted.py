@@ -9,6 +9,7 @@ from compiler.estimates import Estimated
 from compiler.odds import ANSWERS, Bounds
 from compiler.shapes import Shape
 from fretish.expressions import ComparisonOperator
+from fretish.units import number
 from monitors.trials import Trials
 
 
@@ -48,7 +49,7 @@ def _bounds(at: Shape) -> Bounds:
 def _bound(at: Shape) -> str:
     """A probability as it is written."""
     try:
-        stated = Fraction(at.text())
+        stated = number(at.text())
     except (ValueError, ZeroDivisionError):
         stated = Fraction(-1)
     if not 0 <= stated <= 1:

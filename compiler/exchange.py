@@ -20,6 +20,7 @@ import tomli_w
 
 from compiler.artifact import Artifact
 from fretish.diagnostic import Code, Diagnostic, Severity, suggestion
+from fretish.limits import within
 from fretish.parser import parse
 from fretish.source import Source
 
@@ -63,6 +64,11 @@ def read_export(source: Source, columns: Mapping[str, str]) -> Import:
         source: the file; `.csv` by its name, JSON otherwise.
         columns: for CSV, the names of the columns `id`, `text` and `project`.
     """
+    found = within(len(source.text), source.span(0, 0), lambda: _read(source, columns))
+    return Import((), (found,), 0, 0) if isinstance(found, Diagnostic) else found
+
+
+def _read(source: Source, columns: Mapping[str, str]) -> Import:
     if source.name.lower().endswith(".csv"):
         return _from_csv(source, columns)
     return _from_json(source)

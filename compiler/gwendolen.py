@@ -20,6 +20,7 @@ from lark.exceptions import UnexpectedInput
 
 from compiler.gwendolen_mistakes import HEADINGS, TrapError, beyond, misread, unexpected
 from fretish.diagnostic import Diagnostic
+from fretish.limits import within
 from fretish.source import Source, Span
 
 Sign = Literal["+", "-"]
@@ -87,6 +88,10 @@ _MOST_LEVELS = 50
 
 def read(source: Source) -> Agent | Diagnostic:
     """The agent of a file; or F610 for what MCAPL misreads, F611 for what the model leaves out."""
+    return within(len(source.text), source.span(0, 0), lambda: _read(source))
+
+
+def _read(source: Source) -> Agent | Diagnostic:
     try:
         return _Reader(source).agent(_lark().parse(source.text))
     except UnexpectedInput as error:

@@ -12,18 +12,21 @@ sphinx-needs, needs.json; OMG, Requirements Interchange Format (ReqIF) 1.2.
 from __future__ import annotations
 
 import json
+import lzma
 import zipfile
+import zlib
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree
 
-import yaml
-
 from compiler.settings import Settings
 from fretish.diagnostic import Code, Diagnostic
+from fretish.limits import within
 from fretish.source import Source, Span
+from monitors.yamltext import loaded
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,9 +49,14 @@ def parents(settings: Settings) -> tuple[Mapping[str, Parent], tuple[Diagnostic,
     found: dict[str, Parent] = {}
     wrong = []
     for name in settings.parents:
+        reading = partial(_all, settings.folder / name, name)
         try:
             _demand_within(settings, settings.folder / name)
-            for parent in _read(settings.folder / name, name):
+            read = within(_size(settings.folder / name), _place(settings, name), reading)
+            if isinstance(read, Diagnostic):
+                wrong.append(read)
+                continue
+            for parent in read:
                 found.setdefault(parent.id, parent)
         except ModuleNotFoundError:
             wrong.append(_missing(settings, name))
@@ -70,6 +78,15 @@ def _demand_within(settings: Settings, path: Path) -> None:
 
 
 _OUTSIDE = "it lies outside of the project"
+
+
+def _all(path: Path, name: str) -> tuple[Parent, ...]:
+    return tuple(_read(path, name))
+
+
+def _size(path: Path) -> int:
+    """Bytes of a document, or of a folder of documents."""
+    return sum(one.stat().st_size for one in (path.glob("*.yml") if path.is_dir() else [path]))
 
 
 def _unreadable(settings: Settings, name: str, why: str) -> Diagnostic:
@@ -209,8 +226,8 @@ def _exports(folder: Path, name: str) -> Iterator[Parent]:
 def _doorstop(path: Path, name: str) -> Iterator[Parent]:
     """The items of one exported document; Doorstop exports the active ones."""
     try:
-        found = yaml.safe_load(_text(path))
-    except (yaml.YAMLError, RecursionError):
+        found = loaded(_text(path))
+    except ValueError:
         raise UnreadableError(f"{path.name} is not YAML") from None
     if not isinstance(found, dict) or not all(_is_item(item) for item in found.values()):
         raise UnreadableError(f"{path.name} is no export of Doorstop")
@@ -246,6 +263,8 @@ def _needs(data: Mapping[str, Any], name: str) -> Iterator[Parent]:
 
 # ReqIF -----------------------------------------------------------------------------------------
 
+_LEAST_PACKED, _RATIO = 2**22, 50
+"""An archive unpacks to so many bytes, and so many more for each of its own: XML packs well."""
 _NAMES = ("ReqIF.ForeignID", "ReqIF.Name", "ReqIF.ChapterName", "ReqIF.Text", "UID", "TITLE")
 
 
@@ -253,9 +272,12 @@ def _reqifz(path: Path, name: str) -> Iterator[Parent]:
     try:
         with zipfile.ZipFile(path) as archive:
             inside = sorted(n for n in archive.namelist() if n.lower().endswith(".reqif"))
+            most = _LEAST_PACKED + _RATIO * path.stat().st_size
+            if sum(archive.getinfo(each).file_size for each in inside) > most:
+                raise UnreadableError("it unpacks to far more than such archives do")
             texts = [_inside(archive, each) for each in inside]
-    except zipfile.BadZipFile:
-        texts = []
+    except (zipfile.BadZipFile, zlib.error, lzma.LZMAError, EOFError, RuntimeError, ValueError):
+        texts = []  # RuntimeError: it is encrypted, or packed in a way that Python does not know
     if not texts:
         raise UnreadableError("it is no archive of ReqIF files")
     for text in texts:

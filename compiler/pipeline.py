@@ -6,6 +6,7 @@ import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
+from functools import partial
 
 from compiler import predicates
 from compiler.agreement import disagreements
@@ -24,6 +25,7 @@ from fretish.declarations import Declarations, Modality, Variable
 from fretish.depth import deep
 from fretish.diagnostic import Code, Diagnostic, Severity
 from fretish.documents import Requirement
+from fretish.limits import within
 from fretish.parser import parse
 from fretish.source import Source, Span
 from fretish.surprises import surprises
@@ -40,6 +42,15 @@ def formalize(
     Returns:
         The rule, or None where there is an error; and all that there is to say.
     """
+    wording = requirement.wording
+    reading = partial(_formalized, requirement, declarations)
+    found = within(wording.end - wording.start, wording, reading)
+    return (None, (found,)) if isinstance(found, Diagnostic) else found
+
+
+def _formalized(
+    requirement: Requirement, declarations: Declarations | None
+) -> tuple[Rule | None, tuple[Diagnostic, ...]]:
     if requirement.is_free_text:
         return None, (_free_text(requirement),)
     sentence = parse(requirement.wording)

@@ -118,7 +118,7 @@ def _written(paths: Sequence[str]) -> tuple[list[Requirement], list[Diagnostic]]
     for path in paths:
         source = read(path)
         kept, mistakes = ((), (source,)) if isinstance(source, Diagnostic) else requirements(source)
-        own = [mistake for requirement in kept for mistake in requirement.mistakes]
+        own = {mistake for requirement in kept for mistake in requirement.mistakes}
         found.extend(kept)
         wrong.extend(mistake for mistake in mistakes if mistake not in own)
     return found, wrong

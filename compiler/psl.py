@@ -17,6 +17,7 @@ from compiler.formula import Formula
 from compiler.psl_grammar import Glued, MisreadError, formula, misread
 from fretish.depth import deep
 from fretish.diagnostic import Code, Diagnostic, Severity
+from fretish.limits import within
 from fretish.source import Source, Span
 
 KEY = re.compile(r"[A-Za-z0-9_.-]+")
@@ -46,6 +47,10 @@ def read(source: Source) -> tuple[Property, ...] | Diagnostic:
 
     A file of comments has none.
     """
+    return within(len(source.text), source.span(0, 0), lambda: _read(source))
+
+
+def _read(source: Source) -> tuple[Property, ...] | Diagnostic:
     try:
         keyed = list(_keyed(source))
         first: dict[str, Span] = {}

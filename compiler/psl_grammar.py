@@ -17,6 +17,7 @@ crashes on a negated constant, and takes a percept for absent once the agent has
 from __future__ import annotations
 
 import re
+from collections import deque
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from decimal import Decimal
@@ -117,7 +118,7 @@ def formula(text: Glued) -> tuple[f.Formula, tuple[Span, ...]]:
     Raises:
         MisreadError: AJPF would repair the text, drop a part of it, or crash.
     """
-    reader = _Reader([*_tokens(text)], text.span(0, 0))
+    reader = _Reader(deque(_tokens(text)), text.span(0, 0))
     said = reader.formula()
     if reader.tokens:
         tail = reader.tokens[0]
@@ -153,7 +154,7 @@ def _tokens(text: Glued) -> Iterator[_Token]:
 class _Reader:
     """One function for each level of the grammar; `strings` are those that it has met."""
 
-    def __init__(self, tokens: list[_Token], end: Span) -> None:
+    def __init__(self, tokens: deque[_Token], end: Span) -> None:
         self.tokens = tokens
         self.end = _Token("end", "the end", end)
         self.strings: list[Span] = []
@@ -167,7 +168,7 @@ class _Reader:
 
     def take(self, *wanted: str) -> bool:
         if self.next.text in wanted and self.next.kind in ("sign", "word"):
-            self.tokens.pop(0)
+            self.tokens.popleft()
             return True
         return False
 
@@ -223,7 +224,7 @@ class _Reader:
         modality = self.next
         if modality.text not in MODALITIES or modality.kind != "word":
             raise self._no_formula(modality)
-        self.tokens.pop(0)
+        self.tokens.popleft()
         self.need("(")
         agent = self._agent()
         self.need(",")
@@ -267,7 +268,7 @@ class _Reader:
     def _word(self, pattern: re.Pattern[str], what: str, rule: str) -> str:
         found = self.next
         if found.kind == "word" and pattern.fullmatch(found.text) and found.text not in KEY_WORDS:
-            self.tokens.pop(0)
+            self.tokens.popleft()
             return found.text
         told = f"`{found.text}` is" if self.tokens else "there is"
         raise misread(
@@ -293,10 +294,10 @@ class _Reader:
     def _argument(self) -> str:
         found = self.next
         if found.kind == "number" or (found.kind == "word" and found.text.isdigit()):
-            self.tokens.pop(0)
+            self.tokens.popleft()
             return format(Decimal(repr(float(found.text))).normalize(), "f")
         if found.kind == "string":
-            self.tokens.pop(0)
+            self.tokens.popleft()
             self.strings.append(found.span)
             return f"'{found.text[1:-1]}'"
         if self.take("_"):

@@ -29,6 +29,7 @@ from fretish.declarations import (
 from fretish.diagnostic import Code, Diagnostic, has_errors
 from fretish.fields import Fields
 from fretish.interception import Loop
+from fretish.limits import within
 from fretish.source import Source, Span
 from fretish.tables import Tables, read
 
@@ -55,6 +56,11 @@ def read_bindings(source: Source) -> tuple[Declarations | None, tuple[Diagnostic
     Returns:
         The declarations, or None where there is an error; and all that there is to say.
     """
+    found = within(len(source.text), source.span(0, 0), lambda: _read(source))
+    return (None, (found,)) if isinstance(found, Diagnostic) else found
+
+
+def _read(source: Source) -> tuple[Declarations | None, tuple[Diagnostic, ...]]:
     tables = read(source.span(), Code.BAD_BINDINGS, "the bindings file")
     if isinstance(tables, Diagnostic):
         return None, (tables,)

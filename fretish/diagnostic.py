@@ -181,6 +181,7 @@ class Code(Enum):
     BAD_SCENARIO = ("F914", "the scenario of a simulation cannot be run")
     NO_KEY = ("F920", "the user has no key, so nothing is kept of a stopped audit")
     FOREIGN_PLACE = ("F921", "evidence names a log in a place that is not looked into")
+    TOO_COSTLY = ("F930", "what is read takes more time or memory than it may")
     INTERNAL = ("F999", "fretc itself is at fault")
 
     @property

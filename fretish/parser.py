@@ -32,6 +32,7 @@ from fretish.mistakes import (
     unknown_character,
 )
 from fretish.source import Span
+from fretish.units import number
 
 _UNITS: dict[str, s.TimeUnit] = {
     "TICK": "tick",
@@ -266,8 +267,9 @@ class _Build(Transformer_NonRecursive[Token, Any]):
     def probability(self, meta: Any, children: list[Any]) -> s.Probability:
         _, _, op, *digits = children
         text = "".join(digits)
-        bound = Fraction(text)
-        if not 0 <= bound <= 1 or (op == "<" and bound == 0) or (op == ">" and bound == 1):
+        bound = _number(text)
+        impossible = bound == 0 if op == "<" else op == ">" and bound == 1
+        if bound is None or impossible or not 0 <= bound <= 1:
             raise _MistakeError(bad_probability(_meta_span(meta)))
         return s.Probability(op, bound, text)
 
@@ -295,6 +297,14 @@ class _Build(Transformer_NonRecursive[Token, Any]):
             timing_span=timing_span,
             article=article,
         )
+
+
+def _number(digits: str) -> Fraction | None:
+    """None where it has more digits than anybody means."""
+    try:
+        return number(digits)
+    except ValueError:
+        return None
 
 
 # What went wrong ---------------------------------------------------------------------------

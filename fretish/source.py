@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from bisect import bisect_right
 from dataclasses import dataclass, field
+from functools import lru_cache
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,5 +58,7 @@ class Span:
         return Span(self.source, self.start, max(self.end, other.end))
 
 
+@lru_cache(8)
 def _line_starts(text: str) -> list[int]:
+    """Asked for with every place that is told."""
     return [0, *(i + 1 for i, character in enumerate(text) if character == "\n")]

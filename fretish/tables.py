@@ -11,18 +11,21 @@ from typing import Any
 import tomli_w
 
 from fretish.diagnostic import Code, Diagnostic, suggestion
+from fretish.limits import within
 from fretish.source import Span
 
 _VALUE = re.compile(
-    r"""["']?\s*=\s*(?P<value>
+    r"""["']?[ \t]*=[ \t]*(?P<value>
         "(?:[^"\\\n]|\\.)*"            # a text
       | '[^'\n]*'
       | \{[^}\n]*\}                    # an inline table
-      | \[[^\]\n]*\][^#\n]*?(?=\s*(?:\#|$))  # a list, perhaps of lists
-      | [^#\n]*?(?=\s*(?:\#|$))        # anything else on the line
+      | \[[^\]\n]*\][^#\n]*          # a list, perhaps of lists
+      | [^#\n]*                       # anything else on the line
     )""",
     re.VERBOSE | re.MULTILINE,
 )
+
+_ANY_HEADER = re.compile(r"^[ \t]*\[", re.MULTILINE)
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,8 +53,8 @@ class Tables:
         match = _VALUE.match(rest)
         if match is None:
             return key
-        start, end = match.span("value")
-        return Span(key.source, key.end + start, key.end + max(start, end))
+        start, end = match.start("value"), match.start("value") + len(match["value"].rstrip())
+        return Span(key.source, key.end + start, key.end + end)
 
     def _inline(self, tables: list[str]) -> tuple[int, int]:
         """Where the braces of an inline table stand."""
@@ -63,22 +66,24 @@ class Tables:
     def _table(self, tables: Iterable[str]) -> tuple[int, int] | None:
         path = tuple(tables)
         if not path:
-            first = re.search(r"^\s*\[", self.text.text, re.MULTILINE)
+            first = _ANY_HEADER.search(self.text.text)
             return 0, first.start() if first else len(self.text.text)
         header = _header(path).search(self.text.text)
         if header is None:
             return None
-        following = re.compile(r"^\s*\[", re.MULTILINE).search(self.text.text, header.end())
+        following = _ANY_HEADER.search(self.text.text, header.end())
         return header.end(), following.start() if following else len(self.text.text)
 
 
 def _header(path: Iterable[str]) -> re.Pattern[str]:
-    name = r"\s*\.\s*".join(f"[\"']?{re.escape(part)}[\"']?" for part in path)
-    return re.compile(rf"^\s*\[\s*(?P<key>{name})\s*[\].]", re.MULTILINE)
+    name = r"[ \t]*\.[ \t]*".join(f"[\"']?{re.escape(part)}[\"']?" for part in path)
+    return re.compile(rf"^[ \t]*\[[ \t]*(?P<key>{name})[ \t]*[\].]", re.MULTILINE)
 
 
 def _key(key: str) -> re.Pattern[str]:
-    return re.compile(rf"(?:^|[{{,])\s*[\"']?(?P<key>{re.escape(key)})[\"']?\s*=", re.MULTILINE)
+    return re.compile(
+        rf"(?:^|[{{,])[ \t]*[\"']?(?P<key>{re.escape(key)})[\"']?[ \t]*=", re.MULTILINE
+    )
 
 
 def read(text: Span, code: Code, what: str) -> Tables | Diagnostic:
@@ -89,12 +94,16 @@ def read(text: Span, code: Code, what: str) -> Tables | Diagnostic:
         code: what to give where it is not TOML.
         what: the name of the thing for the message: `the header`.
     """
+    return within(len(text.text), text.part(0, 0), lambda: _read(text, code, what))
+
+
+def _read(text: Span, code: Code, what: str) -> Tables | Diagnostic:
     try:
         return Tables(text, tomllib.loads(text.text.replace("\r\n", "\n")))
     except (ValueError, RecursionError) as error:  # TOML, or a number or nesting beyond Python's
         match = re.search(r"\(at line (\d+), column (\d+)\)", str(error))
         at = _offset(text.text, int(match[1]), int(match[2])) if match else len(text.text)
-        reason = re.sub(r"\s*\(at [^)]*\)", "", str(error))
+        reason = re.sub(r" \(at [^)]*\)", "", str(error))
         return Diagnostic(
             code,
             f"{what} is not TOML: {reason[:1].lower()}{reason[1:]}",

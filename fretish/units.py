@@ -81,15 +81,18 @@ _UNITS: dict[str, Unit] = {
 }
 NAMES = tuple(_UNITS)
 _FACTOR = re.compile(r"([A-Za-z%]+|1)(?:\^?(-?[0-9]{1,2}))?")
+_MOST_FACTORS = 16
+"""No unit has more: a power of a power of ten is soon longer than any memory."""
 
 
 def unit(text: str) -> Unit | None:
     """Read `m`, `m/s`, `m/s^2`, `kg*m/s2`; None where a part is not known."""
     result = ONE
-    compact = re.sub(r"\s*([*/])\s*", r"\1", text.strip())
-    for position, factors in enumerate(compact.split("/")):
+    if text.count("*") + text.count("/") >= _MOST_FACTORS:
+        return None
+    for position, factors in enumerate(text.split("/")):
         for factor in factors.split("*"):
-            match = _FACTOR.fullmatch(factor)
+            match = _FACTOR.fullmatch(factor.strip())
             if match is None or match[1] not in _UNITS:
                 return None
             power = int(match[2] or 1) * (1 if position == 0 else -1)
@@ -97,13 +100,28 @@ def unit(text: str) -> Unit | None:
     return result
 
 
+_NUMBER = re.compile(r"-?[0-9]{1,60}(?:\.[0-9]{1,60})?(?:[eE][+-]?[0-9]{1,3})?")
+
+
+def number(text: str) -> Fraction:
+    """`2.5`, `1e-3`, exactly.
+
+    Raises:
+        ValueError: it is no number, or one of more digits or a larger exponent than anybody means:
+            `1e999999999` has as many digits.
+    """
+    if _NUMBER.fullmatch(text) is None:
+        raise ValueError(f"`{text[:80]}` is no number of at most 60 digits and an exponent of 3")
+    return Fraction(text)
+
+
 def quantity(text: str) -> tuple[Dimension, Fraction] | None:
     """`5 cm` → its dimension and 1/20, exactly, in base units; None where it is no quantity."""
     digits, _, name = text.strip().partition(" ")
     known = unit(name) if name else ONE
     try:
-        return None if known is None else (known.dimension, Fraction(digits) * known.factor)
-    except (ValueError, ZeroDivisionError):
+        return None if known is None else (known.dimension, number(digits) * known.factor)
+    except ValueError:
         return None
 
 

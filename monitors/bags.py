@@ -7,9 +7,12 @@ held against what came. Times are nanoseconds, log times.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+import bz2
+import os
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, partial
 from pathlib import Path
 from typing import Any
 from urllib.parse import quote
@@ -19,13 +22,17 @@ from mcap.records import Channel, Schema
 from fretish.diagnostic import Code, Diagnostic
 from fretish.source import Span
 from monitors import refusals
-from monitors.container import Stream
+from monitors.container import BrokenError, Stream, largest, unpacked_lz4
 from monitors.damage import LATEST, Damage
 from monitors.messages import Sink
 from monitors.samples import Gap
 
 BAG, DB3 = b"#ROSBAG V", b"SQLite format 3\0"
 """What the files begin with."""
+_LEAST = 2**20
+"""Bytes that a value of a database may have, however small the database is."""
+_STEPS = 20_000
+"""Of SQLite's machine between two looks: some tenths of a millisecond."""
 NOWHERE = -1
 """Where a damage is that has no byte."""
 
@@ -60,7 +67,8 @@ def read(file: str, same: str, start: bytes, sink: Sink, place: Span) -> Found |
     bag = start.startswith(BAG)
     reader = _bag(same) if bag else _db3(same)
     try:
-        reader.open()
+        with _limited(os.stat(file).st_size):
+            reader.open()
     except OSError:
         raise
     except Exception as error:  # the reader trusts each byte, and each may be wrong
@@ -98,7 +106,54 @@ def ends(file: str) -> Gap | None:
 def _bag(file: str) -> Any:
     from rosbags.rosbag1 import Reader
 
-    return Reader(Path(file))
+    class Bounded(Reader):
+        """Its chunks unpack to as much as the chunks of MCAP may."""
+
+        def read_chunk(self) -> Any:
+            chunk = super().read_chunk()
+            return chunk._replace(decompressor=partial(_unpacked, chunk.decompressor))
+
+    return Bounded(Path(file))
+
+
+def _unpacked(official: Callable[[bytes], bytes], packed: bytes) -> bytes:
+    """What is in a chunk of a ROS 1 bag.
+
+    Raises:
+        BrokenError: it is more than such a chunk can hold.
+        Exception: each codec has its own; it is no such data.
+    """
+    from rosbags.rosbag1.reader import decompressors
+
+    most = largest(len(packed))
+    if official is decompressors["bz2"]:
+        data = bz2.BZ2Decompressor().decompress(packed, most + 1)
+    elif official is decompressors["lz4"]:
+        data = unpacked_lz4(packed, most + 1)
+    else:
+        data = official(packed)
+    if len(data) > most:
+        raise BrokenError(f"a chunk of {len(packed)} bytes holds more than {most}")
+    return data
+
+
+@contextmanager
+def _limited(size: int) -> Iterator[None]:
+    """Databases that are opened meanwhile make no value that is larger than their file.
+
+    Between the steps of a query Python looks whether too much time has gone by.
+    """
+    import apsw
+
+    def limit(connection: apsw.Connection) -> None:
+        connection.limit(apsw.SQLITE_LIMIT_LENGTH, max(_LEAST, size))
+        connection.set_progress_handler(lambda: False, _STEPS)
+
+    apsw.connection_hooks.append(limit)
+    try:
+        yield
+    finally:
+        apsw.connection_hooks.remove(limit)
 
 
 def _db3(file: str) -> Any:

@@ -46,8 +46,12 @@ BLOCK = 2**20
 """Bytes that are read at once where more are not needed."""
 _FOOTER = struct.Struct("<QQI")
 """Start of the summary, start of its offsets, CRC."""
-_RATIO = 50_000
+_RATIO = 200
+"""Bytes that one packed byte of a chunk may hold, where there are more than `_PLENTY` of them."""
+_DENSEST = 50_000
 """No compression packs more than so many bytes into one."""
+_PLENTY = 2**26
+"""Bytes; a chunk may be so large whatever is packed into it: the same numbers again and again."""
 
 R = TypeVar("R")
 
@@ -136,7 +140,12 @@ def unpacked(chunk: Chunk) -> bytes:
 
 def is_absurd(size: int, packed: int) -> bool:
     """Whether so many bytes are more than a chunk holds, or than can be packed into so few."""
-    return size > min(LARGEST, _RATIO * (packed + 1))
+    return size > min(largest(packed), _DENSEST * (packed + 1))
+
+
+def largest(packed: int) -> int:
+    """How many bytes a chunk of so many packed bytes may hold."""
+    return min(LARGEST, max(_PLENTY, _RATIO * packed))
 
 
 def _stored(data: bytes, _: int) -> bytes:
@@ -148,7 +157,8 @@ def _zstd(data: bytes, most: int) -> bytes:
         return stream.read(most)
 
 
-def _lz4(data: bytes | memoryview, most: int) -> bytes:
+def unpacked_lz4(data: bytes | memoryview, most: int) -> bytes:
+    """Not more than so many bytes of what is packed."""
     import lz4.frame  # type: ignore[import-untyped]
 
     return bytes(lz4.frame.LZ4FrameDecompressor().decompress(data, max_length=most))
@@ -172,7 +182,7 @@ def unpack_into(compression: str, packed: memoryview, target: memoryview, *, who
     try:
         if compression == "zstd":
             return _zstd_into(packed, target, whole=whole)
-        data = _lz4(packed, len(target) + whole)
+        data = unpacked_lz4(packed, len(target) + whole)
     except Exception as error:  # each codec has its own
         raise BrokenError("a chunk does not decompress") from error
     size = min(len(data), len(target))
@@ -196,7 +206,11 @@ def _zstd_into(packed: memoryview, target: memoryview, *, whole: bool) -> int:
         return got + len(stream.read(1)) if whole else got
 
 
-_CODECS: dict[str, Callable[[bytes, int], bytes]] = {"": _stored, "zstd": _zstd, "lz4": _lz4}
+_CODECS: dict[str, Callable[[bytes, int], bytes]] = {
+    "": _stored,
+    "zstd": _zstd,
+    "lz4": unpacked_lz4,
+}
 """What unpacks not more than so many bytes."""
 
 

@@ -15,7 +15,7 @@ from mcap.records import Schema
 
 from monitors import idl, jsontext, protobuf
 from monitors.container import Stream
-from monitors.definitions import types
+from monitors.definitions import TooLargeError, types
 from monitors.layouts import Shape
 from monitors.signals import Sparse, fields, stated_field
 
@@ -155,6 +155,7 @@ def numbers(stream: Stream, payloads: Sequence[bytes] = ()) -> tuple[str, ...] |
 def _ros2(name: str, data: bytes) -> Decode:
     from mcap_ros2.decoder import DecoderFactory
 
+    _measured(name, data.decode(), ros1=False)
     with redirect_stdout(StringIO()), redirect_stderr(StringIO()):  # its parser prints
         decode = DecoderFactory().decoder_for("cdr", Schema(1, data, "ros2msg", name))
     assert decode is not None
@@ -176,16 +177,32 @@ def _ros1(name: str, data: bytes) -> Decode:
     other kind would run too.
 
     Raises:
-        ValueError: something else is in the definition.
+        ValueError: something else is in the definition, or it is too large.
     """
     from mcap_ros1.decoder import DecoderFactory
 
     if not _ROS1_TYPE.fullmatch(name):
         raise ValueError(f"`{name}` is no type")
-    bare = Schema(1, _fields_only(data.decode()).encode(), "ros1msg", name)
+    text = _fields_only(data.decode())
+    _measured(name, text, ros1=True)
+    bare = Schema(1, text.encode(), "ros1msg", name)
     decode = DecoderFactory().decoder_for("ros1", bare)
     assert decode is not None
     return decode
+
+
+def _measured(name: str, definition: str, *, ros1: bool) -> None:
+    """Official decoders write each type out in each type that has it, and each element of an array.
+
+    Raises:
+        TooLargeError: that would not end.
+    """
+    try:
+        types(name, definition, ros1=ros1)
+    except TooLargeError:
+        raise
+    except ValueError:  # the official parser knows more
+        return
 
 
 def _fields_only(definition: str) -> str:

@@ -55,8 +55,16 @@ _FIELD = re.compile(
 )
 
 
+_MOST_ELEMENTS = 2**20
+"""Of a message, with all elements of its arrays of fixed length, and of those in them."""
+
+
 class DefinitionError(ValueError):
     """The definition holds something that is not laid out here."""
+
+
+class TooLargeError(DefinitionError):
+    """The types are within each other without end, or larger than anyone would define."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -108,16 +116,35 @@ def measured(found: Types) -> Types:
         for field in fields:
             if field.type not in NUMBERS and field.type not in TEXTS and field.type not in found:
                 raise DefinitionError(f"the type `{field.type}` is not defined")
+    if _largest(found, elements=False) > _MOST_FIELDS:
+        raise TooLargeError("the types are too deep")
+    if _largest(found, elements=True) > _MOST_ELEMENTS:
+        raise TooLargeError("the arrays of fixed length are too long")
+    return found
+
+
+def _largest(found: Types, *, elements: bool) -> int:
+    """How many fields the largest type has, or how many elements, with all that is in it.
+
+    Raises:
+        TooLargeError: types are within each other without end.
+    """
     sizes: dict[str, int] = {}
+    left = dict(found)
     for _ in range(_DEEPEST):
-        sizes |= {
-            name: sum(1 + sizes.get(field.type, 0) for field in fields)
-            for name, fields in found.items()
+        known = {
+            name: sum(
+                (1 + sizes.get(field.type, 0)) * ((field.count or 1) if elements else 1)
+                for field in fields
+            )
+            for name, fields in left.items()
             if all(field.type in sizes or field.type not in found for field in fields)
         }
-    if len(sizes) < len(found) or max(sizes.values()) > _MOST_FIELDS:
-        raise DefinitionError("the types are too deep")
-    return found
+        sizes |= known
+        left = {name: fields for name, fields in left.items() if name not in known}
+        if not left:
+            return max(sizes.values())
+    raise TooLargeError("the types are too deep")
 
 
 def _builtin(*, ros1: bool) -> dict[str, tuple[Field, ...]]:

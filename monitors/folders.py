@@ -15,9 +15,11 @@ from pathlib import Path, PurePosixPath
 from typing import Any
 
 from fretish.diagnostic import Diagnostic
+from fretish.limits import within
 from fretish.source import Source
 from monitors import refusals
 from monitors.samples import Gap
+from monitors.yamltext import loaded
 
 METADATA = "metadata.yaml"
 _LARGEST = 2**24
@@ -73,28 +75,30 @@ def folder(path: str) -> Folder | Diagnostic:
     Raises:
         OSError: it cannot be read.
     """
-    import yaml
-
     file = Path(path) / METADATA
     place = Source(str(file), "").span()
+    with file.open("rb") as stream:
+        data = stream.read(_LARGEST)
+    return within(len(data), place, lambda: _described(path, data) or refusals.bad_metadata(place))
+
+
+def _described(path: str, data: bytes) -> Folder | None:
+    """None where it is not as rosbag2 writes it."""
     try:
-        with file.open("rb") as stream:
-            text = stream.read(_LARGEST).decode()
-        content = yaml.load(text, Loader=getattr(yaml, "CSafeLoader", yaml.SafeLoader))
-        about = content["rosbag2_bagfile_information"]
+        about = loaded(data.decode())["rosbag2_bagfile_information"]
         files = tuple(_name(name) for name in about["relative_file_paths"])
-    except (yaml.YAMLError, ValueError, TypeError, KeyError, RecursionError):
-        return refusals.bad_metadata(place)
-    if len(set(files)) < len(files):
-        return refusals.bad_metadata(place)
-    return Folder(
-        path,
-        files,
-        _whole(about.get("message_count")),
-        _span(about),
-        _spans(about.get("files")),
-        _compressed(about),
-    )
+        if len(set(files)) < len(files):
+            return None
+        return Folder(
+            path,
+            files,
+            _whole(about.get("message_count")),
+            _span(about),
+            _spans(about.get("files")),
+            _compressed(about),
+        )
+    except (ValueError, TypeError, KeyError, AttributeError):
+        return None
 
 
 def _name(listed: Any) -> str:
@@ -106,8 +110,10 @@ def _name(listed: Any) -> str:
 
 
 def _compressed(about: Mapping[str, Any]) -> str:
-    mode = str(about.get("compression_mode") or "").lower()
-    return "" if mode == "none" else mode
+    mode = about.get("compression_mode") or ""
+    if not isinstance(mode, str):  # never as a text: that of a list of aliases has no end
+        raise ValueError("the mode of compression is no text")
+    return "" if mode.lower() == "none" else mode.lower()
 
 
 def _spans(listed: Any) -> dict[str, Gap]:

@@ -26,6 +26,7 @@ from typing import Any, BinaryIO, cast
 from urllib.parse import parse_qsl, urlencode, urlsplit, urlunsplit
 
 from fretish.diagnostic import Diagnostic
+from fretish.limits import grant
 from fretish.source import Source
 from monitors import findings, refusals, web
 
@@ -207,6 +208,7 @@ def _copied(source: BinaryIO, stack: ExitStack) -> io.BufferedReader:
     copy = stack.enter_context(tempfile.TemporaryFile())  # noqa: SIM115
     while block := source.read(_BLOCK):
         copy.write(block)
+        grant(len(block))
     copy.flush()
     copy.seek(0)
     return stack.enter_context(_reader(copy.fileno()))

@@ -20,6 +20,7 @@ import numpy as np
 from fretish.clock import Clock
 from fretish.declarations import Declarations, Signal
 from fretish.diagnostic import Code, Diagnostic
+from fretish.limits import grant, within
 from fretish.source import Source, Span
 from monitors import bags, findings, refusals
 from monitors.bags import NOWHERE
@@ -78,6 +79,13 @@ def read(
         KeyError: a wanted signal is not declared.
     """
     signals = [declarations.signals[name] for name in dict.fromkeys(wanted)]
+    reading = partial(_read_log, path, declarations, signals, integrity)
+    return within(0, Source(shown(path), "").span(), reading)
+
+
+def _read_log(
+    path: str, declarations: Declarations, signals: Sequence[Signal], integrity: Integrity
+) -> Recording | Diagnostic:
     found = _opened(path, lambda: Columns(declarations, signals), integrity)
     if isinstance(found, Diagnostic):
         return found
@@ -95,6 +103,10 @@ def look(path: str) -> Overview | Diagnostic:
     Returns:
         The overview, by log times; or what keeps the whole file from being read.
     """
+    return within(0, Source(shown(path), "").span(), partial(_look, path))
+
+
+def _look(path: str) -> Overview | Diagnostic:
     nothing = Declarations(Source("", ""), Clock(None, None), {}, {})
     found = _opened(path, lambda: Columns(nothing, ()), Integrity.FULL)
     if isinstance(found, Diagnostic):
@@ -199,6 +211,7 @@ def _part(log: Input, sink: Sink, integrity: Integrity, place: Span) -> Part | D
     Raises:
         BrokenError: the file is not as its index says.
     """
+    grant(log.size)
     part = _taken(log, sink, integrity, place)
     return findings.changed(place) if log.changed() else part
 

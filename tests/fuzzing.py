@@ -1,13 +1,17 @@
 """Sentences that are nearly FRETish: grown from the grammar's words, and mutated from real ones.
 
-.venv/bin/python -m tests.fuzzing 100000        # as many, from a seed that is printed
+.venv/bin/python -m tests.fuzzing 100000             # as many, from a seed that is printed
+.venv/bin/python -m tests.fuzzing --readers 1000     # as many files for each reader of files
+.venv/bin/python -m tests.fuzzing --readers 1000 7 psl bag      # from seed 7, for these alone
 """
 
 from __future__ import annotations
 
 import json
 import random
+import resource
 import sys
+import tempfile
 import time
 from collections.abc import Iterator
 from pathlib import Path
@@ -125,6 +129,9 @@ def check(text: str) -> bool:
 
 def main() -> None:
     """Check as many as asked for, and print how many were FRETish and the slowest."""
+    if "--readers" in sys.argv:
+        _files(sys.argv[sys.argv.index("--readers") + 1 :])
+        return
     count = int(sys.argv[1]) if len(sys.argv) > 1 else 100_000
     seed = int(sys.argv[2]) if len(sys.argv) > 2 else random.SystemRandom().randrange(10**6)
     check("the sw shall satisfy q")  # the grammar is compiled once
@@ -135,6 +142,28 @@ def main() -> None:
         slowest = max(slowest, (time.process_time() - start, text))
     print(f"seed {seed}: {count} texts, {accepted} of them FRETish")
     print(f"slowest: {slowest[0] * 1000:.1f} ms of CPU, {len(slowest[1].split())} words")
+
+
+def _files(asked: list[str]) -> None:
+    """Feed mutations to every reader of files; what breaks one stays in a folder that is named."""
+    from tests.readers import fuzzed, readers
+
+    count = int(asked[0]) if asked else 1000
+    seed = int(asked[1]) if len(asked) > 1 else random.SystemRandom().randrange(10**6)
+    folder, broken = Path(tempfile.mkdtemp(prefix="fuzzed")), 0
+    print(f"seed {seed}, {count} files for each reader, in {folder}")
+    for number, (name, reader) in enumerate(readers(folder / "sound").items()):
+        if asked[2:] and name not in asked[2:]:
+            continue
+        try:
+            slowest = fuzzed(name, reader, folder / str(number), count, seed)
+            print(f"{name}: the slowest took {slowest:.2f} s", flush=True)
+        except AssertionError as error:
+            broken += 1
+            print(f"{name}: BROKEN\n{error}", flush=True)
+    used = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss // 1024
+    print(f"at most {used} MiB of memory; {broken} readers broken")
+    sys.exit(bool(broken))
 
 
 if __name__ == "__main__":

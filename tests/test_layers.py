@@ -72,7 +72,7 @@ DOORS = {
     "aiohttp": {"monitors/web.py"},
     "z3": {"compiler/bounds.py"},
     "reqif": {"compiler/parents.py", "compiler/report/forms/reqif.py"},
-    "yaml": {"compiler/parents.py", "compiler/report/forms/gsn.py", "monitors/folders.py"},
+    "yaml": {"compiler/report/forms/gsn.py", "monitors/yamltext.py"},
     "mcap_protobuf": {"monitors/protobuf.py"},
     "mcap_ros1": {"monitors/decoding.py"},
     "mcap_ros2": {"monitors/decoding.py"},

@@ -29,6 +29,7 @@ from compiler.cli.runs import audit, info
 from compiler.cli.simulations import simulate
 from compiler.cli.verify import verify
 from fretish.diagnostic import Code, Diagnostic
+from fretish.limits import ExceededError, exceeded
 
 
 @click.group(
@@ -92,6 +93,9 @@ def main() -> None:
     except (click.Abort, KeyboardInterrupt):
         say_line("stopped")
         raise SystemExit(INTERRUPTED) from None
+    except ExceededError as error:
+        say([exceeded(error)])
+        raise SystemExit(BAD) from None
     except RecursionError:
         say([_too_deep()])
         raise SystemExit(BAD) from None

@@ -24,6 +24,7 @@ from compiler.printing import is_compound
 from compiler.psl_grammar import AGENT, FUNCTOR, KEY_WORDS
 from compiler.psl_text import property_text
 from compiler.rule import Rule
+from compiler.targets.refusals import too_long
 from compiler.targets.target import DEFAULT, Options, Target, not_expressible, stem
 from compiler.templating import render
 from fretish import syntax as s
@@ -177,6 +178,9 @@ def _refused_form(rule: Rule, formula: f.Formula | None) -> Diagnostic | None:
         )
     if isinstance(formula, f.Const):
         return _not(rule, "a formula that is constant", "it says nothing")
+    long = too_long("AJPF", rule, formula)
+    if long is not None:
+        return long
     levels = _levels(_text(formula, rule))
     if levels > _MOST_LEVELS:
         mend = "give parts of the expressions names of their own"

@@ -22,18 +22,17 @@ from compiler.artifact import Artifact
 from compiler.naming import legal_names
 from compiler.record import wording
 from compiler.rule import Rule
+from compiler.targets.refusals import too_long
 from compiler.targets.target import DEFAULT, Options, Target, not_expressible, stem
 from compiler.templating import render
 from fretish import expressions as e
 from fretish.checking import LOOK_BACK, calls, conditions
 from fretish.depth import deep
-from fretish.diagnostic import Code, Diagnostic
+from fretish.diagnostic import Diagnostic
 from fretish.printer import timing as printing_of
 
 _MOST_STEPS = 64
 """Of a chain of `X`: the automaton of a longer one is beyond any model checker."""
-_MOST_OPERATORS = 100_000
-"""Of a property."""
 _RESERVED = frozenset(
     "A bool clock const ctmc C double dtmc E endinit endinvariant endmodule endobservables "
     "endplayer endrewards endsystem false formula filter func F global G init invariant I int "
@@ -70,20 +69,7 @@ def refuse(rule: Rule) -> Diagnostic | None:
             "in one path formula",
             "state the requirement without a scope, or use a clock with longer ticks",
         )
-    if _size(rule.pctl) > _MOST_OPERATORS:
-        return Diagnostic(
-            Code.TOO_LARGE,
-            f"the property of {rule.id} has more than {_MOST_OPERATORS} operators",
-            rule.requirement.wording,
-            help="PRISM's formulas have no `<->` and no `xor`: give parts names of their own",
-        )
-    return None
-
-
-def _size(formula: f.Formula) -> int:
-    """How many operators the text has, with the operands of `<->` and `xor` written twice."""
-    parts = sum(map(_size, f.children(formula)))
-    return 1 + (2 * parts if isinstance(formula, f.Iff | f.Xor) else parts)
+    return too_long("PRISM", rule, rule.pctl)
 
 
 def _looks_back(rule: Rule) -> str | None:

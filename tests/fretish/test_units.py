@@ -5,6 +5,7 @@ from fractions import Fraction
 
 import pytest
 
+from fretish import units
 from fretish.units import DIMENSIONLESS, NAMES, base_name, nanoseconds, unit
 
 
@@ -86,3 +87,17 @@ def test_a_period_is_a_whole_number_of_nanoseconds(text: str, count: int) -> Non
 @pytest.mark.parametrize("text", ["", "100", "ms", "0.5 ns", "-1 s", "1 day", "1 s 5 ms", "1e3 s"])
 def test_what_is_no_period_is_not_read(text: str) -> None:
     assert nanoseconds(text) is None
+
+
+def test_a_number_is_exact_and_of_no_more_digits_than_anybody_means() -> None:
+    assert units.number("-2.5e-3") == Fraction(-1, 400)
+    for text in ("1e999999999", "9" * 61, "0." + "9" * 61, "1/3", "nan", "1_0", ""):
+        with pytest.raises(ValueError, match="is no number"):
+            units.number(text)
+
+
+def test_a_unit_of_absurd_powers_or_many_factors_is_none() -> None:
+    assert units.unit("km^999999999") is None
+    assert units.unit("*".join(["km"] * 17)) is None
+    assert units.unit(" m / s ^2") is None
+    assert units.unit("kg * m / s^2") == units.unit("N")

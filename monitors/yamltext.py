@@ -1,0 +1,56 @@
+"""YAML of strangers, within bounds: its nodes are counted before anything is made of them.
+
+An alias stands for all that its anchor holds, so that a few lines may stand for more than there is
+memory for; and whoever makes values of nested nodes recurses, in C without any limit.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+_MOST_LEVELS = 100
+_MOST_NODES = 20_000
+"""Whatever the text is."""
+_MOST_TIMES = 10
+"""So many times as many nodes as are written may be meant."""
+
+
+def loaded(text: str) -> Any:
+    """The value of a text in YAML.
+
+    Raises:
+        ValueError: it is no YAML, or means far more than is written.
+    """
+    import yaml
+
+    loader = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
+    try:
+        _count(yaml, text, loader)
+        return yaml.load(text, Loader=loader)
+    except (yaml.YAMLError, RecursionError, TypeError, AttributeError) as error:
+        raise ValueError("it is no YAML") from error  # TypeError: a key that cannot be one
+
+
+def _count(yaml: Any, text: str, loader: Any) -> None:
+    """Hold the nodes that are meant against those that are written.
+
+    Raises:
+        ValueError: there are too many of them, or they are too deep.
+    """
+    sizes: dict[str, int] = {}
+    open_: list[tuple[str | None, int]] = []
+    meant = 0
+    for written, event in enumerate(yaml.parse(text, Loader=loader), 1):
+        if isinstance(event, yaml.CollectionStartEvent):
+            open_.append((event.anchor, meant))
+            if len(open_) > _MOST_LEVELS:
+                raise ValueError(f"more than {_MOST_LEVELS} levels are within each other")
+        elif isinstance(event, yaml.CollectionEndEvent):
+            anchor, before = open_.pop()
+            if anchor is not None:
+                sizes[anchor] = meant - before
+        elif isinstance(event, yaml.ScalarEvent) and event.anchor is not None:
+            sizes[event.anchor] = 1
+        meant += sizes.get(event.anchor, 1) if isinstance(event, yaml.AliasEvent) else 1
+        if meant > max(_MOST_NODES, _MOST_TIMES * written):
+            raise ValueError("its aliases stand for far more than is written")

@@ -1,0 +1,34 @@
+"""Whatever bytes a file has, its reader answers with a message of its own, and soon.
+
+A few files for each reader; `python -m tests.fuzzing --readers 1000` feeds more.
+"""
+
+from collections.abc import Mapping
+from pathlib import Path
+
+import pytest
+
+from tests.readers import Reader, command, fuzzed, put, readers
+
+_SLOW = {"monitor", "interceptor", "psl", "Gwendolen"}
+"""Their proofs run in processes of their own."""
+
+
+@pytest.fixture(scope="module")
+def known(tmp_path_factory: pytest.TempPathFactory) -> Mapping[str, Reader]:
+    return readers(tmp_path_factory.mktemp("sound"))
+
+
+def test_every_reader_reads_its_sound_file(known: Mapping[str, Reader], tmp_path: Path) -> None:
+    for number, (name, reader) in enumerate(known.items()):
+        folder = tmp_path / str(number)
+        put(folder, {**reader.beside, reader.file: reader.sound})
+        status, text, _ = command(folder, *reader.args)
+        assert status in (0, 1, 3), f"{name}: {text}"
+
+
+def test_mutations_get_an_answer_from_every_reader(
+    known: Mapping[str, Reader], tmp_path: Path
+) -> None:
+    for number, (name, reader) in enumerate(known.items()):
+        fuzzed(name, reader, tmp_path / str(number), 3 if name in _SLOW else 30, seed=16)
