@@ -64,6 +64,7 @@ scan_timeout = "500 ms"
 """
 HAZARDS = '[HAZ-1]\ntitle = "It collides"\ntext = "Badly."\nseverity = "minor"\nsource = "us"\n'
 WAIVERS = """[R1]
+verdict = "no data"
 reason = "the lidar is being replaced"
 by = "A. Meier"
 role = "safety engineer"
