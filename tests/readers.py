@@ -85,7 +85,8 @@ REQIF = (Path(__file__).parent / "data/parents.reqif").read_text("utf-8")
 AJPF = """{"schema": "fretc-ajpf-result-1", "requirement": "R1", "weakened": null, "agent": null,
  "mcapl": {"commit": null}, "java": "17", "files": {"a.psl": "00"}, "checks": [{"role": "property",
  "key": "R1", "jpf": "a.jpf", "property": "[] (B(sw,p))", "expected": "HOLDS", "told": "HOLDS",
- "why": "", "seconds": 1.5, "states": {"new": 3}, "trace": null}]}"""
+ "why": "", "seconds": 1.5, "states": {"new": 3}, "log": "logs/a.jpf.txt", "log_sha256": "00",
+ "trace": null}]}"""
 GWENDOLEN = """GWENDOLEN
 
 :name: sw

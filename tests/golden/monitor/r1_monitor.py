@@ -22,7 +22,6 @@ import itertools
 import json
 import os
 import re
-import sys
 from bisect import bisect_right
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
