@@ -37,7 +37,7 @@ _MOST = 2**36
 """Bytes of a log that a server sends without saying how many there are."""
 _PATIENCE, _SLOWEST = 60, 10_000
 """Seconds, after which a server has to have sent so many bytes a second."""
-_SMALL_BLOCK = 2**17
+_SMALL_BLOCK = 2**14
 """The same where most of the file is passed by."""
 _HASHED = 2**18
 """Bytes that are hashed at once."""

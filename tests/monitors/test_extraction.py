@@ -363,9 +363,10 @@ def test_values_that_are_no_numbers_stay_what_they_are(ways: Ways, log: Log) -> 
 
 
 def test_a_definition_that_only_the_decoder_understands_is_read_by_it(ways: Ways, log: Log) -> None:
-    one_child = PLAIN + struct.pack("<IId", 1, 0, 0.5)
-    sent = [custom(one_child + struct.pack("<d", float(i)), i * S) for i in range(6)]
-    path = log(sent, "one/T[] children\nfloat64 x")
+    """A type in it is defined twice."""
+    sent = [custom(PLAIN + struct.pack("<dd", 0.5, float(i)), i * S) for i in range(6)]
+    twice = "\n===\nMSG: one/B\nfloat64 y\n===\nMSG: one/B\nfloat64 z"
+    path = log(sent, f"one/B b\nfloat64 x{twice}")
     recording = ways.same(path, signals({"x": "/x.x"}))
     assert values(recording, "x") == [float(i) for i in range(6)]
     assert ways.decoded == 6
