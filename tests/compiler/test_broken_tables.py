@@ -327,7 +327,7 @@ def test_any_other_mistake_refuses_everything(
 ) -> None:
     text = broken(cases)
     assert text.count(old) == 1
-    project(text.replace(old, new))
+    assert project(text.replace(old, new)).declarations is None
     log()
     assert fretc("audit", "l.mcap").status == BAD
     assert not Path("build").exists()
@@ -361,7 +361,7 @@ def test_a_draft_in_place_of_broken_bindings_has_all_propositions() -> None:
 
 
 def test_assumptions_are_those_of_tables_that_are_read() -> None:
-    found, _ = read_bindings(Source("b.toml", broken([("signal", "bx", "F306")])))
+    found, _ = read_bindings(Source("b.toml", broken([("signal", "bx", "F302")])))
     assert found is not None
     named = {name for kind, name in (each.part for each in found.defaults) if kind != "clock"}
     assert named == {"ax", "ay", "low", "near", "idle"}
