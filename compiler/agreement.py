@@ -88,7 +88,8 @@ class _Terms:
     """What each name of a comparison stands for in the binding: one term, without a number."""
 
     def __init__(self, declarations: Declarations) -> None:
-        self._terms: dict[str, e.Expression] = {name: e.Name(name) for name in declarations.signals}
+        names = declarations.signal_names  # a signal with a mistake is still that signal
+        self._terms: dict[str, e.Expression] = {name: e.Name(name) for name in names}
 
     def fit(self, *pairs: tuple[e.Expression, e.Expression]) -> bool:
         """Whether each stated expression has the shape and the numbers of the bound one."""

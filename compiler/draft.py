@@ -97,8 +97,12 @@ def draft(overview: Overview, wanted: Sequence[Wanted]) -> str:
 
 
 def wanted(project: Project) -> tuple[Wanted, ...]:
-    """The propositions of the requirements that the project's bindings do not define."""
-    known = project.declarations.propositions if project.declarations else {}
+    """The propositions of the requirements that the project's bindings do not define.
+
+    Bindings with a mistake are those that the draft is to replace: they define none.
+    """
+    declared = project.declarations
+    known = declared.propositions if declared and not declared.mistakes else {}
     users: dict[str, list[Rule]] = {}
     for rule in project.rules:
         if rule.requirement.status == "retired":

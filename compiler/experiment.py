@@ -110,6 +110,7 @@ def _declarations(threshold: float) -> Declarations:
     changed = text.replace(_THRESHOLD, f"clearance < {threshold * 100:g} cm")
     found, wrong = read_bindings(Source(declared.source.name, changed))
     assert found is not None, wrong
+    assert not has_errors(wrong), wrong
     return found
 
 

@@ -173,7 +173,7 @@ def drift(requirement: Requirement, declarations: Declarations) -> Iterator[Diag
     for name, text in requirement.params.items():
         place = requirement.place("params", name)
         proposition = declarations.propositions.get(name)
-        if proposition is None:
+        if proposition is None and ("proposition", name) not in declarations.mistakes:
             yield Diagnostic(
                 Code.UNKNOWN_NAME,
                 f"`params` states a number for `{name}`, which has no binding",
@@ -189,7 +189,7 @@ def drift(requirement: Requirement, declarations: Declarations) -> Iterator[Diag
                 place,
                 help='write a number and a unit: `"5 cm"`',
             )
-        elif stated not in _constants(proposition.expression):
+        elif proposition is not None and stated not in _constants(proposition.expression):
             yield Diagnostic(
                 Code.PARAMETER_DRIFT,
                 f"the requirement states {text} for `{name}`, and its binding has another number",
@@ -237,10 +237,13 @@ def _constant(part: e.Expression) -> _Exact | None:
 def unbound(rule: Rule, declarations: Declarations) -> Iterator[Diagnostic]:
     """F304 for every proposition of the sentence that the bindings do not have.
 
-    No other proposition is proposed in its place: the nearest name may be another safety claim.
+    Where they have one that cannot be used, it is the mistakes in its tables. No other proposition
+    is proposed in its place: the nearest name may be another safety claim.
     """
     for name in rule.watched:
-        if name in declarations.propositions:
+        mistakes = declarations.mistakes.get(("proposition", name), ())
+        yield from mistakes
+        if mistakes or name in declarations.propositions:
             continue
         yield Diagnostic(
             Code.UNBOUND,

@@ -137,7 +137,8 @@ def bases(project: Project) -> Mapping[int, Basis]:
 def refusals(project: Project) -> tuple[tuple[Requirement, tuple[Diagnostic, ...]], ...]:
     """Every requirement in force that an audit cannot judge, and why: errors, in their order.
 
-    Where the bindings themselves have a mistake, that is no fault of a requirement.
+    A mistake in the table of a signal or a proposition is one of those that read it. Any other
+    mistake in the bindings is no fault of a requirement.
     """
     rules = _in_force(project)
     own = {id(rule.requirement): rule for rule in rules}
@@ -151,7 +152,8 @@ def refusals(project: Project) -> tuple[tuple[Requirement, tuple[Diagnostic, ...
             why.append(unusable)
         elif rule is not None and project.declarations is not None:
             why.extend(_not_auditable(rule, project.declarations))
-        reasons = tuple(reason for reason in why if reason is not None and reason.is_error)
+        errors = (reason for reason in why if reason is not None and reason.is_error)
+        reasons = tuple(dict.fromkeys(errors))
         if reasons and requirement.status != "retired":
             found.append((requirement, reasons))
     return tuple(found)

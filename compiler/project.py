@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from itertools import chain
 from pathlib import Path
 from typing import Any
 
@@ -60,7 +61,8 @@ class Project:
     hazards: Mapping[str, Hazard]
     diagnostics: tuple[Diagnostic, ...]
     general: tuple[Diagnostic, ...] = ()
-    """Those of the diagnostics that are about no single requirement."""
+    """Those of the diagnostics that are about no single requirement, and no single table of the
+    bindings: a mistake there is one of the requirements that read it."""
     mistaken: Mapping[int, Diagnostic] = field(default_factory=dict)
     """The mistake of each requirement that has a rule all the same, by its `id()`: it shares its
     id with another one, or its `params` name what is not there."""
@@ -92,12 +94,15 @@ def load(
     known, told = _hazards(hazards) if hazards else ({}, ())
     written, unread = _written(paths)
     above, elsewhere = _above(paths) if parents else ({}, ())
-    rules, failed, mistaken, remarks = _formalized(written, declarations, broken=has_errors(said))
+    broken = declarations is None and has_errors(said)
+    rules, failed, mistaken, remarks = _formalized(written, declarations, broken=broken)
     upward = [*told, *elsewhere]
     if (hazards or parents) and not has_errors(upward):
         upward.extend(unknown_parents(written, known, above, hazards))
         upward.extend(circles(written))
-    general = (*said, *unread, *upward)
+    mistakes = declarations.mistakes.values() if declarations else ()
+    single = frozenset(chain.from_iterable(mistakes))
+    general = (*(each for each in said if each not in single), *unread, *upward)
     return Project(
         tuple(written),
         rules,
@@ -132,7 +137,7 @@ def _formalized(
     Args:
         written: as read.
         declarations: None where there are none, or they are `broken`: a clock may be among them.
-        broken: whether the bindings have a mistake.
+        broken: whether the bindings have a mistake for which none of them can be used.
     """
     unsaid = frozenset({Code.NO_CLOCK}) if broken else frozenset()
     mistaken = dict(duplicates(written))

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Callable, Iterable, Mapping
 from math import isfinite
-from typing import Any
+from typing import Any, TypeVar
 
 from fretish import binding, units
 from fretish import expressions as e
@@ -13,10 +13,12 @@ from fretish.clock import Clock, End, Rounding, TimeSource
 from fretish.declarations import (
     REP_117,
     Aggregate,
+    Assumed,
     Declarations,
     Default,
     Invalid,
     Modality,
+    Part,
     Path,
     Proposition,
     Reading,
@@ -26,7 +28,7 @@ from fretish.declarations import (
     Variable,
     path,
 )
-from fretish.diagnostic import Code, Diagnostic, has_errors
+from fretish.diagnostic import Code, Diagnostic
 from fretish.fields import Fields
 from fretish.interception import Loop
 from fretish.limits import within
@@ -48,13 +50,16 @@ _INVALID = {
     "other": "other",
 }
 _KINDS = ("belief", "command", "physical")
+T = TypeVar("T", Signal, Proposition)
 
 
 def read_bindings(source: Source) -> tuple[Declarations | None, tuple[Diagnostic, ...]]:
     """Read the text of a `bindings.toml`.
 
     Returns:
-        The declarations, or None where there is an error; and all that there is to say.
+        The declarations, and all that there is to say. A mistake in the table of a signal or a
+        proposition is among the `mistakes` of the declarations; with any other error there are
+        none.
     """
     found = within(len(source.text), source.span(0, 0), lambda: _read(source))
     return (None, (found,)) if isinstance(found, Diagnostic) else found
@@ -66,7 +71,7 @@ def _read(source: Source) -> tuple[Declarations | None, tuple[Diagnostic, ...]]:
         return None, (tables,)
     reader = _Reader(tables)
     declarations = reader.declarations()
-    return (None if has_errors(reader.wrong) else declarations), tuple(reader.wrong)
+    return (declarations if reader.is_usable else None), tuple(reader.wrong)
 
 
 class _Reader(Fields):
@@ -76,29 +81,58 @@ class _Reader(Fields):
         super().__init__(tables)
         self.defaults: list[Default] = []
         self.told: set[str] = set()
+        self.mistakes: dict[Part, tuple[Diagnostic, ...]] = {}
+        self.errors_of_parts = 0
+        self.units: dict[str, units.Unit] = {}
+        """Of every signal whose unit is known, whatever else is wrong with it."""
+
+    @property
+    def is_usable(self) -> bool:
+        """Whether every error is in the table of a signal or a proposition."""
+        return sum(each.is_error for each in self.wrong) == self.errors_of_parts
 
     def declarations(self) -> Declarations:
         data = self.tables.data
         self._known(data, _TABLES, "the bindings")
-        signals = {
-            name: self._signal(name, fields) for name, fields in self._tables("signal").items()
-        }
-        read = {name: signal for name, signal in signals.items() if signal is not None}
-        propositions = {
-            name: self._proposition(name, fields, read)
-            for name, fields in self._tables("proposition").items()
-        }
+        signals = self._parts("signal", self._signal)
+        propositions = self._parts("proposition", self._proposition)
         loop = Loop(self.tables, self.wrong)
         return Declarations(
             self.tables.text.source,
             self._clock(),
-            read,
-            {name: value for name, value in propositions.items() if value is not None},
+            signals,
+            propositions,
             {name: self._variable(name, f) for name, f in self._tables("variable").items()},
-            tuple(self.defaults),
+            tuple(each for each in self.defaults if each.part not in self.mistakes),
             loop.interceptor(),
-            loop.assumed(tuple(self._tables("proposition"))),
+            self._assumed(loop),
+            self.mistakes,
         )
+
+    def _parts(self, kind: str, read: Callable[[str, Mapping[str, Any]], T | None]) -> dict[str, T]:
+        """Those without a mistake; the mistakes of the others are kept."""
+        found = {}
+        for name, table in self._tables(kind).items():
+            before = len(self.wrong)
+            part = read(name, table)
+            own = [each for each in self.wrong[before:] if each.is_error]
+            self.errors_of_parts += len(own)
+            self._keep((kind, name), own)
+            if (kind, name) not in self.mistakes:
+                assert part is not None, name
+                found[name] = part
+        return found
+
+    def _keep(self, part: Part, mistakes: Iterable[Diagnostic]) -> None:
+        known = tuple(dict.fromkeys((*self.mistakes.get(part, ()), *mistakes)))
+        if known:
+            self.mistakes[part] = known
+
+    def _assumed(self, loop: Loop) -> Assumed | None:
+        """None, too, where it is not known what the proposition that it names means."""
+        found = loop.assumed(tuple(self._tables("proposition")))
+        broken = found is not None and ("proposition", found.stands) in self.mistakes
+        return None if broken else found
 
     # Fields
 
@@ -204,6 +238,8 @@ class _Reader(Fields):
         unit = units.unit(unit_name) if unit_name is not None else None
         if unit is None and unit_name is not None:
             self.wrong.append(binding.unknown_unit(unit_name, self.tables.value(*at, "unit")))
+        if unit is not None:
+            self.units[name] = unit
         reduce = self._reduce(table, at, where)
         valid = self._valid(table, (*at, "valid"))
         footprint = self._footprint(table, at, reduce)
@@ -340,9 +376,7 @@ class _Reader(Fields):
 
     # Propositions
 
-    def _proposition(
-        self, name: str, table: Mapping[str, Any], signals: Mapping[str, Signal]
-    ) -> Proposition | None:
+    def _proposition(self, name: str, table: Mapping[str, Any]) -> Proposition | None:
         at = ("proposition", name)
         self._known(table, _PROPOSITION, f"[proposition.{name}]", *at)
         if "expr" not in table:
@@ -353,7 +387,11 @@ class _Reader(Fields):
                 'add `expr = "min_range < 5 cm"`',
             )
         expression = self._expression(table, (*at, "expr"))
-        if expression is None or not self._is_truth(expression, at, signals):
+        if expression is None:
+            return None
+        signals = dict.fromkeys(name.id for name in e.names(expression))
+        self._keep(at, [m for name in signals for m in self.mistakes.get(("signal", name), ())])
+        if not self._is_truth(expression, at):
             return None
         if table.get("agg", Aggregate.LAST) == Aggregate.LAST:
             last = f"proposition {name}: the last sample of a tick counts"
@@ -371,14 +409,12 @@ class _Reader(Fields):
             span=self.tables.value(*at, "expr"),
         )
 
-    def _is_truth(
-        self, expression: e.Expression, at: tuple[str, ...], signals: Mapping[str, Signal]
-    ) -> bool:
+    def _is_truth(self, expression: e.Expression, at: tuple[str, ...]) -> bool:
         place = self.tables.value(*at, "expr")
-        unread = self._tables("signal").keys() - signals.keys()
-        if any(name.id in unread for name in e.names(expression)):
+        unknown = self._tables("signal").keys() - self.units.keys()
+        if any(name.id in unknown for name in e.names(expression)):
             return False  # the signal's own mistake has been told
-        kinds = {name: signal.unit.dimension for name, signal in signals.items()}
+        kinds = {name: unit.dimension for name, unit in self.units.items()}
         kind = binding.dimension(expression, kinds, place)
         if isinstance(kind, Diagnostic):
             self.wrong.append(kind)
@@ -390,7 +426,7 @@ class _Reader(Fields):
                 "compare it: `min_range < 5 cm`",
             )
         else:
-            percents = {name for name, signal in signals.items() if signal.unit == units.PERCENT}
+            percents = {name for name, unit in self.units.items() if unit == units.PERCENT}
             self.wrong.extend(binding.plain_percents(expression, percents, place))
         return kind is None
 

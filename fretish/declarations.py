@@ -14,6 +14,7 @@ from fractions import Fraction
 from typing import Any
 
 from fretish.clock import Clock
+from fretish.diagnostic import Diagnostic
 from fretish.expressions import Expression, names
 from fretish.source import Source, Span
 from fretish.units import Unit
@@ -268,12 +269,15 @@ class Assumed:
     span: Span | None = field(default=None, compare=False, repr=False)
 
 
+Part = tuple[str, str]
+"""`("signal", "vx")`, `("proposition", "near")` or `("clock", "")`."""
+
+
 @dataclass(frozen=True, slots=True)
 class Default:
     """A value that is the default, in words."""
 
-    part: tuple[str, str]
-    """`("signal", "vx")`, `("proposition", "near")` or `("clock", "")`."""
+    part: Part
     text: str
     stated: bool = False
     """Whether it is written in the bindings all the same."""
@@ -281,7 +285,7 @@ class Default:
 
 @dataclass(frozen=True, slots=True)
 class Declarations:
-    """Everything that the bindings declare."""
+    """Everything that the bindings declare, but for the tables that have a mistake."""
 
     source: Source
     clock: Clock
@@ -291,6 +295,14 @@ class Declarations:
     defaults: tuple[Default, ...] = ()
     interceptor: Interception | None = None
     assumed: Assumed | None = None
+    mistakes: Mapping[Part, tuple[Diagnostic, ...]] = field(default_factory=dict)
+    """Each signal and proposition that is declared and cannot be used, and why; the mistakes of a
+    signal are those of the propositions that read it, too."""
+
+    @property
+    def signal_names(self) -> tuple[str, ...]:
+        """Every signal that is declared, with or without a mistake."""
+        return (*self.signals, *(name for kind, name in self.mistakes if kind == "signal"))
 
     def reading(self, propositions: Iterable[str]) -> Declarations:
         """The same without the signals that none of the propositions reads."""

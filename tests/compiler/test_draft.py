@@ -125,8 +125,9 @@ def test_a_proposition_that_is_to_be_filled_in_is_an_error_until_it_is(tmp_path:
     path = write(tmp_path / "a.mcap", every(100 * MS, 12))
     text = drafted(path, [Wanted("near", ("R1",), "input", "any")])
     declarations, wrong = read_bindings(Source("bindings.toml", text))
-    assert declarations is None
+    assert declarations is not None
     (diagnostic,) = wrong
+    assert declarations.mistakes == {("proposition", "near"): wrong}
     assert diagnostic.code is Code.BAD_EXPRESSION
     assert diagnostic.span is not None
     line = diagnostic.span.source.text.splitlines()[diagnostic.span.line - 1]

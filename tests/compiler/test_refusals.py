@@ -29,6 +29,18 @@ REFUSED = {
         '[proposition."(speed <= 1.5)"]\nexpr = "x <= 15"\n',
         "F524",
     ),
+    "a mistake in a proposition": (
+        "the sw shall always satisfy q",
+        "",
+        '[proposition.q]\nexpr = "x >"\n',
+        "F308",
+    ),
+    "a mistake in a signal": (
+        "the sw shall always satisfy p & q",
+        "",
+        '[signal.y]\npath = "/a.y"\nunit = "parsec"\n[proposition.q]\nexpr = "y > 0"\n',
+        "F306",
+    ),
     "no FRETish": ("the sw must satisfy p", "", "", "F107"),
     "a bad header": ("the sw shall always satisfy p", 'status = "aproved"\n', "", "F105"),
     "a header that is no TOML": ("the sw shall always satisfy p", "status = \n", "", "F102"),

@@ -65,7 +65,7 @@ def read(text: str) -> Declarations:
 def mistakes(text: str) -> list[tuple[str, str]]:
     """`F303 bindings.toml:3:8` and the message, of each mistake."""
     found, wrong = read_bindings(Source("bindings.toml", text))
-    assert found is None
+    assert found is None or found.mistakes
     return [
         (f"{d.code.number} {d.span.source.name}:{d.span.line}:{d.span.column}", d.message)
         for d in wrong
@@ -486,7 +486,8 @@ expr = "{}"
 )
 def test_a_unit_that_may_be_a_signal_is_refused(expression: str, place: str) -> None:
     declarations, (wrong,) = read_bindings(Source("b", NAMED_AS_UNITS.format(expression)))
-    assert declarations is None
+    assert declarations is not None
+    assert declarations.mistakes == {("proposition", "p"): (wrong,)}
     assert wrong.code.number == "F339"
     assert wrong.span is not None
     assert wrong.span.text == place

@@ -14,7 +14,7 @@ from rosbags.typesys import Stores, get_typestore
 
 from fretish.bindings import read_bindings
 from fretish.declarations import Declarations
-from fretish.diagnostic import Diagnostic
+from fretish.diagnostic import Diagnostic, has_errors
 from fretish.source import Source
 from monitors.recordings import read
 from monitors.samples import Recording
@@ -164,6 +164,7 @@ def declare(text: str) -> Declarations:
     """The declarations of a bindings file; it has to be right."""
     declarations, wrong = read_bindings(Source("bindings.toml", text))
     assert declarations is not None, wrong
+    assert not has_errors(wrong), wrong
     return declarations
 
 
