@@ -49,7 +49,10 @@ def evaluate_unknown(formula: f.Formula, columns: Mapping[str, c.Column], ticks:
 
 
 class _Evaluation:
-    """Of formulas on one trace; a part that comes twice is computed once.
+    """Of formulas on one trace; a part that stands in two places is computed once.
+
+    A part is known by its identity: the hash of a tree takes as long as the tree is large, and that
+    of each of its parts in turn as long as its square.
 
     What it tells is what holds for certain, or what may hold: every operator but the negation is
     monotone, and the negation of the one is that of the other (`dual`).
@@ -57,14 +60,15 @@ class _Evaluation:
 
     def __init__(self, columns: Mapping[str, int], ticks: int, every: int) -> None:
         self._columns, self._ticks, self._every = columns, ticks, every
-        self._known: dict[f.Formula, int] = {}
+        self._known: dict[int, tuple[f.Formula, int]] = {}
         self.dual = self
 
     def at_each_tick(self, formula: f.Formula) -> int:
         """Its column."""
-        if formula not in self._known:
-            self._known[formula] = self._computed(formula)
-        return self._known[formula]
+        known = self._known.get(id(formula))
+        if known is None:
+            known = self._known[id(formula)] = (formula, self._computed(formula))
+        return known[1]
 
     def _computed(self, formula: f.Formula) -> int:
         read, negated, every = self.at_each_tick, self._negated, self._every
