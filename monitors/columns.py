@@ -306,10 +306,13 @@ class Columns:
     def span(self, whole: Gap) -> Gap:
         """First and last message of the bound topics, else of all; else those of the `whole` log.
 
-        A topic counts if the declared clock tells the time of any of its messages.
+        A topic counts if the declared clock gives the time of any of its messages. Other topics
+        than the bound ones count by log time only: an index knows no other time of them.
         """
         known = [column for column in self.topics.values() if column.placed]
-        times = [c.times for c in known if c.bound] or [c.times for c in known]
+        times = [c.times for c in known if c.bound]
+        if not times and self.clock.time is TimeSource.LOG_TIME:
+            times = [c.times for c in known]
         return (min(map(min, times)), max(map(max, times))) if times else whole
 
     def on_clock(self, gap: Gap) -> Gap:

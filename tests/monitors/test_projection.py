@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from hypothesis import HealthCheck, given, settings
+from hypothesis import HealthCheck, example, given, settings
 from hypothesis import strategies as st
 from mcap.records import Message
 
@@ -147,7 +147,12 @@ def test_by_its_index_a_sound_log_is_read_as_record_by_record(
             assert all(piece.chunked and piece.messages for piece in pieces)
 
 
+UNSET = [image(1000 * S, 0), float_of(1, 1000 * S + 10**8, 0.0, 0)]
+"""The bound topic has no publish time, another one has."""
+
+
 @settings(suppress_health_check=[HealthCheck.function_scoped_fixture])
+@example([Piece(UNSET, crc=False, declares=False)], "publish_time", 1, 1, 1)
 @given(
     pieces(),
     st.sampled_from(CLOCKS),
