@@ -127,7 +127,7 @@ def _canonical(name: str) -> str:
 
 
 def _component(one: Distribution) -> Component:
-    from cyclonedx.factory.license import LicenseFactory
+    from cyclonedx.contrib.license.factories import LicenseFactory
     from cyclonedx.model.component import Component
     from packageurl import PackageURL
 

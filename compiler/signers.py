@@ -39,7 +39,8 @@ class Signer:
     @property
     def name(self) -> str:
         """As it is shown, with the key."""
-        return " ".join(filter(None, [", ".join(self.principals), f"({self.key.fingerprint})"]))
+        named = ", ".join(self.principals)
+        return f"{named} ({self.key.fingerprint})" if named else self.key.fingerprint
 
     def goes_by(self, name: str) -> bool:
         """Whether a person of that name has the key."""

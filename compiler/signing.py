@@ -141,8 +141,8 @@ def _loaded(data: bytes, passphrase: Callable[[], str]) -> PrivateKeyTypes:
         word = passphrase().encode()
     try:
         return load(data, word)
-    except (ValueError, UnsupportedAlgorithm) as error:
-        why = "" if isinstance(error, ValueError) else f": {_why(error)}"
+    except (ValueError, TypeError, UnsupportedAlgorithm) as error:
+        why = f": {_why(error)}" if isinstance(error, UnsupportedAlgorithm) else ""
         raise UnusableKeyError(f"its passphrase is another one, or it is damaged{why}") from None
 
 

@@ -118,7 +118,8 @@ def signed(what: Signable, key: PrivateKey) -> dict[Path, str]:
     new = envelope(sealed(text(what.statement), key))
     left = len(known) - len(kept(known, new, what.current))
     if left:
-        say_line(f"left out {left} of the earlier signatures: of yours, or of nothing that is left")
+        told = "earlier signature is" if left == 1 else "earlier signatures are"
+        say_line(f"{left} {told} left out: yours of the same, or of what is not there any more")
     return {Path(beside(what.path)): appended(known, new, what.current)}
 
 

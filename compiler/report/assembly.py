@@ -156,7 +156,6 @@ _ALL = Mark("all shown", "✔", "satisfied")
 _PART = Mark("not all shown", "◔", "inconclusive")
 _NONE = Mark("nothing shown", "○", "not-exercised")
 _BROKEN = Mark("violated", "✘", "violated")
-_FORGED = Mark("signature does not verify", "✘", "violated")
 
 
 def _overall(
@@ -199,7 +198,7 @@ def _overall(
         mark = replace(_BROKEN, suspect=all(claim.suspicions for claim in red))
         return Overall(mark, broken(red), said)
     if _forged(signed):
-        return Overall(_FORGED, _forged(signed), said)
+        return Overall(BROKEN, _forged(signed), said)
     if not good:
         return Overall(_NONE, _with("Nothing that was claimed is shown", stale), said)
     if len(good) < len(active) or flawed or gone:
