@@ -151,6 +151,7 @@ class _Judged:
     """An envelope, the signers of whom a signature verifies, and those of whom none does."""
 
     envelope: Envelope
+    subjects: frozenset[Subject]
     by: tuple[Signer, ...]
     broken: tuple[Signer, ...]
 
@@ -170,7 +171,7 @@ class Book:
             subject: what it is now.
             name: whoever must have signed it; None: any of the signers.
         """
-        about = [one for one in self.judged if subject in one.envelope.statement.subjects]
+        about = [one for one in self.judged if subject in one.subjects]
         return self._of(about, subject, name)
 
     def of_file(self, kind: str, sha256: str) -> Signing:
@@ -232,15 +233,13 @@ NO_SIGNATURES = Book(None)
 
 
 def _has(one: _Judged, kind: str, sha256: str) -> bool:
-    subjects = one.envelope.statement.subjects
-    return any((each.kind, each.sha256) == (kind, sha256) for each in subjects)
+    return any((each.kind, each.sha256) == (kind, sha256) for each in one.subjects)
 
 
 def _has_another(one: _Judged, subject: Subject) -> bool:
     """Whether the envelope is about an earlier content of it; of a file, the kind is enough."""
     return any(
-        each.kind == subject.kind and subject.name in ("", each.name)
-        for each in one.envelope.statement.subjects
+        each.kind == subject.kind and subject.name in ("", each.name) for each in one.subjects
     )
 
 
@@ -303,4 +302,4 @@ def _judged(envelope: Envelope, signers: Sequence[Signer]) -> _Judged:
     named = [one for one in signers if one.key.fingerprint in envelope.sealed.keys]
     good = tuple(one for one in named if envelope.sealed.is_signed_by(one.key))
     bad = tuple(one for one in named if one not in good)
-    return _Judged(envelope, good, bad)
+    return _Judged(envelope, frozenset(envelope.statement.subjects), good, bad)

@@ -92,7 +92,8 @@ def bad_key(path: str, error: UnusableKeyError) -> Diagnostic:
         Code.BAD_KEY,
         f"the key in `{path}` cannot be used: {error}",
         Source(path, "").span(),
-        help="make one: `ssh-keygen -t ed25519`",
+        help="name the private key to sign, its `.pub` to verify; `ssh-keygen -t ed25519` makes "
+        "both",
     )
 
 

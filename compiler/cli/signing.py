@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import sys
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -102,6 +103,15 @@ def _passphrase(path: str) -> str:
     known = os.environ.get(PASSPHRASE)
     if known is not None:
         return known
+    if not sys.stdin.isatty():
+        stop(
+            Diagnostic(
+                Code.BAD_KEY,
+                f"the key in `{path}` has a passphrase, and nobody can be asked for it here",
+                Source(path, "").span(),
+                help=f"put it into the environment variable {PASSPHRASE}",
+            )
+        )
     asked: str = click.prompt(f"passphrase of {visible(path)}", hide_input=True, err=True)
     return asked
 

@@ -1,8 +1,10 @@
 """`fretc sign`, `fretc lock --key` and `verify-evidence --signed-by`, as their users meet them."""
 
 import base64
+import io
 import json
 import re
+import sys
 from pathlib import Path
 from typing import Any
 
@@ -103,8 +105,12 @@ def test_the_statement_binds_evidence_logs_requirements_monitors_and_verdicts(
     said = told["predicate"]
     assert set(said["tool"]) == {"fretc", "edition", "python"}
     verdicts = {one["id"]: one["verdicts"] for one in said["requirements"]}
-    assert [(id, run, word) for id, those in verdicts.items() for run, word in those] == [("r1", "logs/bad.mcap", "violated"), ("r1", "logs/good.mcap", "satisfied"),
-          ("r2", "logs/bad.mcap", "vacuous"), ("r2", "logs/good.mcap", "satisfied")]  # fmt: skip
+    assert [(id, run, word) for id, those in verdicts.items() for run, word in those] == [
+        ("r1", "logs/bad.mcap", "violated"),
+        ("r1", "logs/good.mcap", "satisfied"),
+        ("r2", "logs/bad.mcap", "vacuous"),
+        ("r2", "logs/good.mcap", "satisfied"),
+    ]
     for one in said["requirements"]:
         assert {"sentence", "bindings", "monitor", "clock"} <= one["rests_on"].keys()
 
@@ -405,6 +411,9 @@ def test_a_passphrase_comes_from_the_environment(
     project: Fretc, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     keys.written("eve", passphrase="open sesame")
+    monkeypatch.setattr(sys, "stdin", io.StringIO("open sesame\n"))
+    run = project("sign", EVIDENCE, "--key", "eve")
+    assert (run.status, "nobody can be asked for it here" in run.err) == (2, True)
     monkeypatch.setenv("FRETC_PASSPHRASE", "wrong")
     run = project("sign", EVIDENCE, "--key", "eve")
     assert (run.status, Path(f"{EVIDENCE}.intoto.jsonl").exists()) == (2, False)
