@@ -221,13 +221,15 @@ def _evidence(audited: Evidence, proofs: Proofs | None) -> Signable:
 
 def _said(audited: Evidence) -> Iterator[str]:
     from compiler.odds import REFUTED
+    from compiler.report.claims import Judged
     from monitors import kernel
 
-    counts = Counter(result.verdict for result in audited.results)
+    verdicts = [Judged(result, ()).verdict for result in audited.results]
+    counts = Counter(verdicts)
     told = ", ".join(f"{count} {verdict}" for verdict, count in sorted(counts.items()))
     yield f"evidence {audited.file}: {told}"
-    for result in audited.results:
-        if result.verdict == kernel.VIOLATED:
+    for result, verdict in zip(audited.results, verdicts, strict=True):
+        if verdict == kernel.VIOLATED:
             yield f"  {result.requirement} is violated in {result.run}"
         if "log" not in result.hashes:
             yield f"  no SHA-256 is known of {result.run}: the log itself is not signed"

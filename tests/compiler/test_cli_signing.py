@@ -34,18 +34,27 @@ EVIDENCE, LOCK = "build/evidence.json", "requirements/fretc.lock"
 SIGNERS = "requirements/allowed_signers"
 
 
+_MADE: dict[str, bytes] = {}
+"""The files of the project, made once."""
+
+
 @pytest.fixture
 def project(fretc: Fretc, monkeypatch: pytest.MonkeyPatch) -> Fretc:
     """Two requirements, two logs that were audited, one of them violated; keys of Ada and Bob."""
     monkeypatch.setenv("SOURCE_DATE_EPOCH", "1790000000")  # 2026-09-21
-    write("requirements/r1.fret", R1)
-    write("requirements/r2.fret", R2)
-    write("requirements/bindings.toml", BINDINGS)
-    log("logs/good.mcap", 0, 1.5, 3, 0, 0, 0)
-    log("logs/bad.mcap", 0, 1.5, 0, 0, 0, 0)
-    assert fretc("audit", "logs").status == 1
-    for name in ("ada", "bob"):
-        keys.written(name)
+    if not _MADE:
+        write("requirements/r1.fret", R1)
+        write("requirements/r2.fret", R2)
+        write("requirements/bindings.toml", BINDINGS)
+        log("logs/good.mcap", 0, 1.5, 3, 0, 0, 0)
+        log("logs/bad.mcap", 0, 1.5, 0, 0, 0, 0)
+        assert fretc("audit", "logs").status == 1
+        for name in ("ada", "bob"):
+            keys.written(name)
+        _MADE.update((str(p), p.read_bytes()) for p in Path().rglob("*") if p.is_file())
+    for path, content in _MADE.items():
+        Path(path).parent.mkdir(parents=True, exist_ok=True)
+        Path(path).write_bytes(content)
     return fretc
 
 
@@ -469,3 +478,15 @@ def test_without_the_libraries_signatures_are_not_overlooked(
         assert run.err.startswith("F908 signatures need `securesystemslib` and `cryptography`\n")
     Path(f"{EVIDENCE}.intoto.jsonl").unlink()
     assert project("report").status == 0, "where nothing is signed nothing is needed"
+
+
+def test_every_form_of_the_report_that_names_a_review_or_a_waiver_says_it_is_unauthenticated(
+    project: Fretc,
+) -> None:
+    write("requirements/waivers.toml", WAIVERS)
+    assert project("lock", "--reviewer", "Ada", *BY).status == 0
+    forms = {"csv": "r.csv", "reqif": "r.reqif", "gsn": "r.yaml"}
+    assert project("report", *(w for f, p in forms.items() for w in (f"--{f}", p))).status == 0
+    assert "reviewed, unauthenticated" in Path("r.csv").read_text()
+    assert "reviewed, unauthenticated" in Path("r.reqif").read_text()
+    assert "(unauthenticated)" in Path("r.yaml").read_text()
