@@ -90,6 +90,17 @@ def test_an_envelope_of_another_form_is_refused(change: object) -> None:
         opened(json.dumps(told))
 
 
+def test_each_content_has_one_text() -> None:
+    """The last digit before `==` has four bits that stand for nothing."""
+    told = json.loads(ENVELOPE)
+    sig = told["signatures"][0]["sig"]
+    other = sig[:-3] + chr(ord(sig[-3]) + 1) + "=="
+    assert base64.b64decode(other) == base64.b64decode(sig)
+    told["signatures"][0]["sig"] = other
+    with pytest.raises(MisshapenError, match="must be base64"):
+        opened(json.dumps(told))
+
+
 def test_a_name_that_stands_twice_is_refused() -> None:
     with pytest.raises(MisshapenError, match="a name stands twice"):
         opened(ENVELOPE.replace('{"payload"', '{"payload": "e30=", "payload"', 1))
