@@ -19,12 +19,12 @@ def source_date() -> datetime | None:
 
 def today() -> str:
     """The day of `SOURCE_DATE_EPOCH` where that is set, so that a report can be made again; UTC."""
-    return _now().date().isoformat()
+    return now().date().isoformat()
 
 
 def is_to_come(day: str) -> bool:
     """Whether a day, as `2026-11-22`, has begun nowhere on Earth: at UTC+14 it begins first."""
-    return date.fromisoformat(day) > (_now() + timedelta(hours=14)).date()
+    return date.fromisoformat(day) > (now() + timedelta(hours=14)).date()
 
 
 def is_date(text: str) -> bool:
@@ -35,5 +35,6 @@ def is_date(text: str) -> bool:
         return False
 
 
-def _now() -> datetime:
+def now() -> datetime:
+    """The time of `SOURCE_DATE_EPOCH` where that is set, in UTC."""
     return source_date() or datetime.now(UTC)

@@ -58,6 +58,11 @@ class Review:
         return self.prints.get(in_force(self.requirement)) == IN_FORCE
 
     @property
+    def shown(self) -> str:
+        """The verdicts that were accepted, in words."""
+        return _in_words(self.verdicts)
+
+    @property
     def seal(self) -> str:
         """SHA-256 of all of it: a review that is edited by hand is nobody's."""
         told = {name: getattr(self, name) for name in ("requirement", *_TEXTS)}
@@ -322,12 +327,7 @@ class Withdrawn:
         """In a sentence, with what the runs had shown of it."""
         how = "is retired now" if self.retired else "is not among the requirements any more"
         renamed = f"; {self.successor} has its sentence" if self.successor else ""
-        return f"{self.review.requirement} was reviewed ({self.shown}) and {how}{renamed}"
-
-    @property
-    def shown(self) -> str:
-        """What was accepted, in words."""
-        return _in_words(self.review.verdicts)
+        return f"{self.review.requirement} was reviewed ({self.review.shown}) and {how}{renamed}"
 
 
 def withdrawn(

@@ -239,7 +239,7 @@ def beside(folder: str, name: str) -> str | None:
 
 def companions(paths: Sequence[str]) -> tuple[str, ...]:
     """What stands beside the first requirement and is read with it; no output may replace it."""
-    names = (BINDINGS, HAZARDS, "fretc.lock", "waivers.toml")
+    names = (BINDINGS, HAZARDS, "fretc.lock", "waivers.toml", "allowed_signers")
     return tuple(path for path in (_beside(paths, name) for name in names) if path is not None)
 
 

@@ -10,6 +10,7 @@ from dataclasses import dataclass, field
 from datetime import date
 from typing import Any
 
+from compiler.canonical import digest
 from compiler.dates import is_date
 from compiler.files import read as read_text
 from compiler.odds import REFUTED
@@ -50,19 +51,24 @@ class Waiver:
     """The last day on which it counts; both dates as `2026-11-22`."""
     span: Span | None = field(default=None, compare=False, repr=False)
 
+    @property
+    def seal(self) -> str:
+        """SHA-256 of all of it, as it is signed."""
+        return digest([self.requirement, *(getattr(self, name) for name in _FIELDS)])
+
     def covers(self, day: str) -> bool:
         """Whether it counts on that day."""
         return self.granted <= day <= self.expires
 
 
 def read(
-    path: str, known: Sequence[str], day: str
+    path: str, known: Sequence[str] | None, day: str
 ) -> tuple[Mapping[str, Waiver], tuple[Diagnostic, ...]]:
     """The waivers of a file, and all that there is to say of them.
 
     Args:
         path: the file.
-        known: the ids of the requirements.
+        known: the ids of the requirements; None: any may be waived.
         day: on which they are to count; one that does not is told as a warning.
     """
     source = read_text(path)
@@ -82,11 +88,13 @@ def read(
     )
 
 
-def _mistakes(tables: Tables, id: str, told: Any, known: Sequence[str]) -> Iterator[Diagnostic]:
+def _mistakes(
+    tables: Tables, id: str, told: Any, known: Sequence[str] | None
+) -> Iterator[Diagnostic]:
     if not isinstance(told, dict):
         yield _wrong(tables, f"`{id}` is no waiver", f"write `[{id}]`, then its fields", id)
         return
-    if id not in known:
+    if known is not None and id not in known:
         near = suggestion(id, known)
         mend = f"did you mean `{near}`?" if near else "name a requirement of the project"
         yield _wrong(tables, f"{id} is waived, and is not among the requirements", mend, id)

@@ -140,6 +140,11 @@ class Code(Enum):
     UNKNOWN_LOG = ("F542", "a lock would accept a verdict on a log that nothing identifies")
     IDLE_WAIVER = ("F543", "a waiver covers nothing")
     NOT_REVIEWED = ("F544", "a requirement was never reviewed, and others were")
+    BAD_SIGNERS = ("F548", "the list of signers cannot be read")
+    BAD_SIGNATURES = ("F556", "signatures cannot be read")
+    BROKEN_SIGNATURE = ("F557", "a signature does not verify")
+    NOT_SIGNED = ("F558", "something is not signed by the key that is asked for")
+    IDLE_SIGNATURE = ("F559", "a signature does not count for what it is about")
     SEVERAL_VERDICTS = ("F555", "audits of one log have several verdicts of a requirement")
     NO_SUCH_REQUIREMENT = ("F515", "no requirement and no diagnostic has that name")
 
@@ -182,6 +187,7 @@ class Code(Enum):
     NO_KEY = ("F920", "the user has no key, so nothing is kept of a stopped audit")
     FOREIGN_PLACE = ("F921", "evidence names a log in a place that is not looked into")
     TOO_COSTLY = ("F930", "what is read takes more time or memory than it may")
+    BAD_KEY = ("F931", "a key cannot be used")
     INTERNAL = ("F999", "fretc itself is at fault")
 
     @property

@@ -21,6 +21,7 @@ from pathlib import Path
 from mcap.records import Channel, Schema
 
 from compiler import cli
+from tests import keys
 from tests.monitors.broken import made, raw
 from tests.monitors.logs import S, number, write
 from tests.monitors.test_bags import bag, db3, ros1, ros2
@@ -162,8 +163,10 @@ def readers(folder: Path) -> dict[str, Reader]:
     sent = [number(0.5 + i / 8, 1000 * S + i * 100_000_000) for i in range(12)]
     write(folder / "log.mcap", sent)
     signed = ("--reviewer", "a", "--role", "b", "--comment", "c", "--accept-violations")
+    key = keys.written(str(folder / "key"))
     for args in (
         ("audit", "log.mcap"),
+        ("sign", "build/evidence.json", "--key", "key"),
         ("lock", *signed),
         ("requirements", "--emit", "monitor"),
         ("requirements", "--emit", "interceptor"),
@@ -218,6 +221,12 @@ def readers(folder: Path) -> dict[str, Reader]:
     add("reqifz", "p.reqifz", _zipped(REQIF), ("check",), packed, binary=True)
     add("evidence", "build/evidence.json", evidence, report)
     verified = made_in(folder, "build/verification.json")
+    add("signers", "requirements/allowed_signers", keys.line("a", key), report, kept)
+    whose = {**kept, "requirements/allowed_signers": keys.line("a", key)}
+    envelopes = made_in(folder, "build/evidence.json.intoto.jsonl")
+    add("signatures", "build/evidence.json.intoto.jsonl", envelopes, report, whose)
+    again = ("sign", "build/evidence.json", "--key", "key")
+    add("private key", "key", Path(key).read_bytes(), again, kept)
     add("verification", "build/verification.json", verified, report, kept)
     concluded = ("verify", "--layer", "ajpf", "--ajpf", "result.json", "requirements/r.fret")
     add("AJPF's result", "result.json", AJPF, concluded)

@@ -26,6 +26,8 @@ from compiler.cli.reports import report
 from compiler.cli.requirements import compile_, fmt, import_
 from compiler.cli.reviews import diff, lock
 from compiler.cli.runs import audit, info
+from compiler.cli.sbom import sbom
+from compiler.cli.signing import sign
 from compiler.cli.simulations import simulate
 from compiler.cli.verify import verify
 from fretish.diagnostic import Code, Diagnostic
@@ -70,7 +72,9 @@ for _command in (
     diff,
     verify,
     verify_evidence,
+    sign,
     simulate,
+    sbom,
 ):
     cli.add_command(_command)
 

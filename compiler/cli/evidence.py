@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import click
 
 from compiler.cli.output import BAD, NOT_SHOWN, SHOWN, VIOLATION, coloured, say, stop
+from compiler.cli.signing import demand
 from fretish.diagnostic import Code, Diagnostic, Severity, has_errors
 from fretish.rendering import visible
 
@@ -41,6 +42,12 @@ if TYPE_CHECKING:
     "--verification",
     help="What `fretc verify` found; build/verification.json, if it is there and none is given.",
 )
+@click.option(
+    "--signed-by",
+    metavar="KEY",
+    help="A public key (id_ed25519.pub), or a list of signers: one of them must have signed FILE, "
+    "and what --report and --verification name.",
+)
 @click.option("--jobs", type=click.IntRange(min=1), default=os.cpu_count() or 1)
 @click.option(
     "--format", "form", type=click.Choice(("text", "json")), default="text", show_default=True
@@ -53,6 +60,7 @@ def verify_evidence(
     offline: bool,
     report: str | None,
     verification: str | None,
+    signed_by: str | None,
     jobs: int,
     form: str,
 ) -> None:
@@ -72,6 +80,8 @@ def verify_evidence(
         wrong = source if isinstance(source, Diagnostic) else audited
         assert isinstance(wrong, Diagnostic)
         stop(replace(wrong, severity=Severity.ERROR))
+    if signed_by is not None:
+        demand(audited, source.text, signed_by, {"report": report, "proofs": verification})
     project, plan = _plan(requirements, bindings)
     runs = list(dict.fromkeys(result.run for result in audited.results))
     found = _rechecked(source.text, plan, _places(runs, places, offline=offline), jobs)
@@ -155,12 +165,20 @@ def _report(
     from compiler.files import read
     from compiler.project import beside
     from compiler.report import make
+    from compiler.signatures import SIGNERS
 
     there = read(path)
     if isinstance(there, Diagnostic):
         stop(there)
-    names = [beside(requirements, name) for name in ("fretc.lock", "waivers.toml")]
-    made = make(project, evidence, lock=names[0], waivers=names[1], verification=verification)
+    names = [beside(requirements, name) for name in ("fretc.lock", "waivers.toml", SIGNERS)]
+    made = make(
+        project,
+        evidence,
+        lock=names[0],
+        waivers=names[1],
+        verification=verification,
+        signers=names[2],
+    )
     return made.html == there.text
 
 

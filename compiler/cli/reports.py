@@ -27,6 +27,7 @@ _HEADINGS = {
         "verification",
         "lock",
         "waivers",
+        "signers",
     ),
     "Forms": ("html", "json_", "csv", "junit", "sarif", "markdown", "reqif", "gsn"),
 }
@@ -61,6 +62,9 @@ _HEADINGS = {
 @click.option("--lock", help="fretc.lock; the one in the requirements' folder if not given.")
 @click.option("--waivers", help="waivers.toml; the one in the requirements' folder if not given.")
 @click.option(
+    "--signers", help="Whose keys count; allowed_signers in the requirements' folder if not given."
+)
+@click.option(
     "--strict",
     is_flag=True,
     help="Exit as the report says: 1 violated or suspect, 3 something is not shown.",
@@ -75,6 +79,7 @@ def report(
     ajpf: tuple[str, ...],
     lock: str | None,
     waivers: str | None,
+    signers: str | None,
     strict: bool,
     **forms: str | None,
 ) -> None:
@@ -88,6 +93,7 @@ def report(
     from compiler.proven import written
     from compiler.report import make
     from compiler.report.forms import missing_reqif
+    from compiler.signatures import SIGNERS
 
     absent = missing_reqif() if forms["reqif"] is not None else None
     if absent is not None:
@@ -100,15 +106,24 @@ def report(
         stop(project)
     lock = lock or beside(requirements, "fretc.lock")
     waivers = waivers or beside(requirements, "waivers.toml")
+    signers = signers or beside(requirements, SIGNERS)
     verification = verification or written()
     said = ajpf or results()
-    made = make(project, evidence, lock=lock, waivers=waivers, verification=verification, ajpf=said)
+    made = make(
+        project,
+        evidence,
+        lock=lock,
+        waivers=waivers,
+        verification=verification,
+        ajpf=said,
+        signers=signers,
+    )
     say([*project.diagnostics, *made.diagnostics])
     if made.report is None:
         raise SystemExit(BAD)
     wanted = {"html": html, **{name: path for name, path in forms.items() if path is not None}}
     texts = _texts(made, project, evidence)
-    read = filter(None, (bindings, hazards, verification, lock, waivers, *said))
+    read = filter(None, (bindings, hazards, verification, lock, waivers, signers, *said))
     logs = [str(result["run"]) for result in _audited(evidence, made.report)]
     _deliver(wanted, texts, [evidence, *files, *companions(files), *read, *dict.fromkeys(logs)])
     if has_errors([*project.diagnostics, *made.diagnostics]):

@@ -14,10 +14,10 @@ from fretish.ordering import natural
 from fretish.rendering import visible
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Sequence
+    from collections.abc import Collection, Mapping, Sequence
 
     from compiler.links import Chain
-    from compiler.lock import Lock
+    from compiler.lock import Lock, Review
     from compiler.project import Project
 
 _REQUIREMENTS = click.option(
@@ -40,6 +40,7 @@ _VERIFICATION = click.option(
 @_EVIDENCE
 @_VERIFICATION
 @click.option("--lock", "path", help="The lock; `fretc.lock` in the requirements' folder.")
+@click.option("--key", help="Your private key, to sign the reviews with: ~/.ssh/id_ed25519.")
 @click.option("--accept-violations", is_flag=True, help="Also where a run violates a requirement.")
 def lock(
     ids: tuple[str, ...],
@@ -51,6 +52,7 @@ def lock(
     evidence: str,
     verification: str | None,
     path: str | None,
+    key: str | None,
     accept_violations: bool,
 ) -> None:
     """Accept the present state of requirements, as their reviewer.
@@ -97,11 +99,23 @@ def lock(
     left = {id for id in gone if not ids or id in ids}
     reviews = {id: review for id, review in kept.items() if id not in left}
     reviews |= {c.requirement: accepted(c, reviewer, role, day, comment) for c in chosen}
-    deliver({Path(where): text(Lock(reviews))})
+    signatures = _signatures(where, reviews, chosen, key) if key is not None else {}
+    deliver({Path(where): text(Lock(reviews)), **signatures})
     for chain in chosen:
         say_line(visible(f"accepted {chain.requirement}: {verdicts_of(chain)}"))
     for id in sorted(left, key=natural):
         say_line(f"left out {id}: it is not among the requirements")
+
+
+def _signatures(
+    path: str, reviews: Mapping[str, Review], chosen: Sequence[Chain], key: str
+) -> dict[Path, str]:
+    """The signatures beside the lock, with one of the reviews that are accepted now."""
+    from compiler.cli.signing import of_reviews, private, signed
+
+    mine = private(key)
+    accepted = [reviews[chain.requirement] for chain in chosen]
+    return signed(of_reviews(path, accepted, reviews.values()), mine)
 
 
 @click.command(short_help="Say what has changed since a review, verdicts included.")

@@ -15,6 +15,7 @@ from compiler.report.assembly import report
 from compiler.report.html import html
 from compiler.report.views import Report
 from compiler.rule import Rule
+from compiler.signatures import gathered
 from compiler.templating import to_json
 from compiler.waivers import Waiver
 from compiler.waivers import read as read_waivers
@@ -49,6 +50,7 @@ def make(
     waivers: str | None = None,
     verification: str | None = None,
     ajpf: Sequence[str] = (),
+    signers: str | None = None,
 ) -> Made:
     """Make the report.
 
@@ -59,6 +61,7 @@ def make(
         waivers: path of a file of waivers; None: nothing is waived.
         verification: path of what `fretc verify` wrote; None: nothing was proved.
         ajpf: paths of what the `run.py` of bundles wrote.
+        signers: path of a list of signers; None: no signature counts.
     """
     audited = read(evidence)
     if isinstance(audited, Diagnostic) and audited.is_error:
@@ -69,10 +72,14 @@ def make(
     known = read_lock(lock) if lock is not None else None
     if isinstance(known, Diagnostic):
         return Made(None, (known,))
+    signed = [path for path in (evidence, verification, lock, waivers) if path is not None]
+    book = gathered(signed, signers)
+    if isinstance(book, Diagnostic):
+        return Made(None, (book,))
     waived, told = _waived(project, waivers)
     found = None if isinstance(audited, Diagnostic) else audited
     lines, unread = ajpf_evidence(project.rules, ajpf)
-    whole, said = report(project, found, evidence, known, waived, proofs, lines)
+    whole, said = report(project, found, evidence, known, waived, proofs, lines, book)
     missing = (audited,) if isinstance(audited, Diagnostic) else ()
     return Made(whole, (*missing, *told, *unread, *said), project.rules)
 

@@ -161,7 +161,9 @@ class _Argument:
         if view.meaning:
             yield Element(context, Kind.CONTEXT, view.meaning)
         if view.waiver:
-            words = f"Waived until {view.waiver.until} by {view.waiver.by}: {view.waiver.reason}"
+            known = "" if view.waiver.signature.is_good else " (unauthenticated)"
+            by = f"{view.waiver.by}{known}"
+            words = f"Waived until {view.waiver.until} by {by}: {view.waiver.reason}"
             yield Element(waived, Kind.JUSTIFICATION, words)
         for each in against:
             yield Element(each.id, Kind.COUNTER_SOLUTION, each.text, challenges=goal)

@@ -26,6 +26,8 @@ from compiler.report.proofs import SHARED, is_refuted, proof_views
 from compiler.report.reproduction import commands, folder_of, manifest
 from compiler.report.runs import Run, run_views, runs, trust
 from compiler.report.sections import remark, section
+from compiler.report.signatures import BROKEN, signatures
+from compiler.report.signatures import idle as idle_signatures
 from compiler.report.views import (
     SCHEMA,
     Count,
@@ -35,10 +37,12 @@ from compiler.report.views import (
     Planned,
     Report,
     RequirementView,
+    Signatures,
     Withdrawal,
     verdict_mark,
     worst_first,
 )
+from compiler.signatures import NO_SIGNATURES, Book
 from compiler.verdicts import NOT_EXERCISED, RETIRED, WAIVED
 from compiler.verification import Evidence as Line
 from compiler.waivers import Waiver
@@ -55,6 +59,7 @@ def report(
     waivers: Mapping[str, Waiver] = MappingProxyType({}),
     proofs: Proofs | None = None,
     ajpf: Sequence[Line] = (),
+    book: Book = NO_SIGNATURES,
 ) -> tuple[Report, tuple[Diagnostic, ...]]:
     """The report, and what there is to say of the evidence.
 
@@ -66,6 +71,7 @@ def report(
         waivers: those that count now, by the requirement.
         proofs: None where nothing was verified.
         ajpf: what AJPF itself said, held against what is made now.
+        book: who signed what.
     """
     measured = in_declared_units(evidence, project.declarations) if evidence else None
     found = runs(measured)
@@ -77,13 +83,14 @@ def report(
     audited = evidence is not None
     common = shared_products(project.declarations) if proved else ()
     sections = tuple(
-        section(claim, project, found, anchors, audited, proved, common) for claim in claimed
+        section(claim, project, found, anchors, audited, proved, common, book) for claim in claimed
     )
     plans = tuple(plan for view in sections for plan in view.planned if view.status != RETIRED)
     reservations = (
         *(line for view in sections for line in _reservations(view)),
         *(line for claim in claimed for line in reviews.reservations(claim)),
     )
+    signed = signatures(book, claimed, evidence, proofs)
     return Report(
         schema=SCHEMA,
         fretc=__version__,
@@ -91,7 +98,9 @@ def report(
         components=tuple(sorted({rule.sentence.component for rule in project.rules})),
         evidence=phrases.place(path) if evidence else "",
         audited_by=evidence.fretc if evidence else "",
-        overall=_overall(project, claimed, sections, tuple(found.values()), reservations, gone),
+        overall=_overall(
+            project, claimed, sections, tuple(found.values()), reservations, gone, signed
+        ),
         runs=run_views(found.values(), project),
         claims=_claims(claimed, len(found)),
         counts=_counts(claimed),
@@ -104,17 +113,23 @@ def report(
         hazards=hazard_views(project),
         matrix=matrix(project, claimed, sections, found),
         orphans=orphans(project, claimed, evidence),
-        reviewed=reviews.reviewed(claimed),
+        reviewed=reviews.reviewed(claimed, book),
         changes=(*reviews.changes(claimed), *reviews.gone(gone)),
         withdrawn=tuple(Withdrawal(one.review.requirement, one.text) for one in gone),
         waivers=tuple(view.waiver for view in sections if view.waiver),
+        signatures=signed,
         requirements=sections,
         assumptions=_assumptions(project, evidence),
         commands=commands(
             project, sections, tuple(found.values()), path, proofs, _confidence(evidence)
         ),
-        manifest=manifest(project, sections, tuple(found.values()), evidence, proofs),
-    ), (*stale(claimed, evidence, path), *idle_waivers(claimed))
+        manifest=manifest(project, sections, tuple(found.values()), evidence, proofs, book.signers),
+    ), (
+        *stale(claimed, evidence, path),
+        *idle_waivers(claimed),
+        *book.diagnostics(),
+        *idle_signatures(book, claimed),
+    )
 
 
 def _confidence(evidence: Evidence | None) -> float:
@@ -150,6 +165,7 @@ def _overall(
     runs: Sequence[Run],
     reservations: Sequence[str],
     gone: Sequence[Withdrawn],
+    signed: Signatures,
 ) -> Overall:
     active = [claim for claim in claimed if claim.verdict != RETIRED]
     inforce = [view for view in sections if view.status != RETIRED]
@@ -169,16 +185,20 @@ def _overall(
                 _refuted(refuted),
                 *_few(reservations),
                 _waived(active),
+                _unsigned(sections),
                 _unplanned(missing),
                 _uncovered(project, claimed),
                 trust(runs),
                 _FLAWED if flawed else "",
+                _forged(signed) if red else "",
             ),
         )
     )
     if red:
         mark = replace(_BROKEN, suspect=all(claim.suspicions for claim in red))
         return Overall(mark, broken(red), said)
+    if _forged(signed):
+        return Overall(BROKEN, _forged(signed), said)
     if not good:
         return Overall(_NONE, _with("Nothing that was claimed is shown", stale), said)
     if len(good) < len(active) or flawed or gone:
@@ -237,6 +257,22 @@ def _waived(active: Sequence[Claim]) -> str:
     verb = "is" if len(found) == 1 else "are"
     names = phrases.some([f"{claim.id} ({claim.unwaived_mark.text})" for claim in found])
     return f"{names} {verb} waived, and not shown."
+
+
+def _unsigned(sections: Sequence[RequirementView]) -> str:
+    """A waiver lets a requirement pass, whoever has written it."""
+    waived = [view for view in sections if view.waiver and view.mark.word == WAIVED]
+    names = [view.id for view in waived if view.waiver and not view.waiver.signature.is_good]
+    return f"Nobody is known to have signed the waiver of {phrases.some(names)}." if names else ""
+
+
+def _forged(signed: Signatures) -> str:
+    places = [one.name for one in signed.signed if one.signature.mark == BROKEN]
+    if not places:
+        return ""
+    verb = "does" if len(places) == 1 else "do"
+    count = phrases.times(len(places), "signature")
+    return f"{count} {verb} not verify: {phrases.some(places)}."
 
 
 def _where(runs: int) -> str:

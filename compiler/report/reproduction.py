@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from functools import partial
 from pathlib import PurePath
+from typing import TYPE_CHECKING
 
 from compiler import __version__
 from compiler.basis import BINDINGS, of_all
@@ -18,6 +19,9 @@ from compiler.report.runs import Run
 from compiler.report.views import Command, Hash, RequirementView
 from compiler.shellwords import UnsayableError, check_of, is_sha256, unsayable, word, words
 from fretish.source import Source
+
+if TYPE_CHECKING:
+    from compiler.signers import Signers
 
 
 def commands(
@@ -140,6 +144,7 @@ def manifest(
     runs: Sequence[Run],
     evidence: Evidence | None,
     proofs: Proofs | None,
+    signers: Signers | None = None,
 ) -> tuple[Hash, ...]:
     """Every hash that the report rests on."""
     bindings = project.declarations
@@ -155,6 +160,8 @@ def manifest(
         lines.append(Hash("evidence", phrases.place(evidence.file), evidence.sha256))
     if proofs is not None:
         lines.append(Hash("verification", phrases.place(proofs.file), proofs.sha256))
+    if signers is not None:
+        lines.append(Hash("signers", phrases.place(signers.file), signers.sha256))
     lines.extend(
         Hash("run", phrases.place(run.result.run), run.result.hashes.get("log", "")) for run in runs
     )

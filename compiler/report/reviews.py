@@ -9,46 +9,56 @@ from compiler.links import Suspect
 from compiler.lock import Withdrawn
 from compiler.report import phrases
 from compiler.report.claims import Claim, thing
+from compiler.report.signatures import of_review, of_waiver
 from compiler.report.views import Change, Listing, Mark, ReviewView, WaiverView
+from compiler.signatures import Book
 from compiler.verdicts import SUSPECT
 
 _LISTED = 40
 _ACCEPTED = Mark("reviewed", "✔", "satisfied")
+_UNSIGNED = Mark("reviewed", "◔", "inconclusive")
 _OPEN = Mark("not reviewed", "○", "not-exercised")
 _SUSPECT = Mark(SUSPECT, "⚠", SUSPECT)
 
 
-def review(claim: Claim) -> ReviewView:
+def review(claim: Claim, book: Book) -> ReviewView:
     """The review of a requirement."""
     found = claim.standing.review
     if found is None:
-        return ReviewView(_OPEN, "", "", ())
+        return ReviewView(_OPEN, "", "", (), None)
+    signature = of_review(book, found)
     by = f"{found.reviewer}, {found.role}, {found.date}"
     if not claim.standing.is_suspect:
-        return ReviewView(_ACCEPTED, by, found.comment, ())
+        mark = _ACCEPTED if signature.is_good else _UNSIGNED
+        return ReviewView(mark, by, found.comment, (), signature)
     causes = dict.fromkeys(cause for s in claim.standing.suspects for cause in s.causes)
-    return ReviewView(_SUSPECT, by, found.comment, tuple(map(thing, causes)))
+    return ReviewView(_SUSPECT, by, found.comment, tuple(map(thing, causes)), signature)
 
 
-def waiver(claim: Claim) -> WaiverView | None:
+def waiver(claim: Claim, book: Book) -> WaiverView | None:
     """The waiver that counts now."""
     found = claim.waiver
     if found is None:
         return None
     by = f"{found.by}, {found.role}, {found.granted}"
     mark = claim.unwaived_mark
-    return WaiverView(claim.id, claim.anchor, found.reason, by, found.expires, mark)
+    signature = of_waiver(book, found)
+    return WaiverView(claim.id, claim.anchor, found.reason, by, found.expires, mark, signature)
 
 
-def reviewed(claims: Sequence[Claim]) -> str:
-    """How many have been reviewed, in a sentence."""
+def reviewed(claims: Sequence[Claim], book: Book) -> str:
+    """How many have been reviewed, and how many of the reviews are signed, in sentences."""
     known = [claim.standing for claim in claims if claim.standing.review is not None]
     if not known:
         return "No requirement has been reviewed."
     suspect = sum(standing.is_suspect for standing in known)
     verb = "stands" if suspect == 1 else "stand"
     stands = f"; {suspect} of these reviews no longer {verb}" if suspect else ", and all stand"
-    return f"{len(known)} of {phrases.times(len(claims), 'requirement')} reviewed{stands}."
+    signed = [of_review(book, each.review).is_good for each in known if each.review is not None]
+    unsigned = signed.count(False)
+    verb = "is" if unsigned == 1 else "are"
+    who = f" {unsigned} of {len(known)} {verb} unauthenticated." if unsigned else ""
+    return f"{len(known)} of {phrases.times(len(claims), 'requirement')} reviewed{stands}.{who}"
 
 
 def changes(claims: Sequence[Claim]) -> tuple[Change, ...]:

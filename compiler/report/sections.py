@@ -31,6 +31,7 @@ from compiler.report.views import (
     SignalView,
 )
 from compiler.rule import Rule
+from compiler.signatures import NO_SIGNATURES, Book
 from compiler.violability import limit
 from fretish.clock import Clock
 from fretish.declarations import Declarations, Proposition, Signal
@@ -47,6 +48,7 @@ def section(
     audited: bool,
     proofs: Sequence[Proof] = (),
     common: Sequence[Product] = (),
+    book: Book = NO_SIGNATURES,
 ) -> RequirementView:
     """The view of one requirement.
 
@@ -58,6 +60,7 @@ def section(
         audited: whether there is any evidence.
         proofs: of all requirements, and of what they share.
         common: what is made of the bindings alone, which proofs are about too.
+        book: who signed what.
     """
     requirement, rule = claim.requirement, claim.rule
     made = (*claim.products, *common)
@@ -95,8 +98,8 @@ def section(
         reasons=reasons(claim, runs, audited=audited),
         limit=_limit(rule),
         coverage=claim.coverage,
-        review=review(claim),
-        waiver=waiver(claim),
+        review=review(claim, book),
+        waiver=waiver(claim, book),
     )
 
 

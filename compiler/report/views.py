@@ -213,6 +213,35 @@ class Withdrawal:
 
 
 @dataclass(frozen=True, slots=True)
+class SignatureView:
+    """Whether something is signed by whoever must have signed it, and by whom it is."""
+
+    mark: Mark
+    text: str
+    is_good: bool
+
+
+@dataclass(frozen=True, slots=True)
+class Signed:
+    """A thing that can be signed, or a signature that does not verify."""
+
+    kind: str
+    name: str
+    anchor: str
+    signature: SignatureView
+
+
+@dataclass(frozen=True, slots=True)
+class Signatures:
+    """Whose keys count, and who signed what."""
+
+    file: str
+    """The list of signers; empty: there is none, and no signature counts."""
+    signers: tuple[str, ...]
+    signed: tuple[Signed, ...]
+
+
+@dataclass(frozen=True, slots=True)
 class ReviewView:
     """Who has accepted a requirement, and whether that still stands."""
 
@@ -220,6 +249,14 @@ class ReviewView:
     by: str
     comment: str
     changes: tuple[str, ...]
+    signature: SignatureView | None
+    """None: there is no review."""
+
+    @property
+    def text(self) -> str:
+        """The word of its mark, and of its signature."""
+        marks = (self.mark, *([self.signature.mark] if self.signature else []))
+        return ", ".join(mark.word for mark in marks)
 
 
 @dataclass(frozen=True, slots=True)
@@ -232,6 +269,7 @@ class WaiverView:
     by: str
     until: str
     covers: Mark
+    signature: SignatureView
 
 
 # 4: the requirements ---------------------------------------------------------------------------
@@ -488,6 +526,7 @@ class Report:
     withdrawn: tuple[Withdrawal, ...]
     """What was claimed when it was reviewed, and is not any more."""
     waivers: tuple[WaiverView, ...]
+    signatures: Signatures
     requirements: tuple[RequirementView, ...]
     assumptions: tuple[str, ...]
     commands: tuple[Command, ...]

@@ -93,7 +93,7 @@ def of_requirement(view: RequirementView) -> Mapping[str, str]:
         "Currency": SUSPECT if view.mark.suspect else CURRENT,
         "Reasons": "\n".join((*_waived(view), *view.reasons)),
         "Runs": "\n".join(_runs(view)),
-        "Review": f"{review.mark.word}: {review.by}" if review.by else review.mark.word,
+        "Review": f"{review.text}: {review.by}" if review.by else review.text,
         "Fingerprint SHA-256": view.fingerprint,
     }
 

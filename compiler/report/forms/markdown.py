@@ -37,6 +37,7 @@ def _lines(report: Report) -> Iterator[str]:
         yield ""
         yield f"… and {len(ordered) - _LISTED} more requirements."
     yield from _changes(report)
+    yield from _signatures(report)
     yield ""
     yield f"<sub>fretc {_plain(report.fretc)}</sub>"
 
@@ -48,7 +49,7 @@ def _row(view: RequirementView) -> str:
         f"**{_plain(view.id)}** {_plain(view.title)}",
         _verdict(view.mark),
         view.coverage,
-        view.review.mark.word,
+        view.review.text,
         f"{_plain(why)}{more}",
     )
     return f"| {' | '.join(cells)} |"
@@ -68,6 +69,22 @@ def _changes(report: Report) -> Iterator[str]:
         yield f"- **{_plain(change.requirement)}**: {_plain('; '.join(change.lines))}"
         for run, then, now in change.verdicts:
             yield f"  - {_plain(run)}: {then} → {now}"
+
+
+def _signatures(report: Report) -> Iterator[str]:
+    """Those that do not verify come first; reviews stand in the table, too."""
+    signed = report.signatures.signed
+    if not signed:
+        return
+    yield ""
+    yield "### Signatures"
+    yield ""
+    for one in signed[:_LISTED]:
+        mark = one.signature.mark
+        yield f"- {mark.glyph} {one.kind} {_plain(one.name)}: {_plain(one.signature.text)}"
+    if len(signed) > _LISTED:
+        unsigned = sum(not one.signature.is_good for one in signed[_LISTED:])
+        yield f"- … and {len(signed) - _LISTED} more, {unsigned} of them unauthenticated"
 
 
 def _plain(text: str) -> str:

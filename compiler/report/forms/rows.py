@@ -46,7 +46,7 @@ def _rows(
         _currency(view.mark),
         "; ".join(view.suspicions),
         view.sentence,
-        view.review.mark.word,
+        view.review.text,
     )
     for result in view.results:
         yield (*head, *_run(result, hashes))

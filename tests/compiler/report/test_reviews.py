@@ -68,12 +68,24 @@ def test_a_review_that_stands_is_named(tmp_path: Path) -> None:
     reported(known, tmp_path, result(known, "satisfied"))
     lock(known, tmp_path)
     report = reported(known, tmp_path, result(known, "satisfied"))
-    assert report["reviewed"] == "1 of 1 requirement reviewed, and all stand."
+    assert report["reviewed"] == (
+        "1 of 1 requirement reviewed, and all stand. 1 of 1 is unauthenticated."
+    )
     assert only(report)["review"] == {
-        "mark": {"word": "reviewed", "glyph": "✔", "kind": "satisfied", "suspect": False},
+        "mark": {"word": "reviewed", "glyph": "◔", "kind": "inconclusive", "suspect": False},
         "by": "A, B, 2026-09-01",
         "comment": "c",
         "changes": [],
+        "signature": {
+            "mark": {
+                "word": "unauthenticated",
+                "glyph": "◔",
+                "kind": "inconclusive",
+                "suspect": False,
+            },
+            "text": "nobody signed it",
+            "is_good": False,
+        },
     }
     assert report["changes"] == []
     assert only(report)["coverage"] == "exercised, pass"
