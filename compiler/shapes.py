@@ -6,10 +6,11 @@ turns that into a diagnostic.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection
+import json
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass
 from math import isfinite
-from typing import TypeVar
+from typing import NoReturn, TypeVar
 
 T = TypeVar("T")
 _LARGEST = 2**63
@@ -20,6 +21,39 @@ _SHOWN = 40
 
 class MisshapenError(ValueError):
     """A value is missing or of the wrong kind; the message says which and where."""
+
+
+def parsed(text: str) -> Shape:
+    """A JSON text that every reader takes for the same: each key once, and finite numbers only.
+
+    Raises:
+        json.JSONDecodeError: it is no JSON.
+        ValueError: it is JSON that may be read in two ways, or that Python does not read.
+        RecursionError: it is nested too deeply.
+    """
+    value = json.loads(
+        text, object_pairs_hook=_distinct, parse_float=_finite, parse_constant=_no_number
+    )
+    return Shape(value)
+
+
+def _distinct(pairs: Sequence[tuple[str, object]]) -> dict[str, object]:
+    known: dict[str, object] = {}
+    for key, value in pairs:
+        if key in known:
+            raise ValueError(f"`{key[:_SHOWN]}` is there twice in one object")
+        known[key] = value
+    return known
+
+
+def _finite(word: str) -> float:
+    if not isfinite(float(word)):
+        raise ValueError(f"`{word[:_SHOWN]}` is too large for a number")
+    return float(word)
+
+
+def _no_number(word: str) -> NoReturn:
+    raise ValueError(f"`{word}` is no number of JSON")
 
 
 @dataclass(frozen=True, slots=True)
