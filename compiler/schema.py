@@ -38,7 +38,8 @@ def _check(name: str) -> Callable[[object], object]:
 
 
 def _told(error: fastjsonschema.JsonSchemaValueException) -> str:
-    place = error.name.removeprefix("data").removeprefix(".")
+    name = error.name or ""
+    place = name.removeprefix("data").removeprefix(".")
     whole, about = f"`{place}`" if place else "the whole file", error.definition
     match error.rule:
         case "required":
@@ -48,7 +49,7 @@ def _told(error: fastjsonschema.JsonSchemaValueException) -> str:
             unknown = min(key for key in error.value if key not in about["properties"])
             return f"{whole} has `{_short(unknown)}`, which is unknown"
         case _:
-            rule = error.message.removeprefix(error.name).strip()
+            rule = error.message.removeprefix(name).strip()
             return f"{whole} {rule}{_value(error.value)}"
 
 

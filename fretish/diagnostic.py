@@ -140,6 +140,7 @@ class Code(Enum):
     UNKNOWN_LOG = ("F542", "a lock would accept a verdict on a log that nothing identifies")
     IDLE_WAIVER = ("F543", "a waiver covers nothing")
     NOT_REVIEWED = ("F544", "a requirement was never reviewed, and others were")
+    BAD_MANIFEST = ("F545", "the manifest cannot be read")
     SEVERAL_VERDICTS = ("F555", "audits of one log have several verdicts of a requirement")
     NO_SUCH_REQUIREMENT = ("F515", "no requirement and no diagnostic has that name")
 
