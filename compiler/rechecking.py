@@ -303,7 +303,8 @@ def _letters(value: Mapping[str, Any], key: str) -> str:
 def _assumed(result: Mapping[str, Any], plan: Plan) -> list[str]:
     """Without the defaults: whether one is taken or written out is no difference."""
     defaults = {default.text for default in plan.declarations.defaults}
-    return sorted(text for text in result["assumptions"] if text not in defaults)
+    told = Counter(result["assumptions"])
+    return sorted(text for text in told.elements() if text not in defaults or told[text] > 1)
 
 
 # What is found of a log -------------------------------------------------------------------------
