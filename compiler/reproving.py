@@ -23,7 +23,14 @@ from compiler.proven import Proof, Proofs
 from compiler.standing import PROOFS, Finding, Rechecked, differs, unknown
 from compiler.targets import monitor
 from compiler.templating import to_json
-from compiler.verification import ALL, METHODS, NOT_CHECKED, Layer, as_record
+from compiler.verification import (
+    ALL,
+    COUNTEREXAMPLE,
+    METHODS,
+    NOT_CHECKED,
+    Layer,
+    as_record,
+)
 from fretish.diagnostic import Diagnostic
 
 AGENT = "agent"
@@ -142,6 +149,9 @@ def _compared(told: Record, made: Sequence[Record]) -> Rechecked:
     if now["result"] == NOT_CHECKED:
         return unknown(PROOFS, requirement, now["detail"], claim=claim)
     reasons = tuple(_differences(told, now))
+    if told["result"] == NOT_CHECKED and now["result"] != COUNTEREXAMPLE:
+        why = f"it was not checked, says the file; it is {now['result']} now"
+        return unknown(PROOFS, requirement, why, claim=claim)
     if reasons:
         return differs(PROOFS, requirement, *reasons, claim=claim)
     if told["layer"] == Layer.AJPF:

@@ -48,6 +48,8 @@ def _told(error: fastjsonschema.JsonSchemaValueException) -> str:
         case "additionalProperties":
             unknown = min(key for key in error.value if key not in about["properties"])
             return f"{whole} has `{_short(unknown)}`, which is unknown"
+        case "anyOf":
+            return f"{whole} has none of the forms that it may have"
         case _:
             rule = error.message.removeprefix(name).strip()
             return f"{whole} {rule}{_value(error.value)}"

@@ -123,7 +123,10 @@ def test_a_missing_field_is_named(tmp_path: Path) -> None:
     [
         (("signed",), "the whole file has `signed`, which is unknown"),
         (("results", 0, "why"), "`results[0]` has `why`, which is unknown"),
-        (("results", 0, "health", "checked", "all"), "`results[0].health.checked` has `all`"),
+        (
+            ("results", 0, "health", "checked", "all"),
+            "`results[0].health.checked` has none of the forms",
+        ),
         (("results", 0, "hashes", "lop"), "`results[0].hashes` has `lop`, which is unknown"),
     ],
 )

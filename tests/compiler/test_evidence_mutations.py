@@ -70,14 +70,14 @@ def written(value: Any) -> str:
 
 
 def places(value: Any, at: Place = ()) -> Iterator[Place]:
-    """Everywhere in a value; of a list, the first and the last."""
+    """Everywhere in a value; of a list only the first, and of the outermost lists the last, too."""
     yield at
     match value:
         case dict():
             for key, inner in value.items():
                 yield from places(inner, (*at, key))
         case list() if value:
-            for i in sorted({0, len(value) - 1}):
+            for i in sorted({0, len(value) - 1 if len(at) == 1 else 0}):
                 yield from places(value[i], (*at, i))
         case _:
             pass
