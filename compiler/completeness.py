@@ -6,19 +6,18 @@ What is missing is a difference: a result that is left out is not better than on
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, partial
 from typing import Any
 
-from compiler.files import file_sha256
 from compiler.links import LOG
 from compiler.lock import Lock, Review
 from compiler.standing import FILE, Rechecked, differs, unknown
 from fretish.ordering import natural
 
-Summary = Callable[[str], str | None]
-"""Place of a log → the SHA-256 that it has where it is read by its index; None: it has none."""
+Prints = Callable[[str], Collection[str]]
+"""Place of a log → each SHA-256 that it is known by: of all of it, and of its summary."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,7 +32,7 @@ class Scope:
 
 
 def incomplete(
-    whole: Mapping[str, Any], scope: Scope, places: Mapping[str, str], summary: Summary
+    whole: Mapping[str, Any], scope: Scope, places: Mapping[str, str], prints: Prints
 ) -> Iterator[Rechecked]:
     """All that is missing, there twice, or not what is known of it.
 
@@ -41,12 +40,14 @@ def incomplete(
         whole: the evidence.
         scope: what it is held against.
         places: run → where its log is now.
-        summary: for logs that were reviewed by their index and audited in full since.
+        prints: for logs that were looked at more or less closely when they were reviewed.
     """
     yield from _requirements(whole, scope)
     yield from _results(whole, scope)
     if scope.lock is not None:
-        yield from _reviewed(whole, scope, scope.lock, _Prints(places, summary))
+        once = cache(prints)
+        known = {run: partial(once, place) for run, place in places.items()}
+        yield from _reviewed(whole, scope, scope.lock, known)
 
 
 def _requirements(whole: Mapping[str, Any], scope: Scope) -> Iterator[Rechecked]:
@@ -80,24 +81,12 @@ def _results(whole: Mapping[str, Any], scope: Scope) -> Iterator[Rechecked]:
 # The lock ---------------------------------------------------------------------------------------
 
 
-class _Prints:
-    """What tells a log from another one, beside what its results say."""
-
-    def __init__(self, places: Mapping[str, str], summary: Summary) -> None:
-        self._places = places
-        self._of = cache(lambda place: {file_sha256(place), summary(place)})
-
-    def known(self, run: str) -> bool:
-        """Whether its log is there."""
-        return run in self._places
-
-    def has(self, run: str, sha256: str) -> bool:
-        """Whether the log has this hash: of all of it, or of its summary."""
-        return sha256 in self._of(self._places[run])
+_Known = Mapping[str, Callable[[], Collection[str]]]
+"""Run whose log is there → each SHA-256 that it is known by."""
 
 
 def _reviewed(
-    whole: Mapping[str, Any], scope: Scope, lock: Lock, prints: _Prints
+    whole: Mapping[str, Any], scope: Scope, lock: Lock, prints: _Known
 ) -> Iterator[Rechecked]:
     for id, review in lock.reviews.items():
         if id in scope.claimed:
@@ -107,9 +96,7 @@ def _reviewed(
             yield differs(FILE, id, "it was claimed when it was reviewed, and is not any more")
 
 
-def _runs(
-    review: Review, told: Sequence[Mapping[str, Any]], prints: _Prints
-) -> Iterator[Rechecked]:
+def _runs(review: Review, told: Sequence[Mapping[str, Any]], prints: _Known) -> Iterator[Rechecked]:
     """The runs of one review; a log may have another name by now."""
     known = {sha for result in told for sha in _hashes(result)}
     runs = {result["run"] for result in told}
@@ -119,10 +106,10 @@ def _runs(
         if node.name not in runs:
             why = "the lock names this run and the evidence has no result of it"
             yield differs(node.name, review.requirement, why)
-        elif not prints.known(node.name):
+        elif node.name not in prints:
             why = "its log is not found, to be held against the lock"
             yield unknown(node.name, review.requirement, why)
-        elif not prints.has(node.name, sha):
+        elif sha not in prints[node.name]():
             why = "its log is not the one that was reviewed"
             yield differs(node.name, review.requirement, why)
 

@@ -20,7 +20,7 @@ from compiler.auditing import Engine, audit_logs
 from compiler.basis import BINDINGS, KINDS, SENTENCE, of_all, outdated, why
 from compiler.completeness import Scope, incomplete
 from compiler.estimates import estimates
-from compiler.files import sha256
+from compiler.files import file_sha256, sha256
 from compiler.manifest import Manifest, matches
 from compiler.plan import Claim, Plan
 from compiler.standing import ALL_RUNS, FILE, Finding, Rechecked, differs, unknown
@@ -95,7 +95,7 @@ def rechecked(
     return (
         *_beginning(whole, plan, part=scope.part),
         *(_result(result, now) for result in whole["results"]),
-        *incomplete(whole, scope, places, partial(_summary, plan)),
+        *incomplete(whole, scope, places, partial(_prints, plan)),
         *(one for match in listed for one in match.wrong),
         *_found(whole, now),
         *_together(whole, now, scope.claimed),
@@ -152,10 +152,13 @@ def _integrity(result: Mapping[str, Any]) -> Integrity:
     return Integrity.FULL if checked is not None and not checked["by_index"] else Integrity.HASH
 
 
-def _summary(plan: Plan, place: str) -> str | None:
-    """What tells the log from another one where it is read by its index; None: it is not so."""
-    recording = read(place, plan.declarations, tuple(plan.declarations.signals), Integrity.INDEX)
-    return None if isinstance(recording, Diagnostic) else recording.sha256
+def _prints(plan: Plan, place: str) -> frozenset[str]:
+    """What tells the log from another one, however closely it is looked at."""
+    signals = tuple(plan.declarations.signals)
+    levels = (Integrity.INDEX, Integrity.HASH)
+    found = [read(place, plan.declarations, signals, level) for level in levels]
+    known = [one.sha256 for one in found if not isinstance(one, Diagnostic)]
+    return frozenset(filter(None, (*known, file_sha256(place))))
 
 
 # The file as a whole ----------------------------------------------------------------------------
