@@ -1,22 +1,23 @@
 """The evidence file as checked values: what audits have found, or why that cannot be read.
 
 Nothing in the file is trusted: a wrong shape anywhere is F503, never a report about half of it.
-Its schema is `templates/json/evidence.schema.json`; more fields than the report needs may be there.
+Its schema is `templates/json/evidence.schema.json`: what it does not know is refused, too.
 """
 
 from __future__ import annotations
 
 import json
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
-from typing import NoReturn
+from dataclasses import dataclass, replace
+from typing import Any
 
 from compiler.counted import probability, trials
 from compiler.estimates import Estimated
 from compiler.files import read as read_text
 from compiler.files import sha256
 from compiler.odds import REFUTED
-from compiler.shapes import MisshapenError, Shape
+from compiler.schema import misfit
+from compiler.shapes import MisshapenError, Shape, parsed
 from compiler.surroundings import Window, window
 from fretish.diagnostic import Code, Diagnostic, Severity
 from fretish.source import Source
@@ -189,19 +190,41 @@ def refuted(path: str) -> frozenset[str]:
 
 def read(path: str) -> Evidence | Diagnostic:
     """Read and check an evidence file; a note, not an error, where there is none yet."""
+    found = _loaded(path)
+    return found if isinstance(found, Diagnostic) else found[0]
+
+
+def document(path: str) -> Mapping[str, Any] | Diagnostic:
+    """The same file as plain values; an error where there is none."""
+    found = both(path)
+    return found if isinstance(found, Diagnostic) else found[1]
+
+
+def both(path: str) -> tuple[Evidence, Mapping[str, Any]] | Diagnostic:
+    """The checked values, and the plain ones that they are made of; an error where none are."""
+    found = _loaded(path)
+    return replace(found, severity=Severity.ERROR) if isinstance(found, Diagnostic) else found
+
+
+def _loaded(path: str) -> tuple[Evidence, Mapping[str, Any]] | Diagnostic:
     source = read_text(path)
     if isinstance(source, Diagnostic):
         return _not_audited(path) if source.code is Code.NO_SUCH_FILE else source
     try:
-        value = json.loads(source.text, parse_constant=_no_number)
+        file = parsed(source.text)
     except json.JSONDecodeError as error:
         return _not_json(source, error)
     except (ValueError, RecursionError) as error:
         return _wrong(path, f"is not JSON that fretc can read: {_why(error)}")
     try:
-        return _evidence(Shape(value), source)
+        found = _evidence(file, source)
     except MisshapenError as error:
         return _wrong(path, f"is not evidence of fretc: {error}")
+    wrong = misfit(file.value, "evidence")
+    if wrong:
+        return _wrong(path, f"is not evidence of fretc: {wrong}")
+    assert isinstance(file.value, dict)
+    return found, file.value
 
 
 def _not_audited(path: str) -> Diagnostic:
@@ -231,10 +254,6 @@ def _wrong(path: str, what: str) -> Diagnostic:
         Source(path, "").span(),
         help=f"audit again: `fretc audit LOG... --evidence {path}`",
     )
-
-
-def _no_number(word: str) -> NoReturn:
-    raise ValueError(f"`{word}` is no number of JSON")
 
 
 def _why(error: Exception) -> str:

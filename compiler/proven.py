@@ -1,19 +1,22 @@
 """What `fretc verify` has found, as its file says it, in checked shapes.
 
 Nothing in the file is trusted: a wrong shape anywhere is F503. Its form is that of
-`compiler.verification.document`; runs that show something stay in the file.
+`compiler.verification.document`, and what is unknown is refused; runs that show something stay in
+the file.
 """
 
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from compiler.files import read as read_text
 from compiler.files import sha256
-from compiler.shapes import MisshapenError, Shape
+from compiler.schema import misfit
+from compiler.shapes import MisshapenError, Shape, parsed
 from compiler.verification import RESULTS, SCHEMA, Layer
 from fretish.diagnostic import Code, Diagnostic
 from fretish.source import Source
@@ -43,6 +46,8 @@ class Proofs:
     sha256: str
     fretc: str
     proofs: tuple[Proof, ...]
+    records: Sequence[Mapping[str, Any]]
+    """The same proofs as plain values, with their runs."""
 
 
 DEFAULT = "build/verification.json"
@@ -55,13 +60,15 @@ def read(path: str) -> Proofs | Diagnostic:
     if isinstance(source, Diagnostic):
         return source
     try:
-        return _proofs(Shape(json.loads(source.text)), source)
+        return _proofs(parsed(source.text), source)
     except json.JSONDecodeError as error:
         return _wrong(source, f"is not JSON: {error.msg[:1].lower()}{error.msg[1:]}")
     except MisshapenError as error:
         return _wrong(source, f"is not what `fretc verify` writes: {error}")
-    except (ValueError, RecursionError):
-        return _wrong(source, "is not JSON that fretc can read")
+    except RecursionError:
+        return _wrong(source, "is not JSON that fretc can read: it is nested too deeply")
+    except ValueError as error:
+        return _wrong(source, f"is not JSON that fretc can read: {error}")
 
 
 def known(path: str | None) -> tuple[Proof, ...] | Diagnostic:
@@ -90,12 +97,22 @@ def _wrong(source: Source, what: str) -> Diagnostic:
 def _proofs(file: Shape, source: Source) -> Proofs:
     if file.field("schema").text() != SCHEMA:
         raise file.field("schema").wrong(f"`{SCHEMA}`")
-    return Proofs(
+    found = Proofs(
         source.name,
         sha256(source.text),
         file.field("fretc").text(),
         tuple(map(_proof, file.field("evidence").items())),
+        tuple(_record(each) for each in file.field("evidence").items()),
     )
+    wrong = misfit(file.value, "verification")
+    if wrong:
+        raise MisshapenError(wrong)
+    return found
+
+
+def _record(at: Shape) -> Mapping[str, Any]:
+    assert isinstance(at.value, dict)
+    return at.value
 
 
 def _proof(at: Shape) -> Proof:

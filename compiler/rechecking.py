@@ -1,27 +1,31 @@
 """Whether evidence still stands: the hashes of its logs and its verdicts, made again.
 
-Everything is made anew from the logs and the requirements as they are now, and compared with what
-the evidence says, field by field. Only how much of a log was looked at may differ.
+Everything is made anew from the logs and the requirements as they are now, each log with the
+integrity that its results claim, and compared with what the evidence says, to the letter. Free are
+only places (of the bindings, and of lines in them), and whether a default is written out.
 """
 
 from __future__ import annotations
 
 import json
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
-from enum import StrEnum
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 from compiler import __version__
-from compiler.auditing import Audit, Engine, audit_logs
+from compiler.auditing import Engine, audit_logs
 from compiler.basis import BINDINGS, KINDS, SENTENCE, of_all, outdated, why
+from compiler.completeness import Scope, incomplete
 from compiler.estimates import estimates
 from compiler.files import file_sha256, sha256
+from compiler.manifest import Manifest, matches
 from compiler.plan import Claim, Plan
+from compiler.standing import ALL_RUNS, FILE, Finding, Rechecked, differs, unknown
+from compiler.templating import to_json
 from fretish.diagnostic import Diagnostic
-from fretish.ordering import natural
 from fretish.parser import parse
 from fretish.printer import canonical
 from fretish.source import Source
@@ -29,24 +33,8 @@ from monitors.inputs import shown as called
 from monitors.integrity import Integrity
 from monitors.recordings import read
 
-
-class Finding(StrEnum):
-    """What became of one result."""
-
-    STANDS = "stands"
-    DIFFERS = "differs"
-    UNKNOWN = "not checked"
-
-
-@dataclass(frozen=True, slots=True)
-class Rechecked:
-    """One run and requirement of the evidence, made again."""
-
-    run: str
-    requirement: str
-    finding: Finding
-    reasons: tuple[str, ...]
-    """Empty where it stands."""
+Results = Mapping[tuple[str, str], Mapping[str, Any]]
+"""Run and requirement → result."""
 
 
 def located(runs: Sequence[str], folder: str | None) -> dict[str, str]:
@@ -76,66 +64,126 @@ def _alike(path: Path, run: Path) -> int:
 
 
 def rechecked(
-    text: str, plan: Plan, places: Mapping[str, str], engine: Engine
+    whole: Mapping[str, Any],
+    plan: Plan,
+    places: Mapping[str, str],
+    engine: Engine,
+    scope: Scope,
+    manifest: Manifest | None = None,
 ) -> tuple[Rechecked, ...] | Diagnostic:
-    """Make every result of an evidence file again.
+    """Make every result of evidence again.
 
     Args:
-        text: the evidence, in its right shape.
+        whole: the evidence, in its right shape.
         plan: what logs are judged by now.
         places: run → where its log is now.
         engine: where logs are audited.
+        scope: which requirements and runs it must have.
+        manifest: which logs it must have; None: that is not asked.
 
     Returns:
         What became of each result, in the order of the file, between what is wrong with the file
         itself and what all runs together say; or why the engine gave up.
     """
-    whole = json.loads(text)
-    told = whole["results"]
-    runs = list(dict.fromkeys(result["run"] for result in told))
-    logs = list(dict.fromkeys(places[run] for run in runs if run in places))
-    audit = audit_logs(plan, logs, engine)
-    if isinstance(audit, Diagnostic):
-        return audit
-    now = _Now(plan, places, {(r["run"], r["requirement"]): r for r in audit.results})
+    whole = _part(whole, scope) if scope.part else whole
+    made = _again(whole["results"], plan, places, engine)
+    if isinstance(made, Diagnostic):
+        return made
+    listed = matches(whole, manifest, places) if manifest is not None else ()
+    hashed = frozenset(match.run for match in listed if not match.wrong)
+    now = _Now(plan, places, made, whole["bindings"]["file"], hashed)
     return (
-        *_beginning(whole, plan),
-        *(each for result in told for each in _result(result, now)),
-        *_left_out(whole),
+        *_beginning(whole, plan, part=scope.part),
+        *(_result(result, now) for result in whole["results"]),
+        *incomplete(whole, scope, places, partial(_prints, plan)),
+        *(one for match in listed for one in match.wrong),
         *_found(whole, now),
-        *_together(whole, plan, audit, places),
+        *_together(whole, now, scope.claimed),
     )
+
+
+def _part(whole: Mapping[str, Any], scope: Scope) -> Mapping[str, Any]:
+    """What evidence says of the requirements that are asked for."""
+    asked = {*scope.claimed}
+    return {
+        **whole,
+        "requirements": [told for told in whole["requirements"] if told["id"] in asked],
+        "results": [told for told in whole["results"] if told["requirement"] in asked],
+        "probabilities": [
+            told for told in whole.get("probabilities", ()) if told["requirement"] in asked
+        ],
+    }
+
+
+def _again(
+    told: Sequence[Mapping[str, Any]], plan: Plan, places: Mapping[str, str], engine: Engine
+) -> Results | Diagnostic:
+    """The results of each run whose log is found, looked at as closely as the evidence claims."""
+    claimed = {result["run"]: _integrity(result) for result in reversed(told)}
+    found: dict[tuple[str, str], Mapping[str, Any]] = {}
+    for integrity in Integrity:
+        runs = [run for run, one in claimed.items() if one is integrity and run in places]
+        if not runs:
+            continue
+        logs = list(dict.fromkeys(places[run] for run in runs))
+        audit = audit_logs(replace(plan, integrity=integrity), logs, engine)
+        if isinstance(audit, Diagnostic):
+            return audit
+        made = {(one["run"], one["requirement"]): one for one in _plain(audit.results)}
+        found |= {
+            (run, claim.id): made[called(places[run]), claim.id]
+            for run in runs
+            for claim in plan.claims
+        }
+    return found
+
+
+def _plain(results: Sequence[Mapping[str, Any]]) -> list[Mapping[str, Any]]:
+    """As they are read from a file."""
+    plain: list[Mapping[str, Any]] = json.loads(to_json(list(results)))
+    return plain
+
+
+def _integrity(result: Mapping[str, Any]) -> Integrity:
+    """How closely its log was looked at, as a result claims."""
+    checked = result["health"]["checked"]
+    if "log" not in result["hashes"] and "log_summary" in result["hashes"]:
+        return Integrity.INDEX
+    return Integrity.FULL if checked is not None and not checked["by_index"] else Integrity.HASH
+
+
+def _prints(plan: Plan, place: str) -> frozenset[str]:
+    """What tells the log from another one, however closely it is looked at."""
+    signals = tuple(plan.declarations.signals)
+    levels = (Integrity.INDEX, Integrity.HASH)
+    found = [read(place, plan.declarations, signals, level) for level in levels]
+    known = [one.sha256 for one in found if not isinstance(one, Diagnostic)]
+    return frozenset(filter(None, (*known, file_sha256(place))))
 
 
 # The file as a whole ----------------------------------------------------------------------------
 
-FILE, ALL_RUNS = "the file", "all runs"
-"""In the place of a run."""
 _DOUBT = (0.5, 0.999)
 """Confidences that an audit takes."""
 
 
-def _beginning(whole: Mapping[str, Any], plan: Plan) -> Iterator[Rechecked]:
+def _beginning(whole: Mapping[str, Any], plan: Plan, *, part: bool) -> Iterator[Rechecked]:
     """What is said before the results, where it is not as it is now; and whether there are any."""
     claims = {claim.id: claim for claim in plan.claims}
-    named = [str(told.get("id")) for told in _objects(whole.get("requirements"))]
+    named = [told["id"] for told in whole["requirements"]]
     bound = of_all({id: claims[id].basis[BINDINGS] for id in named if id in claims})
     if not whole["results"]:
-        yield Rechecked(FILE, "", Finding.UNKNOWN, ("it tells of no run",))
+        yield unknown(FILE, "", "it tells of no run")
     if whole["fretc"] != __version__:
-        yield Rechecked(FILE, "", Finding.DIFFERS, (f"this is fretc {__version__}",))
-    if _within(whole.get("bindings"), "sha256") != bound:
-        yield Rechecked(FILE, "", Finding.DIFFERS, ("what the bindings say has changed",))
-    for told in _objects(whole.get("requirements")):
-        claim = claims.get(str(told.get("id")))
-        sentence = str(told.get("sentence"))
+        yield differs(FILE, "", f"this is fretc {__version__}")
+    if whole["bindings"]["sha256"] != bound and not part:
+        yield differs(FILE, "", "what the bindings say has changed")
+    for told in whole["requirements"]:
+        claim = claims.get(told["id"])
         if claim is None:
-            why = "it is not claimed any more"
-        elif {told.get("sha256"), _meant(sentence)} != {claim.basis[SENTENCE]}:
-            why = "the sentence has changed"
-        else:
-            continue
-        yield Rechecked(FILE, str(told.get("id")), Finding.DIFFERS, (why,))
+            yield differs(FILE, told["id"], "it is not claimed any more")
+        elif {told["sha256"], _meant(told["sentence"])} != {claim.basis[SENTENCE]}:
+            yield differs(FILE, told["id"], "the sentence has changed")
 
 
 def _meant(sentence: str) -> str:
@@ -144,64 +192,44 @@ def _meant(sentence: str) -> str:
     return "" if isinstance(tree, Diagnostic) else sha256(canonical(tree))
 
 
-def _left_out(whole: Mapping[str, Any]) -> Iterator[Rechecked]:
-    """Each run tells of each requirement that the file names, once."""
-    found = Counter((result["run"], result["requirement"]) for result in whole["results"])
-    named = {str(told.get("id")) for told in _objects(whole.get("requirements"))}
-    for run in dict.fromkeys(run for run, _ in found):
-        for requirement in sorted(named | {id for other, id in found if other == run}, key=natural):
-            count = found[run, requirement]
-            if count > 1:
-                yield Rechecked(run, requirement, Finding.DIFFERS, ("it is told twice",))
-            elif not count:
-                yield Rechecked(run, requirement, Finding.DIFFERS, ("its result is left out",))
-            elif requirement not in named:
-                why = "the file does not name it among its requirements"
-                yield Rechecked(run, requirement, Finding.DIFFERS, (why,))
-
-
-def _together(
-    whole: Mapping[str, Any], plan: Plan, audit: Audit, places: Mapping[str, str]
-) -> Iterator[Rechecked]:
+def _together(whole: Mapping[str, Any], now: _Now, asked: Collection[str]) -> Iterator[Rechecked]:
     """What all runs say of each requirement with a probability, made again of the same runs."""
     told = {one["requirement"]: one for one in whole.get("probabilities", ())}
-    named = {str(one.get("id")) for one in _objects(whole.get("requirements"))}
-    asked = [c for c in plan.claims if c.chance is not None and c.id in {*told, *named}]
-    missing = any(result["run"] not in places for result in whole["results"])
-    for claim in asked:
+    count = Counter(one["requirement"] for one in whole.get("probabilities", ()))
+    named = {*asked, *(one["id"] for one in whole["requirements"])}
+    runs = dict.fromkeys(result["run"] for result in whole["results"])
+    for claim in now.plan.claims:
+        if claim.chance is None or claim.id not in {*told, *named}:
+            continue
         one = told.pop(claim.id, None)
         if one is None:
-            finding, why = Finding.DIFFERS, "what all runs say of it is left out"
-        elif missing:
-            finding, why = Finding.UNKNOWN, "a log is not found"
+            yield differs(ALL_RUNS, claim.id, "what all runs say of it is left out")
+        elif count[claim.id] > 1:
+            yield differs(ALL_RUNS, claim.id, "it is told twice")
+        elif any(run not in now.places for run in runs):
+            yield unknown(ALL_RUNS, claim.id, "a log is not found")
         else:
-            why = _estimated_otherwise(one, claim, audit)
+            made = [now.results[run, claim.id] for run in runs]
+            why = _estimated_otherwise(one, claim, made)
             finding = Finding.DIFFERS if why else Finding.STANDS
-        yield Rechecked(ALL_RUNS, claim.id, finding, (why,) if why else ())
+            yield Rechecked(ALL_RUNS, claim.id, finding, (why,) if why else ())
     for id in told:
-        why = "no probability is claimed of it any more"
-        yield Rechecked(ALL_RUNS, id, Finding.DIFFERS, (why,))
+        yield differs(ALL_RUNS, id, "no probability is claimed of it any more")
 
 
-def _estimated_otherwise(told: Mapping[str, Any], claim: Claim, audit: Audit) -> str:
+def _estimated_otherwise(
+    told: Mapping[str, Any], claim: Claim, results: Sequence[Mapping[str, Any]]
+) -> str:
     """How it differs from what is made now; empty where it does not."""
     least, most = _DOUBT
     if not least < told["confidence"] <= most:
         return f"its confidence is none above {least} and up to {most}"
-    (made,) = estimates([claim], audit.results, told["confidence"])
-    now = made.as_record
+    (made,) = estimates([claim], results, told["confidence"])
+    (now,) = _plain([made.as_record])
     if told["answer"] != now["answer"]:
         return f"the answer is {now['answer']}, and was {told['answer']}"
-    others = [name for name in sorted({*told, *now}) if told.get(name) != now.get(name)]
+    others = _unlike(told, now)
     return f"it differs in {', '.join(others)}" if others else ""
-
-
-def _objects(value: Any) -> list[Mapping[str, Any]]:
-    return [one for one in value if isinstance(one, dict)] if isinstance(value, list) else []
-
-
-def _within(value: Any, name: str) -> Any:
-    return value.get(name) if isinstance(value, dict) else None
 
 
 # One result -------------------------------------------------------------------------------------
@@ -214,85 +242,102 @@ class _Now:
     plan: Plan
     places: Mapping[str, str]
     """Run → where its log is."""
-    results: Mapping[tuple[str, str], Mapping[str, Any]]
+    results: Results
+    bindings: str
+    """What the evidence calls the file of the bindings."""
+    hashed: Collection[str]
+    """Runs that all of a manifest is held against."""
 
 
-def _result(told: Mapping[str, Any], now: _Now) -> Iterator[Rechecked]:
+def _result(told: Mapping[str, Any], now: _Now) -> Rechecked:
     run, requirement = told["run"], told["requirement"]
-    place = now.places.get(run)
-    if place is None:
-        yield Rechecked(run, requirement, Finding.UNKNOWN, ("its log is not found",))
-        return
-    found = now.results.get((called(place), requirement))
+    if run not in now.places:
+        return unknown(run, requirement, "its log is not found")
+    found = now.results.get((run, requirement))
     if found is None:
-        yield Rechecked(run, requirement, Finding.DIFFERS, ("it is not claimed any more",))
-        return
-    reasons = tuple(_differences(told, found, place, now.plan))
-    yield Rechecked(run, requirement, Finding.DIFFERS if reasons else Finding.STANDS, reasons)
+        return differs(run, requirement, "it is not claimed any more")
+    reasons = tuple(_differences(told, found, now.plan))
+    if reasons:
+        return differs(run, requirement, *reasons)
+    if "log" in told["hashes"] or run in now.hashed:
+        return Rechecked(run, requirement, Finding.STANDS, ())
+    if "log_summary" in told["hashes"]:
+        return unknown(run, requirement, "its log was read by its index, and never hashed")
+    return unknown(run, requirement, "nothing tells its log from another one: it has no hash")
 
 
-def _differences(
-    told: Mapping[str, Any], now: Mapping[str, Any], place: str, plan: Plan
-) -> Iterator[str]:
-    if _is_another_log(told["hashes"], now["hashes"], place, plan):
+def _differences(told: Mapping[str, Any], now: Mapping[str, Any], plan: Plan) -> Iterator[str]:
+    if any(told["hashes"].get(name) != now["hashes"].get(name) for name in _OF_LOG):
         yield "the log has changed"
     yield from map(why, outdated(told["hashes"], {kind: now["hashes"][kind] for kind in KINDS}))
     if told["verdict"] != now["verdict"]:
         yield f"the verdict is {now['verdict']}, and was {told['verdict']}"
-    others = [name for name in sorted({*told, *now} - _APART) if told.get(name) != now.get(name)]
-    if _health(told) != _health(now):
-        others.append("health")
-    if ({*told["assumptions"]} ^ {*now["assumptions"]}) - _defaults(plan):
+    others = [name for name in _unlike(told, now) if name not in _APART]
+    others.extend(f"health.{name}" for name in _unlike(told["health"], now["health"], _FOUND))
+    others.extend(f"hashes.{name}" for name in _unlike(told["hashes"], now["hashes"], _REASONS))
+    if _assumed(told, plan) != _assumed(now, plan):
         others.append("assumptions")
     if others:
         yield f"it differs in {', '.join(others)}"
 
 
-def _is_another_log(
-    told: Mapping[str, str], now: Mapping[str, str], place: str, plan: Plan
-) -> bool:
-    """Where it was read by its index only its summary was hashed: that of now is, too."""
-    if "log" in told:
-        return told["log"] != (now.get("log") or file_sha256(place))
-    if "log_summary" not in told:
-        return False
-    recording = read(place, plan.declarations, tuple(plan.declarations.signals), Integrity.INDEX)
-    if isinstance(recording, Diagnostic) or recording.checked.hashed:
-        return True  # it is not as its index says, and it was
-    return told["log_summary"] != recording.sha256
-
-
-def _defaults(plan: Plan) -> set[str]:
-    """Whether a default is taken or written out is no difference."""
-    return {default.text for default in plan.declarations.defaults}
-
-
+_OF_LOG = ("log", "log_summary")
+_REASONS = (*_OF_LOG, *KINDS)
+"""Hashes whose difference has a reason of its own."""
+_FOUND = ("findings",)
+"""What is found of a log is about its run."""
 _APART = {"run", "requirement", "verdict", "hashes", "health", "assumptions"}
 """What is compared in a way of its own."""
 
 
-def _health(result: Mapping[str, Any]) -> dict[str, Any]:
-    """But for how much was looked at, and for what was found, which is about the whole run."""
-    apart = ("checked", "findings")
-    return {name: value for name, value in result["health"].items() if name not in apart}
+def _unlike(
+    told: Mapping[str, Any], now: Mapping[str, Any], apart: Collection[str] = ()
+) -> list[str]:
+    """The keys whose values differ, to the letter: `1` is neither `1.0` nor `true`."""
+    keys = sorted({*told, *now} - {*apart})
+    return [key for key in keys if _letters(told, key) != _letters(now, key)]
+
+
+def _letters(value: Mapping[str, Any], key: str) -> str:
+    """Empty where it is not there, which is not the same as null."""
+    return json.dumps(value[key], sort_keys=True) if key in value else ""
+
+
+def _assumed(result: Mapping[str, Any], plan: Plan) -> list[str]:
+    """Without the defaults: whether one is taken or written out is no difference."""
+    defaults = {default.text for default in plan.declarations.defaults}
+    told = Counter(result["assumptions"])
+    return sorted(text for text in told.elements() if text not in defaults or told[text] > 1)
+
+
+# What is found of a log -------------------------------------------------------------------------
 
 
 def _found(whole: Mapping[str, Any], now: _Now) -> Iterator[Rechecked]:
     """What was found of each run, whichever requirement it is about."""
-    results: dict[str, list[Mapping[str, Any]]] = {}
-    for told in whole["results"]:
-        results.setdefault(told["run"], []).append(told)
-    of_now = {run: _findings(result) for (run, _), result in now.results.items()}
-    for run, told in results.items():
-        known = of_now.get(called(now.places[run])) if run in now.places else None
-        if known is not None and any(_findings(result) != known for result in told):
-            yield Rechecked(run, "", Finding.DIFFERS, ("what is found of its log differs",))
+    told: dict[str, list[Mapping[str, Any]]] = {}
+    for result in whole["results"]:
+        told.setdefault(result["run"], []).append(result)
+    of_now = {run: result for (run, _), result in now.results.items()}
+    for run, results in told.items():
+        if run not in of_now:
+            continue
+        bindings = now.plan.declarations.source.name
+        known = _findings(of_now[run], now.places[run], bindings)
+        if any(_findings(result, run, now.bindings) != known for result in results):
+            yield differs(run, "", "what is found of its log differs")
 
 
-def _findings(result: Mapping[str, Any]) -> list[dict[str, Any]]:
-    """But for where in the bindings they point to: a comment above moves that."""
-    places = ("file", "line", "column")
+def _findings(result: Mapping[str, Any], log: str, bindings: str) -> list[str]:
+    """But for where log and bindings are, and for lines: a comment above moves those."""
+
+    def same_place(finding: Mapping[str, Any]) -> Mapping[str, Any]:
+        if finding["file"] == bindings:
+            return {**finding, "file": "the bindings", "line": None, "column": None}
+        if (finding["file"] or "").startswith(log):
+            return {**finding, "file": finding["file"].removeprefix(log), "log": True}
+        return finding
+
     return [
-        {name: value for name, value in finding.items() if name not in places}
-        for finding in result["health"]["findings"]
+        json.dumps(same_place(finding), sort_keys=True) for finding in result["health"]["findings"]
     ]

@@ -5,14 +5,13 @@ The only module that imports pyarrow.
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterable, Mapping, Sequence
 from importlib.util import find_spec
 from pathlib import Path
 from statistics import median
 from typing import TYPE_CHECKING, Any
 
-from compiler.evidence import read as read_evidence
+from compiler.evidence import document
 from compiler.files import unreadable
 from fretish.diagnostic import Code, Diagnostic
 from fretish.source import Source
@@ -116,11 +115,10 @@ def _read(path: str) -> Table | Diagnostic:
 
 
 def _read_evidence(path: str) -> Table | Diagnostic:
-    checked = read_evidence(path)
-    if isinstance(checked, Diagnostic):
-        return checked
-    content = json.loads(Path(path).read_text("utf-8-sig"))
-    return _table([_row(result, checked.fretc) for result in content["results"]])
+    content = document(path)
+    if isinstance(content, Diagnostic):
+        return content
+    return _table([_row(result, content["fretc"]) for result in content["results"]])
 
 
 def _read_parquet(path: str) -> Table | Diagnostic:

@@ -140,6 +140,7 @@ class Code(Enum):
     UNKNOWN_LOG = ("F542", "a lock would accept a verdict on a log that nothing identifies")
     IDLE_WAIVER = ("F543", "a waiver covers nothing")
     NOT_REVIEWED = ("F544", "a requirement was never reviewed, and others were")
+    BAD_MANIFEST = ("F545", "the manifest cannot be read")
     BAD_SIGNERS = ("F548", "the list of signers cannot be read")
     BAD_SIGNATURES = ("F556", "signatures cannot be read")
     BROKEN_SIGNATURE = ("F557", "a signature does not verify")

@@ -57,6 +57,7 @@ DOORS = {
     "mujoco": {"simulation/robot.py"},
     "matplotlib": {"simulation/picture.py"},
     "scipy": {"compiler/binomial.py"},
+    "fastjsonschema": {"compiler/schema.py"},
     "rosbags": {
         "simulation/messages.py",
         "simulation/recording.py",

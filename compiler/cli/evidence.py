@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -11,15 +10,20 @@ import click
 
 from compiler.cli.output import BAD, NOT_SHOWN, SHOWN, VIOLATION, coloured, say, stop
 from compiler.cli.signing import demand
-from fretish.diagnostic import Code, Diagnostic, Severity, has_errors
+from fretish.diagnostic import Code, Diagnostic, Severity, has_errors, suggestion
 from fretish.rendering import visible
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
+    from typing import Any
 
+    from compiler.completeness import Scope
+    from compiler.lock import Lock
+    from compiler.manifest import Manifest
     from compiler.plan import Plan
     from compiler.project import Project
-    from compiler.rechecking import Rechecked
+    from compiler.proven import Proofs
+    from compiler.standing import Rechecked
 
 
 @click.command("verify-evidence", short_help="Make evidence again, and say whether it stands.")
@@ -30,13 +34,23 @@ if TYPE_CHECKING:
 @click.option("--bindings", help="bindings.toml; the one in the requirements' folder if not given.")
 @click.option(
     "--logs",
-    "places",
+    "places_named",
     multiple=True,
     metavar="FOLDER|URL",
     help="Look for the logs below this folder, by their names; or open those of FILE whose URL "
     "begins so. Else only files below the present folder are opened, and https.",
 )
 @click.option("--offline", is_flag=True, help="Ask nothing of any server.")
+@click.option(
+    "--manifest",
+    metavar="FILE",
+    help="What `sha256sum LOG...` wrote: FILE has these logs, with these hashes, and no other.",
+)
+@click.option(
+    "--only",
+    metavar="ID,...",
+    help="Look at these requirements only; else at all in force. A part never stands as a whole.",
+)
 @click.option("--report", help="An HTML report: it is made again from FILE, and compared.")
 @click.option(
     "--verification",
@@ -48,6 +62,14 @@ if TYPE_CHECKING:
     help="A public key (id_ed25519.pub), or a list of signers: one of them must have signed FILE, "
     "and what --report and --verification name.",
 )
+@click.option("--no-proofs", is_flag=True, help="Prove nothing again: proofs are not checked.")
+@click.option(
+    "--limit",
+    type=click.IntRange(min=1),
+    default=60,
+    show_default=True,
+    help="Seconds of a processor for each proof.",
+)
 @click.option("--jobs", type=click.IntRange(min=1), default=os.cpu_count() or 1)
 @click.option(
     "--format", "form", type=click.Choice(("text", "json")), default="text", show_default=True
@@ -56,45 +78,64 @@ def verify_evidence(
     file: str,
     requirements: str,
     bindings: str | None,
-    places: tuple[str, ...],
+    places_named: tuple[str, ...],
     offline: bool,
+    manifest: str | None,
+    only: str | None,
     report: str | None,
     verification: str | None,
     signed_by: str | None,
+    no_proofs: bool,
+    limit: int,
     jobs: int,
     form: str,
 ) -> None:
     """Make evidence again, and say whether it stands.
 
-    Of every log in FILE the SHA-256 is taken again, and every requirement is audited again; what
-    comes out is compared with what FILE says. Exit status: 0 it stands, 1 something differs, 3 a
-    log is not found, 2 bad use or bad input.
+    FILE must have a result of every requirement in force in each run, every run that the lock
+    beside the requirements names, and every log of the manifest. Of every log the SHA-256 is taken
+    again, every requirement is audited again, and every proof is made again; what comes out is
+    compared with what is written. Exit status: 0 it stands, 1 something differs or is missing, 3
+    something was not checked, 2 bad use or bad input.
     """
-    from compiler.evidence import read
-    from compiler.files import read as read_text
+    from compiler.evidence import both
     from compiler.proven import written
 
-    source = read_text(file)
-    audited = read(file)
-    if isinstance(source, Diagnostic) or isinstance(audited, Diagnostic):
-        wrong = source if isinstance(source, Diagnostic) else audited
-        assert isinstance(wrong, Diagnostic)
-        stop(replace(wrong, severity=Severity.ERROR))
+    read = both(file)
+    if isinstance(read, Diagnostic):
+        stop(read)
+    audited, whole = read
     if signed_by is not None:
-        demand(audited, source.text, signed_by, {"report": report, "proofs": verification})
+        demand(audited, signed_by, {"report": report, "proofs": verification})
     project, plan = _plan(requirements, bindings)
-    runs = list(dict.fromkeys(result.run for result in audited.results))
-    found = _rechecked(source.text, plan, _places(runs, places, offline=offline), jobs)
-    made_from = (file, verification or written(), requirements)
+    scope = _scope(plan, only, requirements)
+    verification = verification or written()
+    proofs = _proofs(verification)
+    listed = _manifest(manifest)
+    places = _places(_runs(whole), places_named, offline=offline)
+    found = [*_rechecked(whole, plan, places, scope, listed, jobs)]
+    found += _reproved(project, proofs, scope, limit, skip=no_proofs)
+    made_from = (file, verification, requirements)
     same = _report(project, report, *made_from) if report is not None else None
+    against = _against(scope, requirements, manifest)
     if form == "json":
-        _print_json(found, same)
+        _print_json(found, same, scope, against)
     else:
-        _print(found, same)
-    kinds = {str(one.finding) for one in found}
-    if "differs" in kinds or same is False:
-        raise SystemExit(VIOLATION)
-    raise SystemExit(NOT_SHOWN if "not checked" in kinds else SHOWN)
+        _print(found, same, against)
+    raise SystemExit(_status(found, same, scope))
+
+
+def _status(found: Sequence[Rechecked], same: bool | None, scope: Scope) -> int:
+    from compiler.standing import Finding
+
+    kinds = {one.finding for one in found}
+    if Finding.DIFFERS in kinds or same is False:
+        return VIOLATION
+    return NOT_SHOWN if Finding.UNKNOWN in kinds or scope.part else SHOWN
+
+
+def _runs(whole: Mapping[str, Any]) -> list[str]:
+    return list(dict.fromkeys(result["run"] for result in whole["results"]))
 
 
 def _plan(requirements: str, bindings: str | None) -> tuple[Project, Plan]:
@@ -148,14 +189,103 @@ def _places(runs: Sequence[str], named: Sequence[str], *, offline: bool) -> dict
     return {run: place for run, place in found.items() if run not in refused}
 
 
-def _rechecked(text: str, plan: Plan, places: dict[str, str], jobs: int) -> tuple[Rechecked, ...]:
-    from compiler.auditing import locally
-    from compiler.rechecking import rechecked
+# What it is held against ------------------------------------------------------------------------
 
-    found = rechecked(text, plan, places, locally(jobs))
+
+def _scope(plan: Plan, only: str | None, requirements: str) -> Scope:
+    from compiler.completeness import Scope
+
+    claimed = tuple(claim.id for claim in plan.claims)
+    if only is None:
+        return Scope(claimed, _lock(requirements))
+    asked = tuple(dict.fromkeys(name.strip() for name in only.split(",")))
+    for name in asked:
+        if name not in claimed:
+            near = suggestion(name, claimed)
+            mend = f"did you mean `{near}`?" if near else f"there are {', '.join(claimed)}"
+            stop(Diagnostic(Code.BAD_USAGE, f"no requirement `{name}` is in force", help=mend))
+    return Scope(asked, _lock(requirements), part=True)
+
+
+def _lock(requirements: str) -> Lock | None:
+    from compiler.lock import NAME, read
+    from compiler.project import beside
+
+    path = beside(requirements, NAME)
+    found = read(path) if path is not None else None
     if isinstance(found, Diagnostic):
         stop(found)
     return found
+
+
+def _manifest(path: str | None) -> Manifest | None:
+    from compiler.manifest import Manifest, read
+
+    if path is None:
+        return None
+    found = read(path)
+    if not isinstance(found, Manifest):
+        stop(*found)
+    return found
+
+
+def _proofs(path: str | None) -> Proofs | None:
+    from compiler.proven import read
+
+    found = read(path) if path is not None else None
+    if isinstance(found, Diagnostic):
+        stop(found)
+    return found
+
+
+def _against(scope: Scope, requirements: str, manifest: str | None) -> str:
+    """What was asked, in words: nothing that was not asked is said to stand."""
+    count = len(scope.claimed)
+    whole = f"{count} requirement{'' if count == 1 else 's'} of `{requirements}`"
+    asked = f"only {', '.join(scope.claimed)}, a part" if scope.part else whole
+    lock = "`fretc.lock`" if scope.lock is not None else ""
+    naming = " and ".join(filter(None, (lock, f"`{manifest}`" if manifest else "")))
+    runs = f"runs by {naming}" if naming else "no lock and no manifest says which runs there are"
+    return f"{asked}; {runs}"
+
+
+# Made again -------------------------------------------------------------------------------------
+
+
+def _rechecked(
+    whole: Mapping[str, Any],
+    plan: Plan,
+    places: dict[str, str],
+    scope: Scope,
+    manifest: Manifest | None,
+    jobs: int,
+) -> tuple[Rechecked, ...]:
+    from compiler.auditing import locally
+    from compiler.rechecking import rechecked
+
+    found = rechecked(whole, plan, places, locally(jobs), scope, manifest)
+    if isinstance(found, Diagnostic):
+        stop(found)
+    return found
+
+
+def _reproved(
+    project: Project, proofs: Proofs | None, scope: Scope, limit: int, *, skip: bool
+) -> Sequence[Rechecked]:
+    from compiler.cli.progress import at_work
+    from compiler.confined import Limits
+    from compiler.reproving import reproved, unproved
+    from compiler.standing import PROOFS, unknown
+
+    missing = tuple(unproved(project, proofs.proofs if proofs else (), scope.claimed))
+    if proofs is None:
+        return missing
+    if skip:
+        return (unknown(PROOFS, "", "no proof was made again: `--no-proofs`"), *missing)
+    found = reproved(project, proofs, Limits(seconds=limit), scope.claimed, at_work)
+    if isinstance(found, Diagnostic):
+        stop(found)
+    return (*found, *missing)
 
 
 def _report(
@@ -185,7 +315,7 @@ def _report(
 _GLYPHS = {"stands": ("✔", "green"), "differs": ("✘", "red"), "not checked": ("?", "magenta")}
 
 
-def _print(found: Sequence[Rechecked], same: bool | None) -> None:
+def _print(found: Sequence[Rechecked], same: bool | None, against: str) -> None:
     lines: list[tuple[str, str | None]] = []
     width = max((len(one.requirement) for one in found), default=0)
     run = None
@@ -194,19 +324,37 @@ def _print(found: Sequence[Rechecked], same: bool | None) -> None:
             run = one.run
             lines.append((run, None))
         glyph, colour = _GLYPHS[str(one.finding)]
-        told = f"{one.finding}: {'; '.join(one.reasons)}" if one.reasons else str(one.finding)
+        told = ": ".join(filter(None, (one.finding, one.claim, "; ".join(one.reasons))))
         lines.append((f"  {glyph} {one.requirement:<{width}}  {told}", colour))
     if same is not None:
         glyph, colour = _GLYPHS["stands" if same else "differs"]
         told = "the same, byte for byte" if same else "another one is made now"
         lines.append((f"{glyph} report  {told}", colour))
+    counted = ", ".join(f"{finding} {count}" for finding, count in _counts(found, same).items())
+    lines.append((f"{counted} ({against})", None))
     click.echo(coloured([(visible(line), colour) for line, colour in lines]), nl=False)
 
 
-def _print_json(found: Sequence[Rechecked], same: bool | None) -> None:
+def _counts(found: Sequence[Rechecked], same: bool | None) -> dict[str, int]:
+    """How many of each finding, the report among them."""
+    from compiler.standing import Finding, counts
+
+    known = {str(finding): count for finding, count in counts(found).items()}
+    if same is not None:
+        known[Finding.STANDS if same else Finding.DIFFERS] += 1
+    return known
+
+
+def _print_json(found: Sequence[Rechecked], same: bool | None, scope: Scope, against: str) -> None:
     from dataclasses import asdict
 
     from compiler.templating import to_json
 
-    told = {"results": [asdict(one) for one in found], "report_is_the_same": same}
+    told = {
+        "results": [asdict(one) for one in found],
+        "report_is_the_same": same,
+        "counts": _counts(found, same),
+        "only": list(scope.claimed) if scope.part else None,
+        "against": against,
+    }
     click.echo(to_json(told))

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -181,10 +180,13 @@ def _audited(evidence: str, whole: Report) -> Sequence[Mapping[str, Any]]:
     """The results as the evidence has them: `make` has read it, so it is in shape."""
     if not whole.evidence:
         return ()
-    found: Sequence[Mapping[str, Any]] = json.loads(Path(evidence).read_text("utf-8-sig"))[
-        "results"
-    ]
-    return found
+    from compiler.evidence import document
+
+    found = document(evidence)
+    if isinstance(found, Diagnostic):  # it has changed since
+        stop(found)
+    results: Sequence[Mapping[str, Any]] = found["results"]
+    return results
 
 
 def _status(whole: Report) -> int:

@@ -385,16 +385,15 @@ def _public(path: str) -> str:
 # What must be signed ---------------------------------------------------------------------------
 
 
-def demand(evidence: Evidence, text: str, by: str, others: Mapping[str, str | None]) -> None:
+def demand(evidence: Evidence, by: str, others: Mapping[str, str | None]) -> None:
     """Stop, with exit status 1, where a key has not signed exactly this evidence.
 
     Args:
-        evidence: as it was read from the text.
-        text: of its file.
+        evidence: as it was read.
         by: path of the public key, or of a list of signers, that the user trusts.
         others: kind of other files (`report`, `proofs`) → path, where they must be signed, too.
     """
-    from compiler.files import file_sha256, sha256
+    from compiler.files import file_sha256
     from compiler.signatures import book
     from compiler.signers import trusted
 
@@ -407,8 +406,6 @@ def demand(evidence: Evidence, text: str, by: str, others: Mapping[str, str | No
     if isinstance(known, Diagnostic):
         stop(known)
     wrong = list(known.diagnostics())
-    if sha256(text) != evidence.sha256:
-        wrong.append(_unsigned(evidence.file, by, "it was changed while it was read"))
     found = known.agreed(evidence)
     if not found.is_good:
         wrong.append(_unsigned(evidence.file, by, found.text))

@@ -1,5 +1,6 @@
 """`fretc verify-evidence`: evidence made again from its logs, and compared."""
 
+import hashlib
 import json
 import shutil
 from pathlib import Path
@@ -39,26 +40,45 @@ def audited(fretc: Fretc) -> Fretc:
 def test_evidence_that_nobody_touched_stands(audited: Fretc) -> None:
     run = audited("verify-evidence")
     assert (run.status, run.err) == (0, "")
-    assert run.out == "logs/bad.mcap\n  ✔ r1  stands\nlogs/good.mcap\n  ✔ r1  stands\n"
+    assert run.out == (
+        "logs/bad.mcap\n  ✔ r1  stands\nlogs/good.mcap\n  ✔ r1  stands\n"
+        "stands 2, differs 0, not checked 0 (1 requirement of `requirements`; "
+        "no lock and no manifest says which runs there are)\n"
+    )
 
 
-@pytest.mark.parametrize("looked", ["index", "full"])
-def test_how_much_of_a_log_was_looked_at_is_no_difference(audited: Fretc, looked: str) -> None:
-    assert audited("audit", "logs", "--integrity", looked).status == 1
+def test_evidence_is_made_again_as_closely_as_it_claims(audited: Fretc) -> None:
+    assert audited("audit", "logs", "--integrity", "full").status == 1
     assert audited("verify-evidence").status == 0
+    known = json.loads(Path("build/evidence.json").read_text())
+    for result in known["results"]:
+        result["health"]["checked"]["crc_checked"] += 1
+    changed(results=known["results"])
+    assert audited("verify-evidence").status == 1
+
+
+def test_what_was_never_hashed_does_not_stand(audited: Fretc) -> None:
+    assert audited("audit", "logs", "--integrity", "index").status == 1
+    run = audited("verify-evidence")
+    assert run.status == 3
+    assert "? r1  not checked: its log was read by its index, and never hashed\n" in run.out
+    manifested()
+    assert audited("verify-evidence", "--manifest", "logs.sha256").status == 0
 
 
 def test_a_verdict_that_was_changed_by_hand_is_found(audited: Fretc) -> None:
     text = Path("build/evidence.json").read_text()
-    write("build/evidence.json", text.replace('"violated"', '"satisfied"'))
+    write("build/evidence.json", text.replace('"verdict": "violated"', '"verdict": "satisfied"'))
     run = audited("verify-evidence")
     assert run.status == 1
     assert run.out == (
         "logs/bad.mcap\n"
         "  ✘ r1  differs: the verdict is violated, and was satisfied; "
-        "it differs in phases, states\n"
+        "it differs in phases\n"
         "logs/good.mcap\n"
         "  ✔ r1  stands\n"
+        "stands 1, differs 1, not checked 0 (1 requirement of `requirements`; "
+        "no lock and no manifest says which runs there are)\n"
     )
 
 
@@ -119,24 +139,39 @@ def changed(**fields: object) -> None:
     write("build/evidence.json", json.dumps({**known, **fields}))
 
 
+NO_HASH = "0" * 64
+
+
+def named(id: str) -> dict[str, str]:
+    return {"id": id, "sentence": "x", "sha256": NO_HASH}
+
+
+def manifested(*lines: str) -> None:
+    """What `sha256sum logs/*.mcap` prints, or these lines."""
+    logs = sorted(Path("logs").glob("*.mcap"))
+    whole = [f"{hashlib.sha256(path.read_bytes()).hexdigest()}  {path}" for path in logs]
+    write("logs.sha256", "".join(f"{line}\n" for line in lines or whole))
+
+
 @pytest.mark.parametrize(
     ("field", "value", "told"),
     [
         ("fretc", "0.0.1", "differs: this is fretc 0.1.0"),
-        ("bindings", {"file": "x", "sha256": "0"}, "differs: what the bindings say has changed"),
+        ("bindings", {"file": "x", "sha256": NO_HASH}, "what the bindings say has changed"),
+        ("requirements", [], "differs: r1 is claimed and the evidence does not name it"),
         ("requirements", [], "differs: the file does not name it among its requirements"),
-        ("requirements", [{"id": "r1", "sentence": "x", "sha256": "0"}], "sentence has changed"),
-        ("requirements", [{"id": "r2"}], "r2  differs: it is not claimed any more"),
-        ("probabilities", [], None),
+        ("requirements", [named("r1"), named("r1")], "differs: it is named twice"),
+        ("requirements", [named("r1")], "sentence has changed"),
+        ("requirements", [named("r2")], "r2  differs: it is not claimed any more"),
     ],
 )
 def test_what_the_file_says_before_its_results_is_compared(
-    audited: Fretc, field: str, value: object, told: str | None
+    audited: Fretc, field: str, value: object, told: str
 ) -> None:
     changed(**{field: value})
     run = audited("verify-evidence")
-    assert run.status == (0 if told is None else 1)
-    assert (told or "") in run.out
+    assert run.status == 1
+    assert told in run.out
 
 
 def test_a_result_that_was_taken_out_is_found(audited: Fretc) -> None:
@@ -148,7 +183,7 @@ def test_a_result_that_was_taken_out_is_found(audited: Fretc) -> None:
     changed(results=results)
     run = audited("verify-evidence")
     assert run.status == 1
-    assert "✘ r1  differs: its result is left out\n" in run.out
+    assert "✘ r1  differs: r1 is claimed and the evidence has no result of it\n" in run.out
 
 
 def test_a_result_that_is_told_twice_is_found(audited: Fretc) -> None:
@@ -195,7 +230,8 @@ def test_a_requirement_that_is_gone_is_found(audited: Fretc) -> None:
 def test_a_report_is_made_again_and_compared(audited: Fretc) -> None:
     assert audited("report").status == 0
     run = audited("verify-evidence", "--report", "build/report.html")
-    assert (run.status, run.out.splitlines()[-1]) == (0, "✔ report  the same, byte for byte")
+    assert (run.status, run.out.splitlines()[-2]) == (0, "✔ report  the same, byte for byte")
+    assert run.out.splitlines()[-1].startswith("stands 3, differs 0, not checked 0 (")
     page = Path("build/report.html").read_text()
     write("build/report.html", page.replace("violated", "satisfied", 1))
     run = audited("verify-evidence", "--report", "build/report.html", "--format", "json")
@@ -206,7 +242,11 @@ def test_a_report_is_made_again_and_compared(audited: Fretc) -> None:
 @pytest.mark.parametrize(
     ("arguments", "told"),
     [
-        (("no.json",), "F901 there is no file `no.json`"),
+        (("no.json",), "F901 no run has been audited: there is no evidence in `no.json`"),
+        (("--manifest", "no"), "F901 there is no file `no`"),
+        (("--manifest", "requirements/r1.fret"), "F545 this is no line of `sha256sum`"),
+        (("--only", "r2"), "F907 no requirement `r2` is in force"),
+        (("--verification", "no"), "F901 there is no file `no`"),
         (("--logs", "no"), "F901 there is no folder `no`"),
         (("--report", "no.html"), "F901 there is no file `no.html`"),
         (("requirements/r1.fret",), "F503"),
@@ -264,3 +304,150 @@ def test_a_link_below_the_folder_leads_nowhere(
     assert audited("verify-evidence", "--logs", "logs").status == 3
     run = audited("verify-evidence", "--logs", "logs", "--logs", str(elsewhere))
     assert (run.status, run.err) == (0, "")
+
+
+# What is missing ------------------------------------------------------------------------------
+
+BY = ("--reviewer", "A", "--role", "b", "--comment", "c", "--accept-violations")
+
+
+def without(run: str) -> None:
+    """All of a run is left out."""
+    results = json.loads(Path("build/evidence.json").read_text())["results"]
+    changed(results=[one for one in results if one["run"] != run])
+
+
+def test_a_requirement_that_is_nowhere_in_the_evidence_is_missed(audited: Fretc) -> None:
+    write("requirements/r2.fret", "whenever p the sw shall within 3 ticks satisfy q")
+    run = audited("verify-evidence", "--format", "json")
+    assert run.status == 1
+    assert json.loads(run.out)["counts"] == {"stands": 2, "differs": 3, "not checked": 0}
+    run = audited("verify-evidence", "--only", "r1")
+    assert run.status == 3
+    assert run.out.splitlines()[-1].startswith(
+        "stands 2, differs 0, not checked 0 (only r1, a part; "
+    )
+
+
+def test_a_run_that_was_reviewed_is_missed(audited: Fretc) -> None:
+    assert audited("lock", *BY).status == 0
+    assert audited("verify-evidence").status == 0
+    without("logs/bad.mcap")
+    run = audited("verify-evidence")
+    assert run.status == 1
+    told = "✘ r1  differs: the lock names this run and the evidence has no result of it\n"
+    assert f"logs/bad.mcap\n  {told}" in run.out
+
+
+def test_a_log_in_place_of_the_one_that_was_reviewed_is_found(audited: Fretc) -> None:
+    assert audited("lock", *BY).status == 0
+    log("logs/bad.mcap", 0, 1.5, 3, 0, 0, 0.5)
+    assert audited("audit", "logs").status == 0
+    run = audited("verify-evidence")
+    assert run.status == 1
+    assert "logs/bad.mcap\n  ✘ r1  differs: its log is not the one that was reviewed\n" in run.out
+
+
+@pytest.mark.parametrize(("then", "now"), [("index", "hash"), ("full", "index")])
+def test_a_log_is_the_reviewed_one_however_closely_it_was_looked_at(
+    audited: Fretc, then: str, now: str
+) -> None:
+    assert audited("audit", "logs", "--integrity", then).status == 1
+    assert audited("lock", *BY).status == 0
+    assert audited("audit", "logs", "--integrity", now).status == 1
+    run = audited("verify-evidence", "--format", "json")
+    assert json.loads(run.out)["counts"]["differs"] == 0
+    log("logs/good.mcap", 0, 1.5, 3, 0, 0, 0.5)
+    assert audited("audit", "logs", "--integrity", now).status == 1
+    assert "is not the one that was reviewed" in audited("verify-evidence").out
+
+
+def test_a_requirement_that_was_reviewed_and_is_gone_is_missed(audited: Fretc) -> None:
+    write("requirements/r2.fret", "whenever p the sw shall within 3 ticks satisfy q")
+    assert audited("audit", "logs").status == 1
+    assert audited("lock", *BY).status == 0
+    Path("requirements/r2.fret").unlink()
+    assert audited("audit", "logs").status == 1
+    run = audited("verify-evidence")
+    assert run.status == 1
+    assert "r2  differs: it was claimed when it was reviewed, and is not any more\n" in run.out
+
+
+def test_a_manifest_names_all_logs(audited: Fretc) -> None:
+    manifested()
+    run = audited("verify-evidence", "--manifest", "logs.sha256")
+    assert (run.status, run.out.splitlines()[-1].rpartition("; ")[2]) == (
+        0,
+        "runs by `logs.sha256`)",
+    )
+    without("logs/bad.mcap")
+    run = audited("verify-evidence", "--manifest", "logs.sha256")
+    assert run.status == 1
+    assert "differs: the manifest names it and the evidence has no result of it\n" in run.out
+
+
+@pytest.mark.parametrize(
+    ("line", "status", "told"),
+    [
+        ("{good}  logs/good.mcap", 0, ""),
+        ("{GOOD} *./logs//good.mcap\r", 0, ""),
+        ("# by hand\n{good}  archive/kept.mcap", 0, ""),
+        (f"{NO_HASH}  logs/good.mcap", 1, "differs: the manifest has another hash for `logs/good"),
+        (f"{NO_HASH}  logs/other.mcap", 1, "differs: the manifest does not name it"),
+        ("{good}  logs/good.mcap\n{good}  logs/copy.mcap", 1, "the manifest names it and the"),
+        ("{good}  logs/good.mcap\n{good}  logs/good.mcap", 2, "names this log twice"),
+        ("{good} logs/good.mcap", 2, "F545 this is no line of `sha256sum`"),
+        ("00  logs/good.mcap", 2, "F545 this is no line of `sha256sum`"),
+        ("# nothing", 2, "F545 `logs.sha256` names no log"),
+    ],
+)
+def test_a_manifest_is_read_as_sha256sum_reads_it(
+    audited: Fretc, line: str, status: int, told: str
+) -> None:
+    Path("logs/bad.mcap").unlink()
+    assert audited("audit", "logs").status == 0
+    good = hashlib.sha256(Path("logs/good.mcap").read_bytes()).hexdigest()
+    manifested(line.format(good=good, GOOD=good.upper()))
+    run = audited("verify-evidence", "--manifest", "logs.sha256")
+    assert run.status == status
+    assert told in run.out + run.err
+
+
+def test_names_that_sha256sum_escapes_are_read(audited: Fretc) -> None:
+    Path("logs/bad.mcap").rename("logs/a\\b\n.mcap")
+    assert audited("audit", "logs").status == 1
+    paths = sorted(Path("logs").iterdir())
+    manifested(
+        *(
+            f"\\{hashlib.sha256(path.read_bytes()).hexdigest()}  "
+            + str(path).replace("\\", "\\\\").replace("\n", "\\n")
+            for path in paths
+        )
+    )
+    assert audited("verify-evidence", "--manifest", "logs.sha256").status == 0
+
+
+# Proofs ---------------------------------------------------------------------------------------
+
+
+def test_proofs_are_made_again(audited: Fretc) -> None:
+    assert audited("verify", "requirements/r1.fret", "--monitor").status == 0
+    run = audited("verify-evidence")
+    assert run.status == 0
+    assert "proofs\n  ✔ r1  stands: monitor: the monitor means what the sentence says\n" in run.out
+    text = Path("build/verification.json").read_text()
+    write("build/verification.json", text.replace('"proved"', '"counterexample"'))
+    run = audited("verify-evidence")
+    assert run.status == 1
+    assert "it is proved, and was counterexample\n" in run.out
+    run = audited("verify-evidence", "--no-proofs")
+    assert run.status == 3
+    assert "not checked: no proof was made again: `--no-proofs`\n" in run.out
+
+
+def test_a_proof_that_is_planned_and_is_not_there_is_missed(audited: Fretc) -> None:
+    write("requirements/r1.fret", f'+++\nid = "r1"\nverify = ["audit", "loop", "desk"]\n+++\n{R1}')
+    assert audited("audit", "logs").status == 1
+    run = audited("verify-evidence")
+    assert run.status == 3
+    assert "r1  not checked: r1 plans `loop` and no proof says anything of it\n" in run.out

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from compiler.evidence import Evidence, Moment, read
 from compiler.report import make
 from fretish.diagnostic import Code, Diagnostic, Severity
-from tests.compiler.report.cases import evidence, moment, project, result, said, violation
+from tests.compiler.report.cases import evidence, moment, project, result, violation
 
 
 def test_what_the_audit_wrote_is_read(tmp_path: Path) -> None:
@@ -118,19 +118,49 @@ def test_a_missing_field_is_named(tmp_path: Path) -> None:
     assert wrong(tmp_path, json.dumps(content)).message.endswith("`results[0]` has no `reason`")
 
 
-def test_more_fields_than_the_report_needs_may_be_there(tmp_path: Path) -> None:
+@pytest.mark.parametrize(
+    ("path", "says"),
+    [
+        (("signed",), "the whole file has `signed`, which is unknown"),
+        (("results", 0, "why"), "`results[0]` has `why`, which is unknown"),
+        (
+            ("results", 0, "health", "checked", "all"),
+            "`results[0].health.checked` has none of the forms",
+        ),
+        (("results", 0, "hashes", "lop"), "`results[0].hashes` has `lop`, which is unknown"),
+    ],
+)
+def test_what_is_unknown_is_refused(tmp_path: Path, path: tuple[str | int, ...], says: str) -> None:
     known = project(tmp_path)
-    file = tmp_path / "evidence.json"
-    file.write_text(
-        json.dumps({**evidence(known, result(known, "satisfied", margin=1)), "signed": "yes"}),
-        encoding="utf-8",
-    )
-    made = make(known, str(file))
-    assert said(made)["counts"][-1] == {
-        "mark": {"word": "satisfied", "glyph": "✔", "kind": "satisfied", "suspect": False},
-        "requirements": 1,
-        "results": 1,
-    }
+    content = evidence(known, result(known, "satisfied"))
+    _put(content, path, "yes")
+    assert says in wrong(tmp_path, json.dumps(content)).message
+
+
+@pytest.mark.parametrize("sha256", ["", "0" * 63, "0" * 64 + "\n", "A" * 64, "<script>"])
+@pytest.mark.parametrize("name", ["log", "sentence", "monitor"])
+def test_a_hash_is_a_hash(tmp_path: Path, name: str, sha256: str) -> None:
+    known = project(tmp_path)
+    content = evidence(known, result(known, "satisfied", hashes={name: sha256}))
+    said = wrong(tmp_path, json.dumps(content)).message
+    assert f"`results[0].hashes.{name}` must match pattern" in said
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "says"),
+    [
+        ('"verdict"', '"verdict": "violated", "verdict"', "`verdict` is there twice in one object"),
+        ('"fretc"', '"fretc": "0.0.0", "fretc"', "`fretc` is there twice in one object"),
+        ("2.4", "1e999", "`1e999` is too large for a number"),
+        ("2.4", "Infinity", "`Infinity` is no number of JSON"),
+    ],
+)
+def test_what_two_readers_may_take_for_two_things_is_refused(
+    tmp_path: Path, old: str, new: str, says: str
+) -> None:
+    known = project(tmp_path)
+    text = json.dumps(evidence(known, result(known, "satisfied"))).replace(old, new, 1)
+    assert says in wrong(tmp_path, text).message
 
 
 # Mutations: whatever the file says, a report or F503 comes out, never an exception.

@@ -214,7 +214,7 @@ def basis(known: Project, name: str) -> Mapping[str, str]:
     """What an audit would record of a requirement now."""
     found = bases(known)
     mine = next((each for each in known.requirements if each.id == name), None)
-    return found[id(mine)] if mine is not None else dict.fromkeys(KINDS, "")
+    return found[id(mine)] if mine is not None else dict.fromkeys(KINDS, "0" * 64)
 
 
 ODOM = {

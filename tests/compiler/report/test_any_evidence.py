@@ -98,7 +98,7 @@ def thresholds(draw: st.DrawFn) -> dict[str, Any]:
         "least": draw(numbers),
         "greatest": draw(numbers),
         "comparison": draw(st.sampled_from([None, "true", "false", "crossed"])),
-        "margin": draw(finite),
+        "margin": draw(finite.map(lambda value: value and abs(value))),
         "nearest": draw(st.none() | st.just({"ns": 10**9, "seconds": -0.1})),
     }
 

@@ -13,6 +13,7 @@ from compiler.templating import template_root
 from tests.compiler.report.cases import (
     BINDINGS,
     HAZARDS,
+    ODOM,
     R1,
     made,
     moment,
@@ -249,8 +250,8 @@ def _everywhere(folder: Path, text: str) -> str:
             '"A drum can break."', quoted
         ),
     )
-    finding = {"code": text, "severity": "note", "message": text, "help": text}
-    topic = {"type": text, "count": 1, "first_ns": None, "last_ns": None}
+    finding = {"code": "F404", "severity": "note", "message": text, "help": text}
+    place = {"file": text, "line": None, "column": None}
     report = made(
         known,
         folder,
@@ -263,10 +264,9 @@ def _everywhere(folder: Path, text: str) -> str:
             assumptions=[text],
             violations=[{**violation(1, 2), "values": {text: 1.0}}],
             units={text: text},
-            hashes={"log": text},
             health={
-                "findings": [finding],
-                "topics": {text: {**topic, "longest_gap_ns": 0, "out_of_order": 0}},
+                "findings": [{**finding, **place}],
+                "topics": {text: {**ODOM, "type": text}},
             },
         ),
         result(known, "satisfied", id="R0" if text == "harmless" else text),

@@ -1,0 +1,49 @@
+"""What became of each thing that is made again: it stands, it differs, or it was not checked."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from enum import StrEnum
+
+FILE, ALL_RUNS, PROOFS = "the file", "all runs", "proofs"
+"""In the place of a run."""
+
+
+class Finding(StrEnum):
+    """What became of one thing."""
+
+    STANDS = "stands"
+    DIFFERS = "differs"
+    UNKNOWN = "not checked"
+
+
+@dataclass(frozen=True, slots=True)
+class Rechecked:
+    """One run and requirement of the evidence, made again; or what is missing of them."""
+
+    run: str
+    requirement: str
+    """Empty where it is about all of them."""
+    finding: Finding
+    reasons: tuple[str, ...]
+    """Empty where it stands."""
+    claim: str = ""
+    """What is proved of the requirement; empty where it is about no proof."""
+
+
+def differs(run: str, requirement: str, *reasons: str, claim: str = "") -> Rechecked:
+    """Something is otherwise now."""
+    return Rechecked(run, requirement, Finding.DIFFERS, reasons, claim)
+
+
+def unknown(run: str, requirement: str, *reasons: str, claim: str = "") -> Rechecked:
+    """It could not be made again."""
+    return Rechecked(run, requirement, Finding.UNKNOWN, reasons, claim)
+
+
+def counts(found: Iterable[Rechecked]) -> Mapping[Finding, int]:
+    """How many there are of each finding."""
+    known = Counter(one.finding for one in found)
+    return {finding: known[finding] for finding in Finding}
