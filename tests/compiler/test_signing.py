@@ -102,7 +102,7 @@ def test_each_content_has_one_text() -> None:
 
 
 def test_a_name_that_stands_twice_is_refused() -> None:
-    with pytest.raises(MisshapenError, match="a name stands twice"):
+    with pytest.raises(MisshapenError, match="is there twice"):
         opened(ENVELOPE.replace('{"payload"', '{"payload": "e30=", "payload"', 1))
 
 
