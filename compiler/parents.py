@@ -22,6 +22,7 @@ from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree
 
+from compiler.files import regular
 from compiler.settings import Settings
 from fretish.diagnostic import Code, Diagnostic
 from fretish.limits import within
@@ -147,7 +148,7 @@ _MOST = 64 * 2**20
 
 
 def _text(path: Path) -> str:
-    with path.open("rb") as file:
+    with regular(path) as file:
         return _decoded(file.read(_MOST + 1))
 
 
@@ -270,7 +271,7 @@ _NAMES = ("ReqIF.ForeignID", "ReqIF.Name", "ReqIF.ChapterName", "ReqIF.Text", "U
 
 def _reqifz(path: Path, name: str) -> Iterator[Parent]:
     try:
-        with zipfile.ZipFile(path) as archive:
+        with regular(path) as file, zipfile.ZipFile(file) as archive:
             inside = sorted(n for n in archive.namelist() if n.lower().endswith(".reqif"))
             most = _LEAST_PACKED + _RATIO * path.stat().st_size
             if sum(archive.getinfo(each).file_size for each in inside) > most:

@@ -13,7 +13,7 @@ from statistics import median
 from typing import TYPE_CHECKING, Any
 
 from compiler.evidence import read as read_evidence
-from compiler.files import unreadable
+from compiler.files import regular, unreadable
 from fretish.diagnostic import Code, Diagnostic
 from fretish.source import Source
 
@@ -104,7 +104,7 @@ def read(paths: Sequence[str]) -> Table | Diagnostic:
 
 def _read(path: str) -> Table | Diagnostic:
     try:
-        with Path(path).open("rb") as file:
+        with regular(path) as file:
             start = file.read(64)
     except OSError as error:
         return unreadable(path, error)
