@@ -18,7 +18,7 @@ from compiler.files import content, sha256
 from compiler.files import read as read_text
 from compiler.proven import Proof
 from compiler.rule import Rule
-from compiler.shapes import MisshapenError, Shape
+from compiler.shapes import MisshapenError, Shape, plain
 from compiler.targets import ajpf, bundle
 from compiler.targets.target import DEFAULT, Options
 from compiler.verification import (
@@ -174,12 +174,10 @@ def read(path: str) -> AjpfResult | Diagnostic:
     if isinstance(source, Diagnostic):
         return source
     try:
-        return _result(Shape(json.loads(source.text)), path)
-    except json.JSONDecodeError as error:
-        return _wrong(source, f"is not JSON: {error.msg[:1].lower()}{error.msg[1:]}")
+        return _result(Shape(plain(source.text)), path)
     except MisshapenError as error:
         return _wrong(source, f"is not what `run.py` writes: {error}")
-    except (ValueError, RecursionError, AssertionError):
+    except (ValueError, AssertionError):
         return _wrong(source, "is not JSON that fretc can read")
 
 

@@ -11,7 +11,6 @@ sphinx-needs, needs.json; OMG, Requirements Interchange Format (ReqIF) 1.2.
 
 from __future__ import annotations
 
-import json
 import lzma
 import zipfile
 import zlib
@@ -24,6 +23,7 @@ from xml.etree import ElementTree
 
 from compiler.files import regular
 from compiler.settings import Settings
+from compiler.shapes import MisshapenError, plain
 from fretish.diagnostic import Code, Diagnostic
 from fretish.limits import within
 from fretish.source import Source, Span
@@ -168,9 +168,9 @@ def _parent(id: str, title: str | None, text: str | None, source: str) -> Parent
 def _json(text: str, name: str) -> Iterator[Parent]:
     """An export of StrictDoc, or of sphinx-needs."""
     try:
-        data = json.loads(text)
-    except (ValueError, RecursionError):
-        raise UnreadableError("it is not JSON") from None
+        data: Any = plain(text)
+    except MisshapenError as error:
+        raise UnreadableError(f"it is not JSON: {error}") from None
     if isinstance(data, dict) and isinstance(data.get("DOCUMENTS"), list):
         return _strictdoc(data["DOCUMENTS"], name)
     if isinstance(data, dict) and "versions" in data:

@@ -6,10 +6,11 @@ turns that into a diagnostic.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection
+import json
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass
 from math import isfinite
-from typing import TypeVar
+from typing import NoReturn, TypeVar
 
 T = TypeVar("T")
 _LARGEST = 2**63
@@ -20,6 +21,35 @@ _SHOWN = 40
 
 class MisshapenError(ValueError):
     """A value is missing or of the wrong kind; the message says which and where."""
+
+
+def plain(text: str) -> object:
+    """The value of a JSON text in which no name stands twice.
+
+    Raises:
+        MisshapenError: it is no such text.
+    """
+    try:
+        return json.loads(text, object_pairs_hook=_once, parse_constant=_no_number)
+    except MisshapenError:
+        raise
+    except (ValueError, RecursionError) as error:
+        raise MisshapenError(f"the text is not JSON that fretc can read: {_cause(error)}") from None
+
+
+def _once(pairs: Sequence[tuple[str, object]]) -> dict[str, object]:
+    found = dict(pairs)
+    if len(found) < len(pairs):
+        raise MisshapenError("a name stands twice in an object")
+    return found
+
+
+def _no_number(word: str) -> NoReturn:
+    raise MisshapenError(f"`{word}` is no number of JSON")
+
+
+def _cause(error: Exception) -> str:
+    return "it is nested too deeply" if isinstance(error, RecursionError) else str(error)
 
 
 @dataclass(frozen=True, slots=True)
