@@ -228,8 +228,8 @@ def _doorstop(path: Path, name: str) -> Iterator[Parent]:
     """The items of one exported document; Doorstop exports the active ones."""
     try:
         found = loaded(_text(path))
-    except ValueError:
-        raise UnreadableError(f"{path.name} is not YAML") from None
+    except ValueError as error:
+        raise UnreadableError(f"{path.name} is not YAML that is read: {error}") from None
     if not isinstance(found, dict) or not all(_is_item(item) for item in found.values()):
         raise UnreadableError(f"{path.name} is no export of Doorstop")
     for uid, item in found.items():

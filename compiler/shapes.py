@@ -23,33 +23,51 @@ class MisshapenError(ValueError):
     """A value is missing or of the wrong kind; the message says which and where."""
 
 
+def parsed(text: str) -> Shape:
+    """A JSON text that every reader takes for the same: each key once, and finite numbers only.
+
+    Raises:
+        json.JSONDecodeError: it is no JSON.
+        ValueError: it is JSON that may be read in two ways, or that Python does not read.
+        RecursionError: it is nested too deeply.
+    """
+    value = json.loads(
+        text, object_pairs_hook=_distinct, parse_float=_finite, parse_constant=_no_number
+    )
+    return Shape(value)
+
+
 def plain(text: str) -> object:
-    """The value of a JSON text in which no name stands twice.
+    """The value of such a text.
 
     Raises:
         MisshapenError: it is no such text.
     """
     try:
-        return json.loads(text, object_pairs_hook=_once, parse_constant=_no_number)
-    except MisshapenError:
-        raise
-    except (ValueError, RecursionError) as error:
-        raise MisshapenError(f"the text is not JSON that fretc can read: {_cause(error)}") from None
+        return parsed(text).value
+    except RecursionError:
+        raise MisshapenError("it is nested too deeply") from None
+    except ValueError as error:
+        raise MisshapenError(f"the text is not JSON that fretc can read: {error}") from None
 
 
-def _once(pairs: Sequence[tuple[str, object]]) -> dict[str, object]:
-    found = dict(pairs)
-    if len(found) < len(pairs):
-        raise MisshapenError("a name stands twice in an object")
-    return found
+def _distinct(pairs: Sequence[tuple[str, object]]) -> dict[str, object]:
+    known: dict[str, object] = {}
+    for key, value in pairs:
+        if key in known:
+            raise ValueError(f"`{key[:_SHOWN]}` is there twice in one object")
+        known[key] = value
+    return known
+
+
+def _finite(word: str) -> float:
+    if not isfinite(float(word)):
+        raise ValueError(f"`{word[:_SHOWN]}` is too large for a number")
+    return float(word)
 
 
 def _no_number(word: str) -> NoReturn:
-    raise MisshapenError(f"`{word}` is no number of JSON")
-
-
-def _cause(error: Exception) -> str:
-    return "it is nested too deeply" if isinstance(error, RecursionError) else str(error)
+    raise ValueError(f"`{word}` is no number of JSON")
 
 
 @dataclass(frozen=True, slots=True)
@@ -133,6 +151,12 @@ class Shape:
         if not 0 <= self.number() <= _LONGEST:
             raise self.wrong("a number of seconds from the start of a run")
         return self.number()
+
+    def only(self, *keys: str) -> None:
+        """Nothing else may be in an object."""
+        for key in self._object():
+            if key not in keys:
+                raise MisshapenError(f"{self.name} may not have `{key[:_SHOWN]}`")
 
     def or_none(self, read: Callable[[Shape], T]) -> T | None:
         """None for null, else what `read` makes of it."""
