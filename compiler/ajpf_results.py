@@ -14,11 +14,11 @@ from dataclasses import dataclass
 from pathlib import Path, PurePath
 
 from compiler.ajpf_run import ERROR, HOLDS, SCHEMA, VIOLATED, verdict
+from compiler.files import content, sha256
 from compiler.files import read as read_text
-from compiler.files import sha256
 from compiler.proven import Proof
 from compiler.rule import Rule
-from compiler.shapes import MisshapenError, Shape
+from compiler.shapes import MisshapenError, Shape, plain
 from compiler.targets import ajpf, bundle
 from compiler.targets.target import DEFAULT, Options
 from compiler.verification import (
@@ -174,12 +174,10 @@ def read(path: str) -> AjpfResult | Diagnostic:
     if isinstance(source, Diagnostic):
         return source
     try:
-        return _result(Shape(json.loads(source.text)), path)
-    except json.JSONDecodeError as error:
-        return _wrong(source, f"is not JSON: {error.msg[:1].lower()}{error.msg[1:]}")
+        return _result(Shape(plain(source.text)), path)
     except MisshapenError as error:
         return _wrong(source, f"is not what `run.py` writes: {error}")
-    except (ValueError, RecursionError, AssertionError):
+    except (ValueError, AssertionError):
         return _wrong(source, "is not JSON that fretc can read")
 
 
@@ -312,12 +310,12 @@ def _otherwise(file: str, check: Check) -> str | None:
     if check.role == "requirement" and check.told == VIOLATED:
         return None
     try:
-        content = (Path(file).parent / "logs" / check.log).read_bytes()
+        told = content(Path(file).parent / "logs" / check.log)
     except (OSError, ValueError):
         return None
-    if hashlib.sha256(content).hexdigest() != check.log_sha256:
+    if hashlib.sha256(told).hexdigest() != check.log_sha256:
         return f"logs/{check.log} is not what AJPF printed then: run AJPF again"
-    said, _ = verdict(content.decode(errors="replace"), 0)
+    said, _ = verdict(told.decode(errors="replace"), 0)
     if check.told not in (said, ERROR):
         return f"it tells {check.told} of {check.jpf}, and logs/{check.log} does not"
     return None
@@ -336,12 +334,10 @@ def _stale(found: AjpfResult, now: Mapping[str, str]) -> Iterator[str]:
 def _changed(file: str, hashed: str) -> str | None:
     """Why one's own agent is not the one that was checked; None: it is."""
     try:
-        content = Path(file).read_bytes() if Path(file).is_file() else None
+        own = content(file)
     except (OSError, ValueError):
-        content = None
-    if content is None:
         return f"the agent {file} cannot be read, to be held against the one that was checked"
-    if hashlib.sha256(content).hexdigest() != hashed:
+    if hashlib.sha256(own).hexdigest() != hashed:
         return f"the agent {file} was changed since: run AJPF again"
     return None
 

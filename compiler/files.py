@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import hashlib
 import os
 import secrets
@@ -10,9 +11,13 @@ import time
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import BinaryIO
 
 from fretish.diagnostic import Code, Diagnostic, suggestion
 from fretish.source import Source
+
+MOST = 2**30
+"""Bytes of a text, or of any other file that is read at once."""
 
 
 def read(path: str) -> Source | Diagnostic:
@@ -23,11 +28,45 @@ def read(path: str) -> Source | Diagnostic:
         if path == "-":
             with open(0, "rb", closefd=False) as stdin:
                 return Source("<stdin>", stdin.read().decode("utf-8-sig"))
-        return Source(path, Path(path).read_bytes().decode("utf-8-sig"))
+        return Source(path, content(path).decode("utf-8-sig"))
     except UnicodeDecodeError as error:
         return not_text(path, error.start)
     except OSError as error:
         return unreadable(path, error)
+
+
+def content(path: str | Path) -> bytes:
+    """The bytes of a regular file.
+
+    Raises:
+        OSError: it cannot be read, is a pipe or a device, or is larger than `MOST`.
+    """
+    with regular(path) as file:
+        data = file.read(MOST + 1)
+    if len(data) > MOST:
+        raise OSError(None, f"it is larger than {MOST // 2**20} MiB")
+    return data
+
+
+def regular(path: str | Path) -> BinaryIO:
+    """The file, open: no pipe, which may never say anything, and no device, which may never end.
+
+    What lies in /dev is the user's own word where it is named so, as by `<(...)` of a shell; a link
+    to it in a folder of somebody else is not.
+
+    Raises:
+        OSError: it cannot be opened, or is something else.
+    """
+    own = str(path).startswith("/dev/")
+    flags = os.O_RDONLY | os.O_CLOEXEC | os.O_NOCTTY
+    descriptor = os.open(path, flags if own else flags | os.O_NONBLOCK)
+    mode = os.fstat(descriptor).st_mode
+    if stat.S_ISREG(mode) or (own and not stat.S_ISDIR(mode)):
+        return os.fdopen(descriptor, "rb")
+    os.close(descriptor)
+    if stat.S_ISDIR(mode):
+        raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR))
+    raise OSError(None, "it is no regular file")
 
 
 def not_text(path: str, at: int) -> Diagnostic:
@@ -56,7 +95,7 @@ def unreadable(path: str, error: OSError) -> Diagnostic:
         Code.UNREADABLE,
         f"`{path}` cannot be read: {error.strerror or error}",
         span,
-        help="check its permissions",
+        help="check what it is, and its permissions",
     )
 
 

@@ -20,9 +20,10 @@ from compiler.verdicts import Level
 from fretish.amounts import declared_unit, scaled, value
 from fretish.declarations import Signal
 from fretish.documents import Requirement
+from fretish.rendering import visible
 from fretish.source import Span
 
-_NOT_XML = re.compile("[^\t\n\r\u0020-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
+_NOT_XML = re.compile("[^\t\n\r\u0020-~\u00a0-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 _GITHUB = {Level.ERROR: "error", Level.WARNING: "warning", Level.NONE: "notice"}
 
 
@@ -114,7 +115,7 @@ def _bounds(case: Mapping[str, Any], signal: str, factor: Fraction) -> list[floa
 
 
 def valid(text: str) -> str:
-    """The text without what XML cannot hold."""
+    """The text without what XML cannot hold, or a terminal obeys."""
     return _NOT_XML.sub("\ufffd", text)
 
 
@@ -147,7 +148,7 @@ def _annotation(level: str, place: Span, title: str, said: str) -> str:
 
 
 def _data(text: str) -> str:
-    return text.replace("%", "%25").replace("\r", "%0D").replace("\n", "%0A")
+    return visible(text).replace("%", "%25")
 
 
 def _property(text: str) -> str:

@@ -11,7 +11,6 @@ sphinx-needs, needs.json; OMG, Requirements Interchange Format (ReqIF) 1.2.
 
 from __future__ import annotations
 
-import json
 import lzma
 import zipfile
 import zlib
@@ -22,7 +21,9 @@ from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree
 
+from compiler.files import regular
 from compiler.settings import Settings
+from compiler.shapes import MisshapenError, plain
 from fretish.diagnostic import Code, Diagnostic
 from fretish.limits import within
 from fretish.source import Source, Span
@@ -147,7 +148,7 @@ _MOST = 64 * 2**20
 
 
 def _text(path: Path) -> str:
-    with path.open("rb") as file:
+    with regular(path) as file:
         return _decoded(file.read(_MOST + 1))
 
 
@@ -167,9 +168,9 @@ def _parent(id: str, title: str | None, text: str | None, source: str) -> Parent
 def _json(text: str, name: str) -> Iterator[Parent]:
     """An export of StrictDoc, or of sphinx-needs."""
     try:
-        data = json.loads(text)
-    except (ValueError, RecursionError):
-        raise UnreadableError("it is not JSON") from None
+        data: Any = plain(text)
+    except MisshapenError as error:
+        raise UnreadableError(f"it is not JSON: {error}") from None
     if isinstance(data, dict) and isinstance(data.get("DOCUMENTS"), list):
         return _strictdoc(data["DOCUMENTS"], name)
     if isinstance(data, dict) and "versions" in data:
@@ -227,8 +228,8 @@ def _doorstop(path: Path, name: str) -> Iterator[Parent]:
     """The items of one exported document; Doorstop exports the active ones."""
     try:
         found = loaded(_text(path))
-    except ValueError:
-        raise UnreadableError(f"{path.name} is not YAML") from None
+    except ValueError as error:
+        raise UnreadableError(f"{path.name} is not YAML that is read: {error}") from None
     if not isinstance(found, dict) or not all(_is_item(item) for item in found.values()):
         raise UnreadableError(f"{path.name} is no export of Doorstop")
     for uid, item in found.items():
@@ -270,7 +271,7 @@ _NAMES = ("ReqIF.ForeignID", "ReqIF.Name", "ReqIF.ChapterName", "ReqIF.Text", "U
 
 def _reqifz(path: Path, name: str) -> Iterator[Parent]:
     try:
-        with zipfile.ZipFile(path) as archive:
+        with regular(path) as file, zipfile.ZipFile(file) as archive:
             inside = sorted(n for n in archive.namelist() if n.lower().endswith(".reqif"))
             most = _LEAST_PACKED + _RATIO * path.stat().st_size
             if sum(archive.getinfo(each).file_size for each in inside) > most:

@@ -7,12 +7,11 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from importlib.util import find_spec
-from pathlib import Path
 from statistics import median
 from typing import TYPE_CHECKING, Any
 
 from compiler.evidence import document
-from compiler.files import unreadable
+from compiler.files import regular, unreadable
 from fretish.diagnostic import Code, Diagnostic
 from fretish.source import Source
 
@@ -103,7 +102,7 @@ def read(paths: Sequence[str]) -> Table | Diagnostic:
 
 def _read(path: str) -> Table | Diagnostic:
     try:
-        with Path(path).open("rb") as file:
+        with regular(path) as file:
             start = file.read(64)
     except OSError as error:
         return unreadable(path, error)

@@ -50,8 +50,9 @@ def as_json(diagnostic: Diagnostic) -> dict[str, Any]:
 
 
 def _place(span: Span) -> list[str]:
+    name = visible(span.source.name)
     if not span.source.text:
-        return [f"  --> {span.source.name}"]
+        return [f"  --> {name}"]
     line, column = span.line_text, span.column
     width = max(1, min(span.end, span.start + len(line) - column + 1) - span.start)
     start = 0 if column <= _WIDTH - 40 else column - 60
@@ -60,7 +61,7 @@ def _place(span: Span) -> list[str]:
     under = visible(shown[column - 1 - start : column - 1 - start + width])
     after = visible(shown[column - 1 - start + width :])
     return [
-        f"  --> {span.source.name}:{span.line}:{column}",
+        f"  --> {name}:{span.line}:{column}",
         f"   | {before}{under}{after}".rstrip(),
         f"   | {' ' * len(before)}{'^' * max(1, len(under))}",
     ]

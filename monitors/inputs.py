@@ -13,13 +13,14 @@ import hashlib
 import io
 import os
 import re
+import shutil
 import stat
 import sys
 import tempfile
 import threading
 import time
 from collections.abc import Callable, Iterator
-from contextlib import ExitStack, contextmanager
+from contextlib import ExitStack, closing, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, BinaryIO, cast
@@ -31,14 +32,11 @@ from fretish.source import Source
 from monitors import findings, refusals, web
 
 STDIN = "-"
-_BLOCK = 2**22
-"""Bytes that are asked of a server at once."""
 _MOST = 2**36
 """Bytes of a log that a server sends without saying how many there are."""
-_PATIENCE, _SLOWEST = 60, 10_000
-"""Seconds, after which a server has to have sent so many bytes a second."""
 _SMALL_BLOCK = 2**14
-"""The same where most of the file is passed by."""
+"""Bytes that are asked of a server at once where most of the file is passed by."""
+_SLOW = "the server sends next to nothing"
 _HASHED = 2**18
 """Bytes that are hashed at once."""
 _URL = re.compile(r"[A-Za-z][A-Za-z0-9+.:-]*://.*", re.DOTALL)
@@ -206,7 +204,7 @@ def _stdin(stack: ExitStack) -> Input | Diagnostic:
 def _copied(source: BinaryIO, stack: ExitStack) -> io.BufferedReader:
     """All that follows, in a file without a name."""
     copy = stack.enter_context(tempfile.TemporaryFile())  # noqa: SIM115
-    while block := source.read(_BLOCK):
+    while block := source.read(web.BLOCK):
         copy.write(block)
         grant(len(block))
     copy.flush()
@@ -225,7 +223,7 @@ class _Hashed(io.RawIOBase):
     """A file at a URL. What is read in order is hashed on the way, so that it comes once."""
 
     def __init__(self, file: Any, size: int) -> None:
-        self._file, self._size = file, size
+        self._file, self._size = _Paced(file, _SMALL_BLOCK), size
         self._at = self._hashed = 0
         self._digest = hashlib.sha256()
 
@@ -250,11 +248,7 @@ class _Hashed(io.RawIOBase):
 
     def _read(self, length: int) -> bytes:
         length = max(0, min(length, self._size - self._at))
-        try:
-            self._file.seek(self._at)
-            data = bytes(self._file.read(length))
-        except Exception as error:  # each protocol has its own
-            raise _as_os_error(error) from error
+        data = self._file.read(length, self._at)
         if length and not data:
             raise OSError(None, f"nothing came from byte {self._at} on")
         if self._at <= self._hashed < self._at + len(data):
@@ -266,7 +260,7 @@ class _Hashed(io.RawIOBase):
     def sha256(self) -> str:
         self._at = self._hashed
         while self._hashed < self._size:
-            self._read(_BLOCK)
+            self._read(web.BLOCK)
         return self._digest.hexdigest()
 
 
@@ -283,10 +277,10 @@ def _remote(url: str, stack: ExitStack, *, whole: bool) -> Input | Diagnostic:
             return findings.is_a_directory(place)
         size = about.get("size")
         if size is None or about.get("partial") is False:
-            file = stack.enter_context(system.open(path, "rb", block_size=0))
+            file = stack.enter_context(closing(_stream(system, path)))
             return _copy(_copied(_Limited(file, size), stack))
         if whole:
-            file = stack.enter_context(system.open(path, "rb", block_size=_BLOCK))
+            file = stack.enter_context(system.open(path, "rb", block_size=web.BLOCK))
             return _copy(_copied(_Limited(file, size), stack))
         file = stack.enter_context(system.open(path, "rb", block_size=_SMALL_BLOCK))
     except ImportError as error:
@@ -298,35 +292,63 @@ def _remote(url: str, stack: ExitStack, *, whole: bool) -> Input | Diagnostic:
     return Input(cast("io.BufferedReader", stream), size, hashed.sha256, lambda: None, None, None)
 
 
+def _stream(system: Any, path: str) -> Any:
+    """All that is there from its beginning on, where no part of it can be asked for."""
+    return web.Stream(system, path) if web.is_web(path) else system.open(path, "rb", block_size=0)
+
+
+class _Paced:
+    """What a server sends; its errors are the operating system's, and one is that it is slow."""
+
+    def __init__(self, file: Any, least: int = 0) -> None:
+        """`least`: bytes that a question counts for, however few are wanted."""
+        self._file, self._least = file, least
+        self._due, self._spent = 0, 0.0
+
+    def read(self, length: int | None, start: int | None = None) -> bytes:
+        since = time.monotonic()
+        try:
+            if start is not None:
+                self._file.seek(start)
+            data = bytes(self._file.read(length))
+        except Exception as error:  # each protocol has its own
+            raise _as_os_error(error) from error
+        self._spent += time.monotonic() - since
+        self._due += max(self._least, len(data))
+        if self._spent > web.PATIENCE + self._due / web.SLOWEST:
+            raise OSError(None, _SLOW)
+        return data
+
+
 class _Limited(io.BytesIO):
-    """What a server sends, as long as that is not endless; its errors are the operating system's.
+    """What a server sends, as long as that is not endless and there is room for it.
 
     All of it comes, if the size is known, or an error.
     """
 
     def __init__(self, file: Any, size: int | None) -> None:
         super().__init__()
-        self._file, self._size = file, size
-        self._got, self._since = 0, time.monotonic()
+        self._file, self._size, self._got = _Paced(file), size, 0
+        room = shutil.disk_usage(tempfile.gettempdir()).free
+        if size is not None and size > room:
+            raise OSError(None, f"it has {size} bytes, and there is room for {room} of a copy")
+        self._most = min(_MOST, room) if size is None else size
 
     def read(self, length: int | None = -1) -> bytes:
-        try:
-            data = bytes(self._file.read(length))
-        except Exception as error:  # each protocol has its own
-            raise _as_os_error(error) from error
+        data = self._file.read(length)
         self._got += len(data)
-        if self._got > (_MOST if self._size is None else self._size):
-            raise OSError(None, "the server sends more than a log has")
+        if self._got > self._most:
+            raise OSError(None, "the server sends more than a log has, or than there is room for")
         if not data and self._size not in (None, self._got):
             raise OSError(None, f"nothing came from byte {self._got} on")
-        if time.monotonic() - self._since > _PATIENCE + self._got / _SLOWEST:
-            raise OSError(None, "the server sends next to nothing")
         return data
 
 
 def _as_os_error(error: Exception) -> OSError:
     if isinstance(error, FileNotFoundError) and isinstance(error.__cause__, Exception):
         error = error.__cause__  # whatever is wrong, it says that there is no file
+    if isinstance(error, TimeoutError):
+        return OSError(None, _SLOW)
     if isinstance(error, FileNotFoundError | PermissionError):
         return error
     status = getattr(error, "status", None)

@@ -5,22 +5,31 @@ The only module that imports aiohttp, through which fsspec speaks to `http` and 
 
 from __future__ import annotations
 
+import asyncio
 import re
 from typing import Any
 from urllib.parse import urlsplit
 
 SCHEMES = frozenset({"http", "https"})
-_CONNECT, _SILENCE = 30, 60
-"""Seconds: for a connection, and between two pieces of an answer."""
+PATIENCE, SLOWEST = 60, 10_000
+"""Seconds, after which a server has to have sent so many bytes a second."""
+BLOCK = 2**22
+"""Bytes that are asked of a server at once."""
+_CONNECT = 30
+"""Seconds for a connection."""
 _RANGE = re.compile(r"bytes=(\d+)-(\d+)")
+
+
+def is_web(url: str) -> bool:
+    """Whether a web server is asked for it."""
+    return urlsplit(url).scheme.lower() in SCHEMES
 
 
 def options(url: str) -> dict[str, Any]:
     """What fsspec is to be told for a URL; nothing where that is no web server's."""
-    scheme = urlsplit(url).scheme.lower()
-    if scheme not in SCHEMES:
+    if not is_web(url):
         return {}
-    return {"get_client": _only_safe if scheme == "https" else _any}
+    return {"get_client": _only_safe if urlsplit(url).scheme.lower() == "https" else _any}
 
 
 async def _only_safe(**arguments: Any) -> Any:
@@ -32,16 +41,54 @@ async def _any(**arguments: Any) -> Any:
 
 
 def _client(scheme: str, **arguments: Any) -> Any:
-    """A session; what is unpacked on the way could be of any size, so nothing is."""
+    """A session; what is unpacked on the way could be of any size, so nothing is.
+
+    Whoever sends a byte now and then is never silent: so an answer has an end in all, too.
+    """
     import aiohttp
 
     hooks = aiohttp.TraceConfig()
     hooks.on_request_redirect.append(_redirects(scheme))
     hooks.on_request_end.append(_check_answer)
-    limits = aiohttp.ClientTimeout(total=None, sock_connect=_CONNECT, sock_read=_SILENCE)
+    whole = PATIENCE + BLOCK / SLOWEST
+    limits = aiohttp.ClientTimeout(total=whole, sock_connect=_CONNECT, sock_read=PATIENCE)
     return aiohttp.ClientSession(
         trace_configs=[hooks], timeout=limits, auto_decompress=False, **arguments
     )
+
+
+class Stream:
+    """All that is at a URL, in pieces as they come; the next one is waited for so long."""
+
+    def __init__(self, system: Any, url: str) -> None:
+        self._loop = system.loop
+        self._answer = self._wait(_answer, system, url)
+
+    def read(self, length: int) -> bytes:
+        """At most so many bytes: those that have come."""
+        return bytes(self._wait(self._answer.content.read, length))
+
+    def close(self) -> None:
+        """Hang up."""
+        self._loop.call_soon_threadsafe(self._answer.close)
+
+    def _wait(self, ask: Any, *arguments: object) -> Any:
+        asked = asyncio.run_coroutine_threadsafe(ask(*arguments), self._loop)
+        try:
+            return asked.result(PATIENCE)
+        finally:
+            asked.cancel()
+
+
+async def _answer(system: Any, url: str) -> Any:
+    """What a server says to a question for all of it; the body is still to come."""
+    import aiohttp
+
+    session = await system.set_session()
+    endless = aiohttp.ClientTimeout(total=None, sock_connect=_CONNECT, sock_read=PATIENCE)
+    answer = await session.get(system.encode_url(url), timeout=endless)
+    answer.raise_for_status()
+    return answer
 
 
 def _redirects(scheme: str) -> Any:

@@ -37,10 +37,12 @@ def _count(yaml: Any, text: str, loader: Any) -> None:
     Raises:
         ValueError: there are too many of them, or they are too deep.
     """
+    keys = _Keys()
     sizes: dict[str, int] = {}
     open_: list[tuple[str | None, int]] = []
     meant = 0
     for written, event in enumerate(yaml.parse(text, Loader=loader), 1):
+        keys.read(yaml, event)
         if isinstance(event, yaml.CollectionStartEvent):
             open_.append((event.anchor, meant))
             if len(open_) > _MOST_LEVELS:
@@ -54,3 +56,35 @@ def _count(yaml: Any, text: str, loader: Any) -> None:
         meant += sizes.get(event.anchor, 1) if isinstance(event, yaml.AliasEvent) else 1
         if meant > max(_MOST_NODES, _MOST_TIMES * written):
             raise ValueError("its aliases stand for far more than is written")
+
+
+class _Keys:
+    """The keys of mappings that are still open; a reader would take the last of two, unasked."""
+
+    def __init__(self) -> None:
+        self._open: list[set[str] | None] = []
+        """Of a mapping the keys that it has; None of a sequence."""
+        self._next: list[bool] = []
+        """Whether the next node in it is a key."""
+
+    def read(self, yaml: Any, event: Any) -> None:
+        """One event more.
+
+        Raises:
+            ValueError: a key comes twice in one mapping.
+        """
+        if isinstance(event, yaml.CollectionEndEvent):
+            self._open.pop()
+            self._next.pop()
+        if not isinstance(event, yaml.NodeEvent):
+            return
+        keys = self._open[-1] if self._open else None
+        if keys is not None:
+            if self._next[-1] and isinstance(event, yaml.ScalarEvent):
+                if event.value in keys:
+                    raise ValueError(f"the key `{event.value}` comes twice")
+                keys.add(event.value)
+            self._next[-1] = not self._next[-1]
+        if isinstance(event, yaml.CollectionStartEvent):
+            self._open.append(set() if isinstance(event, yaml.MappingStartEvent) else None)
+            self._next.append(True)

@@ -202,6 +202,10 @@ def load(name: str) -> Scenario:
         if name not in names():
             raise ScenarioError(f"there is no scenario `{name}`; there are {', '.join(names())}")
         path = Path(str(files("simulation"))) / "scenarios" / f"{name}.toml"
+    if path.exists() and not path.is_file():
+        raise ScenarioError(f"`{name}` is no regular file")
+    if path.is_file() and path.stat().st_size > _MOST:
+        raise ScenarioError(f"`{name}` is larger than a scenario is")
     try:
         data = tomllib.loads(path.read_text(encoding="utf-8-sig"))
     except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
@@ -256,6 +260,8 @@ def _interceptor_mistakes(node: Interceptor) -> Iterator[str]:
             yield f"`interceptor.{name}` must be 0, or not below the period"
 
 
+_MOST = 2**20
+"""Bytes of a scenario."""
 _SIGNED = {"recorder.jump_by"}
 """Numbers that may be negative, beside places: a clock may jump back."""
 

@@ -146,6 +146,7 @@ def main() -> None:
 
 def _files(asked: list[str]) -> None:
     """Feed mutations to every reader of files; what breaks one stays in a folder that is named."""
+    from tests import tables
     from tests.readers import fuzzed, readers
 
     count = int(asked[0]) if asked else 1000
@@ -161,6 +162,12 @@ def _files(asked: list[str]) -> None:
         except AssertionError as error:
             broken += 1
             print(f"{name}: BROKEN\n{error}", flush=True)
+    if not asked[2:] or "tables" in asked[2:]:
+        try:
+            print(f"tables: {tables.fuzzed(folder / 'tables', count, seed)}", flush=True)
+        except AssertionError as error:
+            broken += 1
+            print(f"tables: BROKEN\n{error}", flush=True)
     used = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss // 1024
     print(f"at most {used} MiB of memory; {broken} readers broken")
     sys.exit(bool(broken))

@@ -91,6 +91,13 @@ def test_a_chain_of_xor_that_ajpf_would_have_to_write_out_is_too_large(tmp_path:
     assert "F670 the property of r has more than 100000 operators" in text
 
 
+@pytest.mark.parametrize("timing", ["within", "for", "after"])
+def test_a_duration_without_end_is_not_drawn(tmp_path: Path, timing: str) -> None:
+    sentence = f"whenever p the sw shall {timing} 999999999999999 ticks satisfy q"
+    said = hold(tmp_path, {"r.fret": sentence}, "explain", "r.fret")
+    assert said.startswith("F670 the picture of r would have more than 100000 ticks")
+
+
 # Logs
 
 

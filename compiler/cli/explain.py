@@ -75,11 +75,27 @@ def _explain_code(code: Code, form: str) -> None:
         click.echo(explanations.text(code), nl=False)
 
 
+_MOST_TICKS = 100_000
+"""Of a duration: a picture has a column for each of them."""
+
+
+def _too_long(rule: Rule) -> Diagnostic:
+    return Diagnostic(
+        Code.TOO_LARGE,
+        f"the picture of {rule.id} would have more than {_MOST_TICKS} ticks",
+        rule.requirement.wording,
+        help="state a shorter duration, or use a clock with longer ticks",
+    )
+
+
 def _explain_rules(rules: Sequence[Rule], form: str, picture: str | None) -> None:
     from compiler import explanation
     from compiler.drawing import svg
     from compiler.templating import to_json
 
+    for rule in rules:
+        if (rule.ticks or 0) > _MOST_TICKS:
+            stop(_too_long(rule))
     explained = [explanation.explanation(rule) for rule in rules]
     if picture != "-":
         if form == "json":

@@ -11,7 +11,7 @@ from typing import TextIO
 from monitors.kernel.columns import columns_of
 from monitors.kernel.outcomes import Outcome, evaluate, stepped
 from monitors.kernel.stepping import Monitor
-from monitors.kernel.tables import InputError, read_rows
+from monitors.kernel.tables import InputError, read_rows, visible
 from monitors.kernel.verdicts import (
     EXIT_STATUS,
     INCONCLUSIVE,
@@ -64,7 +64,7 @@ _FAULTS = (
 
 def _complain(text: str) -> None:
     if sys.stderr is not None:
-        print(text, file=sys.stderr)
+        print(visible(text), file=sys.stderr)
 
 
 def _parser(monitor: type[Monitor]) -> argparse.ArgumentParser:
@@ -119,7 +119,7 @@ def _report(monitor: Monitor, path: str, options: argparse.Namespace) -> int:
         if options.format == "json":
             print(json.dumps(outcome.as_json()))
         else:
-            print(f"{source}: {outcome.requirement}: {_sentence(outcome)}")
+            print(visible(f"{source}: {outcome.requirement}: {_sentence(outcome)}"))
     return max((EXIT_STATUS[outcome.verdict] for outcome in outcomes), key=(0, 3, 1).index)
 
 

@@ -11,7 +11,15 @@ from monitors.kernel.verdicts import Truth
 
 
 class InputError(Exception):
-    """A trace that cannot be read, with its place in words."""
+    """A trace that cannot be read, with its place in words, on one line."""
+
+    def __init__(self, text: str) -> None:
+        super().__init__(visible(text))
+
+
+def visible(text: str) -> str:
+    """What would move the cursor, or begin another line, as escapes."""
+    return "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in text)
 
 
 _WORDS: dict[str, Truth] = {"": None, "0": False, "1": True, "false": False, "true": True}

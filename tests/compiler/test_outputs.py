@@ -1,5 +1,6 @@
 """Results as JUnit XML and as annotations of GitHub Actions."""
 
+import unicodedata
 from typing import Any
 from xml.etree import ElementTree
 
@@ -75,8 +76,9 @@ def test_values_are_in_the_units_that_the_bindings_declare() -> None:
 
 @given(st.text())
 def test_any_text_gives_xml_that_can_be_read(text: str) -> None:
-    root = ElementTree.fromstring(junit([result("violated", run=text, reason=text, id=text)]))
-    assert len(root[0]) == 1
+    written = junit([result("violated", run=text, reason=text, id=text)])
+    assert len(ElementTree.fromstring(written)[0]) == 1
+    assert not {c for c in written if unicodedata.category(c) == "Cc"} - {"\n", "\t", "\r"}
 
 
 @pytest.mark.parametrize(
@@ -94,9 +96,10 @@ def test_an_annotation_stands_at_the_sentence(verdict: str, level: str) -> None:
     assert found == f"::{level} file=r.fret,line=1,title=R1 {verdict}::a.mcap: why\n"
 
 
-def test_nothing_in_a_result_makes_another_annotation() -> None:
-    evil = result("violated", run="a\n::error::b", reason="100%\r\n::warning::x")
+@given(st.text())
+def test_nothing_in_a_result_makes_another_annotation_or_moves_the_cursor(text: str) -> None:
+    evil = result("violated", run=f"a\n::error::{text}", reason=f"100%\r\n{text}")
     found = github([evil], [rule("the sw shall always satisfy q").requirement])
-    assert found.count("\n") == 1
-    assert "%0A::error::b" in found
-    assert "100%25%0D%0A" in found
+    assert found[:-1].isprintable()
+    assert found.startswith("::error file=r.fret,line=1,title=R1 violated::a\\n::error::")
+    assert "100%25\\r\\n" in found

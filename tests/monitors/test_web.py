@@ -1,14 +1,17 @@
 """Web servers that do something else than send the log they are asked for."""
 
 import asyncio
+import socketserver
 import threading
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from contextlib import suppress
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
-from itertools import pairwise
+from itertools import count, pairwise
 from types import SimpleNamespace
 from typing import Any
 
+import fsspec
 import pytest
 
 from fretish.diagnostic import Code, Diagnostic
@@ -97,11 +100,127 @@ def test_a_server_that_sends_something_else_is_told_at_once(
 def test_a_server_that_sends_next_to_nothing_is_not_waited_for(
     server: tuple[str, Any], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(inputs, "_PATIENCE", -1)
-    monkeypatch.setattr(inputs, "_SLOWEST", 2**60)
+    clock = count(step=100)
+    monkeypatch.setattr(inputs, "time", SimpleNamespace(monotonic=lambda: next(clock)))
+    monkeypatch.setattr(web, "SLOWEST", 2**60)
     with opened(f"{server[0]}/good") as log:
         assert isinstance(log, Diagnostic)
         assert "next to nothing" in log.message
+
+
+# Answers that have no end
+
+
+class Endless(socketserver.StreamRequestHandler):
+    """Each path is an answer that goes on until the client leaves."""
+
+    server: "Forever"
+
+    def handle(self) -> None:
+        asked, path = self.rfile.readline().decode().split(" ")[:2]
+        while self.rfile.readline().strip():
+            pass
+        with suppress(OSError):
+            for piece in ANSWERS[path.partition("?")[0].removeprefix("/")](asked):
+                self.wfile.write(piece)
+                if len(piece) < 10:
+                    self.server.left.wait(0.02)
+                if self.server.left.is_set():
+                    return
+            self.server.left.wait()
+
+
+class Forever(socketserver.ThreadingTCPServer):
+    """It ends where the test does."""
+
+    daemon_threads = True
+
+    def __init__(self) -> None:
+        super().__init__(("127.0.0.1", 0), Endless)
+        self.left = threading.Event()
+
+
+OK = b"HTTP/1.1 200 OK\r\n"
+SIZED = OK + b"Accept-Ranges: bytes\r\nContent-Length: 5000000\r\n\r\n"
+PART = b"HTTP/1.1 206 Partial Content\r\nContent-Length: 4194304\r\n\r\n"
+CHUNKED = OK + b"Transfer-Encoding: chunked\r\n\r\n"
+Answer = Callable[[str], Iterator[bytes]]
+
+
+def answer(head: bytes, piece: bytes = b"", first: bytes = OK + b"\r\n") -> Answer:
+    """To the question for the size, the first; to any other one, the head and pieces for ever."""
+
+    def pieces(asked: str) -> Iterator[bytes]:
+        yield first if asked == "HEAD" else head
+        while piece and asked != "HEAD":
+            yield piece
+
+    return pieces
+
+
+def trickled(head: bytes) -> Answer:
+    """Even the size: a byte now and then."""
+
+    def pieces(_: str) -> Iterator[bytes]:
+        yield head
+        while True:
+            yield b"x"
+
+    return pieces
+
+
+HOP = b"HTTP/1.1 302 Found\r\nContent-Length: 0\r\nLocation: /hops?again\r\n\r\n"
+ANSWERS: dict[str, Answer] = {
+    "nothing": lambda _: iter(()),
+    "nothing-after-the-size": answer(b"", first=SIZED),
+    "nothing-of-a-part": answer(PART, first=SIZED),
+    "nothing-of-all": answer(OK + b"\r\n"),
+    "a-line-without-an-end": trickled(b"HTTP/1.1 200 "),
+    "a-header-without-an-end": trickled(OK + b"X: "),
+    "headers": trickled(OK),
+    "interim-answers": answer(b"", b"HTTP/1.1 100 Continue\r\n\r\n", first=SIZED),
+    "interim-answers-to-all": answer(b"", b"HTTP/1.1 100 Continue\r\n\r\n"),
+    "hops": answer(HOP, first=HOP),
+    "a-part-in-bytes": answer(PART, b"x", first=SIZED),
+    "all-in-bytes": answer(OK + b"\r\n", b"x"),
+    "chunks-of-a-byte": answer(CHUNKED, b"1\r\nx\r\n"),
+    "a-chunk-with-a-long-header": answer(CHUNKED + b"1;", b"x"),
+    "trailers": answer(CHUNKED + b"1\r\nx\r\n0\r\nT: ", b"x"),
+    "a-size-beyond-any-disk": answer(b"", first=SIZED.replace(b"5000000", b"5000000000000000000")),
+    "a-negative-size": answer(b"", first=SIZED.replace(b"5000000", b"-1")),
+    "chunks-of-a-part-that-has-a-size": answer(
+        PART[:-2] + b"Transfer-Encoding: chunked\r\n\r\n", b"1\r\nx\r\n", first=SIZED
+    ),
+}
+
+
+@pytest.fixture
+def endless(monkeypatch: pytest.MonkeyPatch) -> Iterator[str]:
+    monkeypatch.setattr(web, "PATIENCE", 0.3)
+    monkeypatch.setattr(web, "SLOWEST", 2**60)
+    fsspec.filesystem("http").clear_instance_cache()
+    running = Forever()
+    thread = threading.Thread(target=running.serve_forever, kwargs={"poll_interval": 0.01})
+    thread.start()
+    yield f"http://127.0.0.1:{running.server_address[1]}"
+    running.left.set()
+    running.shutdown()
+    thread.join()
+    running.server_close()
+    fsspec.filesystem("http").clear_instance_cache()
+
+
+@pytest.mark.parametrize("whole", [True, False], ids=["whole", "by its index"])
+@pytest.mark.parametrize("path", ANSWERS)
+def test_reading_ends_whatever_a_server_sends_for_ever(
+    endless: str, path: str, whole: bool
+) -> None:
+    with opened(f"{endless}/{path}", whole=whole) as log:
+        if isinstance(log, Diagnostic):
+            assert log.code is Code.UNREADABLE
+            return
+        with pytest.raises(OSError, match=r"next to nothing|another part|HTTP"):
+            log.stream.read()
 
 
 def test_no_byte_is_asked_for_twice_so_that_what_is_judged_is_what_is_hashed(

@@ -44,3 +44,16 @@ def test_what_is_no_yaml_is_a_value_error(text: str) -> None:
 
 def test_a_long_text_without_aliases_is_read() -> None:
     assert len(loaded("\n".join(f"- {i}" for i in range(30_000)))) == 30_000
+
+
+@pytest.mark.parametrize(
+    "text", ["a: 1\na: 2", "a: 1\n'a': 2", "x: {a: 1, b: [a, a], a: {}}", "- a: {}\n  a: []"]
+)
+def test_a_key_that_comes_twice_is_refused(text: str) -> None:
+    with pytest.raises(ValueError, match="`a` comes twice"):
+        loaded(text)
+
+
+def test_the_same_key_in_other_mappings_and_as_a_value_is_another() -> None:
+    text = "a: {a: a}\nb: [{a: 1}, {a: 2}, a, a]\nc: a\n"
+    assert loaded(text) == {"a": {"a": "a"}, "b": [{"a": 1}, {"a": 2}, "a", "a"], "c": "a"}

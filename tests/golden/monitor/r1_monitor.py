@@ -791,7 +791,15 @@ def _uncertain(ends: Iterable[tuple[int, int]], waits: int) -> tuple[int, ...]:
 
 
 class InputError(Exception):
-    """A trace that cannot be read, with its place in words."""
+    """A trace that cannot be read, with its place in words, on one line."""
+
+    def __init__(self, text: str) -> None:
+        super().__init__(visible(text))
+
+
+def visible(text: str) -> str:
+    """What would move the cursor, or begin another line, as escapes."""
+    return "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in text)
 
 
 _WORDS: dict[str, Truth] = {"": None, "0": False, "1": True, "false": False, "true": True}
@@ -954,7 +962,7 @@ _FAULTS = (
 
 def _complain(text: str) -> None:
     if sys.stderr is not None:
-        print(text, file=sys.stderr)
+        print(visible(text), file=sys.stderr)
 
 
 def _parser(monitor: type[Monitor]) -> argparse.ArgumentParser:
@@ -1009,7 +1017,7 @@ def _report(monitor: Monitor, path: str, options: argparse.Namespace) -> int:
         if options.format == "json":
             print(json.dumps(outcome.as_json()))
         else:
-            print(f"{source}: {outcome.requirement}: {_sentence(outcome)}")
+            print(visible(f"{source}: {outcome.requirement}: {_sentence(outcome)}"))
     return max((EXIT_STATUS[outcome.verdict] for outcome in outcomes), key=(0, 3, 1).index)
 
 

@@ -1,0 +1,36 @@
+"""The threat model speaks of every command, and of no other."""
+
+import re
+from pathlib import Path
+
+from compiler.cli import cli
+from compiler.cli.group import DEFAULT
+
+ROOT = Path(__file__).parent.parent.parent
+DOCS = (ROOT / "docs/security.md").read_text("utf-8")
+
+
+def test_each_command_has_its_row_with_what_it_reads() -> None:
+    section = DOCS[DOCS.index("## What each command does") :].split("\n## ")[0]
+    lines = re.findall(r"^\| (`.*) \|$", section, re.MULTILINE)
+    table = [[cell.strip() for cell in line.split("|")] for line in lines]
+    rows = {row[0].strip("`"): row[1] for row in table}
+    assert len(rows) == len(table)
+    assert rows.keys() == {
+        "fretc FILE" if name == DEFAULT else f"fretc {name}" for name in cli.commands
+    }
+    assert all(rows.values())
+    assert all(len(row) == 5 for row in table)
+
+
+def test_each_link_of_the_policy_and_the_model_leads_somewhere() -> None:
+    for name in ("SECURITY.md", "docs/security.md"):
+        text = (ROOT / name).read_text("utf-8")
+        anchors = {
+            re.sub(r"[^a-z0-9 -]", "", title.lower()).replace(" ", "-")
+            for title in re.findall(r"^#+ (.*)$", text, re.MULTILINE)
+        }
+        for target in re.findall(r"\]\(([^)]*)\)", text):
+            file, _, anchor = target.partition("#")
+            assert not file or (ROOT / name).parent.joinpath(file).is_file(), target
+            assert file or anchor in anchors, target
