@@ -19,6 +19,7 @@ from typing import Any
 import tomli_w
 
 from compiler.artifact import Artifact
+from compiler.shapes import parsed
 from fretish.diagnostic import Code, Diagnostic, Severity, suggestion
 from fretish.limits import within
 from fretish.parser import parse
@@ -77,17 +78,9 @@ def _read(source: Source, columns: Mapping[str, str]) -> Import:
 # JSON ------------------------------------------------------------------------------------------
 
 
-def _distinct(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
-    """An object as it is written: of two sentences by one name, neither is taken."""
-    found = dict(pairs)
-    if len(found) < len(pairs):
-        raise ValueError("a key comes twice in an object")
-    return found
-
-
 def _from_json(source: Source) -> Import:
     try:
-        data = json.loads(source.text, object_pairs_hook=_distinct)
+        data: Any = parsed(source.text).value
     except json.JSONDecodeError as error:
         return _failed(f"it is not JSON: {error.msg.lower()}", source, error.pos)
     except ValueError as error:  # a number of more digits than Python reads
