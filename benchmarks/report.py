@@ -13,9 +13,9 @@ from pathlib import Path
 from statistics import median
 from typing import Any
 
-from compiler import __version__
 from compiler.basis import BINDINGS as BOUND
 from compiler.basis import of_all
+from compiler.edition import __version__
 from compiler.files import sha256
 from compiler.plan import bases
 from compiler.project import Project, load

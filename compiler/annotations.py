@@ -22,8 +22,8 @@ from typing import Any
 from mcap.well_known import MessageEncoding, SchemaEncoding
 from mcap.writer import Writer
 
-from compiler import __version__
 from compiler.basis import BINDINGS, CLOCK, MONITOR, PARAMS, SENTENCE, TOPICS
+from compiler.edition import __version__
 from compiler.logs import ANNOTATIONS
 from compiler.record import wording
 from compiler.rule import Rule

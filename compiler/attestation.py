@@ -15,9 +15,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from compiler import __version__
 from compiler.basis import KINDS
-from compiler.edition import edition
+from compiler.edition import __version__, edition
 from compiler.evidence import Evidence, Result
 from compiler.lock import Review
 from compiler.proven import Proof, Proofs

@@ -9,9 +9,9 @@ from functools import partial
 from types import MappingProxyType
 from typing import Any
 
-from compiler import __version__
 from compiler.basis import BINDINGS, SENTENCE, of_all
 from compiler.constancy import never_changed, tallies_of
+from compiler.edition import __version__
 from compiler.estimates import Estimated, estimates, warnings
 from compiler.files import Stamp, file_sha256, stamp
 from compiler.odds import REFUTED, SUPPORTED

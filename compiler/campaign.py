@@ -9,9 +9,9 @@ from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 
-from compiler import __version__
 from compiler.auditing import audited
 from compiler.binomial import highest, lowest
+from compiler.edition import __version__
 from compiler.experiment import interceptor, plan, safety_function
 from compiler.interception import ticks
 from compiler.plan import watched

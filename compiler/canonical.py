@@ -15,9 +15,8 @@ from typing import Any, assert_never
 from fretish import expressions as e
 from fretish import units
 from fretish.clock import Clock
-from fretish.declarations import Declarations, Proposition, Reduce, Signal
+from fretish.declarations import Declarations, Proposition, Reduce, Signal, short_type
 from fretish.depth import deep
-from monitors.decoding import short_type
 
 
 def digest(value: Any) -> str:

@@ -10,7 +10,7 @@ import re
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from compiler import __version__
+from compiler.edition import __version__
 from compiler.project import Project
 from compiler.quantities import QUANTITIES, Quantity
 from compiler.rule import Rule
@@ -18,8 +18,7 @@ from compiler.templating import render
 from fretish import expressions as e
 from fretish import syntax as s
 from fretish.clock import in_words
-from fretish.declarations import Role, path
-from monitors.decoding import short_type
+from fretish.declarations import Role, path, short_type
 from monitors.recordings import Overview
 from monitors.samples import Topic
 

@@ -9,8 +9,7 @@ from importlib.metadata import PackageNotFoundError, version
 from importlib.resources import files
 from pathlib import Path
 
-from compiler import __version__
-
+__version__ = "0.1.0"
 _ROOMS = ("fretish", "monitors", "compiler")
 _LIBRARIES = ("lz4", "mcap", "mcap-ros1-support", "mcap-ros2-support", "numpy", "zstandard")
 """That have a part in a verdict: they read logs."""

@@ -9,8 +9,8 @@ from math import ceil, floor
 from typing import Any
 
 from compiler import odds
+from compiler.claim import Claim
 from compiler.odds import INCONCLUSIVE, SUPPORTED, Bounds
-from compiler.plan import Claim
 from fretish.diagnostic import Code, Diagnostic, Severity
 from fretish.expressions import ComparisonOperator
 from monitors.trials import NO_TRIALS, Trials

@@ -13,9 +13,10 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, field
 from typing import Any
 
-from compiler import __version__, basis, printing
+from compiler import basis, printing
 from compiler.basis import Basis
 from compiler.canonical import described, digest
+from compiler.edition import __version__
 from compiler.evidence import Evidence, Result, by_requirement
 from compiler.plan import bases
 from compiler.products import Product, shared_products

@@ -5,7 +5,6 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
-from fractions import Fraction
 from functools import partial
 
 from compiler import predicates
@@ -17,17 +16,18 @@ from compiler.future import future, probabilistic
 from compiler.past import past, watch
 from compiler.printing import identifier
 from compiler.rule import Rule
-from fretish import binding, units
 from fretish import expressions as e
+from fretish import units
 from fretish.checking import conditions, temporal_predicates, too_deep
 from fretish.clock import Clock, assumed_ticks, in_ticks
+from fretish.constants import constants
 from fretish.declarations import Declarations, Modality, Variable
 from fretish.depth import deep
 from fretish.diagnostic import Code, Diagnostic, Severity
 from fretish.documents import Requirement
 from fretish.limits import within
 from fretish.parser import parse
-from fretish.source import Source, Span
+from fretish.source import Span
 from fretish.surprises import surprises
 from fretish.syntax import Sentence
 from fretish.tables import as_key
@@ -189,7 +189,7 @@ def drift(requirement: Requirement, declarations: Declarations) -> Iterator[Diag
                 place,
                 help='write a number and a unit: `"5 cm"`',
             )
-        elif proposition is not None and stated not in _constants(proposition.expression):
+        elif proposition is not None and stated not in constants(proposition.expression):
             yield Diagnostic(
                 Code.PARAMETER_DRIFT,
                 f"the requirement states {text} for `{name}`, and its binding has another number",
@@ -197,41 +197,6 @@ def drift(requirement: Requirement, declarations: Declarations) -> Iterator[Diag
                 help="make the binding or `params` say what is meant",
                 severity=Severity.WARNING,
             )
-
-
-_Exact = tuple[units.Dimension, Fraction]
-
-
-def _constants(expression: e.Expression) -> set[_Exact]:
-    """Every number in the expression, exactly, in base units.
-
-    What is computed of numbers alone is one number, `10 cm / 2` is 5 cm, and `-5 cm` may be stated
-    with its sign or without.
-    """
-    found: set[_Exact] = set()
-    waiting = [expression]
-    while waiting:
-        part = waiting.pop()
-        if isinstance(part, e.Held):
-            found.add((units.SECOND.dimension, Fraction(part.duration, 10**9)))
-        constant = _constant(part)
-        if constant is not None:
-            found.add(constant)
-        if constant is None or isinstance(part, e.Negation):
-            waiting.extend(e.children(part))
-    return found
-
-
-def _constant(part: e.Expression) -> _Exact | None:
-    """What is computed of numbers alone; None for a truth value, and what is measured."""
-    from monitors.measures import Scope, term  # with NumPy, which most commands do without
-
-    if any(e.names(part)):
-        return None
-    kind = binding.dimension(part, {}, Source("", "").span())
-    assert not isinstance(kind, Diagnostic), "the reader of bindings refuses such an expression"
-    value = term(part, Scope(1, {})) if kind is not None else None
-    return (kind, value) if kind is not None and isinstance(value, Fraction) else None
 
 
 def unbound(rule: Rule, declarations: Declarations) -> Iterator[Diagnostic]:

@@ -11,6 +11,7 @@ from functools import lru_cache, partial
 
 from compiler import odds
 from compiler.basis import Basis, basis
+from compiler.claim import Claim
 from compiler.edition import edition
 from compiler.missing import demand
 from compiler.pipeline import unbound
@@ -18,7 +19,7 @@ from compiler.project import Project
 from compiler.record import wording
 from compiler.rule import Rule
 from compiler.targets import monitor as monitors
-from compiler.trials import Chance, chance, trials
+from compiler.trials import chance, trials
 from fretish.declarations import Declarations
 from fretish.depth import deep
 from fretish.diagnostic import Code, Diagnostic, has_errors
@@ -27,22 +28,6 @@ from monitors.audit import Watched
 from monitors.evidence import SCHEMA
 from monitors.integrity import Integrity
 from monitors.loading import load
-from monitors.violations import Demand
-
-
-@dataclass(frozen=True, slots=True)
-class Claim:
-    """A requirement, and the text of its monitor."""
-
-    id: str
-    sentence: str
-    basis: Basis = field(compare=False)
-    """SHA-256 of all that a verdict on it rests on, but for the log."""
-    monitor: str
-    demand: Demand
-    """What is missing where it is violated."""
-    chance: Chance | None = None
-    """With a probability: all runs together are judged, and no run alone."""
 
 
 @dataclass(frozen=True, slots=True)

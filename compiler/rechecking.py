@@ -15,14 +15,15 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from compiler import __version__
 from compiler.auditing import Engine, audit_logs
 from compiler.basis import BINDINGS, KINDS, SENTENCE, of_all, outdated, why
+from compiler.claim import Claim
 from compiler.completeness import Scope, incomplete
+from compiler.edition import __version__
 from compiler.estimates import estimates
 from compiler.files import file_sha256, sha256
 from compiler.manifest import Manifest, matches
-from compiler.plan import Claim, Plan
+from compiler.plan import Plan
 from compiler.standing import ALL_RUNS, FILE, Finding, Rechecked, differs, unknown
 from compiler.templating import to_json
 from fretish.diagnostic import Diagnostic

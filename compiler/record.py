@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
-from compiler import __version__, printing
+from compiler import printing
+from compiler.edition import __version__
 from compiler.rule import Rule
 from fretish import syntax
 from fretish.diagnostic import Diagnostic

@@ -13,10 +13,10 @@ from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
-from compiler import __version__
 from compiler.ajpf_results import evidence as results_of_ajpf
 from compiler.ajpf_results import written
 from compiler.confined import Limits
+from compiler.edition import __version__
 from compiler.layers import CROSSHAIR, DAFNY, Request, Tell, evidence
 from compiler.project import Project
 from compiler.proven import Proof, Proofs

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from compiler.demand import obligation
 from compiler.formula import Formula, atoms
@@ -16,6 +16,8 @@ from fretish.declarations import Declarations, Variable
 from fretish.documents import Requirement
 from fretish.expressions import Name, names
 from fretish.printer import canonical
+from fretish.printer import sentence as printed
+from fretish.source import Source
 from fretish.syntax import Sentence
 
 
@@ -89,3 +91,13 @@ class Rule:
 
 def _place(name: Name) -> int:
     return name.span.start if name.span else 0
+
+
+def plain(rule: Rule) -> Rule:
+    """The rule of the same sentence without its probability, under the same id."""
+    if rule.sentence.probability is None:
+        return rule
+    sentence = replace(rule.sentence, probability=None)
+    source = Source(rule.requirement.wording.source.name, printed(sentence))
+    requirement = replace(rule.requirement, wording=source.span())
+    return replace(rule, requirement=requirement, sentence=sentence, pctl=None)

@@ -15,7 +15,8 @@ from pathlib import Path
 from typing import Any
 from urllib.parse import quote
 
-from compiler import __version__, verdicts
+from compiler import verdicts
+from compiler.edition import __version__
 from compiler.estimates import Estimated
 from compiler.record import wording
 from compiler.rule import Rule

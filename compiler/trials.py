@@ -19,8 +19,6 @@ from compiler.past import staged
 from compiler.rule import Rule
 from fretish.depth import deep
 from fretish.expressions import ComparisonOperator
-from fretish.printer import sentence as printed
-from fretish.source import Source
 from monitors.kernel import Column
 from monitors.trials import Trials
 
@@ -95,13 +93,3 @@ def _met(demand: Demand, end: Formula) -> Formula:
 
 _BEYOND = 3
 """Ticks after the latest deadline: the last tick of all must not lie before any."""
-
-
-def plain(rule: Rule) -> Rule:
-    """The rule of the same sentence without its probability, under the same id."""
-    if rule.sentence.probability is None:
-        return rule
-    sentence = replace(rule.sentence, probability=None)
-    source = Source(rule.requirement.wording.source.name, printed(sentence))
-    requirement = replace(rule.requirement, wording=source.span())
-    return replace(rule, requirement=requirement, sentence=sentence, pctl=None)

@@ -6,8 +6,9 @@ from collections.abc import Iterator
 from typing import assert_never
 
 from fretish import expressions as e
-from fretish.depth import MOST, depth
+from fretish.depth import MOST
 from fretish.diagnostic import Code, Diagnostic, Severity
+from fretish.expressions import depth
 from fretish.source import Span
 from fretish.syntax import Before, Sentence, Until
 

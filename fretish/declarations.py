@@ -321,3 +321,8 @@ class Declarations:
     def assumptions(self) -> tuple[str, ...]:
         """Defaults that were taken, and what is declared of unknown values, in words."""
         return tuple(default.text for default in self.defaults if not default.stated)
+
+
+def short_type(name: str) -> str:
+    """`sensor_msgs/LaserScan` for ROS 2's `sensor_msgs/msg/LaserScan`."""
+    return name.replace("/msg/", "/")

@@ -7,8 +7,6 @@ import sys
 from collections.abc import Callable
 from typing import ParamSpec, TypeVar
 
-from fretish import expressions as e
-
 MOST = 2500
 """Levels of operators that a sentence may have: more than 1 000 nested parentheses."""
 _FRAMES = 30_000
@@ -32,14 +30,3 @@ def deep(function: Callable[P, R]) -> Callable[P, R]:
             sys.setrecursionlimit(limit)
 
     return with_room
-
-
-def depth(expression: e.Expression) -> int:
-    """How many operators stand within each other, without recursion."""
-    deepest = 0
-    waiting = [(expression, 1)]
-    while waiting:
-        part, level = waiting.pop()
-        deepest = max(deepest, level)
-        waiting.extend((child, level + 1) for child in e.children(part))
-    return deepest

@@ -6,13 +6,16 @@ Spans do not compare: two expressions are equal when they say the same, wherever
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Literal
 
 from fretish.source import Span
 
 ComparisonOperator = Literal["<", "<=", ">", ">=", "=", "!="]
+Order = Literal["<", "<=", ">", ">="]
+MIRRORED: Mapping[str, Order] = {"<": ">", "<=": ">=", ">": "<", ">=": "<="}
+"""What says the same when both sides are exchanged."""
 ArithmeticOperator = Literal["+", "-", "*", "/", "mod", "^"]
 
 
@@ -200,3 +203,14 @@ def names(expression: Expression) -> Iterator[Name]:
         if isinstance(part, Name):
             yield part
         waiting.extend(reversed(children(part)))
+
+
+def depth(expression: Expression) -> int:
+    """How many operators stand within each other, without recursion."""
+    deepest = 0
+    waiting = [(expression, 1)]
+    while waiting:
+        part, level = waiting.pop()
+        deepest = max(deepest, level)
+        waiting.extend((child, level + 1) for child in children(part))
+    return deepest

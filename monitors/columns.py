@@ -13,13 +13,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fretish.clock import TimeSource
-from fretish.declarations import Declarations, Signal
+from fretish.declarations import Declarations, Signal, short_type
 from fretish.diagnostic import Diagnostic
 from fretish.source import Span
 from monitors import findings
 from monitors.container import Stream
 from monitors.damage import LATEST
-from monitors.decoding import short_type
 from monitors.extraction import Extract, Extraction
 from monitors.messages import Messages, Stamps
 from monitors.payloads import Payloads

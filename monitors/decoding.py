@@ -13,6 +13,7 @@ from io import StringIO
 
 from mcap.records import Schema
 
+from fretish.declarations import short_type
 from monitors import idl, jsontext, protobuf
 from monitors.container import Stream
 from monitors.definitions import TooLargeError, types
@@ -246,8 +247,3 @@ def _nanoseconds(time: object | None, kinds: Sequence[tuple[str, str]]) -> int |
             if isinstance(seconds, int) and isinstance(nanoseconds, int):
                 return seconds * 10**9 + nanoseconds
     return None
-
-
-def short_type(name: str) -> str:
-    """`sensor_msgs/LaserScan` for ROS 2's `sensor_msgs/msg/LaserScan`."""
-    return name.replace("/msg/", "/")

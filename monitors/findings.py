@@ -6,15 +6,14 @@ nanoseconds.
 
 from __future__ import annotations
 
-import errno
 from collections.abc import Collection, Sequence
 
 from fretish.clock import Clock, TimeSource
-from fretish.declarations import Signal
+from fretish.declarations import Signal, short_type
 from fretish.diagnostic import Code, Diagnostic, Severity, suggestion
 from fretish.source import Span
 from monitors.damage import Damage
-from monitors.decoding import MissingExtra, short_type
+from monitors.decoding import MissingExtra
 from monitors.refusals import install
 from monitors.samples import Gap
 from monitors.signals import FieldError
@@ -26,23 +25,6 @@ _MOST_TOLD = 20
 # The whole file
 
 
-def no_such_file(place: Span) -> Diagnostic:
-    """There is nothing at the path."""
-    return Diagnostic(Code.NO_SUCH_FILE, "there is no such file", place, "check the path")
-
-
-def is_a_directory(place: Span) -> Diagnostic:
-    """The path names a directory."""
-    return Diagnostic(Code.IS_A_DIRECTORY, "it is a directory", place, "name the logs in it")
-
-
-def not_a_file(place: Span) -> Diagnostic:
-    """The path names a device, a pipe or the like."""
-    return Diagnostic(
-        Code.UNREADABLE, "it is not a regular file", place, "name a file; `-` is standard input"
-    )
-
-
 def changed(place: Span) -> Diagnostic:
     """F903: what was read and what was hashed may be different bytes."""
     return Diagnostic(
@@ -51,17 +33,6 @@ def changed(place: Span) -> Diagnostic:
         place,
         "wait until its recording or its copy is complete",
     )
-
-
-def unreadable(error: OSError, place: Span) -> Diagnostic:
-    """The system, or the server, does not let it be read."""
-    reason = error.strerror or str(error)
-    mend = "check its permissions"
-    if "://" in place.source.name:
-        mend = "check the address, the network, and whether your credentials reach it"
-    elif error.errno == errno.ENOSPC:
-        mend = "make room in the folder for temporary files, or name another one in `TMPDIR`"
-    return Diagnostic(Code.UNREADABLE, f"it cannot be read: {reason}", place, mend)
 
 
 def empty(place: Span) -> Diagnostic:

@@ -29,7 +29,7 @@ from urllib.parse import parse_qsl, urlencode, urlsplit, urlunsplit
 from fretish.diagnostic import Diagnostic
 from fretish.limits import grant
 from fretish.source import Source
-from monitors import findings, refusals, web
+from monitors import refusals, web
 
 STDIN = "-"
 _MOST = 2**36
@@ -98,9 +98,9 @@ def opened(path: str, *, whole: bool = True) -> Iterator[Input | Diagnostic]:
         try:
             found = _opened(path, stack, whole=whole)
         except FileNotFoundError:
-            found = findings.no_such_file(Source(shown(path), "").span())
+            found = refusals.no_such_file(Source(shown(path), "").span())
         except OSError as error:
-            found = findings.unreadable(error, Source(shown(path), "").span())
+            found = refusals.unreadable(error, Source(shown(path), "").span())
         yield found
 
 
@@ -111,9 +111,9 @@ def _opened(path: str, stack: ExitStack, *, whole: bool) -> Input | Diagnostic:
         return _remote(path, stack, whole=whole)
     mode = os.stat(path).st_mode
     if stat.S_ISDIR(mode):
-        return findings.is_a_directory(Source(path, "").span())
+        return refusals.is_a_directory(Source(path, "").span())
     if not stat.S_ISREG(mode):
-        return findings.not_a_file(Source(path, "").span())
+        return refusals.not_a_file(Source(path, "").span())
     stream = stack.enter_context(Path(path).open("rb"))  # noqa: SIM115
     before = os.fstat(stream.fileno())
 
@@ -274,7 +274,7 @@ def _remote(url: str, stack: ExitStack, *, whole: bool) -> Input | Diagnostic:
         system, path = fsspec.core.url_to_fs(url, **web.options(url))
         about = system.info(path)
         if about.get("type") == "directory":
-            return findings.is_a_directory(place)
+            return refusals.is_a_directory(place)
         size = about.get("size")
         if size is None or about.get("partial") is False:
             file = stack.enter_context(closing(_stream(system, path)))

@@ -11,12 +11,14 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import lru_cache, reduce
 from math import ceil, floor, isfinite
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from fretish import expressions as e
+from fretish.constants import called, computed
+from fretish.expressions import MIRRORED
 from fretish.units import ONE, Unit, unit
 from monitors.samples import EXACT, WHOLE, Numbers, Values, scaled
 
@@ -29,9 +31,6 @@ COMPARE: dict[str, Callable[..., NDArray[np.bool_]]] = {
     "!=": np.not_equal,
 }
 """The operators of comparisons; NaN is equal to nothing."""
-Order = Literal["<", "<=", ">", ">="]
-MIRRORED: Mapping[str, Order] = {"<": ">", "<=": ">=", ">": "<", ">=": "<="}
-"""What says the same when both sides are exchanged."""
 
 
 class ExpressionError(ValueError):
@@ -196,7 +195,8 @@ def _nearest(exact: Fraction, kind: np.dtype[Any]) -> Values:
 
 def _arithmetic(op: e.ArithmeticOperator, left: Term, right: Term) -> Term:
     if isinstance(left, Fraction) and isinstance(right, Fraction):
-        return _exact(op, left, right)
+        exact = computed(op, left, right)
+        return _UNKNOWN if exact is None else exact
     with np.errstate(all="ignore"):
         if op in ("+", "-"):
             one, other, scale = together(_double(left), _double(right))
@@ -210,20 +210,6 @@ def _arithmetic(op: e.ArithmeticOperator, left: Term, right: Term) -> Term:
                 return Measure(quotient, a.scale / b.scale)
             case _:
                 raise ExpressionError(f"bindings have no `{op}`")
-
-
-def _exact(op: e.ArithmeticOperator, left: Fraction, right: Fraction) -> Term:
-    match op:
-        case "+":
-            return left + right
-        case "-":
-            return left - right
-        case "*":
-            return left * right
-        case "/":
-            return left / right if right else _UNKNOWN
-        case _:
-            raise ExpressionError(f"bindings have no `{op}`")
 
 
 def _double(value: Term) -> Term:
@@ -241,7 +227,7 @@ def _call(name: str, args: Sequence[Term]) -> Term:
         case "abs", 1:
             value = args[0]
             if isinstance(value, Fraction):
-                return abs(value)
+                return called("abs", [value])
             return Measure(np.abs(value.values), value.scale)
         case "min", _:
             return reduce(lambda one, other: _end(np.minimum, one, other), args)
@@ -253,7 +239,7 @@ def _call(name: str, args: Sequence[Term]) -> Term:
 
 def _end(function: np.ufunc, left: Term, right: Term) -> Term:
     if isinstance(left, Fraction) and isinstance(right, Fraction):
-        return min(left, right) if function is np.minimum else max(left, right)
+        return called("min" if function is np.minimum else "max", [left, right])
     if isinstance(left, Fraction) or isinstance(right, Fraction):
         left, right = _beside_constant(left), _beside_constant(right)
     one, other, scale = together(left, right)

@@ -12,7 +12,8 @@ from numpy.typing import NDArray
 
 from fretish import expressions as e
 from fretish.declarations import Invalid, Reading, Reduce, Signal
-from monitors.measures import COMPARE, MIRRORED, Measure, Scope, term, together
+from fretish.expressions import MIRRORED
+from monitors.measures import COMPARE, Measure, Scope, term, together
 from monitors.outline import distances, places
 from monitors.payloads import Places
 from monitors.propositions import TRUE, truth

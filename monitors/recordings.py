@@ -155,7 +155,7 @@ def _opened(path: str, new: Callable[[], Columns], integrity: Integrity) -> _Rea
                 return log
             return _tried(partial(_file, path, log), place, new, integrity)
     except OSError as error:
-        return findings.unreadable(error, place)
+        return refusals.unreadable(error, place)
 
 
 def _tried(

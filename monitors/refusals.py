@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import errno
 from collections.abc import Collection
 
+from fretish.declarations import short_type
 from fretish.diagnostic import Code, Diagnostic, Severity
 from fretish.source import Source, Span
-from monitors.decoding import short_type
 
 
 def install(extra: str) -> str:
@@ -149,3 +150,31 @@ def compressed_folder(mode: str, place: Span) -> Diagnostic:
         "unpack it: `ros2 bag convert`, with `compression_mode: none`; MCAP compresses within the "
         "file: `--storage-preset-profile zstd_fast`",
     )
+
+
+def no_such_file(place: Span) -> Diagnostic:
+    """There is nothing at the path."""
+    return Diagnostic(Code.NO_SUCH_FILE, "there is no such file", place, "check the path")
+
+
+def is_a_directory(place: Span) -> Diagnostic:
+    """The path names a directory."""
+    return Diagnostic(Code.IS_A_DIRECTORY, "it is a directory", place, "name the logs in it")
+
+
+def not_a_file(place: Span) -> Diagnostic:
+    """The path names a device, a pipe or the like."""
+    return Diagnostic(
+        Code.UNREADABLE, "it is not a regular file", place, "name a file; `-` is standard input"
+    )
+
+
+def unreadable(error: OSError, place: Span) -> Diagnostic:
+    """The system, or the server, does not let it be read."""
+    reason = error.strerror or str(error)
+    mend = "check its permissions"
+    if "://" in place.source.name:
+        mend = "check the address, the network, and whether your credentials reach it"
+    elif error.errno == errno.ENOSPC:
+        mend = "make room in the folder for temporary files, or name another one in `TMPDIR`"
+    return Diagnostic(Code.UNREADABLE, f"it cannot be read: {reason}", place, mend)

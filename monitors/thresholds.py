@@ -13,10 +13,11 @@ from fretish import expressions as e
 from fretish.binding import dimension
 from fretish.declarations import Proposition, Signal
 from fretish.diagnostic import Diagnostic
+from fretish.expressions import MIRRORED, Order
 from fretish.printer import expression
 from fretish.source import Source
 from fretish.units import base_name
-from monitors.measures import MIRRORED, Order, Scope, number
+from monitors.measures import Scope, number
 
 
 @dataclass(frozen=True, slots=True)

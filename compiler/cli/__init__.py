@@ -14,7 +14,6 @@ from pathlib import Path
 
 import click
 
-from compiler import __version__
 from compiler.children import shield
 from compiler.cli.bind import bind
 from compiler.cli.check import check
@@ -30,6 +29,7 @@ from compiler.cli.sbom import sbom
 from compiler.cli.signing import sign
 from compiler.cli.simulations import simulate
 from compiler.cli.verify import verify
+from compiler.edition import __version__
 from fretish.diagnostic import Code, Diagnostic
 from fretish.limits import ExceededError, exceeded
 

@@ -261,7 +261,7 @@ def _check_outputs(evidence: str, parquet: str | None, *, resume: bool) -> None:
 
 
 def _table(result: Audit) -> bytes:
-    from compiler import __version__
+    from compiler.edition import __version__
     from compiler.table import parquet
 
     return parquet(result.results, __version__)

@@ -180,8 +180,8 @@ def _record(
     encoding: str,
     pictures: Mapping[str, str | None],
 ) -> None:
-    from compiler import __version__
     from compiler.campaign import intercepted
+    from compiler.edition import __version__
     from compiler.experiment import safety_function
     from simulation.mission import record
     from simulation.recording import Encoding

@@ -224,7 +224,7 @@ def _tell(
     found: Sequence[Evidence], form: str, output: str, traces: str | None, inputs: Iterable[str]
 ) -> None:
     """Print it, and write the evidence and the runs."""
-    from compiler import __version__
+    from compiler.edition import __version__
     from compiler.proofsheet import lines
     from compiler.templating import to_json
     from compiler.verification import document

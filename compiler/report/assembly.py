@@ -7,10 +7,10 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from types import MappingProxyType
 
-from compiler import __version__
 from compiler.ajpf_results import merged
 from compiler.checks import checks
 from compiler.declared import in_declared_units
+from compiler.edition import __version__
 from compiler.estimates import AVERAGE
 from compiler.evidence import Evidence
 from compiler.lock import Lock, Withdrawn, withdrawn

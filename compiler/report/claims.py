@@ -18,9 +18,8 @@ from compiler.proven import Proof
 from compiler.report import phrases
 from compiler.report.probabilities import contradictions
 from compiler.report.views import Mark, verdict_mark
-from compiler.rule import Rule
+from compiler.rule import Rule, plain
 from compiler.targets import monitor
-from compiler.trials import plain
 from compiler.verdicts import (
     BROKEN,
     NOT_EXERCISED,

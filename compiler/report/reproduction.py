@@ -7,8 +7,8 @@ from functools import partial
 from pathlib import PurePath
 from typing import TYPE_CHECKING
 
-from compiler import __version__
 from compiler.basis import BINDINGS, of_all
+from compiler.edition import __version__
 from compiler.evidence import Evidence
 from compiler.odds import CONFIDENCE
 from compiler.plan import bases

@@ -24,8 +24,7 @@ from compiler.printing import is_compound
 from compiler.psl_grammar import AGENT, FUNCTOR, KEY_WORDS
 from compiler.psl_text import property_text
 from compiler.rule import Rule
-from compiler.targets.refusals import too_long
-from compiler.targets.target import DEFAULT, Options, Target, not_expressible, stem
+from compiler.targets.target import DEFAULT, Options, Target, not_expressible, stem, too_long
 from compiler.templating import render
 from fretish import syntax as s
 from fretish.checking import LOOK_AHEAD, LOOK_BACK, calls, conditions

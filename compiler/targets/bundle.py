@@ -16,8 +16,8 @@ from importlib.resources import files
 from pathlib import PurePosixPath
 from typing import Any
 
-from compiler import __version__
 from compiler.artifact import Artifact
+from compiler.edition import __version__
 from compiler.files import sha256
 from compiler.rule import Rule
 from compiler.sif import Drawn, Sif, sif
@@ -29,7 +29,7 @@ from fretish import expressions as e
 from fretish.declarations import Declarations, Modality
 from fretish.depth import deep
 from fretish.diagnostic import Code, Diagnostic, Severity
-from monitors.measures import MIRRORED
+from fretish.expressions import MIRRORED
 
 SCHEMA = "fretc-ajpf-bundle-1"
 _WEAKEN = Options(weaken=True)

@@ -12,11 +12,12 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import PurePosixPath
 
-from compiler import __version__, printing
 from compiler import formula as f
+from compiler import printing
 from compiler.artifact import Artifact
 from compiler.chart import PLACES, Chart, chart, kind, words
 from compiler.counters import Letter
+from compiler.edition import __version__
 from compiler.implicants import Term
 from compiler.record import wording
 from compiler.rule import Rule

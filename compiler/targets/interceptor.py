@@ -10,8 +10,8 @@ from collections.abc import Iterator, Sequence
 from pathlib import PurePosixPath
 from typing import Any
 
-from compiler import __version__
 from compiler.artifact import Artifact
+from compiler.edition import __version__
 from compiler.interception import options as counted
 from compiler.interception import repetition, ticks
 from compiler.rule import Rule

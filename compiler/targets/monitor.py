@@ -14,19 +14,19 @@ from dataclasses import dataclass
 from keyword import iskeyword
 from pathlib import PurePosixPath
 
-from compiler import __version__, printing
+from compiler import printing
 from compiler.artifact import Artifact
+from compiler.edition import __version__
 from compiler.program import MARKS, Program, locals_of, marks_of, negation, program
-from compiler.rule import Rule
+from compiler.rule import Rule, plain
 from compiler.runtime import kernel
 from compiler.targets.target import DEFAULT, Options, Target, not_expressible, stem
 from compiler.templating import render
-from compiler.trials import plain
 from fretish import syntax as s
 from fretish.checking import LOOK_AHEAD, calls, conditions
 from fretish.clock import assumed_ticks
-from fretish.depth import depth
 from fretish.diagnostic import Code, Diagnostic, Severity
+from fretish.expressions import depth
 
 
 def refuse(rule: Rule) -> Diagnostic | None:

@@ -22,8 +22,7 @@ from compiler.artifact import Artifact
 from compiler.naming import legal_names
 from compiler.record import wording
 from compiler.rule import Rule
-from compiler.targets.refusals import too_long
-from compiler.targets.target import DEFAULT, Options, Target, not_expressible, stem
+from compiler.targets.target import DEFAULT, Options, Target, not_expressible, stem, too_long
 from compiler.templating import render
 from fretish import expressions as e
 from fretish.checking import LOOK_BACK, calls, conditions

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from compiler import formula as f
 from compiler.chart import MOST_STATES, explored
 from compiler.counters import TooManyStatesError
 from compiler.letters import temporal_predicate
@@ -44,25 +43,3 @@ def _too_large(rule: Rule) -> Diagnostic | None:
             help="state a shorter duration, use a clock with longer ticks, or `--emit smv`",
         )
     return None
-
-
-_MOST_OPERATORS = 100_000
-"""Of a property."""
-
-
-def too_long(target: str, rule: Rule, formula: f.Formula) -> Diagnostic | None:
-    """F670 where the formula is endless once `<->` and `xor` are written with other operators."""
-    if _size(formula) <= _MOST_OPERATORS:
-        return None
-    return Diagnostic(
-        Code.TOO_LARGE,
-        f"the property of {rule.id} has more than {_MOST_OPERATORS} operators",
-        rule.requirement.wording,
-        help=f"{target}'s formulas have no `<->` and no `xor`: give parts names of their own",
-    )
-
-
-def _size(formula: f.Formula) -> int:
-    """How many operators the text has, with the operands of `<->` and `xor` written twice."""
-    parts = sum(map(_size, f.children(formula)))
-    return 1 + (2 * parts if isinstance(formula, f.Iff | f.Xor) else parts)

@@ -6,6 +6,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Protocol
 
+from compiler import formula as f
 from compiler.artifact import Artifact
 from compiler.rule import Rule
 from fretish.declarations import Declarations
@@ -77,3 +78,25 @@ def not_expressible(target: str, rule: Rule, what: str, mend: str) -> Diagnostic
         rule.requirement.wording,
         help=mend,
     )
+
+
+_MOST_OPERATORS = 100_000
+"""Of a property."""
+
+
+def too_long(target: str, rule: Rule, formula: f.Formula) -> Diagnostic | None:
+    """F670 where the formula is endless once `<->` and `xor` are written with other operators."""
+    if _size(formula) <= _MOST_OPERATORS:
+        return None
+    return Diagnostic(
+        Code.TOO_LARGE,
+        f"the property of {rule.id} has more than {_MOST_OPERATORS} operators",
+        rule.requirement.wording,
+        help=f"{target}'s formulas have no `<->` and no `xor`: give parts names of their own",
+    )
+
+
+def _size(formula: f.Formula) -> int:
+    """How many operators the text has, with the operands of `<->` and `xor` written twice."""
+    parts = sum(map(_size, f.children(formula)))
+    return 1 + (2 * parts if isinstance(formula, f.Iff | f.Xor) else parts)

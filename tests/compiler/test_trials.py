@@ -8,8 +8,9 @@ from itertools import product
 
 import pytest
 
+from compiler.rule import plain
 from compiler.targets.monitor import text
-from compiler.trials import chance, plain, trials
+from compiler.trials import chance, trials
 from monitors.kernel import evaluate
 from monitors.kernel.columns import columns_of
 from monitors.kernel.verdicts import Truth

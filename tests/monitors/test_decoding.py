@@ -9,9 +9,10 @@ from mcap.records import Channel, Schema
 from mcap_ros1.decoder import DecoderFactory as Ros1Decoders
 from mcap_ros2.decoder import DecoderFactory as Ros2Decoders
 
+from fretish.declarations import short_type
 from fretish.diagnostic import Code, Diagnostic
 from monitors.container import Stream
-from monitors.decoding import decoder, short_type, stamp
+from monitors.decoding import decoder, stamp
 from monitors.recordings import look
 from tests.monitors.logs import (
     SCAN,
