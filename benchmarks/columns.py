@@ -30,15 +30,15 @@ from mcap_ros1.decoder import DecoderFactory as Ros1
 from mcap_ros2.decoder import DecoderFactory as Ros2
 
 from benchmarks.timing import least
-from compiler.auditing import Audit, audit_logs
-from compiler.plan import Plan, planned
-from compiler.project import load
-from fretish.bindings import read_bindings
-from fretish.declarations import Declarations
-from fretish.source import Source
-from monitors.integrity import Integrity
-from monitors.recordings import read
-from monitors.samples import Recording
+from compiler.project.folder import load
+from fretc.audit.many_logs import Audit, audit_logs
+from fretc.audit.plan import Plan, planned
+from fretc.logs.reader import read
+from fretc.logs.signals.integrity import Integrity
+from fretc.logs.signals.samples import Recording
+from fretish.bindings.declarations import Declarations
+from fretish.bindings.reader import read_bindings
+from fretish.diagnostics.source import Source
 
 HERE = Path(__file__).parent / "job"
 """Three requirements and their bindings."""

@@ -16,15 +16,15 @@ import time
 from collections.abc import Sequence
 from pathlib import Path
 
-from compiler import fleet
-from compiler.auditing import Audit, Engine, audit_logs, locally
-from compiler.files import sha256
-from compiler.journal import Journal
-from compiler.plan import Plan, planned
-from compiler.project import beside, load, requirement_files
-from compiler.summary import summarized
-from compiler.table import parquet, read
-from fretish.diagnostic import Diagnostic
+from compiler.files.text_files import sha256
+from compiler.project.folder import beside, load, requirement_files
+from fretc.audit import fleet
+from fretc.audit.journal import Journal
+from fretc.audit.many_logs import Audit, Engine, audit_logs, locally
+from fretc.audit.outputs.summary import summarized
+from fretc.audit.outputs.table import parquet, read
+from fretc.audit.plan import Plan, planned
+from fretish.diagnostics.diagnostic import Diagnostic
 
 RUNS = 10_000
 

@@ -8,10 +8,10 @@ import time
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
-from compiler.pipeline import formalize
-from compiler.record import formulas
+from compiler.formalization.formalize import formalize
+from compiler.formalization.record import formulas
+from fretish.diagnostics.source import Source
 from fretish.documents import Requirement
-from fretish.source import Source
 
 DATA = Path(__file__).parent.parent / "tests/data"
 LIMIT = 2.0

@@ -18,17 +18,17 @@ import numpy as np
 
 from benchmarks.peers import PEERS, WORKLOADS, Columns, Evaluation, Peer, rate, speed
 from benchmarks.timing import seconds
-from compiler import formula as f
-from compiler.past import Watch
-from compiler.pipeline import formalize
-from compiler.rule import Rule
-from compiler.targets.monitor import text
+from compiler.formalization.formalize import formalize
+from compiler.formalization.past import Watch
+from compiler.formalization.rule import Rule
+from compiler.logic import formula as f
+from compiler.targets.python.monitor import text
+from fretc.logs.signals.traces import bits
+from fretish.diagnostics.source import Source
 from fretish.documents import Requirement
-from fretish.source import Source
 from monitors.kernel import Column, Monitor, evaluate
 from monitors.kernel.columns import once, reuse_memory
 from monitors.loading import load
-from monitors.traces import bits
 
 STEPS = 200_000
 """Ticks of which single steps are timed."""

@@ -13,15 +13,15 @@ from pathlib import Path
 from statistics import median
 from typing import Any
 
-from compiler.basis import BINDINGS as BOUND
-from compiler.basis import of_all
-from compiler.edition import __version__
-from compiler.files import sha256
-from compiler.plan import bases
-from compiler.project import Project, load
-from compiler.record import wording
-from compiler.report import make
-from monitors.evidence import SCHEMA
+from compiler.files.edition import __version__
+from compiler.files.text_files import sha256
+from compiler.formalization.record import wording
+from compiler.project.folder import Project, load
+from fretc.audit.evidence.basis import BINDINGS as BOUND
+from fretc.audit.evidence.basis import of_all
+from fretc.audit.evidence.writer import SCHEMA
+from fretc.audit.plan import bases
+from fretc.report.make import make
 
 BINDINGS = """\
 [clock]

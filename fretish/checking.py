@@ -6,10 +6,10 @@ from collections.abc import Iterator
 from typing import assert_never
 
 from fretish import expressions as e
-from fretish.depth import MOST
-from fretish.diagnostic import Code, Diagnostic, Severity
+from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
+from fretish.diagnostics.source import Span
 from fretish.expressions import depth
-from fretish.source import Span
+from fretish.reading.recursion import MOST
 from fretish.syntax import Before, Sentence, Until
 
 RESERVED = frozenset(

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 from enum import StrEnum
 from fractions import Fraction
 
-from fretish.diagnostic import Code, Diagnostic, Severity
+from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
 from fretish.syntax import After, Duration, Sentence, TimeUnit, Within, duration
 
 NANOSECONDS: dict[TimeUnit, int] = {

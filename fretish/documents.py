@@ -8,9 +8,9 @@ from dataclasses import dataclass, field
 from pathlib import PurePath
 from typing import Any
 
-from fretish.diagnostic import Code, Diagnostic
-from fretish.source import Source, Span
-from fretish.tables import Tables, read, unknown_key
+from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.diagnostics.source import Source, Span
+from fretish.reading.toml_text import Tables, read, unknown_key
 
 FIELDS = ("id", "title", "text", "parents", "rationale", "status", "verify", "params", "fret")
 STATUSES = ("draft", "approved", "retired")

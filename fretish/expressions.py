@@ -10,7 +10,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Literal
 
-from fretish.source import Span
+from fretish.diagnostics.source import Span
 
 ComparisonOperator = Literal["<", "<=", ">", ">=", "=", "!="]
 Order = Literal["<", "<=", ">", ">="]

@@ -21,8 +21,9 @@ from lark.visitors import Transformer_NonRecursive
 from fretish import expressions as e
 from fretish import syntax as s
 from fretish.checking import check_depth, check_names, check_response_kinds
-from fretish.diagnostic import Diagnostic
-from fretish.mistakes import (
+from fretish.diagnostics.diagnostic import Diagnostic
+from fretish.diagnostics.source import Span
+from fretish.syntax_errors import (
     Met,
     Unexpected,
     bad_duration,
@@ -31,7 +32,6 @@ from fretish.mistakes import (
     no_sentence,
     unknown_character,
 )
-from fretish.source import Span
 from fretish.units import number
 
 _UNITS: dict[str, s.TimeUnit] = {

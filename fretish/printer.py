@@ -9,8 +9,8 @@ from typing import assert_never
 from fretish import expressions as e
 from fretish import syntax as s
 from fretish.clock import written
-from fretish.depth import deep
 from fretish.keywords import RESERVED
+from fretish.reading.recursion import deep
 
 _IFF, _IMPLIES, _XOR, _OR, _AND, _NOT, _COMPARE, _SUM, _PRODUCT, _SIGN, _POWER, _OPERAND = range(12)
 _PLAIN = re.compile(r"[A-Za-z](?:[A-Za-z0-9_.%]*[A-Za-z0-9_%])?")

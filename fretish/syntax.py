@@ -10,8 +10,8 @@ from enum import StrEnum
 from fractions import Fraction
 from typing import Literal
 
+from fretish.diagnostics.source import Span
 from fretish.expressions import ComparisonOperator, Expression
-from fretish.source import Span
 
 
 class ScopeKind(StrEnum):

@@ -13,19 +13,20 @@ from typing import Any
 
 import numpy as np
 
-from simulation import __version__, messages
-from simulation.bus import Bus
-from simulation.driving import Driver
-from simulation.guarding import WARM_UP, Gate, SafetyFunction
-from simulation.lidar import Lidar
-from simulation.motion import STANDSTILL, Pose
-from simulation.navigation import RESOLUTION, PoseError
+from simulation import __version__
+from simulation.nodes import messages
+from simulation.nodes.bus import Bus
+from simulation.nodes.driving import Driver
+from simulation.nodes.guarding import WARM_UP, Gate, SafetyFunction
+from simulation.nodes.navigation import RESOLUTION, PoseError
+from simulation.nodes.safety import Decision, Interceptor, TooClose
 from simulation.recording import TOPICS, Encoding, Recording, recording
-from simulation.robot import PHYSICS_STEP, Robot
-from simulation.safety import Decision, Interceptor, TooClose
-from simulation.scenario import Scenario
-from simulation.scene import STORE, Scene
-from simulation.walking import Walk
+from simulation.world.lidar import Lidar
+from simulation.world.motion import STANDSTILL, Pose
+from simulation.world.robot import PHYSICS_STEP, Robot
+from simulation.world.scenario import Scenario
+from simulation.world.scene import STORE, Scene
+from simulation.world.walking import Walk
 
 EPOCH = 1_700_000_000 * 10**9
 """Nanoseconds; the log's time at the start of each mission."""

@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from simulation.mission import Mission
-from simulation.motion import Pose
-from simulation.scene import ROBOT, STORE, Barrel, Box
+from simulation.world.motion import Pose
+from simulation.world.scene import ROBOT, STORE, Barrel, Box
 
 _INK, _MAPPED, _MOVED, _WAY, _STOP, _GOAL, _CONTACT = (
     "#333333",

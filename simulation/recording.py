@@ -17,8 +17,8 @@ from mcap.writer import CompressionType, Writer
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
 from simulation import __version__
-from simulation.messages import TYPES
-from simulation.scenario import Recorder
+from simulation.nodes.messages import TYPES
+from simulation.world.scenario import Recorder
 
 if TYPE_CHECKING:
     from rosbags.typesys.store import Msg, Typestore

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from compiler import cli
+from fretc import cli
 
 
 @dataclass(frozen=True)

@@ -1,11 +1,11 @@
 """A sentence through a target, as the tests of targets want it."""
 
-from compiler.pipeline import formalize
-from compiler.rule import Rule
-from compiler.targets import TARGETS
+from compiler.emit import TARGETS
+from compiler.formalization.formalize import formalize
+from compiler.formalization.rule import Rule
+from fretish.diagnostics.rendering import render
+from fretish.diagnostics.source import Source
 from fretish.documents import Requirement
-from fretish.rendering import render
-from fretish.source import Source
 
 
 def rule(sentence: str, id: str = "R1") -> Rule:

@@ -16,13 +16,13 @@ import time
 from collections.abc import Iterator
 from pathlib import Path
 
-from compiler.pipeline import formalize
-from compiler.record import formulas
-from fretish.diagnostic import Diagnostic
+from compiler.formalization.formalize import formalize
+from compiler.formalization.record import formulas
+from fretish.diagnostics.diagnostic import Diagnostic
+from fretish.diagnostics.rendering import render
+from fretish.diagnostics.source import Source
 from fretish.documents import Requirement
 from fretish.parser import parse
-from fretish.rendering import render
-from fretish.source import Source
 
 _DATA = Path(__file__).parent / "data"
 _WORDS = (

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from compiler import formula as f
-from compiler.kripke import Kripke, Lasso
+from compiler.logic import formula as f
+from compiler.logic.kripke import Kripke, Lasso
 
 
 def satisfies(formula: f.Formula, labels: Sequence[frozenset[str]], back: int, at: int = 0) -> bool:

@@ -2,11 +2,11 @@
 
 from dataclasses import replace
 
-from compiler.gate import Settings
-from compiler.loopmodel import Channel
-from compiler.loopsearch import Case
-from compiler.runtime import interceptor
-from compiler.targets import monitor as target
+from compiler.targets.python import monitor as target
+from fretc.verification.interceptor.machine import Settings
+from fretc.verification.loop.model import Channel
+from fretc.verification.loop.search import Case
+from monitors.source_text import interceptor
 from tests.monitoring import rule
 
 WITHIN = "whenever near the sw shall within {} ticks satisfy stopped"

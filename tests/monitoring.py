@@ -5,15 +5,15 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
-from compiler import formula as f
-from compiler.past import Watch
-from compiler.pipeline import formalize
-from compiler.rule import Rule
-from compiler.targets import monitor as target
+from compiler.formalization.formalize import formalize
+from compiler.formalization.past import Watch
+from compiler.formalization.rule import Rule
+from compiler.logic import formula as f
+from compiler.targets.python import monitor as target
+from fretish.bindings.declarations import Declarations
 from fretish.clock import Clock
-from fretish.declarations import Declarations
+from fretish.diagnostics.source import Source
 from fretish.documents import Requirement
-from fretish.source import Source
 from monitors.kernel import Column, Monitor, Outcome, evaluate
 from monitors.kernel.columns import columns_of
 from monitors.kernel.verdicts import Truth, truth

@@ -20,11 +20,11 @@ from pathlib import Path
 
 from mcap.records import Channel, Schema
 
-from compiler import cli
+from fretc import cli
 from tests import keys
-from tests.monitors.broken import made, raw
-from tests.monitors.logs import S, number, write
-from tests.monitors.test_bags import bag, db3, ros1, ros2
+from tests.fretc.logs.broken import made, raw
+from tests.fretc.logs.logs import S, number, write
+from tests.fretc.logs.storage.test_bags import bag, db3, ros1, ros2
 
 FRET = """+++
 id = "R1"

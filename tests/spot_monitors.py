@@ -15,8 +15,8 @@ import spot  # isort: split
 
 import buddy  # found only once spot has been imported
 
-from compiler import printing
-from compiler.formula import Formula
+from compiler.logic import printing
+from compiler.logic.formula import Formula
 
 
 class Ltl3:

@@ -9,7 +9,7 @@ from typing import Any
 
 from hypothesis import strategies as st
 
-from compiler import formula as f
+from compiler.logic import formula as f
 from fretish import expressions as e
 from fretish import syntax as s
 from tests import meaning

@@ -12,9 +12,9 @@ from mcap.records import Channel, Chunk, Header, Schema
 from rosbags.rosbag1 import Writer
 
 from tests.costs import MEMORY, SECONDS, cost
-from tests.monitors.broken import FLOAT, TOPIC, ended, made, raw
-from tests.monitors.conformance import MAGIC, framed
-from tests.monitors.logs import S
+from tests.fretc.logs.broken import FLOAT, TOPIC, ended, made, raw
+from tests.fretc.logs.conformance import MAGIC, framed
+from tests.fretc.logs.logs import S
 
 N = 90_000
 FRET = "the sw shall always satisfy q\n"

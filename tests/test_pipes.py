@@ -8,9 +8,9 @@ from pathlib import Path
 
 import pytest
 
-from compiler import files
-from compiler.files import content, regular
-from fretish.diagnostic import Code, Diagnostic
+from compiler.files import text_files as files
+from compiler.files.text_files import content, regular
+from fretish.diagnostics.diagnostic import Code, Diagnostic
 from tests.readers import command, put, readers
 
 

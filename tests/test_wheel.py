@@ -30,13 +30,14 @@ def test_the_top_level_is_exactly_our_packages(wheel: Path) -> None:
         "fretish",
         "monitors",
         "compiler",
+        "fretc",
         "simulation",
     }
 
 
 def test_every_module_grammar_and_template_is_inside(wheel: Path) -> None:
     packed = set(zipfile.ZipFile(wheel).namelist())
-    for package in ("fretish", "monitors", "compiler", "simulation"):
+    for package in ("fretish", "monitors", "compiler", "fretc", "simulation"):
         for path in (ROOT / package).rglob("*"):
             if path.is_file() and "__pycache__" not in path.parts:
                 assert str(path.relative_to(ROOT)) in packed
@@ -53,7 +54,7 @@ def test_it_makes_a_monitor_far_from_the_checkout(wheel: Path, tmp_path: Path) -
     sentence = tmp_path / "r.fret"
     sentence.write_text("whenever p the rover shall eventually satisfy q", encoding="utf-8")
     run = subprocess.run(
-        [sys.executable, "-c", "from compiler.cli import main; main()", str(sentence)]
+        [sys.executable, "-c", "from fretc.cli import main; main()", str(sentence)]
         + ["--emit", "monitor", "-o", str(tmp_path / "out")],
         cwd=tmp_path,
         env={**os.environ, "PYTHONPATH": str(installed)},
@@ -69,7 +70,7 @@ def test_it_simulates_far_from_the_checkout(wheel: Path, tmp_path: Path) -> None
     installed = tmp_path / "installed"
     zipfile.ZipFile(wheel).extractall(installed)
     run = subprocess.run(
-        [sys.executable, "-c", "from compiler.cli import main; main()", "simulate", "walker"]
+        [sys.executable, "-c", "from fretc.cli import main; main()", "simulate", "walker"]
         + ["--duration", "1", "--out", "run.mcap"],
         cwd=tmp_path,
         env={**os.environ, "PYTHONPATH": str(installed)},

@@ -17,7 +17,7 @@ The text keeps to what Dafny 2.3 and Dafny 4 both read. Used, and why both accep
 - No semicolon after a declaration or clause, no `function method`, no `assume`, no `seq` slices.
 
 Sources: the Safe-ROS paper, its Dafny listing of `cmd_vel_interceptor`, for the class and its three
-obligations; for the counters see `compiler.counters`.
+obligations; for the counters see `compiler.formalization.reference`.
 """
 
 from __future__ import annotations
@@ -27,20 +27,20 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import PurePosixPath
 
-from compiler import formula as f
-from compiler.artifact import Artifact
-from compiler.deduction import CHANNELS, Delay, delay, loopless
-from compiler.demand import Uninterpreted, boolean
-from compiler.interception import options as core
-from compiler.letters import atoms_of, temporal_predicate
-from compiler.rule import Rule
+from compiler.files.artifact import Artifact
+from compiler.files.templating import render
+from compiler.formalization.letters import atoms_of, temporal_predicate
+from compiler.formalization.obligation import Uninterpreted, boolean
+from compiler.formalization.rule import Rule
+from compiler.logic import formula as f
+from compiler.project.interceptor_options import options as core
+from compiler.targets.dafny_claims import CHANNELS, Delay, delay, loopless
 from compiler.targets.target import DEFAULT, Options, Target, not_expressible, stem
-from compiler.templating import render
 from fretish import expressions as e
 from fretish import syntax as s
-from fretish.declarations import Declarations
-from fretish.depth import deep
-from fretish.diagnostic import Diagnostic
+from fretish.bindings.declarations import Declarations
+from fretish.diagnostics.diagnostic import Diagnostic
+from fretish.reading.recursion import deep
 from fretish.syntax import ConditionKind, ScopeKind
 
 _ELSEWHERE = "check its monitor with `fretc verify`"

@@ -7,18 +7,18 @@ from collections.abc import Sequence
 from pathlib import PurePosixPath
 from typing import Any
 
-from compiler import printing
-from compiler.artifact import Artifact
-from compiler.exchange import OWN, STATUSES
-from compiler.rule import Rule
+from compiler.files.artifact import Artifact
+from compiler.files.templating import render
+from compiler.formalization.rule import Rule
+from compiler.logic import printing
+from compiler.project.fret_import import OWN, STATUSES
 from compiler.targets.target import DEFAULT, Options, Target
-from compiler.templating import render
 from fretish import syntax as s
-from fretish.declarations import Variable
+from fretish.bindings.declarations import Variable
+from fretish.diagnostics.source import Span
 from fretish.documents import Requirement
 from fretish.meaning import meaning
 from fretish.printer import expression, timing
-from fretish.source import Span
 
 _STATUSES = {"approved": "completed", "retired": "deprecated"}
 _SPACE = uuid.UUID("6ba7b811-9dad-11d1-80b4-00c04fd430c8")

@@ -5,14 +5,14 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import PurePosixPath
 
-from compiler import printing
-from compiler.artifact import Artifact
-from compiler.record import wording
-from compiler.rule import Rule
+from compiler.files.artifact import Artifact
+from compiler.files.templating import render
+from compiler.formalization.record import wording
+from compiler.formalization.rule import Rule
+from compiler.logic import printing
 from compiler.targets.target import DEFAULT, Options, Target, stem
-from compiler.templating import render
+from fretish.diagnostics.rendering import visible
 from fretish.meaning import meaning
-from fretish.rendering import visible
 
 
 def emit(rules: Sequence[Rule], options: Options = DEFAULT) -> tuple[Artifact, ...]:
@@ -51,7 +51,7 @@ def text(rule: Rule, options: Options = DEFAULT) -> str:
 
 def _simplified(rule: Rule) -> str:
     """Spot's shorter form, proved equivalent; or why there is none."""
-    from compiler.automata import simplified
+    from compiler.logic.spot import simplified
 
     shorter = simplified(rule.ft_infinite)
     return shorter if shorter is not None else "(Spot finds nothing shorter)"

@@ -5,7 +5,7 @@ model that can be run at once and that the user replaces. What PRISM's language 
 what it has, and means the same: `P=p` as two bounds, `G<=n a` by its complement, and a bound of
 ticks within an LTL formula, which PRISM allows around states only, as a chain of `X`.
 Sources: the PRISM manual, Property Specification and The PRISM Language; FRET's shape of
-probabilistic requirements is that of `compiler.future.probabilistic`.
+probabilistic requirements is that of `compiler.formalization.future.probabilistic`.
 """
 
 from __future__ import annotations
@@ -16,19 +16,26 @@ from decimal import Decimal, localcontext
 from functools import reduce
 from pathlib import PurePosixPath
 
-from compiler import formula as f
-from compiler import printing
-from compiler.artifact import Artifact
-from compiler.naming import legal_names
-from compiler.record import wording
-from compiler.rule import Rule
-from compiler.targets.target import DEFAULT, Options, Target, not_expressible, stem, too_long
-from compiler.templating import render
+from compiler.files.artifact import Artifact
+from compiler.files.templating import render
+from compiler.formalization.record import wording
+from compiler.formalization.rule import Rule
+from compiler.logic import formula as f
+from compiler.logic import printing
+from compiler.logic.identifiers import legal_names
+from compiler.targets.target import (
+    DEFAULT,
+    Options,
+    Target,
+    not_expressible,
+    stem,
+    too_long,
+)
 from fretish import expressions as e
 from fretish.checking import LOOK_BACK, calls, conditions
-from fretish.depth import deep
-from fretish.diagnostic import Diagnostic
+from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.printer import timing as printing_of
+from fretish.reading.recursion import deep
 
 _MOST_STEPS = 64
 """Of a chain of `X`: the automaton of a longer one is beyond any model checker."""

@@ -6,11 +6,11 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Protocol
 
-from compiler import formula as f
-from compiler.artifact import Artifact
-from compiler.rule import Rule
-from fretish.declarations import Declarations
-from fretish.diagnostic import Code, Diagnostic
+from compiler.files.artifact import Artifact
+from compiler.formalization.rule import Rule
+from compiler.logic import formula as f
+from fretish.bindings.declarations import Declarations
+from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.documents import Requirement
 
 

@@ -2,10 +2,10 @@
 
 from pathlib import Path
 
-from compiler.explanation import explanation, text
-from fretish import explanations
+from compiler.explanation.explain import explanation, text
 from fretish.clock import Clock
-from fretish.diagnostic import Code
+from fretish.diagnostics import explanations
+from fretish.diagnostics.diagnostic import Code
 from tests.monitoring import rule
 
 DOCS = (Path(__file__).parent.parent.parent / "docs/explain.md").read_text("utf-8")

@@ -5,12 +5,12 @@ from pathlib import Path
 
 import pytest
 
-from compiler.pipeline import formalize
-from compiler.semantics import holds
-from fretish.diagnostic import Diagnostic
+from compiler.formalization.formalize import formalize
+from compiler.logic.definition import holds
+from fretish.diagnostics.diagnostic import Diagnostic
+from fretish.diagnostics.source import Source
 from fretish.documents import requirements
 from fretish.parser import parse
-from fretish.source import Source
 from tests.fret_notation import parse as parse_notation
 from tests.fret_notation import values
 

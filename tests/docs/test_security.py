@@ -3,8 +3,8 @@
 import re
 from pathlib import Path
 
-from compiler.cli import cli
-from compiler.cli.group import DEFAULT
+from fretc.cli import cli
+from fretc.terminal.group import DEFAULT
 
 ROOT = Path(__file__).parent.parent.parent
 DOCS = (ROOT / "docs/security.md").read_text("utf-8")

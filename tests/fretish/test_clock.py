@@ -8,10 +8,10 @@ from hypothesis import strategies as st
 
 from fretish import syntax as s
 from fretish.clock import Clock, Rounding, assumed_ticks, in_ticks, in_words
-from fretish.diagnostic import Diagnostic, Severity
+from fretish.diagnostics.diagnostic import Diagnostic, Severity
+from fretish.diagnostics.rendering import render
+from fretish.diagnostics.source import Source
 from fretish.parser import parse
-from fretish.rendering import render
-from fretish.source import Source
 from tests.meaning import CONDITIONS, SCOPES
 from tests.strategies import Template
 

@@ -2,10 +2,10 @@
 
 import pytest
 
-from fretish.diagnostic import Code, Diagnostic
+from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.diagnostics.rendering import render
+from fretish.diagnostics.source import Source
 from fretish.documents import Requirement, requirements
-from fretish.rendering import render
-from fretish.source import Source
 
 SENTENCE = "whenever too_close agilex_agent shall eventually satisfy stopped"
 WHOLE = f"""+++

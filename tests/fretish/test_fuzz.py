@@ -1,10 +1,10 @@
 """Whatever is fed to the parser, it answers with a tree or with a diagnostic of its own."""
 
-from compiler.pipeline import formalize
-from fretish.diagnostic import Code, Diagnostic
+from compiler.formalization.formalize import formalize
+from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.diagnostics.source import Source
 from fretish.documents import Requirement
 from fretish.parser import parse
-from fretish.source import Source
 from tests.fuzzing import check, sentences
 
 

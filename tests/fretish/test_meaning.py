@@ -4,9 +4,9 @@ import pytest
 
 from fretish import syntax as s
 from fretish.clock import Clock, in_ticks
+from fretish.diagnostics.source import Source
 from fretish.meaning import meaning, span
 from fretish.parser import parse
-from fretish.source import Source
 
 
 def english(text: str, clock: Clock | None = None) -> str:

@@ -11,13 +11,13 @@ from hypothesis import strategies as st
 
 from fretish import expressions as e
 from fretish import syntax as s
-from fretish.diagnostic import Code, Diagnostic
+from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.diagnostics.rendering import render
+from fretish.diagnostics.source import Source
 from fretish.keywords import KEYWORDS
 from fretish.parser import parse
 from fretish.printer import expression
 from fretish.printer import sentence as printed
-from fretish.rendering import render
-from fretish.source import Source
 from tests.strategies import sentences
 
 SURFACE = Path(__file__).parents[1] / "data" / "fret_surface_forms.json"

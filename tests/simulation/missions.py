@@ -3,9 +3,9 @@
 from pathlib import Path
 from typing import Any
 
-from compiler.campaign import intercepted
+from fretc.campaigns.campaign import intercepted
 from simulation import mission
-from simulation.scenario import Scenario
+from simulation.world.scenario import Scenario
 
 
 def record(out: Path, scenario: Scenario, seed: int = 1, **more: Any) -> mission.Mission:

@@ -15,7 +15,7 @@ from rosbags.highlevel import AnyReader
 
 from simulation.mission import Mission, possible, really
 from simulation.recording import TOPICS
-from simulation.scenario import (
+from simulation.world.scenario import (
     Interceptor,
     Operator,
     Outage,
@@ -26,7 +26,7 @@ from simulation.scenario import (
     Transport,
     load,
 )
-from simulation.scene import STORE
+from simulation.world.scene import STORE
 from tests.simulation.missions import record
 
 SECOND = 10**9

@@ -8,9 +8,9 @@ from PIL import Image
 from PIL.GifImagePlugin import GifImageFile
 
 from simulation.mission import Contact
-from simulation.motion import Pose
 from simulation.picture import animate, draw
-from simulation.scenario import load
+from simulation.world.motion import Pose
+from simulation.world.scenario import load
 from tests.simulation.missions import record
 
 

@@ -8,11 +8,11 @@ from mcap.reader import make_reader
 from mcap_ros1.decoder import DecoderFactory as Ros1DecoderFactory
 from mcap_ros2.decoder import DecoderFactory
 
-from simulation import messages as say
 from simulation import recording as log
-from simulation.lidar import Lidar
-from simulation.motion import Pose, Velocity
-from simulation.scenario import Recorder
+from simulation.nodes import messages as say
+from simulation.world.lidar import Lidar
+from simulation.world.motion import Pose, Velocity
+from simulation.world.scenario import Recorder
 
 TIME = 1_700_000_000_250_000_000
 

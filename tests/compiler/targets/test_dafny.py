@@ -9,18 +9,18 @@ from pathlib import Path
 
 import pytest
 
-from compiler.counters import accepts, initial, step, template
-from compiler.deduction import claims
-from compiler.pipeline import formalize
-from compiler.project import load
-from compiler.rule import Rule
-from compiler.targets import TARGETS
+from compiler.emit import TARGETS
+from compiler.formalization.formalize import formalize
+from compiler.formalization.reference import accepts, initial, step, template
+from compiler.formalization.rule import Rule
+from compiler.project.folder import load
 from compiler.targets.dafny import text
-from fretish.bindings import read_bindings
-from fretish.declarations import Declarations, Form, Interception
+from compiler.targets.dafny_claims import claims
+from fretish.bindings.declarations import Declarations, Form, Interception
+from fretish.bindings.reader import read_bindings
+from fretish.diagnostics.rendering import render
+from fretish.diagnostics.source import Source
 from fretish.documents import Requirement
-from fretish.rendering import render
-from fretish.source import Source
 from monitors import interceptor as core
 from monitors.interceptor import Velocity
 from tests.dafny_reader import Reader

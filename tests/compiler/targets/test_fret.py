@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from compiler.project import load
+from compiler.project.folder import load
 from tests.command import Fretc, write
 
 

@@ -5,8 +5,8 @@ from pathlib import Path
 
 import pytest
 
-from compiler.project import load
-from compiler.targets import TARGETS
+from compiler.emit import TARGETS
+from compiler.project.folder import load
 from compiler.targets.target import Options
 from tests.emitting import emitted
 

@@ -7,12 +7,12 @@ from pathlib import Path
 
 import pytest
 
-from compiler import formula as f
-from compiler import printing
-from compiler.automata import same_language
+from compiler.logic import formula as f
+from compiler.logic import printing
+from compiler.logic.spot import same_language
 from compiler.targets.prism import complement, unrolled
 from tests import meaning
-from tests.compiler.test_pctl import CONDITIONS, SCOPES, TIMINGS, templates
+from tests.compiler.formalization.test_pctl import CONDITIONS, SCOPES, TIMINGS, templates
 from tests.emitting import MANY, PROBABLE, emitted, refused, rule
 
 

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from compiler.targets import monitor as target
+from compiler.targets.python import monitor as target
 from fretish.clock import Clock
 from monitors.kernel import Monitor
 from monitors.kernel.verdicts import Truth

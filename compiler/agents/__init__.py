@@ -1,0 +1,1 @@
+"""Gwendolen agents and AJPF properties: read, explored, checked."""

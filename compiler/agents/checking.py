@@ -1,0 +1,328 @@
+"""The layer AGENT of `fretc verify`: the texts of an agent and of its properties, in a model.
+
+What is looked at is text: the `.gwen` and `.psl` that MCAPL would read, not the requirement that
+they were made from. A verdict never stands alone: beside a property are its controls, which are to
+be violated, and an agent without the response, which is to break it.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+
+from compiler.agents import gwendolen, psl
+from compiler.agents.gwendolen import Action, Agent, Change
+from compiler.agents.model import Model, State, told
+from compiler.agents.psl import Property
+from compiler.agents.psl_printing import property_text
+from compiler.agents.vacuity import bare, demanded
+from compiler.files.text_files import sha256
+from compiler.formalization.rule import Rule
+from compiler.logic import formula as f
+from compiler.logic import spot as automata
+from compiler.logic.claims import (
+    Counterexample,
+    Evidence,
+    Layer,
+    NotChecked,
+    Proved,
+    Result,
+    Trace,
+    Vacuous,
+)
+from compiler.logic.kripke import Explored, Lasso, TooManyStatesError, check
+from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.diagnostics.source import Source
+from fretish.reading.recursion import deep
+
+STATES = 200_000
+"""More are not explored, unless the caller says so."""
+CONTROLS = ("reach", "resp", "stop")
+"""`<key>_reach` is a control of `<key>`: it is to be violated."""
+_ATOM = re.compile(r"(?P<modality>[A-Za-z]+)\((?P<agent>\w+),(?P<literal>.*)\)", re.DOTALL)
+_PERCEPT = re.compile(r"[a-z][A-Za-z0-9_]*(?:\([A-Za-z0-9_,. -]+\))?", re.ASCII)
+
+
+@deep
+def checked(
+    agent: Source, properties: Source, percepts: Sequence[str], limit: int = STATES
+) -> tuple[Evidence, ...] | Diagnostic:
+    """Evidence for each property of the file, in its order.
+
+    Args:
+        agent: a `.gwen`.
+        properties: a `.psl`.
+        percepts: what the environment draws freely; nothing else is ever perceived.
+        limit: how many states are explored; with more, nothing is known.
+
+    Returns:
+        The evidence; or the first thing that MCAPL would read in another way (F603, F610), a
+        property of another agent (F612), or what is no percept (F613).
+    """
+    return _checked(agent, properties, percepts, limit, None)
+
+
+@deep
+def agent_evidence(
+    rule: Rule, files: Mapping[str, str], percepts: Sequence[str], limit: int = STATES
+) -> tuple[Evidence, ...]:
+    """Evidence for the texts of a bundle.
+
+    Args:
+        rule: the requirement, which gives the lines its id and nothing else.
+        files: texts by the names `SIF.gwen`, `SIF_mutant.gwen` and `SIF.psl`.
+        percepts: those that the environment of the bundle draws.
+        limit: how many states are explored.
+    """
+    sif, mutant, properties = (
+        Source(name, files[name]) for name in ("SIF.gwen", "SIF_mutant.gwen", "SIF.psl")
+    )
+    found = _checked(sif, properties, percepts, limit, mutant)
+    if isinstance(found, Diagnostic):
+        reason = f"{found.code.number} {found.message}"
+        claim = f"the agent of {rule.id} has its properties"
+        return (Evidence(rule.id, Layer.AGENT, claim, NotChecked(reason), "fretc"),)
+    return tuple(replace(line, requirement=rule.id) for line in found)
+
+
+def _checked(
+    agent: Source,
+    properties: Source,
+    percepts: Sequence[str],
+    limit: int,
+    mutant: Source | None,
+) -> tuple[Evidence, ...] | Diagnostic:
+    said = psl.read(properties)
+    if isinstance(said, Diagnostic):
+        return said
+    drawn: dict[str, None] = {}
+    for name in percepts:
+        percept = _percept(name)
+        if isinstance(percept, Diagnostic):
+            return percept
+        drawn[percept] = None
+    read = gwendolen.read(agent)
+    broken = None if mutant is None else gwendolen.read(mutant)
+    artefacts = {s.name: sha256(s.text) for s in (agent, properties, mutant) if s is not None}
+    if not said:
+        claim, reason = "the agent has its properties", f"`{properties.name}` has none"
+        return (Evidence("agent", Layer.AGENT, claim, NotChecked(reason), "fretc", (), artefacts),)
+    for found in (read, broken):
+        if isinstance(found, Diagnostic) and found.code is not Code.BEYOND_MODEL:
+            return found
+        if isinstance(found, Diagnostic):
+            line = f", line {found.span.line}" if found.span else ""
+            return _unknown(said, f"{found.message} ({agent.name}{line})", artefacts)
+    assert isinstance(read, Agent)
+    for prop in said:
+        other = _other_agent(prop, read)
+        if other is not None:
+            return other
+    try:
+        explored = _Explored.of(Model(read, tuple(drawn)), limit)
+        spoilt = broken if isinstance(broken, Agent) else None
+        return tuple(_Lines(said, explored, spoilt, artefacts, limit).all())
+    except TooManyStatesError as error:
+        return _unknown(said, f"the agent has {error}", artefacts)
+
+
+def _percept(name: str) -> str | Diagnostic:
+    """Spelt as the agent's beliefs are; F613 for what is none."""
+    if _PERCEPT.fullmatch(name):
+        text = f"GWENDOLEN :name: a :Initial Beliefs: {name} :Initial Goals: :Plans: +a : {{True}};"
+        found = gwendolen.read(Source("percept", text))
+        if isinstance(found, Agent):
+            return found.beliefs[0]
+    return Diagnostic(
+        Code.BAD_PERCEPT,
+        f"`{name}` cannot be a percept",
+        help="name it as the agent does: it begins with a small letter",
+    )
+
+
+def _other_agent(prop: Property, agent: Agent) -> Diagnostic | None:
+    for atom in f.atoms(prop.formula):
+        found = _ATOM.fullmatch(atom)
+        if found is not None and found["agent"] != agent.name:
+            return Diagnostic(
+                Code.OTHER_AGENT,
+                f"{prop.key} speaks of the agent `{found['agent']}`; this one is `{agent.name}`",
+                prop.span,
+                help="AJPF crashes on an agent that is not there: name the one of `:name:`",
+            )
+    return None
+
+
+def _unknown(
+    said: Sequence[Property], reason: str, artefacts: Mapping[str, str]
+) -> tuple[Evidence, ...]:
+    return tuple(
+        Evidence(p.key, Layer.AGENT, _claim(p), NotChecked(reason), "fretc", (), artefacts)
+        for p in said
+    )
+
+
+def _claim(prop: Property) -> str:
+    return f"every run of the agent keeps {prop.key}: {_text(prop.formula)}"
+
+
+def _text(formula: f.Formula) -> str:
+    return property_text(formula, lambda atom: atom)
+
+
+@dataclass(frozen=True, slots=True)
+class _Explored:
+    """A model with all of its states."""
+
+    model: Model
+    graph: Explored[State]
+
+    @staticmethod
+    def of(model: Model, limit: int) -> _Explored:
+        return _Explored(model, model.explored(limit))
+
+    @property
+    def size(self) -> str:
+        return f"{len(self.graph.states):,} states"
+
+    def violation(self, formula: f.Formula) -> Lasso | None:
+        return check(self.graph.kripke, formula)
+
+    def trace(self, formula: f.Formula, lasso: Lasso) -> Trace:
+        """A row for each stage: the atoms of the formula, and what led there."""
+        names = tuple(f.atoms(formula))
+        labels = [self.graph.kripke.labels[state] for state in lasso.states]
+        return Trace(
+            names,
+            tuple(tuple(name in label for name in names) for label in labels),
+            told(self.model, self.graph, lasso.states),
+            len(lasso.prefix),
+        )
+
+    def never(self, formula: f.Formula) -> list[str]:
+        """Why atoms of the formula are true in no state, in words."""
+        labels = self.graph.kripke.labels
+        absent = [a for a in f.atoms(formula) if not any(a in label for label in labels)]
+        return [self._why(atom) for atom in absent]
+
+    def _why(self, atom: str) -> str:
+        found = _ATOM.fullmatch(atom)
+        literal = found["literal"] if found else atom
+        deeds = [deed for plan in self.model.agent.plans for deed in plan.deeds]
+        if Action(literal) in deeds and atom.startswith("B("):
+            return f"`{literal}` is an action, and actions are not believed"
+        if literal in self.model.percepts or Change("+", literal) in deeds:
+            return f"`{literal}` never comes about"
+        return f"no environment shows `{literal}`, and no plan adds it"
+
+
+@dataclass(frozen=True, slots=True)
+class _Lines:
+    """The evidence of one file of properties."""
+
+    properties: tuple[Property, ...]
+    explored: _Explored
+    mutant: Agent | None
+    """An agent that is to break the properties; None: one is made for each."""
+    artefacts: Mapping[str, str]
+    limit: int
+
+    def all(self) -> Iterator[Evidence]:
+        for prop in self.properties:
+            if self._main_of(prop) is not None:
+                yield self._line(prop, _control_claim(prop), self._control(prop))
+                continue
+            result = self._main(prop)
+            yield self._line(prop, _claim(prop), result)
+            if isinstance(result, Proved):
+                yield from self._of_mutant(prop)
+
+    def _line(self, prop: Property, claim: str, result: Result) -> Evidence:
+        engine = f"explicit states, Spot {automata.version()}"
+        assumed = _assumptions(self.explored.model.percepts)
+        return Evidence(prop.key, Layer.AGENT, claim, result, engine, assumed, self.artefacts)
+
+    def _main_of(self, prop: Property) -> Property | None:
+        """The property that this one is a control of."""
+        main, _, name = prop.key.rpartition("_")
+        if name not in CONTROLS:
+            return None
+        return next((p for p in self.properties if p.key == main), None)
+
+    def _main(self, prop: Property) -> Result:
+        if any("_" in re.findall(r"\b_\b", atom) for atom in f.atoms(prop.formula)):
+            return NotChecked("`_`, which matches everything, is not in the model")
+        lasso = self.explored.violation(prop.formula)
+        if lasso is not None:
+            detail = f"a run of {len(lasso.states)} stages breaks it ({self.explored.size} in all)"
+            return Counterexample(detail, self.explored.trace(prop.formula, lasso))
+        why = self._vacuous(prop)
+        size = self.explored.size
+        return Vacuous(why) if why else Proved(f"all runs through {size} keep it")
+
+    def _vacuous(self, prop: Property) -> str | None:
+        for conditions, rest in bare(prop.formula):
+            if self.explored.violation(rest) is None:
+                told = "; ".join(self.explored.never(f.And(conditions)))
+                because = f": {told}" if told else ""
+                named = " and ".join(f"`{_text(condition)}`" for condition in conditions)
+                return f"never true where it counts: {named}{because}"
+        for other in self.properties:
+            if self._main_of(other) == prop and self.explored.violation(other.formula) is None:
+                told = "; ".join(self.explored.never(other.formula))
+                because = f": {told}" if told else ""
+                return f"its control {other.key} holds{because}"
+        return None
+
+    def _control(self, prop: Property) -> Result:
+        lasso = self.explored.violation(prop.formula)
+        if lasso is None:
+            told = "; ".join(self.explored.never(prop.formula)) or "every run keeps it"
+            return Vacuous(f"{prop.key} holds: {told}")
+        return Proved(f"a run of {len(lasso.states)} stages violates {prop.key}, as it should")
+
+    def _of_mutant(self, prop: Property) -> Iterator[Evidence]:
+        mutant = self.mutant or _without(self.explored.model.agent, demanded(prop.formula))
+        claim = f"the check can fail: an agent without the response breaks {prop.key}"
+        if mutant is None:
+            return
+        spoilt = _Explored.of(Model(mutant, self.explored.model.percepts), self.limit)
+        if spoilt.violation(prop.formula) is None:
+            told = f"that agent keeps {prop.key} too, so that it says nothing of the response"
+            yield self._line(prop, claim, Vacuous(told))
+        else:
+            yield self._line(prop, claim, Proved(f"it does, within {spoilt.size}"))
+
+
+def _control_claim(prop: Property) -> str:
+    return f"some run of the agent violates the control {prop.key}: {_text(prop.formula)}"
+
+
+def _without(agent: Agent, atoms: frozenset[str]) -> Agent | None:
+    """The agent without the deeds that make the atoms true; None where it has none."""
+    name = agent.name
+
+    def makes(deed: gwendolen.Deed) -> bool:
+        if isinstance(deed, Action):
+            return f"D({name},{deed.name})" in atoms
+        return deed.sign == "+" and f"B({name},{deed.belief})" in atoms
+
+    if not any(makes(deed) for plan in agent.plans for deed in plan.deeds):
+        return None
+    plans = (
+        replace(plan, deeds=tuple(deed for deed in plan.deeds if not makes(deed)))
+        for plan in agent.plans
+    )
+    return replace(agent, plans=tuple(plans))
+
+
+def _assumptions(percepts: Sequence[str]) -> tuple[str, ...]:
+    shown = f"exactly {', '.join(percepts)}, each freely," if percepts else "nothing"
+    return (
+        f"the environment shows {shown} anew at the start, at every action and whenever the "
+        "agent is idle, for ever (--percept)",
+        "percepts that are drawn together are believed one after the other, in any order",
+        "intentions take turns, first come, first served, one deed a turn",
+        "the agent is always scheduled again",
+    )

@@ -1,0 +1,297 @@
+"""Agents in Gwendolen (`.gwen`), read strictly: what MCAPL would repair in silence is a mistake.
+
+MCAPL's parser prints a syntax error and goes on, so that an agent runs and is verified that is not
+the one in the file. Here an agent is either read exactly as MCAPL reads it, or F610 tells what
+MCAPL would have made of it; F611 names what is Gwendolen and not part of the model in `agent.py`.
+
+Source: the grammar of MCAPL; Dennis, Gwendolen semantics: 2017, University of Liverpool.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from decimal import Decimal
+from functools import cache
+from importlib.resources import files
+from typing import Literal, cast
+
+from lark import Lark, Token, Tree
+from lark.exceptions import UnexpectedInput
+
+from compiler.agents.gwendolen_errors import (
+    HEADINGS,
+    TrapError,
+    beyond,
+    misread,
+    unexpected,
+)
+from fretish.diagnostics.diagnostic import Diagnostic
+from fretish.diagnostics.source import Source, Span
+from fretish.reading.limits import within
+
+Sign = Literal["+", "-"]
+
+
+@dataclass(frozen=True, slots=True)
+class Change:
+    """`+b` or `-b`: as a deed, what the agent does to its beliefs; as an event, what happened."""
+
+    sign: Sign
+    belief: str
+
+    def __str__(self) -> str:
+        """As it is written."""
+        return f"{self.sign}{self.belief}"
+
+
+@dataclass(frozen=True, slots=True)
+class Action:
+    """`stop_moving`, `move(1,2)`: what the environment does for the agent."""
+
+    name: str
+
+    def __str__(self) -> str:
+        """As it is written."""
+        return self.name
+
+
+Deed = Change | Action
+
+
+@dataclass(frozen=True, slots=True)
+class Guard:
+    """`B b` or `~B b`."""
+
+    positive: bool
+    belief: str
+
+
+@dataclass(frozen=True, slots=True)
+class Plan:
+    """`event : {guards} <- deeds;`; it may be chosen where all of the guards hold."""
+
+    event: Change
+    guards: tuple[Guard, ...]
+    """None for `True`."""
+    deeds: tuple[Deed, ...]
+    span: Span = field(compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Agent:
+    """One agent. Beliefs and actions are spelt without white space, numbers by their value."""
+
+    name: str
+    beliefs: tuple[str, ...]
+    """The initial ones."""
+    plans: tuple[Plan, ...]
+    """In the order of the file, which is that in which they are tried."""
+    name_span: Span = field(compare=False, repr=False)
+
+
+_MOST_LEVELS = 50
+
+
+def read(source: Source) -> Agent | Diagnostic:
+    """The agent of a file; or F610 for what MCAPL misreads, F611 for what the model leaves out."""
+    return within(len(source.text), source.span(0, 0), lambda: _read(source))
+
+
+def _read(source: Source) -> Agent | Diagnostic:
+    try:
+        return _Reader(source).agent(_lark().parse(source.text))
+    except UnexpectedInput as error:
+        return unexpected(error, source)
+    except TrapError as trap:
+        return trap.diagnostic
+
+
+@cache
+def _lark() -> Lark:
+    grammar = files("compiler.agents").joinpath("gwendolen.lark").read_text(encoding="utf-8")
+    return Lark(grammar, parser="lalr", lexer="contextual", propagate_positions=True)
+
+
+class _Reader:
+    """Lark's tree → `Agent`; raises TrapError at the first thing that is not to be."""
+
+    def __init__(self, source: Source) -> None:
+        self.source = source
+
+    def span(self, part: Tree[Token] | Token) -> Span:
+        if isinstance(part, Token):
+            return self.source.span(part.start_pos or 0, part.end_pos)
+        return self.source.span(part.meta.start_pos, part.meta.end_pos)
+
+    def end(self) -> Span:
+        length = len(self.source.text.rstrip())
+        return self.source.span(length, length)
+
+    def agent(self, start: Tree[Token]) -> Agent:
+        first = start.children[0]
+        if not (isinstance(first, Token) and first.type == "GWENDOLEN"):
+            raise misread(
+                "the file does not begin with `GWENDOLEN`", self.source.span(0, 0), "write it first"
+            )
+        agents = _trees(start, "agent")
+        self.refuse_more(agents)
+        (word, *sections) = _trees(agents[0])
+        self.check_headings(sections)
+        name = cast(Token, word.children[0])
+        by_kind = {section.data: section for section in sections}
+        for goal in _trees(by_kind["goals"]):
+            raise beyond("an initial goal", self.span(goal))
+        return Agent(
+            str(name),
+            tuple(self.beliefs(by_kind["beliefs"])),
+            tuple(map(self.plan, self.some_plans(by_kind["plans"]))),
+            self.span(name),
+        )
+
+    def refuse_more(self, agents: list[Tree[Token]]) -> None:
+        for token in agents[0].children:
+            if isinstance(token, Token) and token.type == "GWENDOLEN":
+                raise misread(
+                    "a second `GWENDOLEN` stands in the file",
+                    self.span(token),
+                    "MCAPL ignores all that follows: begin another agent with `:name:`",
+                )
+        if len(agents) > 1:
+            raise beyond("a second agent", self.span(cast(Token, agents[1].children[0])))
+
+    def check_headings(self, sections: list[Tree[Token]]) -> None:
+        """All that must be there, each once, in their order."""
+        expected = list(HEADINGS)
+        for section in sections:
+            token = cast(Token, section.children[0])
+            if token == ":Reasoning Rules:" and expected[:1] == [":Initial Goals:"]:
+                continue
+            if not expected or token != expected.pop(0):
+                raise misread(
+                    f"`{token}` stands in the wrong place",
+                    self.span(token),
+                    f"the sections are {', '.join(f'`{h}`' for h in HEADINGS)}, in this order",
+                )
+        if expected:
+            end = self.end()
+            raise misread(
+                f"the section `{expected[0]}` is missing", end, "it may be empty, but not left out"
+            )
+
+    def beliefs(self, section: Tree[Token]) -> list[str]:
+        found: list[str] = []
+        for part in section.children[1:]:
+            if isinstance(part, Token):
+                raise misread(
+                    "a comma stands between initial beliefs",
+                    self.span(part),
+                    "MCAPL drops the beliefs behind it: separate them by white space",
+                )
+            found.append(self.unnegated(part))
+        return found
+
+    def unnegated(self, parent: Tree[Token]) -> str:
+        """The literal below, where no `~` may stand before it."""
+        for part in parent.children:
+            if isinstance(part, Token) and part.type == "NOT":
+                raise misread(
+                    "a belief has no `~`",
+                    self.span(part),
+                    "an agent believes something or does not: leave the belief out, or remove it",
+                )
+        return self.literal(_trees(parent, "literal")[0])
+
+    def some_plans(self, section: Tree[Token]) -> list[Tree[Token]]:
+        plans = _trees(section, "plan")
+        if not plans:
+            heading = cast(Token, section.children[0])
+            raise misread("there is no plan", self.span(heading), "an agent needs at least one")
+        return plans
+
+    def plan(self, plan: Tree[Token]) -> Plan:
+        event, guards, *rest = _trees(plan)
+        span = self.span(plan)
+        if not guards.children:
+            raise misread("the guard is empty", self.span(guards), "write `{True}`")
+        if rest and not rest[1].children:
+            raise misread(
+                "no deed follows the `<-`", self.span(rest[0]), "leave the `<-` out: `+b : {True};`"
+            )
+        return Plan(
+            self.change(event),
+            tuple(g for guard in _trees(guards) if (g := self.guard(guard)) is not None),
+            tuple(self.deed(deed) for deed in _trees(rest[1])) if rest else (),
+            span,
+        )
+
+    def change(self, part: Tree[Token]) -> Change:
+        """An event or a deed about a belief."""
+        if _trees(part, "goal"):
+            raise beyond("a goal", self.span(part))
+        return Change(cast(Sign, str(part.children[0])), self.unnegated(part))
+
+    def guard(self, guard: Tree[Token]) -> Guard | None:
+        """None for `True`."""
+        first = cast(Token, guard.children[0])
+        negated = first.type == "NOT"
+        if guard.data == "has_goal":
+            raise beyond("a goal", self.span(guard))
+        if guard.data == "true":
+            if negated:
+                raise beyond("a plan that is never chosen", self.span(guard))
+            return None
+        inner = [t for t in guard.children[negated:] if isinstance(t, Token) and t.type == "NOT"]
+        if inner:
+            raise misread("the `~` stands behind `B`", self.span(inner[0]), "write `~B b`")
+        return Guard(not negated, self.literal(_trees(guard, "literal")[0]))
+
+    def deed(self, deed: Tree[Token]) -> Deed:
+        match deed.data:
+            case "action":
+                return Action(self.literal(_trees(deed)[0]))
+            case "wait":
+                raise beyond("waiting for a belief", self.span(deed))
+            case _:
+                return self.change(deed)
+
+    def literal(self, literal: Tree[Token], level: int = 0) -> str:
+        if level > _MOST_LEVELS:
+            raise beyond(f"a term of more than {_MOST_LEVELS} levels", self.span(literal))
+        functor = cast(Token, literal.children[0])
+        if functor.type in ("ACHIEVE", "PERFORM"):
+            raise misread(f"`{functor}` is a reserved word", self.span(functor), "rename it")
+        if functor.type == "VAR":
+            raise misread(
+                f"`{functor}` begins with a capital letter",
+                self.span(functor),
+                "MCAPL takes it for a variable, which matches everything: begin with a small one",
+            )
+        terms = [self.term(term, level + 1) for term in _trees(literal)]
+        if not terms and self.span(literal).text.endswith(")"):
+            raise misread("the parentheses are empty", self.span(literal), "leave them out")
+        return f"{functor}({','.join(terms)})" if terms else str(functor)
+
+    def term(self, term: Tree[Token], level: int) -> str:
+        match term.data:
+            case "number":
+                return number("".join(map(str, term.children)))
+            case "string":
+                return f"'{str(term.children[0])[1:-1]}'"
+            case "unnamed":
+                raise beyond("`_`, which matches everything,", self.span(term))
+            case _:
+                if cast(Token, term.children[0]).type == "VAR":
+                    raise beyond(f"the variable `{term.children[0]}`", self.span(term))
+                return self.literal(term, level)
+
+
+def number(digits: str) -> str:
+    """A number by its value: AJPF compares numbers, not their digits."""
+    value = Decimal(digits).normalize()
+    return f"{value:f}" if value else "0"
+
+
+def _trees(parent: Tree[Token], kind: str | None = None) -> list[Tree[Token]]:
+    return [
+        part for part in parent.children if isinstance(part, Tree) and kind in (None, part.data)
+    ]

@@ -1,0 +1,144 @@
+"""What is said of a text that is no Gwendolen, or Gwendolen that the model does not have."""
+
+from __future__ import annotations
+
+import re
+
+from lark.exceptions import UnexpectedCharacters, UnexpectedInput, UnexpectedToken
+
+from fretish.diagnostics.diagnostic import Code, Diagnostic, suggestion
+from fretish.diagnostics.source import Source, Span
+
+HEADINGS = (":Initial Beliefs:", ":Initial Goals:", ":Plans:")
+"""All are to be there, in this order."""
+_ALL_HEADINGS = (":name:", ":Reasoning Rules:", *HEADINGS)
+
+
+class TrapError(Exception):
+    """Something that is not to be in the text."""
+
+    def __init__(self, diagnostic: Diagnostic) -> None:
+        super().__init__(diagnostic.message)
+        self.diagnostic = diagnostic
+
+
+def misread(message: str, span: Span, mend: str) -> TrapError:
+    """F610, to be raised."""
+    return TrapError(Diagnostic(Code.BAD_AGENT, message, span, mend))
+
+
+def beyond(what: str, span: Span) -> TrapError:
+    """F611, to be raised."""
+    return TrapError(_beyond(what, span))
+
+
+def _beyond(what: str, span: Span) -> Diagnostic:
+    return Diagnostic(
+        Code.BEYOND_MODEL,
+        f"{what} is Gwendolen, but not in the model of fretc",
+        span,
+        help="check this agent with AJPF; the model has one agent with beliefs, plans on "
+        "`+b` and `-b`, guards `True`, `B b`, `~B b`, and deeds `+b`, `-b` and actions",
+    )
+
+
+_COMMENTS = "comments are `// ...` and `/* ... */` only"
+
+
+def unexpected(error: UnexpectedInput, source: Source) -> Diagnostic:
+    """F610 or F611 for what does not fit into the grammar at all."""
+    token = error.token if isinstance(error, UnexpectedToken) else None
+    if token is not None and token.type == "$END":
+        length = len(source.text.rstrip())
+        end = source.span(length, length)
+        return Diagnostic(Code.BAD_AGENT, "the file ends too early", end, _wanted(error))
+    at = error.pos_in_stream or 0
+    place = source.span(at, at + (len(token) if token is not None else 1))
+    if isinstance(error, UnexpectedToken) and _follows_rules(error):
+        return _beyond("a reasoning rule", place)
+    return (
+        _sign_of_more(source, at)
+        or _mistake(source, at)
+        or Diagnostic(Code.BAD_AGENT, f"`{place.text}` does not fit here", place, _wanted(error))
+    )
+
+
+_MORE = re.compile(
+    r"""(?P<a_comparison> (?:[A-Z_]\w* | [0-9]+(?:\.[0-9]+)?) \s* (?:< (?!-) | == | [-+*/]) )
+    | (?P<a_list> \[)
+    | (?P<a_word_for_messages_or_locks> \.(?:send|received|sent|lock|plan|constraint|n|x)\b)""",
+    re.VERBOSE,
+)
+"""What the grammar of MCAPL has beside that of `gwendolen.lark`."""
+
+
+def _sign_of_more(source: Source, at: int) -> Diagnostic | None:
+    found = _MORE.match(source.text, at)
+    if found is None:
+        return None
+    what = str(found.lastgroup).replace("_", " ")
+    return _beyond(what, source.span(at, found.end()))
+
+
+_NAMED = re.compile(r":name:\s*\w+\Z")
+_HEADING = re.compile(r":[A-Za-z][A-Za-z ]*:")
+
+
+def _mistake(source: Source, at: int) -> Diagnostic | None:
+    """What users write and MCAPL does not read."""
+    rest = source.text[at:]
+    place = source.span(at, at + 1)
+    if rest.startswith(("#", "%")):
+        return Diagnostic(Code.BAD_AGENT, f"`{rest[0]}` begins no comment", place, _COMMENTS)
+    if rest.startswith("/*"):
+        return Diagnostic(Code.BAD_AGENT, "the comment has no end", place, "close it with `*/`")
+    if rest.startswith("-") and _NAMED.search(source.text[:at]):
+        mend = "an agent's name has letters, digits and `_` only"
+        return Diagnostic(Code.BAD_AGENT, "a `-` stands in the agent's name", place, mend)
+    heading = _HEADING.match(rest)
+    if heading is None or heading[0] in _ALL_HEADINGS:
+        return None
+    near = suggestion(heading[0], _ALL_HEADINGS)
+    return Diagnostic(
+        Code.BAD_AGENT,
+        f"`{heading[0]}` is no heading",
+        source.span(at, at + heading.end()),
+        f"did you mean `{near}`?" if near else f"headings are {', '.join(HEADINGS)}",
+    )
+
+
+def _follows_rules(error: UnexpectedToken) -> bool:
+    before = (error.token_history or [None])[-1]
+    return before is not None and before.type == "RULES"
+
+
+def _wanted(error: UnexpectedInput) -> str:
+    """What could stand there, in the words of the language."""
+    accepted: set[str] = set()
+    if isinstance(error, UnexpectedToken):
+        accepted = set(error.accepts or error.expected)
+    elif isinstance(error, UnexpectedCharacters):
+        accepted = set(error.allowed or ())
+    words = [word for name, word in _SPOKEN.items() if name in accepted]
+    return f"write {' or '.join(words)}" if words else "MCAPL would leave it out in silence"
+
+
+_SPOKEN = {
+    "GWENDOLEN": "`GWENDOLEN`",
+    "NAME": "`:name:`",
+    "BELIEFS": "`:Initial Beliefs:`",
+    "GOALS": "`:Initial Goals:`",
+    "PLANS": "`:Plans:`",
+    "PLUS": "`+`",
+    "MINUS": "`-`",
+    "CONST": "a name that begins with a small letter",
+    "TRUE": "`True`",
+    "BELIEVES": "`B b`",
+    "_COLON": "`:`",
+    "_LEFT_CURLY": "`{`",
+    "_RIGHT_CURLY": "`}`",
+    "ARROW": "`<-`",
+    "_SEMICOLON": "`;`",
+    "COMMA": "`,`",
+    "_RIGHT": "`)`",
+}

@@ -1,0 +1,302 @@
+"""An agent in its verification environment, as an explicit model of all its runs.
+
+States are the stages of the reasoning cycle: perceive; select an intention; plan it; execute one
+deed. The environment draws each percept anew, freely, at the start, at every action that is not
+silent, and whenever the agent is idle, for ever; it never speaks of anything else.
+
+What is AJPF's own: percepts that are drawn together are believed one after the other, those that
+went first, and each change is a state of its own, which a property sees. A belief raises `+b` only
+when it is new. Events become intentions, and intentions take turns, first come first served, one
+deed a turn. A guard is asked when the event is planned; of the plans that fit, the first in the
+file is taken; without one, the event is dropped.
+What is more than AJPF's: an agent perceives in one of two ways, in all of a run. Either all changes
+come before anything else is done; or each becomes an intention (unless the same one waits already),
+with a turn of its own after those that wait. MCAPL has rules for both. Percepts that come at once,
+or go at once, are believed in any order; and where a belief was both perceived and added by the
+agent, losing one source may or may not take the other along, and may or may not raise an event. So
+a property that holds here holds whichever way an implementation goes.
+
+Sources: Dennis, Gwendolen semantics: 2017; Dennis et al., Model checking agent programming
+languages, ASE 19 (2012); MCAPL's reasoning cycle and its environment for verification.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from enum import StrEnum
+from itertools import chain, combinations, pairwise, permutations, product
+
+from compiler.agents.gwendolen import Action, Agent, Change, Deed
+from compiler.logic.kripke import Explored, explore
+
+SILENT = ("print", "remove_shared", "assert_shared")
+"""Actions at which the environment draws nothing."""
+Beliefs = frozenset[str]
+
+
+class Stage(StrEnum):
+    """What the agent does next."""
+
+    BEGIN = "begin"
+    PERCEIVE = "perceive"
+    SELECT = "select"
+    PLAN = "plan"
+    EXECUTE = "execute"
+    SLEEP = "sleep"
+
+
+@dataclass(frozen=True, slots=True)
+class Notice:
+    """What was perceived and is to be believed, or no longer to be believed, in a turn to come."""
+
+    change: Change
+
+    def __str__(self) -> str:
+        """As a deed of its own."""
+        return f"the percept {self.change}"
+
+
+@dataclass(frozen=True, slots=True)
+class Intention:
+    """What is to be done about an event, or about a percept."""
+
+    event: Change | Notice
+    deeds: tuple[Deed | Notice, ...] = ()
+    """Still to be done; of an event, none before a plan has been chosen."""
+
+
+@dataclass(frozen=True, slots=True)
+class State:
+    """The agent and its environment between two stages."""
+
+    percepts: Beliefs
+    """What the environment shows."""
+    told: bool
+    """Whether the agent has seen that since it was drawn."""
+    perceived: Beliefs
+    """Beliefs that come from percepts."""
+    own: Beliefs
+    """Beliefs that the agent has added, or began with."""
+    current: Intention | None
+    waiting: tuple[Intention, ...]
+    stage: Stage
+    last: str | None
+    """The last action that was not printing."""
+    in_turn: bool = False
+    """Whether each percept takes a turn of its own; chosen when the first are drawn."""
+
+    @property
+    def beliefs(self) -> Beliefs:
+        """All that is believed."""
+        return self.perceived | self.own
+
+
+Step = tuple[str, State]
+"""What happened, in words, and what is then."""
+
+
+@dataclass(frozen=True, slots=True)
+class Model:
+    """The agent, and which percepts its environment draws."""
+
+    agent: Agent
+    percepts: tuple[str, ...]
+
+    @property
+    def initial(self) -> State:
+        """Nothing has been drawn yet."""
+        own = frozenset(self.agent.beliefs)
+        return State(frozenset(), False, frozenset(), own, None, (), Stage.BEGIN, None)
+
+    def steps(self, state: State) -> Iterator[Step]:
+        """Everything that may happen next; at least one thing."""
+        match state.stage:
+            case Stage.BEGIN:
+                yield from self._drawn(state)
+                yield from self._drawn(replace(state, in_turn=True))
+            case Stage.SLEEP:
+                yield from self._drawn(state)
+            case Stage.PERCEIVE:
+                yield from _perceived(state)
+            case Stage.SELECT:
+                yield _selected(state)
+            case Stage.PLAN:
+                yield self._planned(state)
+            case Stage.EXECUTE:
+                yield from self._executed(state)
+
+    def explored(self, limit: int) -> Explored[State]:
+        """All states, breadth first.
+
+        Raises:
+            TooManyStatesError: there are more than the limit.
+        """
+        return explore(
+            self.initial,
+            lambda state: (following for _, following in self.steps(state)),
+            self.label,
+            limit,
+        )
+
+    def label(self, state: State) -> frozenset[str]:
+        """The atoms of AJPF's properties that are true; there are no goals, so no `G` and no `I`.
+
+        A belief with a string in it matches no property.
+        """
+        name = self.agent.name
+        intentions = [i for i in (state.current, *state.waiting) if i is not None]
+        intended = {d.name for i in intentions for d in i.deeds if isinstance(d, Action)}
+        done = () if state.last is None else (f"D({name},{state.last})",)
+        atoms = (
+            *(f"B({name},{belief})" for belief in state.beliefs),
+            *(f"ItD({name},{action})" for action in intended),
+            *done,
+        )
+        return frozenset(atom for atom in atoms if "'" not in atom)
+
+    def _drawn(self, state: State) -> Iterator[Step]:
+        for shown in self._draws():
+            after = _shown(state, shown)
+            stage = Stage.SLEEP if after.told else Stage.PERCEIVE
+            yield f"the environment shows {_set(shown)}", replace(after, stage=stage)
+
+    def _draws(self) -> Iterator[Beliefs]:
+        sizes = range(len(self.percepts) + 1)
+        return map(frozenset, chain.from_iterable(combinations(self.percepts, n) for n in sizes))
+
+    def _planned(self, state: State) -> Step:
+        intention = state.current
+        assert intention is not None
+        if intention.deeds:
+            return "goes on", replace(state, stage=Stage.EXECUTE)
+        for plan in self.agent.plans:
+            fits = all((g.belief in state.beliefs) is g.positive for g in plan.guards)
+            if plan.event != intention.event or not fits:
+                continue
+            if not plan.deeds:
+                break
+            chosen = replace(intention, deeds=plan.deeds)
+            said = f"plans {intention.event}"
+            return said, replace(state, current=chosen, stage=Stage.EXECUTE)
+        said = f"drops {intention.event}: there is nothing to do"
+        return said, replace(state, current=None, stage=Stage.PERCEIVE)
+
+    def _executed(self, state: State) -> Iterator[Step]:
+        intention = state.current
+        assert intention is not None
+        deed, *rest = intention.deeds
+        left = replace(intention, deeds=tuple(rest)) if rest else None
+        after = replace(state, current=left, stage=Stage.PERCEIVE)
+        match deed:
+            case Action(name) if name.partition("(")[0] in SILENT:
+                printing = name.partition("(")[0] == "print"
+                yield f"does {name}", after if printing else replace(after, last=name)
+            case Action(name):
+                for shown in self._draws():
+                    said = f"does {name}; the environment shows {_set(shown)}"
+                    yield said, _shown(replace(after, last=name), shown)
+            case Notice(change):
+                words = "believes" if change.sign == "+" else "no longer believes"
+                for state in _believed(after, change):
+                    yield f"{words} {change.belief}", state
+            case Change("+", belief):
+                yield f"adds {belief}", _added(after, belief)
+            case Change(_, belief):
+                for state in _removed(after, belief):
+                    yield f"removes {belief}", state
+
+
+def _set(names: Beliefs) -> str:
+    return ", ".join(sorted(names)) or "nothing"
+
+
+def _shown(state: State, percepts: Beliefs) -> State:
+    """The environment keeps silent where it had nothing to show and still has nothing."""
+    told = state.told and not state.percepts and not percepts
+    return replace(state, percepts=percepts, told=told)
+
+
+def _perceived(state: State) -> Iterator[Step]:
+    """What is no longer shown goes first, then what is newly shown comes."""
+    gone = [Change("-", belief) for belief in sorted(state.perceived - state.percepts)]
+    come = [Change("+", belief) for belief in sorted(state.percepts - state.perceived)]
+    done = replace(state, told=True, stage=Stage.SELECT)
+    if state.told or not (gone or come):
+        yield "perceives nothing new", done
+    elif state.in_turn:
+        for first, then in product(permutations(gone), permutations(come)):
+            words = ", ".join(map(str, (*first, *then)))
+            yield f"perceives {words}: one a turn", _noticed(done, (*first, *then))
+    else:
+        for change in gone or come:
+            for after in _believed(state, change):
+                yield f"perceives {change}", after
+
+
+def _noticed(state: State, changes: tuple[Change, ...]) -> State:
+    """An intention for each of them, but for those that wait already."""
+    intentions = (Intention(Notice(change), (Notice(change),)) for change in changes)
+    new = [intention for intention in intentions if intention not in state.waiting]
+    return replace(state, waiting=(*state.waiting, *new))
+
+
+def _believed(state: State, change: Change) -> tuple[State, ...]:
+    """One percept comes or goes; all that may be where the agent has the belief of its own too."""
+    belief = {change.belief}
+    if change.sign == "+":
+        new = replace(state, perceived=state.perceived | belief)
+        raised = _raised(new, change, 1)
+        return (new, raised) if belief <= state.own else (raised,)
+    if change.belief not in state.beliefs:
+        return (state,)
+    new = replace(state, perceived=state.perceived - belief)
+    raised = _raised(new, change, 1)
+    if not belief <= state.own:
+        return (raised,)
+    return new, raised, replace(raised, own=state.own - belief)
+
+
+def _selected(state: State) -> Step:
+    queue = state.waiting if state.current is None else (*state.waiting, state.current)
+    if not queue:
+        return "falls asleep", replace(state, stage=Stage.SLEEP)
+    after = replace(state, current=queue[0], waiting=queue[1:], stage=Stage.PLAN)
+    return f"turns to {queue[0].event}", after
+
+
+def _added(state: State, belief: str) -> State:
+    after = replace(state, own=state.own | {belief})
+    return after if belief in state.beliefs else _raised(after, Change("+", belief), 1)
+
+
+def _removed(state: State, belief: str) -> tuple[State, ...]:
+    """All that may be where the belief was perceived too."""
+    gone = Change("-", belief)
+    less = replace(state, own=state.own - {belief})
+    neither = replace(less, perceived=state.perceived - {belief})
+    if belief not in state.beliefs:
+        return (state,)
+    if belief in state.perceived and belief in state.own:
+        return _raised(less, gone, 1), _raised(neither, gone, 1), _raised(neither, gone, 2)
+    return (_raised(neither, gone, 1),)
+
+
+def _raised(state: State, event: Change, times: int) -> State:
+    return replace(state, waiting=(*state.waiting, *[Intention(event)] * times))
+
+
+def told(model: Model, explored: Explored[State], numbers: tuple[int, ...]) -> tuple[str, ...]:
+    """What happened on the way to each of the states, in words.
+
+    Args:
+        model: whose states they are.
+        explored: all of them.
+        numbers: a run, from the initial state on.
+    """
+    said = ["nothing yet"]
+    for before, after in pairwise(numbers):
+        wanted = explored.states[after]
+        steps = model.steps(explored.states[before])
+        said.append(next(words for words, state in steps if state == wanted))
+    return tuple(said)

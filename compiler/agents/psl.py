@@ -1,0 +1,154 @@
+"""Property files of AJPF (`.psl`), read strictly: what AJPF would repair in silence is a mistake.
+
+AJPF's own reader takes a file apart line by line and its parser recovers from every error, so that
+a wrong property looks verified. Here a property is either read exactly as AJPF reads it, or F603
+tells what AJPF would have made of it, and where.
+Source: the file reader and the property grammar of MCAPL; Dennis et al., Model checking agent
+programming languages, ASE 19 (2012), section 4 (the property specification language).
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+
+from compiler.agents.psl_grammar import Glued, MisreadError, formula, misread
+from compiler.logic.formula import Formula
+from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
+from fretish.diagnostics.source import Source, Span
+from fretish.reading.limits import within
+from fretish.reading.recursion import deep
+
+KEY = re.compile(r"[A-Za-z0-9_.-]+")
+"""What can stand in `target.args` as the key of a property."""
+_LINES = re.compile(r"[^\r\n]*(?:\r\n|\n|\r|$)")
+
+
+@dataclass(frozen=True, slots=True)
+class Property:
+    """`KEY: formula`. Atoms are spelt as AJPF has them, without white space: `B(ag,too_close)`.
+
+    A number within an atom is spelt by its value, as AJPF compares it: `p(1.0)` is `p(1)`. Strings
+    are spelt in single quotes.
+    """
+
+    key: str
+    formula: Formula
+    span: Span = field(compare=False, repr=False)
+    """From the key to the end of the formula."""
+    remarks: tuple[Diagnostic, ...] = field(default=(), compare=False, repr=False)
+    """Warnings: read as written, and probably not what is meant."""
+
+
+@deep
+def read(source: Source) -> tuple[Property, ...] | Diagnostic:
+    """All properties of a file, in its order; or F603 for the first thing that AJPF would misread.
+
+    A file of comments has none.
+    """
+    return within(len(source.text), source.span(0, 0), lambda: _read(source))
+
+
+def _read(source: Source) -> tuple[Property, ...] | Diagnostic:
+    try:
+        keyed = list(_keyed(source))
+        first: dict[str, Span] = {}
+        for key, _ in keyed:
+            if first.setdefault(key.text, key) is not key:
+                raise misread(
+                    f"the key `{key.text}` comes twice",
+                    key,
+                    f"AJPF takes the last one; the first is in line {first[key.text].line}",
+                )
+        return tuple(_property(key, text) for key, text in keyed)
+    except MisreadError as told:
+        return told.diagnostic
+
+
+def _property(key: Span, text: Glued) -> Property:
+    said, strings = formula(text)
+    remarks = tuple(
+        Diagnostic(
+            Code.BAD_PROPERTY,
+            f"the string {string.text} matches no belief, not even one with the same string",
+            string,
+            help="use a name that begins with a small letter",
+            severity=Severity.WARNING,
+        )
+        for string in strings
+    )
+    return Property(key.text, said, key.to(text.span(0, len(text.text))), remarks)
+
+
+def _keyed(source: Source) -> Iterator[tuple[Span, Glued]]:
+    """Each key with the text of its formula, put together as AJPF's file reader does it.
+
+    A line is split at its colons; one without a colon belongs to the line before it, with nothing
+    between them.
+    """
+    key: Span | None = None
+    pieces: list[Span] = []
+    for line in _lines(source):
+        if line.text.startswith("#"):
+            continue
+        _refuse_beyond_ascii(line)
+        if ":" in line.text:
+            if key is not None:
+                yield key, Glued(source, pieces)
+            key, pieces = _key(line), [_told(line)]
+        elif key is not None:
+            pieces.append(line)
+        elif line.text.strip():
+            raise misread(
+                "the text stands before the first key", line, "write `KEY: formula` on one line"
+            )
+    if key is not None:
+        yield key, Glued(source, pieces)
+
+
+def _lines(source: Source) -> Iterator[Span]:
+    for match in _LINES.finditer(source.text):
+        yield source.span(match.start(), match.start() + len(match[0].rstrip("\r\n")))
+
+
+def _key(line: Span) -> Span:
+    """What stands before the first colon; AJPF compares it to the letter."""
+    key = line.part(0, line.text.index(":"))
+    if KEY.fullmatch(key.text):
+        return key
+    if key.text.lstrip().startswith("#"):
+        raise misread("the `#` is not in column 1", key, "a comment begins in the first column")
+    raise misread(
+        f"`{key.text}` is no key",
+        key if key.text else line,
+        "a key is letters, digits, `_`, `.` and `-`, from the first column to the `:`, "
+        "and a `:` stands nowhere else",
+    )
+
+
+def _told(line: Span) -> Span:
+    """What stands behind the first colon."""
+    start = line.text.index(":") + 1
+    second = line.text.find(":", start)
+    if second >= 0:
+        raise misread(
+            "AJPF drops what stands behind a second `:`",
+            line.part(second, len(line.text)),
+            "a formula has no `:`",
+        )
+    if start == len(line.text):
+        raise misread(
+            "nothing stands behind the `:`", line, "AJPF crashes: write the formula on this line"
+        )
+    return line.part(start, len(line.text))
+
+
+def _refuse_beyond_ascii(line: Span) -> None:
+    for i, character in enumerate(line.text):
+        if not character.isascii():
+            raise misread(
+                f"`{character}` is not ASCII",
+                line.part(i, i + 1),
+                "how AJPF reads it depends on the machine: use ASCII",
+            )

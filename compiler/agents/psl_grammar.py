@@ -1,0 +1,307 @@
+"""The grammar of AJPF's properties, with its own precedences and no recovery from errors.
+
+    formula  = rel { "U" rel } .              left associative, and U binds loosest
+    rel      = imp { "R" imp } .              left associative
+    imp      = conj { "->" conj } .           left associative
+    conj     = disj { "&" disj } .            `&` is looser than `||`
+    disj     = alw { "||" alw } .
+    alw      = [ "[]" | "A" ] ev .
+    ev       = [ "<>" | "E" ] neg .
+    neg      = [ "~" ] atom .
+    atom     = "(" formula ")" | modality "(" agent "," literal ")" .
+
+Source: the property grammar of MCAPL. `T`, `F` and `P`, which it has too, are refused: AJPF
+crashes on a negated constant, and takes a percept for absent once the agent has read it.
+"""
+
+from __future__ import annotations
+
+import re
+from collections import deque
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, field
+from decimal import Decimal
+
+from compiler.logic import formula as f
+from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.diagnostics.source import Source, Span
+
+KEY_WORDS = frozenset("A E U R B G F I D P T ItD".split())
+"""Words of the grammar: no name can be one of them."""
+MODALITIES = ("B", "G", "I", "D", "ItD")
+FUNCTOR = re.compile(r"[a-z][A-Za-z0-9_]*")
+AGENT = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
+
+_TOKEN = re.compile(
+    r"""(?P<skip>[ \t]+ | /\*.*?\*/ )
+    | (?P<rest>//.*)
+    | (?P<string>"[^"\\']*")
+    | (?P<foreign><-> | <=> | => | && | != | == | /\*)
+    | (?P<sign>-> | \|\| | <> | \[\] | [~&()\[\],.])
+    | (?P<number>[0-9]+\.[0-9]+ (?![A-Za-z0-9_<]))
+    | (?P<word>[A-Za-z0-9_<]+)
+    | (?P<other>.)""",
+    re.VERBOSE | re.DOTALL,
+)
+_MOST_LEVELS = 1000
+
+_DROPPED = {
+    "X": "AJPF has no next: state it without `X`",
+    "!": "a negation is `~`",
+    "not": "a negation is `~`",
+    "W": "AJPF has no weak until: `a W b` is `(b) R ((a) || (b))`",
+    "V": "release is `R`",
+    "M": "AJPF has no strong release: `a M b` is `(b) U ((a) & (b))`",
+    "<->": "write two implications: `((a) -> (b)) & ((b) -> (a))`",
+    "<=>": "write two implications: `((a) -> (b)) & ((b) -> (a))`",
+    "=>": "an implication is `->`",
+    "&&": "a conjunction is `&`",
+    "and": "a conjunction is `&`",
+    "|": "a disjunction is `||`",
+    "or": "a disjunction is `||`",
+    "%": "`%` begins no comment: a comment is a line that begins with `#`",
+    "#": "a comment is a whole line, with `#` in its first column",
+    "/*": "the comment has no end: close it with `*/`",
+    "T": "AJPF crashes on a negated `T`: simplify the constant away",
+    "F": "AJPF crashes on a negated `F`: simplify the constant away",
+    "P": "AJPF takes a percept for absent once the agent has read it: say what it believes, `B`",
+    "[]": "put parentheses around it: AJPF drops an operator that stands here",
+    "<>": "put parentheses around it: AJPF drops an operator that stands here",
+    "~": "put parentheses around it: AJPF drops an operator that stands here",
+    ")": "there is no `(` for it",
+}
+
+
+class MisreadError(Exception):
+    """AJPF would not read it as it is written."""
+
+    def __init__(self, diagnostic: Diagnostic) -> None:
+        super().__init__(diagnostic.message)
+        self.diagnostic = diagnostic
+
+
+def misread(message: str, span: Span, mend: str) -> MisreadError:
+    """F603, to be raised."""
+    return MisreadError(Diagnostic(Code.BAD_PROPERTY, message, span, mend))
+
+
+class Glued:
+    """The text of one formula, its lines put together with nothing between them."""
+
+    def __init__(self, source: Source, pieces: Sequence[Span]) -> None:
+        self.source = source
+        self.text = "".join(piece.text for piece in pieces)
+        self._places = [i for piece in pieces for i in range(piece.start, piece.end)]
+        self._after = pieces[0].end if not self._places else self._places[-1] + 1
+
+    def span(self, start: int, end: int) -> Span:
+        """Where the characters `start..end` stand in the file."""
+        if start >= end or start >= len(self._places):
+            return self.source.span(self._after, self._after)
+        return self.source.span(self._places[start], self._places[end - 1] + 1)
+
+    def is_broken(self, start: int, end: int) -> bool:
+        """Whether the characters stand on more than one line."""
+        return self._places[end - 1] - self._places[start] != end - 1 - start
+
+
+@dataclass(frozen=True, slots=True)
+class _Token:
+    kind: str
+    text: str
+    span: Span = field(repr=False)
+
+
+def formula(text: Glued) -> tuple[f.Formula, tuple[Span, ...]]:
+    """The formula of one property, and the strings in it.
+
+    Raises:
+        MisreadError: AJPF would repair the text, drop a part of it, or crash.
+    """
+    reader = _Reader(deque(_tokens(text)), text.span(0, 0))
+    said = reader.formula()
+    if reader.tokens:
+        tail = reader.tokens[0]
+        mend = _DROPPED.get(tail.text, "a property ends with its formula")
+        shown = tail.text
+        raise misread(f"AJPF drops `{shown}` and all that follows it in silence", tail.span, mend)
+    return said, tuple(reader.strings)
+
+
+def _tokens(text: Glued) -> Iterator[_Token]:
+    for match in _TOKEN.finditer(text.text):
+        kind, span = str(match.lastgroup), text.span(*match.span())
+        if kind == "skip":
+            continue
+        broken = text.is_broken(*match.span())
+        if kind == "rest" and not broken:
+            continue
+        if kind == "rest":
+            raise misread(
+                "`//` swallows all lines of the property that follow",
+                span.part(0, 2),
+                "a comment is a line that begins with `#`",
+            )
+        if broken:
+            raise misread(
+                f"two lines become one word: `{match[0]}`",
+                span,
+                "AJPF puts lines together without a space: write a property on one line",
+            )
+        yield _Token(kind, match[0], span)
+
+
+class _Reader:
+    """One function for each level of the grammar; `strings` are those that it has met."""
+
+    def __init__(self, tokens: deque[_Token], end: Span) -> None:
+        self.tokens = tokens
+        self.end = _Token("end", "the end", end)
+        self.strings: list[Span] = []
+        self.level = 0
+
+    # Tokens
+
+    @property
+    def next(self) -> _Token:
+        return self.tokens[0] if self.tokens else self.end
+
+    def take(self, *wanted: str) -> bool:
+        if self.next.text in wanted and self.next.kind in ("sign", "word"):
+            self.tokens.popleft()
+            return True
+        return False
+
+    def need(self, sign: str) -> None:
+        if not self.take(sign):
+            shown = f"before `{self.next.text}`" if self.tokens else "at the end"
+            mend = _DROPPED.get(self.next.text, "")
+            told = "AJPF supplies it, or drops what stands there, in silence"
+            raise misread(
+                f"`{sign}` is missing {shown}", self.next.span, f"{told}{'; ' * bool(mend)}{mend}"
+            )
+
+    # Operators
+
+    def formula(self) -> f.Formula:
+        return self._chain(self._rel, "U", f.Until)
+
+    def _rel(self) -> f.Formula:
+        return self._chain(self._imp, "R", f.Release)
+
+    def _imp(self) -> f.Formula:
+        return self._chain(self._conj, "->", f.Implies)
+
+    def _conj(self) -> f.Formula:
+        return self._chain(self._disj, "&", lambda left, right: f.And((left, right)))
+
+    def _disj(self) -> f.Formula:
+        return self._chain(self._alw, "||", lambda left, right: f.Or((left, right)))
+
+    def _chain(
+        self,
+        operand: Callable[[], f.Formula],
+        operator: str,
+        build: Callable[[f.Formula, f.Formula], f.Formula],
+    ) -> f.Formula:
+        left = operand()
+        while self.take(operator):
+            left = build(left, operand())
+        return left
+
+    def _alw(self) -> f.Formula:
+        return f.Globally(self._ev(), f.EVER) if self.take("[]", "A") else self._ev()
+
+    def _ev(self) -> f.Formula:
+        return f.Eventually(self._neg(), f.EVER) if self.take("<>", "E") else self._neg()
+
+    def _neg(self) -> f.Formula:
+        return f.Not(self._atom()) if self.take("~") else self._atom()
+
+    def _atom(self) -> f.Formula:
+        if self.next.text == "(":
+            return self._inside()
+        modality = self.next
+        if modality.text not in MODALITIES or modality.kind != "word":
+            raise self._no_formula(modality)
+        self.tokens.popleft()
+        self.need("(")
+        agent = self._agent()
+        self.need(",")
+        literal = self._literal()
+        self.need(")")
+        return f.Atom(f"{modality.text}({agent},{literal})")
+
+    def _inside(self) -> f.Formula:
+        self._deeper()
+        self.take("(")
+        inside = self.formula()
+        self.level -= 1
+        self.need(")")
+        return inside
+
+    def _deeper(self) -> None:
+        self.level += 1
+        if self.level > _MOST_LEVELS:
+            raise misread(
+                f"more than {_MOST_LEVELS} parentheses within each other",
+                self.next.span,
+                "leave out those that are not needed",
+            )
+
+    def _no_formula(self, found: _Token) -> MisreadError:
+        if found.kind == "end":
+            return misread("a formula is missing", found.span, "write it behind the operator")
+        mend = _DROPPED.get(found.text, "an atom is `B(agent,belief)`")
+        if found.text[0] in "URAE" and found.text[1:] in MODALITIES:
+            mend = f"put a space between: `{found.text[0]} {found.text[1:]}`"
+        return misread(f"`{found.text}` cannot begin a formula", found.span, mend)
+
+    # Atoms
+
+    def _agent(self) -> str:
+        words = [self._word(AGENT, "an agent", "letters, digits and `_`")]
+        while self.take("."):
+            words.append(self._word(AGENT, "an agent", "letters, digits and `_`"))
+        return ".".join(words)
+
+    def _word(self, pattern: re.Pattern[str], what: str, rule: str) -> str:
+        found = self.next
+        if found.kind == "word" and pattern.fullmatch(found.text) and found.text not in KEY_WORDS:
+            self.tokens.popleft()
+            return found.text
+        told = f"`{found.text}` is" if self.tokens else "there is"
+        raise misread(
+            f"{told} no name of {what}",
+            found.span,
+            f"AJPF repairs it or crashes: use {rule}, and no key word of AJPF",
+        )
+
+    def _literal(self) -> str:
+        rule = "a small letter, then letters, digits and `_`"
+        functor = self._word(FUNCTOR, "a belief or an action", rule)
+        return f"{functor}({self._arguments(')')})" if self.take("(") else functor
+
+    def _arguments(self, closing: str) -> str:
+        self._deeper()
+        said = [self._argument()]
+        while self.take(","):
+            said.append(self._argument())
+        self.level -= 1
+        self.need(closing)
+        return ",".join(said)
+
+    def _argument(self) -> str:
+        found = self.next
+        if found.kind == "number" or (found.kind == "word" and found.text.isdigit()):
+            self.tokens.popleft()
+            return format(Decimal(repr(float(found.text))).normalize(), "f")
+        if found.kind == "string":
+            self.tokens.popleft()
+            self.strings.append(found.span)
+            return f"'{found.text[1:-1]}'"
+        if self.take("_"):
+            return "_"
+        if self.take("["):
+            return f"[{self._arguments(']')}]"
+        return self._literal()

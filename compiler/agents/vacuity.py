@@ -1,0 +1,80 @@
+"""Where a property that holds says nothing: what would still hold if less were asked of the model.
+
+Source: Kupferman, Vardi, Vacuity detection in temporal model checking, STTT 4 (2003); Beer et al.,
+Efficient detection of vacuity in temporal model checking, FMSD 18 (2001).
+"""
+
+from __future__ import annotations
+
+from compiler.logic import formula as f
+
+Bare = tuple[tuple[f.Formula, ...], f.Formula]
+"""The conditions within a formula; and the formula without what follows from them."""
+
+
+def bare(formula: f.Formula) -> tuple[Bare, ...]:
+    """What is left of the formula where nothing follows from its innermost conditions.
+
+    Where that holds as well, the conditions are never true when they are asked. One for each part
+    of a conjunction that speaks of all times, and one for the whole where no part does. A condition
+    is the left side of an implication, and `a` in `!a | b` where `a` has no temporal operator;
+    under a negation there are none, nor are those that only choose among propositions.
+    """
+    flat = _flat(formula)
+    parts = flat.args if isinstance(flat, f.And) else (flat,)
+    lasting = tuple(part for part in parts if isinstance(part, f.Globally))
+    found = map(_bare, lasting or (flat,))
+    return tuple((conditions, rest) for conditions, rest in found if conditions)
+
+
+def _flat(formula: f.Formula) -> f.Formula:
+    """With each chain of `|` in one node, however it was put in parentheses."""
+    return f.rebuild(formula, _flat)
+
+
+def _bare(formula: f.Formula) -> Bare:
+    match formula:
+        case f.Implies(left, right):
+            inner, rest = _bare(right)
+            return (inner, f.implies(left, rest)) if inner else ((left,), f.not_(left))
+        case f.Or(args):
+            return _disjunction(args)
+        case f.And() | f.Globally() | f.Eventually() | f.Until() | f.Release():
+            inner = tuple(c for part in f.children(formula) for c in _bare(part)[0])
+            return inner, f.rebuild(formula, lambda part: _bare(part)[1])
+        case _:
+            return (), formula
+
+
+def _disjunction(args: tuple[f.Formula, ...]) -> Bare:
+    """`!a | b` is `a -> b`."""
+    done = [((), arg) if _is_plain(arg) else _bare(arg) for arg in args]
+    inner = tuple(condition for conditions, _ in done for condition in conditions)
+    if inner:
+        return inner, f.or_(*(rest for _, rest in done))
+    negated = [arg for arg in args if isinstance(arg, f.Not) and _is_plain(arg)]
+    if not negated or len(negated) == len(args):
+        return (), f.or_(*args)
+    return (f.and_(*(arg.arg for arg in negated)),), f.or_(*negated)
+
+
+def _is_plain(formula: f.Formula) -> bool:
+    """Whether it has no temporal operator."""
+    logic = (f.Const, f.Atom, f.Not, f.And, f.Or, f.Xor, f.Implies, f.Iff)
+    return isinstance(formula, logic) and all(map(_is_plain, f.children(formula)))
+
+
+def demanded(formula: f.Formula, positive: bool = True) -> frozenset[str]:
+    """The atoms that the formula wants true somewhere: those under an even number of negations."""
+    match formula:
+        case f.Atom(name):
+            return frozenset({name} if positive else ())
+        case f.Not(arg):
+            return demanded(arg, not positive)
+        case f.Implies(left, right):
+            return demanded(left, not positive) | demanded(right, positive)
+        case f.Iff(left, right) | f.Xor(left, right):
+            return frozenset(f.atoms(formula))
+        case _:
+            parts = (demanded(part, positive) for part in f.children(formula))
+            return frozenset().union(*parts)

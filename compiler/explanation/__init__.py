@@ -1,0 +1,1 @@
+"""A requirement explained: pictures, example traces, reasons."""

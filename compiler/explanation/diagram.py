@@ -1,0 +1,270 @@
+"""The picture of a sentence's meaning, as values: where it holds, what triggers, what is owed.
+
+A sentence is drawn on one trace that shows all of it: the scope begins and ends, the condition is
+true for two ticks, the stop condition comes. What stands in the lanes is not drawn by hand for each
+form of sentence: it is read off that trace by the definition (`compiler.explanation.windows`).
+`compiler.explanation.drawing` lays it out; the reader's own names and numbers are all in here.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from enum import StrEnum
+
+from compiler.explanation.windows import Column, Need, Window, intervals, windows
+from compiler.formalization.reference import Template, template
+from compiler.formalization.rule import Rule
+from fretish import syntax as s
+from fretish.meaning import span as in_ticks
+from fretish.printer import expression
+from fretish.syntax import ScopeKind
+
+_LEAD, _TAIL, _WAIT = 2, 2, 3
+"""Ticks before the scope and after it, and ticks to wait where the sentence sets no bound."""
+
+
+class Kind(StrEnum):
+    """What a lane shows."""
+
+    MODE = "mode"
+    """Where the mode is true."""
+    SCOPE = "scope"
+    """Where the sentence is enforced."""
+    CONDITION = "condition"
+    STOP = "stop"
+    TRIGGER = "trigger"
+    BOUND = "bound"
+    """From a trigger to the tick that the duration counts to."""
+    NEED = "need"
+    """Where the response matters."""
+
+
+@dataclass(frozen=True, slots=True)
+class Stretch:
+    """Ticks of a lane, both ends included."""
+
+    first: int
+    last: int
+    goes_on: bool = False
+    """Whether it lasts as long as the run does, beyond the picture."""
+
+
+@dataclass(frozen=True, slots=True)
+class Lane:
+    """A row of the picture."""
+
+    kind: Kind
+    name: str
+    """An expression of the sentence; empty where the lane is of none."""
+    note: str
+    """What a bar in it means."""
+    stretches: tuple[Stretch, ...]
+    need: Need | None = None
+    """For `Kind.NEED`."""
+    trigger: int | None = None
+    """The tick of the trigger that asks for it, where there are several."""
+    otherwise: bool = False
+    """Whether it is only asked for where the lane before it is not as it must be."""
+
+    @property
+    def told(self) -> str:
+        """All that is written beside the lane but its name."""
+        link = "or else " if self.otherwise else ""
+        whose = "" if self.trigger is None else f", trigger at tick {self.trigger}"
+        return f"{link}{self.note}{whose}"
+
+
+@dataclass(frozen=True, slots=True)
+class Trace:
+    """The trace that is drawn, a column for each part of the sentence."""
+
+    m: Column
+    p: Column
+    s: Column
+
+
+@dataclass(frozen=True, slots=True)
+class Diagram:
+    """A sentence as a picture of some ticks of a run."""
+
+    title: str
+    ticks: int
+    """Of the picture; the run goes on after them, or ends with them."""
+    ends: bool
+    """Whether the run ends with the last tick that is drawn."""
+    period: int | None
+    """Nanoseconds of a tick, where a clock says it."""
+    lanes: tuple[Lane, ...]
+    trace: Trace
+    windows: tuple[Window, ...]
+    """What the triggers in the picture ask for."""
+
+
+def diagram(rule: Rule) -> Diagram:
+    """The picture of a formalized sentence, whatever its bound."""
+    drawn = template(rule.sentence, rule.ticks or 0)
+    trace = _trace(drawn)
+    found = windows(drawn, trace.m, trace.p, trace.s)
+    ticks = len(trace.m)
+    ends = drawn.timing is s.Finally and _is_open(drawn.scope)
+    return Diagram(
+        title=f"What {rule.id} means",
+        ticks=ticks,
+        ends=ends,
+        period=rule.clock.period if rule.clock else None,
+        lanes=tuple(_lanes(rule, drawn, trace, found, ticks if ends else ticks - 1)),
+        trace=trace,
+        windows=found,
+    )
+
+
+def _is_open(scope: ScopeKind | None) -> bool:
+    """Whether the interval that is drawn ends with the run."""
+    return scope in (None, ScopeKind.AFTER, ScopeKind.ONLY_BEFORE)
+
+
+# The trace --------------------------------------------------------------------------------------
+
+
+def _trace(drawn: Template) -> Trace:
+    """One on which every part of the sentence does something."""
+    lead = 0 if drawn.scope in (None, ScopeKind.BEFORE, ScopeKind.ONLY_AFTER) else _LEAD
+    if drawn.scope is ScopeKind.AFTER:
+        lead += 1  # a first run of the mode, with a tick before it
+    begin = lead if drawn.condition is None else lead + 1
+    late = begin if drawn.condition is None else begin + 1  # the last tick that may trigger
+    right = late + _reach(drawn) + 1
+    ticks = right + 1 if _is_open(drawn.scope) else right + 1 + _TAIL
+    stop = late + _WAIT
+    return Trace(
+        m=tuple(_mode(drawn.scope, t, lead, right) for t in range(ticks)),
+        p=tuple(begin <= t <= late for t in range(ticks)),
+        s=tuple(t == stop for t in range(ticks)),
+    )
+
+
+def _reach(drawn: Template) -> int:
+    """How many ticks after a trigger something is asked for."""
+    if drawn.timing in (s.Within, s.For):
+        return drawn.ticks
+    if drawn.timing is s.After:
+        return drawn.ticks + 1
+    if drawn.timing is s.Immediately:
+        return 1
+    return 2 if drawn.timing is s.Next else _WAIT
+
+
+def _mode(scope: ScopeKind | None, t: int, left: int, right: int) -> bool:
+    """The mode at a tick, so that the interval is `left..right`."""
+    inside = left <= t <= right
+    match scope:
+        case ScopeKind.IN:
+            return inside
+        case ScopeKind.NOT_IN | ScopeKind.ONLY_IN:
+            return not inside
+        case ScopeKind.BEFORE:
+            return t > right
+        case ScopeKind.AFTER:
+            return 1 <= t < left
+        case ScopeKind.ONLY_BEFORE:
+            return left <= t < right
+        case ScopeKind.ONLY_AFTER:
+            return right - 1 <= t <= right
+        case _:
+            return False
+
+
+# Lanes ------------------------------------------------------------------------------------------
+
+
+def _lanes(
+    rule: Rule, drawn: Template, trace: Trace, found: Sequence[Window], end: int
+) -> Iterator[Lane]:
+    """From above: where, when, until when, and what."""
+    sentence = rule.sentence
+    scope, condition, timing = sentence.scope, sentence.condition, sentence.timing
+    if scope is not None:
+        yield Lane(Kind.MODE, expression(scope.mode), "true", _true(trace.m))
+    enforced = tuple(
+        Stretch(left, right, goes_on=right >= end)
+        for left, right in intervals(drawn.scope, trace.m)
+    )
+    yield Lane(Kind.SCOPE, "", "enforced", enforced)
+    if condition is not None:
+        yield Lane(Kind.CONDITION, expression(condition.expression), "true", _true(trace.p))
+    starts = tuple(Stretch(window.trigger, window.trigger) for window in found)
+    yield Lane(Kind.TRIGGER, "", "triggers" if condition else "begins", starts)
+    if isinstance(timing, s.Until | s.Before):
+        yield Lane(Kind.STOP, expression(timing.stop), "true", _true(trace.s))
+    yield from _needs(rule, drawn, found, end)
+
+
+def _needs(rule: Rule, drawn: Template, found: Sequence[Window], end: int) -> Iterator[Lane]:
+    q = expression(rule.sentence.response)
+    several = len(found) > 1
+    for window in found:
+        whose = window.trigger if several else None
+        if s.duration(rule.sentence.timing) is not None:
+            reach = Stretch(window.trigger, window.trigger + drawn.ticks)
+            counted = in_ticks(drawn.ticks, rule.clock)
+            yield Lane(Kind.BOUND, "", f"{counted} from tick {window.trigger}", (reach,))
+        for number, part in enumerate(window.parts):
+            where = Stretch(part.first, part.last, goes_on=_goes_on(drawn, part.last, end))
+            need = _need(part.first == part.last, part.need)
+            otherwise = window.either and number > 0
+            yield Lane(Kind.NEED, q, need, (where,), part.need, whose, otherwise)
+
+
+def _goes_on(drawn: Template, last: int, end: int) -> bool:
+    """A demand as long as the interval, in one that lasts as long as the run."""
+    return last >= end and drawn.timing in (s.Eventually, s.Always, s.Never)
+
+
+def _need(single: bool, need: Need) -> str:
+    if single:
+        return "must be true" if need in (Need.ALL, Need.SOME) else "must be false"
+    return {
+        Need.ALL: "must be true throughout",
+        Need.SOME: "must be true at least once",
+        Need.NONE: "must be false throughout",
+        Need.MISS: "must be false at least once",
+    }[need]
+
+
+def _true(column: Column) -> tuple[Stretch, ...]:
+    """Where it is true."""
+    return tuple(Stretch(left, right) for left, right in intervals(ScopeKind.IN, column))
+
+
+# Words ------------------------------------------------------------------------------------------
+
+
+def words(drawn: Diagram) -> str:
+    """The picture as sentences, for those who do not see it."""
+    end = "The run ends with the last tick" if drawn.ends else "The run goes on"
+    told = [_in_words(lane) for lane in drawn.lanes if lane.kind is not Kind.BOUND]
+    return " ".join([f"A run of ticks 0 to {drawn.ticks - 1}.", *told, f"{end}."])
+
+
+def _in_words(lane: Lane) -> str:
+    at = " and ".join(_ticks(stretch) for stretch in lane.stretches)
+    match lane.kind:
+        case Kind.SCOPE:
+            return f"The sentence is enforced at {at}."
+        case Kind.TRIGGER:
+            return f"It is triggered at {at}."
+        case Kind.NEED:
+            whose = "" if lane.trigger is None else f"For the trigger at tick {lane.trigger}, "
+            link = "or else " if lane.otherwise else ""
+            return f"{whose}{link}`{lane.name}` {lane.note}, at {at}."
+        case _:
+            return f"`{lane.name}` is true at {at}."
+
+
+def _ticks(stretch: Stretch) -> str:
+    if stretch.goes_on:
+        return f"tick {stretch.first} and all later ones"
+    if stretch.first == stretch.last:
+        return f"tick {stretch.first}"
+    return f"ticks {stretch.first} to {stretch.last}"

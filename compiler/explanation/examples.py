@@ -1,0 +1,257 @@
+"""Short traces that satisfy a sentence, and short ones that violate it, each in a way of its own.
+
+They are shortest words of the reference automaton (`compiler.formalization.reference`), by breadth
+first search through waypoints: answered at once, at the deadline, cut off by the end of the scope;
+never answered, broken late. Two traces are different where their runs are, repetitions left out.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+
+from compiler.explanation.shortest_words import Move, Run, Waypoint, Words
+from compiler.explanation.windows import kept
+from compiler.formalization import reference as counters
+from compiler.formalization.letters import (
+    MOST_ATOMS,
+    Valuation,
+    atoms_of,
+    meanings,
+    temporal_predicate,
+)
+from compiler.formalization.reference import (
+    BROKEN,
+    Automaton,
+    Letter,
+    TooManyStatesError,
+    explore,
+)
+from compiler.formalization.rule import Rule
+from fretish import syntax as s
+
+MOST_STATES = 120_000
+"""Seconds of search; a longer bound gets no examples."""
+WANTED = 2
+"""Of either kind."""
+
+
+@dataclass(frozen=True, slots=True)
+class Example:
+    """A trace with its verdict."""
+
+    satisfied: bool
+    prefix: tuple[Valuation, ...]
+    """At least one tick: the values of `Examples.atoms`."""
+    loop: tuple[Valuation, ...]
+    """What comes again and again after the prefix, on a run without end; the verdict is the same
+    where the run ends after any of the rounds. Empty: what comes does not matter, or the run ends.
+    """
+    decided: int | None
+    """The first tick after which no continuation can change the verdict. None: there is none."""
+
+
+@dataclass(frozen=True, slots=True)
+class Examples:
+    """What could be found for a sentence."""
+
+    atoms: tuple[str, ...]
+    satisfied: tuple[Example, ...]
+    violated: tuple[Example, ...]
+    note: str = ""
+    """Why there are none, where there are none."""
+
+
+def examples(rule: Rule, wanted: int = WANTED) -> Examples:
+    """The traces of a rule: at most so many of either kind, the shortest ones first."""
+    predicate = temporal_predicate(rule.sentence)
+    if predicate is not None:
+        return Examples((), (), (), f"`{predicate}` speaks of other ticks, the automaton of one")
+    atoms = atoms_of(rule.sentence)
+    if len(atoms) > MOST_ATOMS:
+        return Examples(atoms, (), (), f"{len(atoms)} propositions are more than {MOST_ATOMS}")
+    letters = _quiet_first(meanings(rule.sentence, atoms))
+    counted = counters.template(rule.sentence, rule.ticks or 0)
+    try:
+        automaton = explore(counted, letters, MOST_STATES)
+    except TooManyStatesError:
+        return Examples(atoms, (), (), f"its automaton has more than {MOST_STATES} states")
+    search = _Search(automaton, letters)
+    return Examples(
+        atoms,
+        tuple(_different(search, search.satisfying(), wanted)),
+        tuple(_different(search, search.violating(), wanted)),
+    )
+
+
+def _quiet_first(found: Mapping[Valuation, Letter]) -> dict[Letter, Valuation]:
+    """For each letter the valuation with the fewest true atoms; the quietest letters first."""
+    chosen: dict[Letter, Valuation] = {}
+    for valuation, letter in sorted(found.items(), key=lambda pair: (sum(pair[0]), pair[0][::-1])):
+        chosen.setdefault(letter, valuation)
+    return chosen
+
+
+# The search -------------------------------------------------------------------------------------
+
+
+def _triggered(move: Move) -> bool:
+    return move.triggered
+
+
+def _waiting(move: Move) -> bool:
+    return move.waits and not move.triggered
+
+
+def _answered(move: Move) -> bool:
+    """No demand is open after it; one was, or began; and not because the interval ends."""
+    begun = move.triggered or move.before.counted != 0
+    return begun and move.enforced and move.after is not None and not move.waits
+
+
+def _cut(move: Move) -> bool:
+    """The interval ends while a demand is open, and nothing is broken by that."""
+    return move.before.counted != 0 and move.after is not None and not move.enforced
+
+
+def _last(move: Move) -> bool:
+    return move.after is not None and move.after.counted == 1 and not move.triggered
+
+
+def _broken(move: Move) -> bool:
+    return move.after is None
+
+
+class _Search:
+    """Candidates for examples, as words of an automaton."""
+
+    def __init__(self, automaton: Automaton, letters: Mapping[Letter, Valuation]) -> None:
+        self.words = Words(automaton)
+        self.letters = letters
+        self.template = automaton.template
+        self.satisfiable = automaton.verdicts[0] != "violated"
+
+    def satisfying(self) -> Iterator[Run]:
+        """Candidates, the instructive ones first."""
+        closed = self._closed
+        ways: tuple[tuple[Waypoint, ...], ...] = (
+            (_triggered, _answered),
+            (self._deadline, _answered),
+            (_waiting, _answered),
+            (_triggered, _cut),
+            (_waiting, _cut),
+            (_triggered, _answered, _triggered, _answered),
+            (_triggered,),
+            (_waiting,),
+            (_triggered, _triggered),
+        )
+        for way in ways:
+            found = self.words.shortest(way, closed)
+            if found is not None:
+                yield self.words.followed(found, accepted=True)
+        silent = self.words.shortest((), closed, among=lambda move: not move.triggered)
+        if silent is not None:
+            yield self.words.followed(silent, accepted=True)
+        several = self.words.shortest((_triggered, lambda move: True), closed)
+        if several is not None:
+            yield self.words.followed(several, accepted=True)
+
+    def violating(self) -> Iterator[Run]:
+        """Candidates: broken demands, then those that nobody ever answers, then ends."""
+        ways: tuple[tuple[Waypoint, ...], ...] = (
+            (_broken,),
+            (self._deadline, _broken),
+            (_last, _broken),
+            (_waiting, _broken),
+            (_answered, _broken),
+            (lambda move: not move.triggered, _broken),
+        )
+        first = True
+        for way in ways:
+            found = self.words.shortest(way, lambda move: True)
+            if found is None:
+                continue
+            yield found
+            late = self._too_late(found) if first else None
+            first = False
+            if late is not None:
+                yield late
+        yield from self._never()
+
+    def _never(self) -> Iterator[Run]:
+        """Runs on which a demand is open for ever, or at the end."""
+
+        def unanswered(move: Move) -> bool:
+            return move.target != BROKEN and not self.words.final[move.target]
+
+        ways: tuple[tuple[Waypoint, ...], ...] = (
+            (unanswered,),
+            (_answered, unanswered),
+            (_waiting, unanswered),
+            (lambda move: not move.triggered, unanswered),
+        )
+        for way in ways:
+            found = self.words.shortest(way, lambda move: True)
+            if found is not None:
+                yield self.words.followed(found, accepted=False)
+
+    def _deadline(self, move: Move) -> bool:
+        return move.after is not None and 0 < self.words.most == abs(move.after.counted)
+
+    def _closed(self, move: Move) -> bool:
+        """FRET's verdict would be `satisfied`, were it the last tick."""
+        return move.target != BROKEN and self.words.final[move.target]
+
+    def _too_late(self, broken: Run) -> Run | None:
+        """The same with the response one tick after the deadline, where there is one."""
+        negated = self.template.scope is not None and self.template.scope.negates
+        timing = s.For if negated else s.Within
+        if self.template.timing is not timing:
+            return None
+        last = broken.moves[-1]
+        for m, p, q, stop in self.words.automaton.letters:
+            if m == last.letter[0] and p == last.letter[1] and q is not negated:
+                late = Move(last.before, (m, p, q, stop), None, BROKEN, last.enforced, False)
+                return Run((*broken.moves, late))
+        return None
+
+    def example(self, run: Run) -> Example:
+        """The run as a trace of atoms."""
+        end = run.moves[-1]
+        satisfied = end.target != BROKEN and self.words.final[end.target]
+        decided = self.words.decided(run, satisfied=satisfied)
+        loop = run.loop if decided is None else ()
+        return Example(
+            satisfied,
+            tuple(self.letters[move.letter] for move in run.moves),
+            tuple(self.letters[move.letter] for move in loop),
+            decided,
+        )
+
+
+def _different(search: _Search, runs: Iterator[Run], wanted: int) -> Iterator[Example]:
+    """The first ones that behave differently, each checked by the definition."""
+    seen: set[tuple[object, ...]] = set()
+    spare: Example | None = None
+    for run in runs:
+        if len(seen) == wanted:
+            return
+        found = search.example(run)
+        left_open = run.is_open and not search.words.needs_end and found.decided is None
+        if left_open:
+            spare = spare or found
+        elif run.behaviour not in seen:
+            seen.add(run.behaviour)
+            _check(search, run, found)
+            yield found
+    if not seen and spare is not None and search.satisfiable:
+        yield spare
+
+
+def _check(search: _Search, run: Run, found: Example) -> None:
+    """The automaton and the definition agree on the trace, and on each round after it."""
+    word = [move.letter for move in run.moves]
+    for _ in range(3 if found.loop else 1):
+        m, p, q, stop = zip(*word, strict=True)
+        assert kept(search.template, m, p, q, stop) is found.satisfied, (search.template, word)
+        word += [move.letter for move in run.loop]

@@ -1,0 +1,237 @@
+"""A requirement explained: meaning, formulas, picture, and traces with their reasons."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import groupby
+from typing import Any
+
+from compiler.explanation import drawing
+from compiler.explanation.diagram import Diagram, Lane, diagram, words
+from compiler.explanation.examples import Example, examples
+from compiler.explanation.reasons import why
+from compiler.formalization import record
+from compiler.formalization.letters import Valuation, meanings
+from compiler.formalization.rule import Rule
+from compiler.logic.definition import holds
+from compiler.logic.formula import longest_bound
+from compiler.targets import ltl
+from fretish import syntax as s
+from fretish.diagnostics.rendering import visible
+
+SCHEMA = "fretc-explanation-1"
+
+
+@dataclass(frozen=True, slots=True)
+class Row:
+    """Ticks with the same values, one after the other."""
+
+    first: int
+    last: int
+    values: Valuation
+    repeats: bool
+    """Whether it belongs to what comes again and again."""
+    decides: bool
+
+
+@dataclass(frozen=True, slots=True)
+class Shown:
+    """A trace as it is shown."""
+
+    satisfied: bool
+    rows: tuple[Row, ...]
+    decided: int | None
+    """The tick at which the verdict is certain; None: only the end of the run makes it so."""
+    reason: str
+
+
+@dataclass(frozen=True, slots=True)
+class Explanation:
+    """All that is said of a requirement."""
+
+    rule: Rule
+    picture: Diagram
+    propositions: tuple[str, ...]
+    """In the order of the values of a row."""
+    traces: tuple[Shown, ...]
+    notes: tuple[str, ...]
+
+
+def explanation(rule: Rule) -> Explanation:
+    """Explain a formalized requirement; every trace in it has been checked."""
+    found = examples(rule)
+    every = (*found.satisfied, *found.violated)
+    letters = meanings(rule.sentence, found.atoms) if every else {}
+    for example in every:
+        _check(rule, found.atoms, example)
+    shown = tuple(_shown(rule, letters, example) for example in every)
+    notes = tuple(_notes(rule, found.note, len(found.satisfied), len(found.violated)))
+    return Explanation(rule, diagram(rule), found.atoms, shown, notes)
+
+
+def _notes(rule: Rule, reason: str, satisfied: int, violated: int) -> Iterator[str]:
+    if reason:
+        yield f"no traces are shown: {reason}"
+        return
+    if not satisfied:
+        yield "no run that goes on satisfies the sentence"
+    if not violated:
+        yield "no run violates the sentence"
+    if satisfied == 1:
+        yield "no other way to satisfy the sentence was found"
+    if violated == 1:
+        yield "no other way to violate the sentence was found"
+    if rule.sentence.probability is not None:
+        yield "a run counts as one that satisfies or violates; the probability is over many runs"
+    if isinstance(rule.sentence.timing, s.Finally) and _ends_with_run(rule):
+        yield "on a run without end nothing is required"
+
+
+def _ends_with_run(rule: Rule) -> bool:
+    scope = rule.sentence.scope
+    return scope is None or scope.kind in (s.ScopeKind.AFTER, s.ScopeKind.ONLY_BEFORE)
+
+
+# Traces -----------------------------------------------------------------------------------------
+
+_CHECKED = 30
+"""Ticks up to which the slow definition of the operators checks a trace, too."""
+
+
+def _check(rule: Rule, atoms: Sequence[str], example: Example) -> None:
+    """The formulas say of the trace what the automaton does.
+
+    Spot has the word of the endless trace, where the bound is small enough for it.
+    """
+    prefix = [dict(zip(atoms, values, strict=True)) for values in example.prefix]
+    loop = [dict(zip(atoms, values, strict=True)) for values in example.loop]
+    trace = [*prefix, *loop]
+    if len(trace) <= _CHECKED:
+        assert holds(rule.ft_finite, trace) is example.satisfied
+        assert holds(rule.pt, trace, len(trace) - 1) is example.satisfied
+    if s.duration(rule.sentence.timing) is None and longest_bound(rule.ft_infinite) == 0:
+        from compiler.logic.spot import holds_on
+
+        if loop or example.decided is not None:
+            told = holds_on(rule.ft_infinite, prefix, loop or prefix[-1:])
+            assert told is example.satisfied
+
+
+def _shown(rule: Rule, letters: Mapping[Valuation, Any], example: Example) -> Shown:
+    prefix = [letters[values] for values in example.prefix]
+    loop = [letters[values] for values in example.loop]
+    ends = not loop and example.decided is None
+    return Shown(
+        example.satisfied,
+        tuple(_rows(example)),
+        example.decided,
+        why(rule, prefix, loop, ends=ends, satisfied=example.satisfied),
+    )
+
+
+_FOLDED = 4
+"""So many equal ticks are one row."""
+
+
+def _rows(example: Example) -> Iterator[Row]:
+    """The ticks, long stretches of equal ones as one; the deciding tick stands for itself."""
+    start = len(example.prefix)
+    ticks = [
+        (values, tick >= start, tick == example.decided)
+        for tick, values in enumerate((*example.prefix, *example.loop))
+    ]
+    first = 0
+    for (values, repeats, decides), group in groupby(ticks):
+        count = len(list(group))
+        if count < _FOLDED:
+            for tick in range(first, first + count):
+                yield Row(tick, tick, values, repeats, decides)
+        else:
+            yield Row(first, first + count - 1, values, repeats, decides)
+        first += count
+
+
+# Text and JSON ----------------------------------------------------------------------------------
+
+_NAME = 28
+_UNDECIDED = "decided at the end only"
+
+
+def text(explained: Explanation) -> str:
+    """What the terminal shows."""
+    rule = explained.rule
+    blocks = [visible_lines(ltl.text(rule)), drawing.text(explained.picture, "    ")]
+    blocks[1] = f"  one run, drawn\n{blocks[1]}\n"
+    blocks.extend(_table(explained, shown) for shown in explained.traces)
+    if explained.notes:
+        blocks.append("".join(f"  note: {visible(note)}\n" for note in explained.notes))
+    return "\n".join(blocks)
+
+
+def visible_lines(block: str) -> str:
+    """No text of the user's can turn or hide another one."""
+    return "".join(f"{visible(line)}\n" for line in block.splitlines())
+
+
+def _table(explained: Explanation, shown: Shown) -> str:
+    names = [drawing.shortened(visible(name), _NAME) for name in explained.propositions]
+    labels = [_label(row) for row in shown.rows]
+    width = max(map(len, [*labels, "tick"])) + 2
+    head = "".join(f"{name}  " for name in names).rstrip()
+    lines = [f"    {'tick':<{width}}{head}"]
+    for label, row in zip(labels, shown.rows, strict=True):
+        cells = "".join(
+            f"{int(value)}".ljust(len(name) + 2)
+            for name, value in zip(names, row.values, strict=True)
+        )
+        mark = "  …repeats" if row.repeats else "  ← decided" if row.decides else ""
+        lines.append(f"    {label:<{width}}{cells}{mark}".rstrip())
+    end = _UNDECIDED if shown.decided is None else f"decided at tick {shown.decided}"
+    verdict = "✔ satisfied" if shown.satisfied else "✘ violated"
+    return "\n".join([f"  {verdict}: {visible(shown.reason)}", *lines, f"    {end}", ""])
+
+
+def _label(row: Row) -> str:
+    return str(row.first) if row.first == row.last else f"{row.first}..{row.last}"
+
+
+def as_record(explained: Explanation) -> dict[str, Any]:
+    """Plain values, in a fixed order of keys."""
+    rule, picture = explained.rule, explained.picture
+    told = record.record(rule)
+    kept = ("id", "title", "sentence", "meaning", "ft_infinite", "ft_finite", "pt", "tick_ns")
+    return {
+        "schema": SCHEMA,
+        **{key: told[key] for key in kept},
+        "diagram": {
+            "ticks": picture.ticks,
+            "run_ends": picture.ends,
+            "words": words(picture),
+            "lanes": [_lane(lane) for lane in picture.lanes],
+        },
+        "propositions": list(explained.propositions),
+        "traces": [_trace(explained.propositions, shown) for shown in explained.traces],
+        "notes": list(explained.notes),
+    }
+
+
+def _lane(lane: Lane) -> dict[str, Any]:
+    stretches = [
+        {"first": each.first, "last": each.last, "goes_on": each.goes_on} for each in lane.stretches
+    ]
+    return {"kind": lane.kind.value, "name": lane.name, "note": lane.told, "ticks": stretches}
+
+
+def _trace(propositions: Sequence[str], shown: Shown) -> dict[str, Any]:
+    rows = [
+        {
+            "first": row.first,
+            "last": row.last,
+            "values": dict(zip(propositions, row.values, strict=True)),
+            "repeats": row.repeats,
+        }
+        for row in shown.rows
+    ]
+    verdict = "satisfied" if shown.satisfied else "violated"
+    return {"verdict": verdict, "rows": rows, "decided": shown.decided, "reason": shown.reason}

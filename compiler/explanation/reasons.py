@@ -1,0 +1,213 @@
+"""Why a trace satisfies or violates a sentence, in words: which trigger, and what came of it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from compiler.explanation.windows import Column, Need, Part, Window, intervals, windows
+from compiler.formalization.reference import Letter, Template, template
+from compiler.formalization.rule import Rule
+from fretish import syntax as s
+from fretish.meaning import span as in_ticks
+from fretish.printer import expression
+
+_MOST = 2
+"""Triggers that are told one by one."""
+
+
+def why(
+    rule: Rule,
+    prefix: Sequence[Letter],
+    loop: Sequence[Letter] = (),
+    *,
+    ends: bool = False,
+    satisfied: bool | None = None,
+) -> str:
+    """One line.
+
+    Args:
+        rule: the sentence.
+        prefix: mode, condition, response and stop condition at each tick, at least one.
+        loop: what comes again and again after it.
+        ends: whether the run ends with the prefix. If it does not, and nothing loops, then what
+            follows does not change the verdict: the last tick is taken to last.
+        satisfied: the verdict, where it is known; it is a mistake of ours if the reason differs.
+    """
+    counted = template(rule.sentence, rule.ticks or 0)
+    more = () if ends else tuple(loop or prefix[-1:]) * (counted.ticks + 3)
+    m, p, q, stop = (tuple(column) for column in zip(*prefix, *more, strict=True))
+    shown = len(prefix) + len(loop)
+    every = [w for w in windows(counted, m, p, stop) if w.trigger < shown]
+    found = [w for w in every if w.trigger < len(prefix)] or every
+    teller = _Teller(rule, counted, q, len(prefix) - 1, endless=bool(loop))
+    broken = [window for window in every if not window.kept(q)]
+    assert satisfied is None or satisfied is not bool(broken), (counted, prefix, loop)
+    if broken:
+        return f"{teller.told(broken[0], kept=False)}{teller.bound()}"
+    if not found:
+        return _nothing(rule, counted, m)
+    told = [teller.told(window, kept=True) for window in found[:_MOST]]
+    left = len(found) - _MOST
+    rest = [f"and so on, {left} more time{'s' * (left > 1)}"] if left > 0 else []
+    return f"{'; '.join([*told, *rest])}{teller.bound()}"
+
+
+def _nothing(rule: Rule, counted: Template, m: Column) -> str:
+    """No demand begins."""
+    scope, condition = rule.sentence.scope, rule.sentence.condition
+    if not intervals(counted.scope, m):
+        return "the sentence is enforced at none of these ticks: nothing is demanded"
+    assert condition is not None, "without a condition each interval has a trigger"
+    where = " where the sentence is enforced" if scope else ""
+    return f"`{expression(condition.expression)}` is never true{where}: nothing is demanded"
+
+
+@dataclass(frozen=True, slots=True)
+class _Teller:
+    """What is known of one trace."""
+
+    rule: Rule
+    counted: Template
+    q: Column
+    """Of the ticks that are shown, and of those that follow."""
+    shown: int
+    """The last tick that is shown."""
+    endless: bool
+    """Whether what follows is a loop that matters."""
+
+    def told(self, window: Window, *, kept: bool) -> str:
+        """`triggered at tick 1, ...`."""
+        begun = "triggered" if self.rule.sentence.condition else "begins"
+        start = f"{begun} at tick {window.trigger}"
+        if not window.parts:
+            return f"{start}, {self._spared(window)}"
+        if window.either and not kept:
+            early, late = window.parts
+            return (
+                f"{start}, {self._name} is false at {_ticks(early.first, early.last)} and comes at "
+                f"tick {late.first}, at which it is then forbidden"
+            )
+        chosen = [part for part in window.parts if part.kept(self.q) is kept]
+        say = self._kept if kept else self._broken
+        told = " and ".join(say(part, window) for part in chosen[: 1 if window.either else None])
+        return f"{start}, {told}"
+
+    def bound(self) -> str:
+        """What the duration counts."""
+        if self.counted.timing not in _COUNTED:
+            return ""
+        return f"; the bound is {in_ticks(self.counted.ticks, self.rule.clock)}"
+
+    @property
+    def _name(self) -> str:
+        return f"`{expression(self.rule.sentence.response)}`"
+
+    @property
+    def _stop(self) -> str:
+        timing = self.rule.sentence.timing
+        assert isinstance(timing, s.Until | s.Before)
+        return f"`{expression(timing.stop)}`"
+
+    def _hit(self, first: int, *, value: bool) -> int | None:
+        return next((t for t in range(first, len(self.q)) if self.q[t] is value), None)
+
+    def _kept(self, part: Part, window: Window) -> str:
+        value = _wanted(part)
+        said = f"{self._name} is {str(value).lower()}"
+        if part.need in (Need.SOME, Need.MISS):
+            hit = self._hit(part.first, value=value)
+            assert hit is not None
+            return f"{said} at tick {hit}, {_later(hit - window.trigger)}"
+        if part.last > self.shown:
+            return f"{said} from tick {part.first} on"
+        return f"{said} at {_ticks(part.first, part.last)}{self._end(part, window)}"
+
+    def _end(self, part: Part, window: Window) -> str:
+        """What ends a demand that is not counted."""
+        timing = self.counted.timing
+        if part.last < window.right:
+            return f", until {self._stop}" if timing in (s.Until, s.Before) else ""
+        full = window.trigger + self.counted.ticks
+        if timing in (s.Immediately, s.Next) or (timing in _COUNTED and part.last >= full):
+            return ""
+        return f", where the {'scope' if self._is_closed(window) else 'run'} ends"
+
+    def _is_closed(self, window: Window) -> bool:
+        return window.right < len(self.q) - 1
+
+    def _broken(self, part: Part, window: Window) -> str:
+        value = _wanted(part)
+        wanted, opposite = str(value).lower(), str(not value).lower()
+        said = f"{self._name} is {opposite}"
+        if part.last < part.first:
+            return f"{self._stop} is true at that same tick, before {self._name} is {wanted}"
+        if part.need in (Need.ALL, Need.NONE):
+            at = self._hit(part.first, value=not value)
+            assert at is not None
+            later = f", {_later(at - window.trigger)}" if at > window.trigger else ""
+            return f"{said} at tick {at}{later}{self._must(part, wanted)}"
+        if self.endless and not self._is_closed(window):
+            return f"{self._name} is never {wanted} from that tick on"
+        late = part.last + 1
+        if late <= self.shown and self.q[late] is value and self.counted.timing in _COUNTED:
+            return f"{self._name} is {wanted} at tick {late} only, one tick too late"
+        end = self._end(part, window)
+        if self.counted.timing in (s.Before, s.Until):
+            end = f", and then {self._stop} is true"
+        return f"{said} at {_ticks(part.first, part.last)}{end}"
+
+    def _must(self, part: Part, wanted: str) -> str:
+        timing = self.counted.timing
+        if timing is s.Finally:
+            return f", the last tick; it must be {wanted} there"
+        if timing in (s.Until, s.Before):
+            return f"; it must be {wanted} until {self._stop} is true"
+        if timing in (s.Eventually, s.Always, s.Never):
+            return f"; it must be {wanted} from tick {part.first} on"
+        if part.first == part.last:
+            return f"; it must be {wanted} there"
+        return f"; it must be {wanted} at {_ticks(part.first, part.last)}"
+
+    def _spared(self, window: Window) -> str:
+        """Why a trigger asks for nothing, or for nothing more."""
+        timing = self.counted.timing
+        if timing in (s.Until, s.Before):
+            negated = self.counted.scope is not None and self.counted.scope.negates
+            if (timing is s.Until) is not negated:
+                return f"{self._stop} is true at that same tick: nothing is required"
+            hit = self._hit(window.trigger, value=not negated)
+            if hit is None or hit > self.shown:
+                return f"{self._stop} does not come: nothing is required"
+            value = str(not negated).lower()
+            later = _later(hit - window.trigger)
+            return f"{self._name} is {value} at tick {hit}, {later}, and {self._stop} not before"
+        if timing is s.Next:
+            return "the last tick of the scope: nothing is required"
+        wanted = timing is not s.For
+        hit = self._hit(window.trigger, value=wanted)
+        if hit is not None and hit <= window.right:
+            later = _later(hit - window.trigger)
+            return f"{self._name} is {str(wanted).lower()} at tick {hit}, {later}"
+        deadline = window.trigger + self.counted.ticks + (timing is s.After)
+        return (
+            f"and the scope ends at tick {window.right}, before the deadline at tick {deadline}: "
+            "nothing is required"
+        )
+
+
+_COUNTED = (s.Within, s.For, s.After)
+
+
+def _wanted(part: Part) -> bool:
+    return part.need in (Need.ALL, Need.SOME)
+
+
+def _later(ticks: int) -> str:
+    if ticks == 0:
+        return "at once"
+    return f"{ticks} tick{'' if ticks == 1 else 's'} later"
+
+
+def _ticks(first: int, last: int) -> str:
+    return f"tick {first}" if first == last else f"ticks {first} to {last}"

@@ -1,0 +1,182 @@
+"""Shortest words of the reference automaton that come by given events, and loops after them."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import groupby
+from typing import NamedTuple
+
+from compiler.formalization import reference as counters
+from compiler.formalization.reference import BROKEN, Automaton, Letter, State, accepts
+from fretish import syntax as s
+
+
+class Move(NamedTuple):
+    """One tick of a run."""
+
+    before: State
+    letter: Letter
+    after: State | None
+    target: int
+    enforced: bool
+    triggered: bool
+
+    @property
+    def waits(self) -> bool:
+        """A demand is open after it."""
+        return self.after is not None and self.after.counted != 0
+
+
+_Place = tuple[int, int]
+"""A state, and how many waypoints lie behind."""
+Waypoint = Callable[[Move], bool]
+"""An event that a run comes by."""
+
+
+@dataclass(frozen=True, slots=True)
+class Run:
+    """A word with what it does."""
+
+    moves: tuple[Move, ...]
+    loop: tuple[Move, ...] = ()
+
+    @property
+    def behaviour(self) -> tuple[object, ...]:
+        """What happens, equal ticks once: two runs that differ in nothing else are alike."""
+        moves = (*self.moves, *self.loop)
+        steps = [(m.enforced, m.triggered, m.waits, m.letter[2], m.letter[3]) for m in moves]
+        return tuple(step for step, _ in groupby(steps))
+
+    @property
+    def is_open(self) -> bool:
+        """Whether it stops in the middle of a demand."""
+        goes_on = self.loop and all(move.waits for move in self.loop)
+        return self.moves[-1].waits and not goes_on
+
+
+class Words:
+    """The words of an automaton; letters that come first in it are preferred."""
+
+    def __init__(self, automaton: Automaton) -> None:
+        self.automaton = automaton
+        self.template = automaton.template
+        self.most = max(abs(state.counted) for state in automaton.states)
+        """The largest count: the deadline, where there is one."""
+        self.final = [accepts(automaton.template, state) for state in automaton.states]
+        """For each state FRET's verdict on a run that ends there."""
+
+    def shortest(
+        self,
+        way: Sequence[Waypoint],
+        ending: Waypoint,
+        among: Waypoint = lambda move: True,
+    ) -> Run | None:
+        """The first shortest run that comes by all waypoints in their order, one tick for each.
+
+        Two different waypoints may be one tick. The run ends with the first tick from the last
+        waypoint on that `ending` holds of.
+        """
+        start = (0, 0)
+        origins: dict[_Place, tuple[_Place, Move] | None] = {start: None}
+        waiting = deque([start])
+        while waiting:
+            here = waiting.popleft()
+            for move in self._moves(here[0]):
+                if not among(move):
+                    continue
+                stage = here[1]
+                while (
+                    stage < len(way)
+                    and way[stage](move)
+                    and way[stage] not in way[here[1] : stage]  # the same again is another tick
+                ):
+                    stage += 1
+                if stage == len(way) and ending(move):
+                    return Run((*_path(origins, here), move))
+                after = (move.target, stage)
+                if move.target != BROKEN and after not in origins:
+                    origins[after] = (here, move)
+                    waiting.append(after)
+        return None
+
+    def _moves(self, number: int) -> Iterator[Move]:
+        automaton = self.automaton
+        state = automaton.states[number]
+        for letter, target in zip(automaton.letters, automaton.moves[number], strict=True):
+            happens = counters.happening(self.template, state, letter[0], letter[1])
+            after = None if target == BROKEN else automaton.states[target]
+            yield Move(state, letter, after, target, happens.enforced, happens.triggered)
+
+    def followed(self, found: Run, *, accepted: bool) -> Run:
+        """With a tick that can come again and again, without a change of the verdict."""
+        start = found.moves[-1].target
+        if self.decided(found, satisfied=accepted) is not None:
+            return found
+        if self.needs_end and not accepted:
+            return found  # an interval that never ends has no last tick
+        for first in self._moves(start):
+            second = self._after(first)
+            if second is not None and self._stays(first, second, accepted=accepted):
+                return Run(found.moves, (first,))
+        return found
+
+    def _after(self, move: Move) -> Move | None:
+        """The same letter once more."""
+        if move.target == BROKEN:
+            return None
+        return next(again for again in self._moves(move.target) if again.letter == move.letter)
+
+    def _stays(self, first: Move, second: Move, *, accepted: bool) -> bool:
+        """Whether the letter leads into a loop of its own with that verdict."""
+        return first.target == second.target and self.final[first.target] is accepted
+
+    @property
+    def needs_end(self) -> bool:
+        """Whether only the end of an interval can violate the sentence."""
+        return self.template.timing is s.Finally
+
+    def decided(self, run: Run, *, satisfied: bool) -> int | None:
+        """The first tick after which no continuation changes the verdict; None: there is none.
+
+        Of a satisfied run no end may change it either: `finally` needs nothing of endless runs.
+        """
+        for tick, move in enumerate(run.moves):
+            if move.target == BROKEN:
+                return tick
+            verdict = self.automaton.verdicts[move.target]
+            if satisfied and verdict == "satisfied" and move.target not in self._may_fail:
+                return tick
+            if not satisfied and verdict == "violated":
+                return tick
+        return None
+
+    @cached_property
+    def _may_fail(self) -> set[int]:
+        """The states from which a run can come to an end that FRET judges as violated."""
+        before: list[list[int]] = [[] for _ in self.automaton.moves]
+        for state, row in enumerate(self.automaton.moves):
+            for after in set(row) - {BROKEN}:
+                before[after].append(state)
+        rows = enumerate(self.automaton.moves)
+        waiting = [state for state, row in rows if BROKEN in row or not self.final[state]]
+        found = set(waiting)
+        while waiting:
+            for state in before[waiting.pop()]:
+                if state not in found:
+                    found.add(state)
+                    waiting.append(state)
+        return found
+
+
+def _path(origins: Mapping[_Place, tuple[_Place, Move] | None], place: _Place) -> list[Move]:
+    """The moves that led to a place."""
+    moves: list[Move] = []
+    origin = origins[place]
+    while origin is not None:
+        place, move = origin
+        moves.append(move)
+        origin = origins[place]
+    return moves[::-1]

@@ -1,0 +1,181 @@
+"""What each trigger asks for: the ticks at which the response matters, and what it must be there.
+
+The definition of FRETish read trigger by trigger, for drawings and for saying why a trace satisfies
+or violates a sentence. Source: Giannakopoulou, Pressburger, Mavridou, Schumann, Automated
+formalization of structured natural language requirements, IST 137 (2021), sections 3 and 4.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from enum import StrEnum
+from typing import assert_never
+
+from compiler.formalization.reference import Template
+from fretish import syntax as s
+from fretish.syntax import ConditionKind, ScopeKind
+
+Column = Sequence[bool]
+"""One truth value for each tick of a finite trace, from tick 0 on."""
+
+
+class Need(StrEnum):
+    """What the response must be on a stretch of ticks."""
+
+    ALL = "true at each of these ticks"
+    SOME = "true at one of these ticks, at least"
+    NONE = "false at each of these ticks"
+    MISS = "false at one of these ticks, at least"
+
+
+@dataclass(frozen=True, slots=True)
+class Part:
+    """A stretch of ticks, both ends included, and what the response must be there.
+
+    `last < first`: there is no such tick, so that nothing can be true at one of them.
+    """
+
+    first: int
+    last: int
+    need: Need
+
+    def kept(self, q: Column) -> bool:
+        """Whether the response is as it must be."""
+        values = q[self.first : self.last + 1]
+        match self.need:
+            case Need.ALL:
+                return all(values)
+            case Need.SOME:
+                return any(values)
+            case Need.NONE:
+                return not any(values)
+            case Need.MISS:
+                return not all(values)
+            case _:
+                assert_never(self.need)
+
+
+@dataclass(frozen=True, slots=True)
+class Window:
+    """What one trigger asks for."""
+
+    trigger: int
+    right: int
+    """The last tick of its interval."""
+    parts: tuple[Part, ...]
+    """Empty: nothing."""
+    either: bool = False
+    """Whether one of the parts is enough."""
+
+    def kept(self, q: Column) -> bool:
+        """Whether the response is as the trigger asks."""
+        told = [part.kept(q) for part in self.parts]
+        return not told or (any(told) if self.either else all(told))
+
+
+def windows(template: Template, m: Column, p: Column, s: Column) -> tuple[Window, ...]:
+    """What all triggers of a finite trace ask for, in their order.
+
+    Args:
+        template: what the sentence is.
+        m: the mode, shape (ticks,); any values where the template has none, as for p and s.
+        p: the condition.
+        s: the stop condition.
+    """
+    return tuple(
+        window(template, trigger, right, s)
+        for left, right in intervals(template.scope, m)
+        for trigger in triggers(template.condition, p, left, right)
+    )
+
+
+def kept(template: Template, m: Column, p: Column, q: Column, s: Column) -> bool:
+    """FRET's verdict on a finite trace: every trigger gets what it asks for."""
+    return all(window.kept(q) for window in windows(template, m, p, s))
+
+
+def intervals(scope: ScopeKind | None, m: Column) -> list[tuple[int, int]]:
+    """The stretches of ticks, both ends included, on which the sentence is enforced."""
+    last = len(m) - 1
+    runs = _runs(m)
+    match scope:
+        case None:
+            return [(0, last)]
+        case ScopeKind.IN:
+            return runs
+        case ScopeKind.NOT_IN | ScopeKind.ONLY_IN:
+            return _runs([not value for value in m])
+        case ScopeKind.BEFORE:
+            found = (0, runs[0][0] - 1) if runs else (0, last)
+        case ScopeKind.AFTER:
+            found = (runs[0][1] + 1, last) if runs else (1, 0)
+        case ScopeKind.ONLY_BEFORE:
+            found = (runs[0][0], last) if runs else (1, 0)
+        case ScopeKind.ONLY_AFTER:
+            found = (0, runs[0][1]) if runs else (0, last)
+        case _:
+            assert_never(scope)
+    return [found] if found[0] <= found[1] else []
+
+
+def _runs(column: Column) -> list[tuple[int, int]]:
+    starts = [t for t, value in enumerate(column) if value and not (t and column[t - 1])]
+    ends = [
+        t for t, value in enumerate(column) if value and not (t + 1 < len(column) and column[t + 1])
+    ]
+    return list(zip(starts, ends, strict=True))
+
+
+def triggers(condition: ConditionKind | None, p: Column, left: int, right: int) -> Iterator[int]:
+    """The ticks of an interval at which a demand begins."""
+    if condition is None:
+        yield left
+        return
+    edges = condition is ConditionKind.TRIGGER
+    for t in range(left, right + 1):
+        if p[t] and not (edges and t > left and p[t - 1]):
+            yield t
+
+
+def window(template: Template, t: int, right: int, stops: Column) -> Window:
+    """What the trigger at tick `t` asks for, in an interval that ends with tick `right`."""
+    negated = template.scope is not None and template.scope.negates
+    each, some = (Need.NONE, Need.MISS) if negated else (Need.ALL, Need.SOME)
+    n = template.ticks
+
+    def asks(*parts: tuple[int, int, Need], either: bool = False) -> Window:
+        return Window(t, right, tuple(Part(*part) for part in parts), either)
+
+    timing = template.timing
+    if timing is s.Immediately:
+        return asks((t, t, each))
+    if timing is s.Next:
+        return asks((t + 1, t + 1, each)) if t < right else asks()
+    if timing is s.Finally:
+        return asks((right, right, each))
+    if timing in (s.Eventually, s.Always, s.Never):
+        return asks((t, right, _for_ever(timing, negated=negated)))
+    if timing in (s.Within, s.For):
+        if (timing is s.Within) is not negated:  # a short interval asks for nothing
+            return asks((t, t + n, some)) if t + n <= right else asks()
+        return asks((t, min(t + n, right), each))
+    if timing is s.After:
+        late = (t + n + 1, t + n + 1, each)
+        if negated:
+            return asks((t, t + n, Need.SOME), late, either=True) if t + n < right else asks()
+        early = (t, min(t + n, right), Need.NONE)
+        return asks(early, late) if t + n < right else asks(early)
+    stop = next((k for k in range(t, right + 1) if stops[k]), None)
+    if (timing is s.Before) is not negated:
+        return asks() if stop is None else asks((t, stop - 1, some))
+    last = right if stop is None else stop - 1
+    return asks((t, last, each)) if last >= t else asks()
+
+
+def _for_ever(timing: type[s.Timing], *, negated: bool) -> Need:
+    if timing is s.Eventually:
+        return Need.NONE if negated else Need.SOME
+    if timing is s.Always:
+        return Need.MISS if negated else Need.ALL
+    return Need.SOME if negated else Need.NONE

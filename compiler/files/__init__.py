@@ -1,0 +1,1 @@
+"""Text read and written, templates, checked JSON, the settings of a project."""

@@ -1,0 +1,188 @@
+"""A value of a JSON file together with its path: every look into it is checked.
+
+What is not as it must be raises `MisshapenError` with the path; `fretc/audit/evidence/reader.py`
+turns that into a diagnostic.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Collection, Sequence
+from dataclasses import dataclass
+from math import isfinite
+from typing import NoReturn, TypeVar
+
+T = TypeVar("T")
+_LARGEST = 2**63
+_LONGEST = 10**10
+"""Seconds: some three hundred years, more than 64 bits of nanoseconds hold."""
+_SHOWN = 40
+
+
+class MisshapenError(ValueError):
+    """A value is missing or of the wrong kind; the message says which and where."""
+
+
+def parsed(text: str) -> Shape:
+    """A JSON text that every reader takes for the same: each key once, and finite numbers only.
+
+    Raises:
+        json.JSONDecodeError: it is no JSON.
+        ValueError: it is JSON that may be read in two ways, or that Python does not read.
+        RecursionError: it is nested too deeply.
+    """
+    value = json.loads(
+        text, object_pairs_hook=_distinct, parse_float=_finite, parse_constant=_no_number
+    )
+    return Shape(value)
+
+
+def plain(text: str) -> object:
+    """The value of such a text.
+
+    Raises:
+        MisshapenError: it is no such text.
+    """
+    try:
+        return parsed(text).value
+    except RecursionError:
+        raise MisshapenError("it is nested too deeply") from None
+    except ValueError as error:
+        raise MisshapenError(f"the text is not JSON that fretc can read: {error}") from None
+
+
+def _distinct(pairs: Sequence[tuple[str, object]]) -> dict[str, object]:
+    known: dict[str, object] = {}
+    for key, value in pairs:
+        if key in known:
+            raise ValueError(f"`{key[:_SHOWN]}` is there twice in one object")
+        known[key] = value
+    return known
+
+
+def _finite(word: str) -> float:
+    if not isfinite(float(word)):
+        raise ValueError(f"`{word[:_SHOWN]}` is too large for a number")
+    return float(word)
+
+
+def _no_number(word: str) -> NoReturn:
+    raise ValueError(f"`{word}` is no number of JSON")
+
+
+@dataclass(frozen=True, slots=True)
+class Shape:
+    """A value, and how to get there: `results[3].verdict`."""
+
+    value: object
+    path: str = ""
+
+    @property
+    def name(self) -> str:
+        """The path, for messages."""
+        return f"`{self.path}`" if self.path else "the whole file"
+
+    def field(self, key: str) -> Shape:
+        """The value of a key of an object."""
+        fields = self._object()
+        if key not in fields:
+            raise MisshapenError(f"{self.name} has no `{key}`")
+        return Shape(fields[key], f"{self.path}.{key}".removeprefix("."))
+
+    def has(self, key: str) -> bool:
+        """Whether an object has a key."""
+        return key in self._object()
+
+    def fields(self) -> dict[str, Shape]:
+        """All values of an object, in the order of their keys."""
+        fields = self._object()
+        return {key: Shape(fields[key], f'{self.path}["{key}"]') for key in sorted(fields)}
+
+    def items(self) -> tuple[Shape, ...]:
+        """The values of an array."""
+        if not isinstance(self.value, list):
+            raise self.wrong("an array")
+        return tuple(Shape(value, f"{self.path}[{i}]") for i, value in enumerate(self.value))
+
+    def text(self) -> str:
+        """A text."""
+        if not isinstance(self.value, str):
+            raise self.wrong("a text")
+        return self.value
+
+    def one_of(self, words: Collection[str]) -> str:
+        """One of these texts."""
+        if self.value not in words or not isinstance(self.value, str):
+            raise self.wrong(f"one of {', '.join(words)}")
+        return self.value
+
+    def flag(self) -> bool:
+        """True or false."""
+        if not isinstance(self.value, bool):
+            raise self.wrong("true or false")
+        return self.value
+
+    def whole(self) -> int:
+        """A whole number that fits into 64 bits."""
+        if not isinstance(self.value, int) or isinstance(self.value, bool):
+            raise self.wrong("a whole number")
+        if abs(self.value) >= _LARGEST:
+            raise self.wrong("a whole number of at most 64 bits")
+        return self.value
+
+    def count(self) -> int:
+        """A whole number that is not negative."""
+        if self.whole() < 0:
+            raise self.wrong("a whole number from 0 on")
+        return self.whole()
+
+    def number(self) -> float:
+        """A finite number."""
+        if not isinstance(self.value, int | float) or isinstance(self.value, bool):
+            raise self.wrong("a number")
+        if isinstance(self.value, int):
+            return float(self.whole())
+        if not isfinite(self.value):
+            raise self.wrong("a finite number")
+        return self.value
+
+    def seconds(self) -> float:
+        """A number of seconds that a recorded run can last."""
+        if not 0 <= self.number() <= _LONGEST:
+            raise self.wrong("a number of seconds from the start of a run")
+        return self.number()
+
+    def only(self, *keys: str) -> None:
+        """Nothing else may be in an object."""
+        for key in self._object():
+            if key not in keys:
+                raise MisshapenError(f"{self.name} may not have `{key[:_SHOWN]}`")
+
+    def or_none(self, read: Callable[[Shape], T]) -> T | None:
+        """None for null, else what `read` makes of it."""
+        return None if self.value is None else read(self)
+
+    def wrong(self, wanted: str) -> MisshapenError:
+        """It is something else than was wanted."""
+        return MisshapenError(f"{self.name} must be {wanted}, and is {self._shown()}")
+
+    def _object(self) -> dict[str, object]:
+        if not isinstance(self.value, dict):
+            raise self.wrong("an object")
+        return self.value
+
+    def _shown(self) -> str:
+        match self.value:
+            case None:
+                return "null"
+            case bool():
+                return str(self.value).lower()
+            case dict():
+                return "an object"
+            case list():
+                return "an array"
+            case int() if abs(self.value) >= _LARGEST:
+                return "far too large"
+            case _:
+                text = str(self.value)
+                return f"`{text[:_SHOWN]}{'…' if len(text) > _SHOWN else ''}`"

@@ -1,0 +1,41 @@
+"""Which fretc this is, to the letter: one edition makes one evidence of the same bytes."""
+
+from __future__ import annotations
+
+import hashlib
+import platform
+from functools import cache
+from importlib.metadata import PackageNotFoundError, version
+from importlib.resources import files
+from pathlib import Path
+
+__version__ = "0.1.0"
+_ROOMS = ("fretish", "monitors", "compiler", "fretc")
+_LIBRARIES = ("lz4", "mcap", "mcap-ros1-support", "mcap-ros2-support", "numpy", "zstandard")
+"""That have a part in a verdict: they read logs."""
+
+
+@cache
+def edition() -> str:
+    """SHA-256 of the program's text, its version, and the versions of what reads logs for it.
+
+    Of the text too: that of a checkout changes without its version.
+    """
+    digest = hashlib.sha256(f"{__version__} {platform.python_version()}".encode())
+    for library in _LIBRARIES:
+        digest.update(f" {library} {_version(library)}".encode())
+    for room in _ROOMS:
+        root = Path(str(files(room)))
+        for path in sorted(root.rglob("*")):
+            if path.suffix in (".py", ".lark"):
+                text = path.read_bytes()
+                digest.update(f"\n{room}/{path.relative_to(root)} {len(text)}\n".encode())
+                digest.update(text)
+    return digest.hexdigest()
+
+
+def _version(library: str) -> str:
+    try:
+        return version(library)
+    except PackageNotFoundError:
+        return ""

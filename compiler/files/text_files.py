@@ -1,0 +1,242 @@
+"""Files in and out: text read with its mistakes told, output written whole or not at all."""
+
+from __future__ import annotations
+
+import errno
+import hashlib
+import os
+import secrets
+import stat
+import time
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import BinaryIO
+
+from fretish.diagnostics.diagnostic import Code, Diagnostic, suggestion
+from fretish.diagnostics.source import Source
+
+MOST = 2**30
+"""Bytes of a text, or of any other file that is read at once."""
+
+
+def read(path: str) -> Source | Diagnostic:
+    """The text of a file (`-`: standard input), or what keeps it from being read."""
+    try:
+        if not path:
+            raise FileNotFoundError
+        if path == "-":
+            with open(0, "rb", closefd=False) as stdin:
+                return Source("<stdin>", stdin.read().decode("utf-8-sig"))
+        return Source(path, content(path).decode("utf-8-sig"))
+    except UnicodeDecodeError as error:
+        return not_text(path, error.start)
+    except OSError as error:
+        return unreadable(path, error)
+
+
+def content(path: str | Path) -> bytes:
+    """The bytes of a regular file.
+
+    Raises:
+        OSError: it cannot be read, is a pipe or a device, or is larger than `MOST`.
+    """
+    with regular(path) as file:
+        data = file.read(MOST + 1)
+    if len(data) > MOST:
+        raise OSError(None, f"it is larger than {MOST // 2**20} MiB")
+    return data
+
+
+def regular(path: str | Path) -> BinaryIO:
+    """The file, open: no pipe, which may never say anything, and no device, which may never end.
+
+    What lies in /dev is the user's own word where it is named so, as by `<(...)` of a shell; a link
+    to it in a folder of somebody else is not.
+
+    Raises:
+        OSError: it cannot be opened, or is something else.
+    """
+    own = str(path).startswith("/dev/")
+    flags = os.O_RDONLY | os.O_CLOEXEC | os.O_NOCTTY
+    descriptor = os.open(path, flags if own else flags | os.O_NONBLOCK)
+    mode = os.fstat(descriptor).st_mode
+    if stat.S_ISREG(mode) or (own and not stat.S_ISDIR(mode)):
+        return os.fdopen(descriptor, "rb")
+    os.close(descriptor)
+    if stat.S_ISDIR(mode):
+        raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR))
+    raise OSError(None, "it is no regular file")
+
+
+def not_text(path: str, at: int) -> Diagnostic:
+    """F904."""
+    return Diagnostic(
+        Code.NOT_TEXT,
+        f"`{path}` is not UTF-8 text: byte {at} does not fit",
+        Source(path, "").span(),
+        help="requirements and bindings are plain text in UTF-8",
+    )
+
+
+def unreadable(path: str, error: OSError) -> Diagnostic:
+    """F901, F902 or F903, as the operating system says."""
+    span = Source(path, "").span()
+    if isinstance(error, FileNotFoundError):
+        return Diagnostic(Code.NO_SUCH_FILE, f"there is no file `{path}`", span, _nearest(path))
+    if isinstance(error, IsADirectoryError):
+        return Diagnostic(
+            Code.IS_A_DIRECTORY,
+            f"`{path}` is a directory",
+            span,
+            help=f"name the files in it: `{path.rstrip('/')}/*`",
+        )
+    return Diagnostic(
+        Code.UNREADABLE,
+        f"`{path}` cannot be read: {error.strerror or error}",
+        span,
+        help="check what it is, and its permissions",
+    )
+
+
+def _nearest(path: str) -> str:
+    folder = Path(path).parent
+    try:
+        near = suggestion(Path(path).name, (entry.name for entry in folder.iterdir()))
+    except OSError:
+        return f"there is no folder `{folder}` either"
+    return f"did you mean `{folder / near}`?" if near else "check the name and the folder"
+
+
+def write(files: Mapping[Path, str | bytes]) -> Diagnostic | None:
+    """Write all of them: each under a temporary name first, then renamed.
+
+    Nothing half-written stays behind: when one cannot be written, none is put in place. A file
+    keeps its permissions, and what is no regular file is never replaced. A link is followed where
+    it stays in its folder. Until it is renamed, nobody else can read what is written. A text that
+    begins with `#!` may also be run by whoever may read it.
+    """
+    waiting: list[tuple[Path, Path]] = []
+    path = Path()
+    try:
+        for path, content in files.items():
+            real = destination(path)
+            real.parent.mkdir(parents=True, exist_ok=True)
+            if real.exists() and not real.is_file():
+                kind = "a directory of that name" if real.is_dir() else "something else there"
+                raise OSError(None, f"there is {kind}")
+            # Known before it is made: an interruption at any moment finds it here.
+            temporary = real.parent / f".{real.name[:100]}.{secrets.token_hex(4)}.tmp"
+            waiting.append((temporary, real))
+            _fill(temporary, content, like=real)
+        for temporary, path in waiting:
+            temporary.replace(path)
+    except OSError as error:
+        return Diagnostic(
+            Code.NOT_WRITTEN,
+            f"`{path}` cannot be written: {error.strerror or error}",
+            help="name another place, or mend this one",
+        )
+    finally:
+        for temporary, _ in waiting:
+            temporary.unlink(missing_ok=True)
+    return None
+
+
+def _fill(temporary: Path, content: str | bytes, *, like: Path) -> None:
+    """Write a new file, with the permissions of the one that it will replace, if there is one."""
+    data = content.encode() if isinstance(content, str) else content
+    mode = stat.S_IMODE(like.stat().st_mode) if like.exists() else _usual()
+    if data.startswith(b"#!"):
+        mode |= (mode & _READABLE) >> 2
+    made = os.open(temporary, os.O_CREAT | os.O_EXCL | os.O_NOFOLLOW | os.O_WRONLY, 0o600)
+    with os.fdopen(made, "wb") as file:
+        file.write(data)
+        file.flush()
+        os.fchmod(made, mode)
+
+
+def _usual() -> int:
+    """The permissions of a new file."""
+    mask = os.umask(0o077)
+    os.umask(mask)
+    return 0o666 & ~mask
+
+
+def destination(path: Path) -> Path:
+    """Where an output goes, once links are followed.
+
+    What lies in the present folder may have come from somebody else, links too. A relative path is
+    one below that folder (or the one above that it names by `..`), an absolute one is the user's.
+
+    Raises:
+        OSError: a link leads out of there.
+    """
+    folder, real = Path(os.path.realpath(path.parent)), Path(os.path.realpath(path))
+    if not path.is_absolute():
+        base = Path.cwd()
+        for part in path.parts:
+            if part != "..":
+                break
+            base = base.parent
+        if not folder.is_relative_to(os.path.realpath(base)):
+            raise OSError(
+                None, f"`{path.parent}` is a link to `{folder}`: name that, if it is meant"
+            )
+    if not real.is_relative_to(folder):
+        raise OSError(None, f"it is a link to `{real}`: name that, if it is meant")
+    return real
+
+
+_READABLE = stat.S_IRUSR | stat.S_IRGRP | stat.S_IROTH
+"""Two bits above those by which a file may be run."""
+
+
+def sha256(text: str) -> str:
+    """Of the text in UTF-8, in hexadecimal."""
+    return hashlib.sha256(text.encode()).hexdigest()
+
+
+def file_sha256(path: str) -> str | None:
+    """Of the bytes of a regular file, in hexadecimal; None where it is none or cannot be read."""
+    if not Path(path).is_file():
+        return None
+    try:
+        with Path(path).open("rb") as file:
+            return hashlib.file_digest(file, "sha256").hexdigest()
+    except OSError:
+        return None
+
+
+@dataclass(frozen=True, slots=True)
+class Stamp:
+    """What the file system tells of a regular file: while it is the same, so are the bytes.
+
+    `mtime_ns` can be set back by anybody, `ctime_ns` by the clock of the machine only.
+    """
+
+    size: int
+    mtime_ns: int
+    ctime_ns: int
+    inode: int
+    settled: bool = field(compare=False)
+    """False where the file had just been changed: if that happened again within the same tick of
+    its file system's clock, no stamp would show it."""
+
+
+def stamp(path: str) -> Stamp | None:
+    """The stamp of a file; None where there is none, or no regular one."""
+    try:
+        found = os.stat(path)
+    except OSError:
+        return None
+    if not stat.S_ISREG(found.st_mode):
+        return None
+    age = time.time_ns() - max(found.st_mtime_ns, found.st_ctime_ns)
+    return Stamp(
+        found.st_size, found.st_mtime_ns, found.st_ctime_ns, found.st_ino, settled=age > _COARSEST
+    )
+
+
+_COARSEST = 2 * 10**9
+"""Nanoseconds: the clock of FAT ticks every two seconds."""

@@ -1,0 +1,68 @@
+"""A key of the user: what is made with it was made by nobody else."""
+
+from __future__ import annotations
+
+import os
+import secrets
+import stat
+from contextlib import suppress
+from pathlib import Path
+
+from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
+
+_LENGTH = 32
+"""Bytes."""
+
+
+def user_key() -> bytes | Diagnostic:
+    """The key, made when it is first asked for; or why there is none (F920).
+
+    It lies in the folder for the state of programs, readable by the user only. Source: XDG Base
+    Directory Specification 0.8.
+    """
+    path = _folder() / "journal.key"
+    try:
+        if not os.path.lexists(path):
+            _make(path)
+        return _read(path)
+    except OSError as error:
+        return Diagnostic(
+            Code.NO_KEY,
+            f"`{path}` cannot be used: {error.strerror or error}",
+            help="remove it, or name a folder of your own in XDG_STATE_HOME",
+            severity=Severity.WARNING,
+        )
+
+
+def _folder() -> Path:
+    told = os.environ.get("XDG_STATE_HOME", "")
+    state = Path(told) if os.path.isabs(told) else Path(os.path.expanduser("~/.local/state"))
+    return state / "fretc"
+
+
+def _make(path: Path) -> None:
+    """Whole or not at all, and never in the place of another one."""
+    path.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
+    temporary = path.with_name(f".{secrets.token_hex(8)}.tmp")
+    file = os.open(temporary, os.O_CREAT | os.O_EXCL | os.O_NOFOLLOW | os.O_WRONLY, 0o600)
+    try:
+        with os.fdopen(file, "wb") as stream:
+            stream.write(secrets.token_bytes(_LENGTH))
+        with suppress(FileExistsError):  # another process was faster: its key counts
+            os.link(temporary, path)
+    finally:
+        temporary.unlink()
+
+
+def _read(path: Path) -> bytes:
+    file = os.open(path, os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK | os.O_CLOEXEC)
+    with os.fdopen(file, "rb") as stream:
+        about = os.fstat(file)
+        if not stat.S_ISREG(about.st_mode) or about.st_uid != os.geteuid():
+            raise OSError(None, "it is no file of yours")
+        if about.st_mode & 0o077:
+            raise OSError(None, "others may read or write it")
+        key = stream.read(_LENGTH + 1)
+    if len(key) != _LENGTH:
+        raise OSError(None, "it is no key")
+    return key

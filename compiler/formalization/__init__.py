@@ -1,0 +1,1 @@
+"""From a sentence to its formulas, its watch and its reference automaton."""

@@ -1,0 +1,192 @@
+"""Verdicts that are certain early, where the parts of a sentence share atoms.
+
+`compiler.formalization.past` knows when demands of any sentence contradict each other. Parts that
+share atoms have more to tell: `whenever !p the sw shall after 3 ticks satisfy p` is lost at its
+first trigger. So the reference automaton is explored over the letters that can occur, and the
+states from which no endless trace satisfies (or none violates) the sentence are written as a
+past-time formula.
+
+A long duration is shortened first: only the ticks at its beginning and at its end matter, for in
+between a trace can do what it likes. Source of the verdicts: Bauer, Leucker, Schallhart, TOSEM 20
+(2011).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+
+from compiler.formalization.letters import MOST_ATOMS, meanings, temporal_predicate
+from compiler.formalization.obligation import Demand, Kind, Obligation
+from compiler.formalization.past import Stage, Watch, staged
+from compiler.formalization.reference import (
+    BROKEN,
+    Automaton,
+    Phase,
+    State,
+    TooManyStatesError,
+    explore,
+    template,
+)
+from compiler.logic import formula as f
+from compiler.logic.implicants import Vector, cover
+from fretish import syntax as s
+from fretish.syntax import ConditionKind, ScopeKind
+
+SHORT = 6
+"""Ticks that a longer duration is shortened to."""
+_EDGE = 2
+"""Ticks at either end of a duration that are told apart."""
+_MOST_STATES = 500
+
+
+def anticipated(sentence: s.Sentence, obligation: Obligation, watch: Watch) -> Watch:
+    """The watch, with all that the letters of the sentence tell in advance.
+
+    Args:
+        sentence: a checked sentence.
+        obligation: what it demands.
+        watch: its signals, as any sentence of that form has them.
+    """
+    automaton = _automaton(sentence, obligation)
+    if automaton is None:
+        return watch
+    observables = tuple(_observables(obligation, automaton))
+    lost = _formula(automaton, observables, "violated")
+    safe = _formula(automaton, observables, "satisfied")
+    return replace(watch, doom=_more(watch.doom, lost), settled=_more(watch.settled, safe))
+
+
+def _more(known: f.Formula, found: f.Formula) -> f.Formula:
+    return known if found == f.FALSE else f.or_(known, found)
+
+
+def _automaton(sentence: s.Sentence, obligation: Obligation) -> Automaton | None:
+    """Over the letters that can occur; None where these are all, or cannot be told."""
+    parts = tuple(_parts(obligation))
+    names = tuple(dict.fromkeys(name for part in parts for name in f.atoms(part)))
+    if _independent(parts, names) or len(names) > MOST_ATOMS or temporal_predicate(sentence):
+        return None
+    letters = meanings(sentence, names)
+    ticks = min(obligation.demand.ticks, SHORT)
+    try:
+        return explore(template(sentence, ticks), letters.values(), _MOST_STATES)
+    except TooManyStatesError:
+        return None
+
+
+def _parts(obligation: Obligation) -> Iterable[f.Formula]:
+    """Mode, condition, response and stop condition, as far as the sentence has them."""
+    if obligation.scope is not None:
+        yield obligation.mode
+    if obligation.condition is not None:
+        yield obligation.trigger
+    yield obligation.demand.response
+    if obligation.demand.kind in (Kind.UNTIL, Kind.BEFORE):
+        yield obligation.demand.stop
+
+
+def _independent(parts: Sequence[f.Formula], names: Sequence[str]) -> bool:
+    """Each part is an atom of its own, or the negation of one: then all letters can occur."""
+    bare = [part.arg if isinstance(part, f.Not) else part for part in parts]
+    return len(names) == len(parts) and all(isinstance(part, f.Atom) for part in bare)
+
+
+# States as past-time formulas -------------------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True)
+class _Observable:
+    """What can be told of a state: by the automaton, and by a formula about the ticks so far."""
+
+    formula: f.Formula
+    holds: Callable[[State], bool]
+
+
+def _observables(obligation: Obligation, automaton: Automaton) -> Iterable[_Observable]:
+    """The cheap ones come first."""
+    stage = staged(obligation)
+    enforced = (Phase.INSIDE, Phase.LAST_RUN)
+    yield _Observable(stage.inside, lambda state: state.phase in enforced)
+    if obligation.scope in (ScopeKind.AFTER, ScopeKind.ONLY_AFTER):
+        begun = (Phase.INSIDE, Phase.FIRST_RUN)
+        if obligation.scope is ScopeKind.ONLY_AFTER:
+            begun = (Phase.OVER, Phase.LAST_RUN)
+        yield _Observable(f.once(obligation.mode), lambda state: state.phase in begun)
+    if obligation.condition is ConditionKind.TRIGGER:
+        yield _Observable(f.and_(stage.inside, obligation.trigger), lambda state: state.held)
+    yield from _counted(obligation.demand, stage, automaton.template.ticks)
+
+
+def _counted(demand: Demand, stage: Stage, short: int) -> Iterable[_Observable]:
+    """What the counter of the timing tells; `short` is what the automaton counts to."""
+    q, n = demand.response, demand.ticks
+    waits = stage.open(f.not_(q))
+    match demand.kind:
+        case Kind.IMMEDIATELY:
+            return
+        case Kind.NEXT:
+            yield _Observable(stage.trigger, lambda state: state.counted > 0)
+        case Kind.FINALLY:
+            yield _Observable(stage.open(f.TRUE), lambda state: state.counted != 0)
+            missing = f.and_(stage.open(f.TRUE), f.not_(q))
+            yield _Observable(missing, lambda state: state.counted > 0)
+        case Kind.ALWAYS:
+            yield _Observable(stage.open(f.TRUE), lambda state: state.counted > 0)
+        case Kind.UNTIL:
+            yield _Observable(stage.open(f.not_(demand.stop)), lambda state: state.counted > 0)
+        case Kind.EVENTUALLY | Kind.BEFORE:
+            yield _Observable(waits, lambda state: state.counted > 0)
+        case Kind.WITHIN:
+            yield from _ages(n, short, lambda age: _open_for(q, age, stage))
+        case Kind.AFTER:
+            yield from _ages(n + 1, short + 1, lambda age: _open_for(q, age, stage))
+            clash = f.and_(stage.trigger, f.previous(waits))
+            kept = f.and_(f.not_(q), stage.inside)
+            yield _Observable(f.since(kept, f.and_(clash, kept)), lambda state: state.counted < 0)
+        case Kind.FOR:
+            yield from _ages(n, short, lambda age: stage.open(f.TRUE, f.Interval(0, n - 1 - age)))
+        case Kind.NOT_AFTER:
+            recent = stage.open(f.not_(q), f.Interval(0, n))
+            yield _Observable(recent, lambda state: state.counted > 0)
+
+
+def _open_for(q: f.Formula, age: int, stage: Stage) -> f.Formula:
+    """The oldest open trigger lies `age` ticks back, or more."""
+    return stage.open(f.not_(q), f.Interval(age, None))
+
+
+def _ages(n: int, short: int, older: Callable[[int], f.Formula]) -> Iterable[_Observable]:
+    """Whether the counter is above each of its values up to n; in between they are one."""
+    for age in range(short):
+        if n == short or age < _EDGE:
+            real = age
+        elif age >= short - _EDGE:
+            real = n - short + age
+        else:
+            continue
+
+        def above(state: State, age: int = age) -> bool:
+            return abs(state.counted) > age
+
+        yield _Observable(older(real), above)
+
+
+def _formula(automaton: Automaton, observables: Sequence[_Observable], verdict: str) -> f.Formula:
+    """What holds at the states with the verdict, and at no state without it."""
+    with_it: dict[Vector, None] = {}
+    others: set[Vector] = set()
+    for number in {after for row in automaton.moves for after in row if after != BROKEN}:
+        state = automaton.states[number]
+        vector = tuple(observable.holds(state) for observable in observables)
+        if automaton.verdicts[number] == verdict:
+            with_it[vector] = None
+        else:
+            others.add(vector)
+    certain = [vector for vector in sorted(with_it) if vector not in others]
+    return f.or_(*(_term(term, observables) for term in cover(certain, others)))
+
+
+def _term(term: Mapping[int, bool], observables: Sequence[_Observable]) -> f.Formula:
+    parts = ((observables[i].formula, value) for i, value in term.items())
+    return f.and_(*(part if value else f.not_(part) for part, value in parts))

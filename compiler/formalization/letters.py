@@ -1,0 +1,102 @@
+"""The letters of a sentence: what the truth of its atoms at one tick makes of its parts.
+
+Parts may share atoms, so not every combination of their values can occur.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from itertools import product
+
+from compiler.formalization.obligation import Uninterpreted, boolean
+from compiler.formalization.reference import Letter
+from compiler.logic import formula as f
+from compiler.logic.evaluation import evaluate
+from fretish import expressions as e
+from fretish import syntax as s
+from fretish.checking import LOOK_AHEAD, LOOK_BACK, calls, conditions
+from fretish.reading.recursion import deep
+
+MOST_ATOMS = 12
+"""Each doubles the letters: 4 096 steps for each pair of states."""
+
+Valuation = tuple[bool, ...]
+"""The truth values of the atoms at one tick, in a given order."""
+
+
+def temporal_predicate(sentence: s.Sentence) -> str | None:
+    """The first predicate that speaks of other ticks: letters tell too little of it."""
+    for expression in conditions(sentence):
+        for name in calls(expression):
+            if name in LOOK_BACK | LOOK_AHEAD:
+                return name
+        if any(name.id == "FTP" for name in e.names(expression)):
+            return "FTP"
+    return None
+
+
+@deep
+def meanings(sentence: s.Sentence, atoms: Sequence[str]) -> Mapping[Valuation, Letter]:
+    """What each valuation of the atoms makes of mode, condition, response and stop condition.
+
+    Each expression is read once, as a column of bits: bit k is its value in the k-th valuation.
+    """
+    valuations = tuple(product((False, True), repeat=len(atoms)))
+    columns = {
+        name: sum(valuation[i] << k for k, valuation in enumerate(valuations))
+        for i, name in enumerate(atoms)
+    }
+    m, p, q, stop = [
+        0 if part is None else evaluate(part, columns, len(valuations)) for part in parts(sentence)
+    ]
+    return {
+        valuation: (bool(m >> k & 1), bool(p >> k & 1), bool(q >> k & 1), bool(stop >> k & 1))
+        for k, valuation in enumerate(valuations)
+    }
+
+
+def atoms_of(sentence: s.Sentence) -> tuple[str, ...]:
+    """The atoms of the sentence, by the names that formulas have for them."""
+    formulas = [part for part in parts(sentence) if part is not None]
+    return tuple(dict.fromkeys(name for formula in formulas for name in f.atoms(formula)))
+
+
+@deep
+def occurring(sentence: s.Sentence) -> tuple[Letter, ...]:
+    """The letters that can occur; with more than `MOST_ATOMS` atoms, those that might.
+
+    A letter too many changes no language: no valuation of the atoms has it.
+    """
+    atoms = atoms_of(sentence)
+    if len(atoms) <= MOST_ATOMS:
+        return tuple(sorted(set(meanings(sentence, atoms).values())))
+    m, p, q, stop = (_values(part) for part in parts(sentence))
+    return tuple(product(m, p, q, stop))
+
+
+def _values(part: f.Formula | None) -> tuple[bool, ...]:
+    match part:
+        case None:
+            return (False,)
+        case f.Const(value):
+            return (value,)
+        case _:
+            return (False, True)
+
+
+Parts = tuple[f.Formula | None, f.Formula | None, f.Formula | None, f.Formula | None]
+
+
+def parts(sentence: s.Sentence) -> Parts:
+    """Mode, condition, response and stop condition; None where it has none."""
+    scope, condition, timing = sentence.scope, sentence.condition, sentence.timing
+    return (
+        _formula(scope.mode) if scope else None,
+        _formula(condition.expression) if condition else None,
+        _formula(sentence.response),
+        _formula(timing.stop) if isinstance(timing, s.Until | s.Before) else None,
+    )
+
+
+def _formula(expression: e.Expression) -> f.Formula:
+    return boolean(expression, Uninterpreted().alone())

@@ -1,0 +1,247 @@
+"""What a sentence demands at each trigger, as formulas without any time in them.
+
+Between the tree and the temporal formulas: expressions have become Boolean formulas, durations
+ticks, and the `only` scopes their negated timing (SEMANTICS: the negated forms are duals).
+Source: Giannakopoulou, Pressburger, Mavridou, Schumann, Automated formalization of structured
+natural language requirements, IST 137 (2021), section 4.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from enum import Enum, auto
+from functools import partial
+from typing import Protocol, assert_never
+
+from compiler.logic import formula as f
+from compiler.logic.printing import identifier, is_compound
+from fretish import expressions as e
+from fretish import syntax as s
+
+
+class Kind(Enum):
+    """The timings, after `never` has become `always not` and a missing one `eventually`."""
+
+    IMMEDIATELY = auto()
+    NEXT = auto()
+    FINALLY = auto()
+    EVENTUALLY = auto()
+    ALWAYS = auto()
+    WITHIN = auto()
+    FOR = auto()
+    AFTER = auto()
+    NOT_AFTER = auto()
+    """The dual of `AFTER`: the response comes too early, or not right after."""
+    UNTIL = auto()
+    BEFORE = auto()
+
+
+@dataclass(frozen=True, slots=True)
+class Demand:
+    """At each trigger: `response`, as `kind` says, counting `ticks` or watching for `stop`."""
+
+    kind: Kind
+    response: f.Formula
+    ticks: int = 0
+    stop: f.Formula = f.FALSE
+
+
+@dataclass(frozen=True, slots=True)
+class Obligation:
+    """A whole sentence: where (scope), when (condition), what (demand).
+
+    `scope` None is the whole trace, `condition` None triggers once, at the start of the scope.
+    """
+
+    scope: s.ScopeKind | None
+    mode: f.Formula
+    condition: s.ConditionKind | None
+    trigger: f.Formula
+    demand: Demand
+
+    @property
+    def atoms(self) -> tuple[str, ...]:
+        """Of all its parts, each once."""
+        parts = (self.mode, self.trigger, self.demand.response, self.demand.stop)
+        return tuple(dict.fromkeys(name for part in parts for name in f.atoms(part)))
+
+
+Expand = Callable[[str, tuple[e.Expression, ...], "Read"], f.Formula | None]
+"""A call (name, arguments, how to read them) as a formula; None leaves it a proposition."""
+
+Read = Callable[[e.Expression], f.Formula]
+
+
+class Vocabulary(Protocol):
+    """What the temporal predicates mean, in the past or in the future."""
+
+    def alone(self) -> Expand:
+        """Within the expression of a scope, where there is no interval yet."""
+
+    def inside(self, scope: s.ScopeKind | None, mode: f.Formula) -> Expand:
+        """Within condition, stop condition and response: relative to the scope's interval."""
+
+
+class Uninterpreted:
+    """Every predicate stays a proposition."""
+
+    def alone(self) -> Expand:
+        """None is expanded."""
+        return lambda name, args, read: None
+
+    def inside(self, scope: s.ScopeKind | None, mode: f.Formula) -> Expand:
+        """None is expanded."""
+        return self.alone()
+
+
+def obligation(
+    sentence: s.Sentence, ticks: int, vocabulary: Vocabulary | None = None
+) -> Obligation:
+    """The sentence without its words.
+
+    Args:
+        sentence: a checked sentence.
+        ticks: what its duration counts; 0 where it has none.
+        vocabulary: what the temporal predicates mean; None leaves all of them propositions.
+    """
+    words = vocabulary or Uninterpreted()
+    scope, condition = sentence.scope, sentence.condition
+    kind = scope.kind if scope else None
+    mode = boolean(scope.mode, words.alone()) if scope else f.TRUE
+    read = partial(boolean, expand=words.inside(kind, mode))
+    demand = _demand(sentence.timing, read, sentence.response, ticks)
+    return Obligation(
+        kind,
+        mode,
+        condition.kind if condition else None,
+        read(condition.expression) if condition else f.TRUE,
+        dual(demand) if scope and scope.kind.negates else demand,
+    )
+
+
+def _demand(timing: s.Timing, read: Read, satisfied: e.Expression, ticks: int) -> Demand:
+    response = read(satisfied)
+    match timing:
+        case s.Immediately():
+            return Demand(Kind.IMMEDIATELY, response)
+        case s.Next():
+            return Demand(Kind.NEXT, response)
+        case s.Finally():
+            return Demand(Kind.FINALLY, response)
+        case s.Eventually():
+            return Demand(Kind.EVENTUALLY, response)
+        case s.Always():
+            return Demand(Kind.ALWAYS, response)
+        case s.Never():
+            return Demand(Kind.ALWAYS, f.not_(response))
+        case s.Within():
+            return Demand(Kind.WITHIN, response, ticks)
+        case s.For():
+            return Demand(Kind.FOR, response, ticks)
+        case s.After():
+            return Demand(Kind.AFTER, response, ticks)
+        case s.Until(stop):
+            return Demand(Kind.UNTIL, response, stop=read(stop))
+        case s.Before(stop):
+            return Demand(Kind.BEFORE, response, stop=read(stop))
+        case _:
+            assert_never(timing)
+
+
+_DUALS = {
+    Kind.IMMEDIATELY: Kind.IMMEDIATELY,
+    Kind.NEXT: Kind.NEXT,
+    Kind.FINALLY: Kind.FINALLY,
+    Kind.EVENTUALLY: Kind.ALWAYS,
+    Kind.ALWAYS: Kind.EVENTUALLY,
+    Kind.WITHIN: Kind.FOR,
+    Kind.FOR: Kind.WITHIN,
+    Kind.UNTIL: Kind.BEFORE,
+    Kind.BEFORE: Kind.UNTIL,
+}
+
+
+def dual(demand: Demand) -> Demand:
+    """The negated timing: what an `only` scope demands outside of itself."""
+    if demand.kind is Kind.AFTER:
+        return Demand(Kind.NOT_AFTER, demand.response, demand.ticks)
+    return Demand(_DUALS[demand.kind], f.not_(demand.response), demand.ticks, demand.stop)
+
+
+def boolean(expression: e.Expression, expand: Expand) -> f.Formula:
+    """A Boolean expression as a formula; comparisons become atoms, and calls that stay."""
+    read = partial(boolean, expand=expand)
+    match expression:
+        case e.Truth(value):
+            return f.Const(value)
+        case e.Name("FTP"):
+            return expand("FTP", (), read) or f.Atom("FTP")
+        case e.Name(id):
+            return f.Atom(variable(id))
+        case e.Comparison():
+            return f.Atom(atom(expression))
+        case e.Call(name, args):
+            return expand(name, args, read) or f.Atom(atom(expression))
+        case e.Not(arg):
+            return f.not_(read(arg))
+        case e.And(args):
+            return f.and_(*map(read, args))
+        case e.Or(args):
+            return f.or_(*map(read, args))
+        case e.Xor(left, right):
+            return f.xor(read(left), read(right))
+        case e.Implies(left, right):
+            return f.implies(read(left), read(right))
+        case e.Iff(left, right):
+            return f.iff(read(left), read(right))
+        case e.Number() | e.Quantity() | e.Negation() | e.Arithmetic() | e.Held():
+            raise AssertionError(f"not a truth value of a sentence: {expression}")
+        case _:
+            assert_never(expression)
+
+
+def variable(id: str) -> str:
+    """The name of an atom that is a variable.
+
+    A quoted name may look like the text of a comparison: then it keeps its quotes.
+    """
+    return f'"{id}"' if is_compound(id) else id
+
+
+def atom(expression: e.Expression) -> str:
+    """FRET's text of an atom: every operator in parentheses, `(x + (2 * y))`."""
+    match expression:
+        case e.Comparison(op, left, right) | e.Arithmetic(op, left, right):
+            return f"({atom(left)} {op} {atom(right)})"
+        case e.Negation(arg):
+            return f"(- {atom(arg)})"
+        case e.Call(name, args):
+            return f"{identifier(name)}({','.join(atom(arg) for arg in args)})"
+        case e.Name(id):
+            return identifier(id)  # as everywhere in formulas: `a.b` is `a_DOT_b`
+        case e.Number(digits):
+            return digits
+        case e.Truth(value):
+            return str(value).upper()
+        case _:
+            return f"({_boolean_atom(expression)})"
+
+
+def _boolean_atom(expression: e.Expression) -> str:
+    """A Boolean argument of a call."""
+    match expression:
+        case e.Not(arg):
+            return f"! {atom(arg)}"
+        case e.And(args):
+            return " & ".join(map(atom, args))
+        case e.Or(args):
+            return " | ".join(map(atom, args))
+        case e.Xor(left, right):
+            return f"{atom(left)} xor {atom(right)}"
+        case e.Implies(left, right):
+            return f"{atom(left)} -> {atom(right)}"
+        case e.Iff(left, right):
+            return f"{atom(left)} <-> {atom(right)}"
+        case _:
+            raise AssertionError(f"not an argument: {expression}")

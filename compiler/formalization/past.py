@@ -1,0 +1,405 @@
+"""Past-time logic: what a sentence says about the ticks up to now.
+
+`past` is true at the last tick of a finite trace exactly when the trace satisfies the sentence,
+and at every tick before it for the trace up to there. `watch` says the same as signals that a
+monitor steps: where a demand is triggered, broken and still owed.
+
+Source: SEMANTICS of FRETish, section 3; the shapes follow Giannakopoulou et al., IST 137 (2021),
+section 5, rebuilt from the meaning.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import assert_never
+
+from compiler.formalization.obligation import Demand, Kind, Obligation
+from compiler.logic.formula import (
+    EVER,
+    FALSE,
+    FIRST,
+    TRUE,
+    And,
+    Formula,
+    Historically,
+    Implies,
+    Interval,
+    Not,
+    Or,
+    and_,
+    historically,
+    implies,
+    not_,
+    once,
+    or_,
+    previous,
+    since,
+    weak_previous,
+)
+from fretish.syntax import ConditionKind, ScopeKind
+from monitors.kernel.verdicts import Signals
+
+
+@dataclass(frozen=True, slots=True)
+class Watch:
+    """One sentence as signals over past-time formulas, for a monitor.
+
+    The trace up to a tick satisfies the sentence, as FRET's finite semantics has it, when
+    `breach` was true at no tick up to there and `fails` is not true there.
+    """
+
+    trigger: Formula
+    """A demand begins here."""
+    breach: Formula
+    """A demand is broken here: nothing that follows can repair it."""
+    doom: Formula
+    """Demands are open here that no endless trace meets, though none of them is broken yet."""
+    owed: Formula
+    """A demand is open here: what follows decides it, where none has been broken before."""
+    fails: Formula
+    """The trace would violate the sentence if it ended here, though it is not lost yet."""
+    settled: Formula
+    """Nothing that follows on an infinite trace can break a demand, where none has been broken."""
+    answer: Formula | None
+    """The response that settles a demand, where a demand waits for one."""
+    horizon: int | None
+    """Ticks from a trigger to its deadline; None: there is no deadline."""
+    renewed: bool
+    """A trigger replaces the demand of the trigger before it: only the latest one is open."""
+
+    @property
+    def signals(self) -> Signals[Formula]:
+        """What a monitor tells at each tick."""
+        return Signals(
+            self.trigger,
+            self.breach,
+            self.doom,
+            self.owed,
+            self.fails,
+            self.settled,
+            self.answer if self.answer is not None else FALSE,
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class Stage:
+    """Where a sentence is enforced, and where its demands begin."""
+
+    inside: Formula
+    """The present tick lies in an interval of the scope."""
+    left: Formula
+    """It is the first of its interval."""
+    trigger: Formula
+    """A demand begins here (and the tick lies inside)."""
+    leaves: Formula
+    """It is the first tick after an interval."""
+    over: Formula
+    """No interval is here or follows."""
+    recurs: bool
+    """Demands can begin at more than one tick."""
+
+    @property
+    def endless(self) -> bool:
+        """The interval lasts for ever once it has begun."""
+        return self.leaves == FALSE
+
+    def open(self, kept: Formula, ago: Interval = EVER) -> Formula:
+        """A trigger of this interval, `ago` ticks back, since which `kept` has held."""
+        if self.trigger == self.left and ago == EVER:
+            if kept == TRUE:
+                return self.inside  # every tick inside has the first of its interval behind it
+            if self.left == FIRST and self.inside == TRUE:
+                return historically(kept)
+        return since(and_(kept, self.inside), and_(self.trigger, kept), ago)
+
+
+def past(obligation: Obligation) -> Formula:
+    """The formula about the trace up to now, with the operators that FRET has."""
+    stage, demand = staged(obligation), obligation.demand
+    broken = or_(_broken_plainly(demand, stage), _broken_at_end(demand, stage))
+    return and_(historically(_unless(broken)), _unless(_fails(demand, stage)))
+
+
+def watch(obligation: Obligation) -> Watch:
+    """The signals of a monitor; counting operators look back from now, never from a deadline."""
+    stage, demand = staged(obligation), obligation.demand
+    breach = or_(_broken(demand, stage), _broken_at_end(demand, stage))
+    owed, fails = _owed(demand, stage), _fails(demand, stage)
+    return Watch(
+        trigger=stage.trigger,
+        breach=breach,
+        doom=_doom(demand, stage),
+        owed=owed,
+        fails=fails,
+        settled=TRUE if breach == owed == fails == FALSE else _settled(demand, stage),
+        answer=and_(stage.inside, demand.response) if demand.kind in _WAITING else None,
+        horizon=_horizon(demand),
+        renewed=demand.kind in (Kind.NEXT, Kind.FOR, Kind.NOT_AFTER),
+    )
+
+
+_WAITING = (Kind.EVENTUALLY, Kind.WITHIN, Kind.AFTER)
+
+
+# Scope and condition -----------------------------------------------------------------------
+
+
+def staged(obligation: Obligation) -> Stage:
+    """The scope and the condition of a sentence, as formulas about the ticks up to now."""
+    inside, left, leaves = _interval(obligation.scope, obligation.mode)
+    p = obligation.trigger
+    match obligation.condition:
+        case None:
+            trigger = left
+        case ConditionKind.HOLDING:
+            trigger = and_(inside, p)
+        case ConditionKind.TRIGGER:
+            # p rises, or is true as the interval begins.
+            enters = weak_previous(not_(p)) if left == FIRST else or_(left, previous(not_(p)))
+            trigger = and_(inside, p, enters)
+        case _:
+            assert_never(obligation.condition)
+    over = _over(obligation.scope, obligation.mode)
+    recurs = obligation.condition is not None or obligation.scope in _REPEATED
+    return Stage(inside, left, trigger, leaves, over, recurs)
+
+
+_REPEATED = (ScopeKind.IN, ScopeKind.NOT_IN, ScopeKind.ONLY_IN)
+"""Scopes with an interval for each stretch of the mode."""
+
+
+def _over(scope: ScopeKind | None, m: Formula) -> Formula:
+    """The scope's one interval has ended, or can never begin."""
+    match scope:
+        case ScopeKind.BEFORE:
+            return once(m)
+        case ScopeKind.ONLY_AFTER:
+            return once(and_(not_(m), previous(m)))
+        case _:
+            return FALSE
+
+
+def _interval(scope: ScopeKind | None, m: Formula) -> tuple[Formula, Formula, Formula]:
+    """Inside an interval; at its first tick; at the first tick after it."""
+    first_run_over = and_(not_(m), previous(m))
+    match scope:
+        case None:
+            return TRUE, FIRST, FALSE
+        case ScopeKind.IN:
+            return m, and_(m, weak_previous(not_(m))), and_(not_(m), previous(m))
+        case ScopeKind.NOT_IN | ScopeKind.ONLY_IN:
+            return not_(m), and_(not_(m), weak_previous(m)), and_(m, previous(not_(m)))
+        case ScopeKind.BEFORE:
+            before = historically(not_(m))
+            return before, and_(not_(m), FIRST), and_(m, previous(before))
+        case ScopeKind.AFTER:
+            after = once(first_run_over)
+            return after, and_(first_run_over, not_(previous(after))), FALSE
+        case ScopeKind.ONLY_BEFORE:
+            return once(m), and_(m, not_(previous(once(m)))), FALSE
+        case ScopeKind.ONLY_AFTER:
+            until = not_(once(first_run_over))
+            return until, FIRST, and_(first_run_over, previous(until))
+        case _:
+            assert_never(scope)
+
+
+def first_marker(scope: ScopeKind | None, m: Formula) -> Formula:
+    """True at the first tick of an interval, and at no other tick of it."""
+    return _interval(scope, m)[1]
+
+
+# Demands -----------------------------------------------------------------------------------
+
+
+def _broken(demand: Demand, stage: Stage) -> Formula:
+    """A demand is broken here; a missed deadline stays broken until the answer comes."""
+    q, n = demand.response, demand.ticks
+    match demand.kind:
+        case Kind.WITHIN:
+            return _overdue(q, n, stage)
+        case Kind.FOR:
+            return and_(stage.open(TRUE, Interval(0, n)), not_(q))
+        case Kind.AFTER:
+            early = and_(stage.open(TRUE, Interval(0, n)), q)
+            return or_(early, _overdue(q, n + 1, stage))
+        case Kind.NOT_AFTER:
+            silent = previous(stage.open(not_(q), Interval(n, n)))
+            return and_(stage.inside, silent, q)
+        case _:
+            return _broken_plainly(demand, stage)
+
+
+def _overdue(q: Formula, n: int, stage: Stage) -> Formula:
+    """A trigger n ticks ago or more has had no answer yet."""
+    return stage.open(not_(q), Interval(n, None))
+
+
+def _broken_plainly(demand: Demand, stage: Stage) -> Formula:
+    """As `_broken`, with the operators of FRET: a deadline is missed at one tick."""
+    q, s, n = demand.response, demand.stop, demand.ticks
+    match demand.kind:
+        case Kind.IMMEDIATELY:
+            return and_(stage.trigger, not_(q))
+        case Kind.NEXT:
+            return and_(stage.inside, previous(stage.trigger), not_(q))
+        case Kind.FINALLY | Kind.EVENTUALLY:
+            return FALSE
+        case Kind.ALWAYS:
+            return and_(stage.open(TRUE), not_(q))
+        case Kind.WITHIN:
+            return _missed(q, n, stage)
+        case Kind.FOR:
+            return and_(_recent(n, stage), not_(q))
+        case Kind.AFTER:
+            return or_(and_(_recent(n, stage), q), _missed(q, n + 1, stage))
+        case Kind.NOT_AFTER:
+            asked = once(and_(stage.trigger, not_(q)), Interval(n + 1, n + 1))
+            answered = once(q, Interval(1, n)) if n else FALSE
+            return and_(stage.inside, asked, not_(or_(_began(n, stage), answered)), q)
+        case Kind.UNTIL:
+            return and_(stage.open(not_(s)), not_(q))
+        case Kind.BEFORE:
+            unanswered = and_(stage.inside, previous(stage.open(not_(q))))
+            return and_(s, or_(stage.trigger, unanswered))
+        case _:
+            assert_never(demand.kind)
+
+
+def _missed(q: Formula, n: int, stage: Stage) -> Formula:
+    """A trigger exactly n ticks ago, in this interval, has had no answer up to now."""
+    asked = once(and_(stage.trigger, not_(q)), Interval(n, n))
+    answered = once(or_(stage.left, q), Interval(0, n - 1)) if n else FALSE
+    return and_(stage.inside, asked, not_(answered))
+
+
+def _recent(n: int, stage: Stage) -> Formula:
+    """A trigger of this interval lies no more than n ticks back."""
+    recently = once(stage.trigger, Interval(0, n))
+    return recently if stage.inside == TRUE else and_(recently, stage.open(TRUE))
+
+
+def _began(n: int, stage: Stage) -> Formula:
+    """The interval began no more than n ticks ago."""
+    return once(stage.left, Interval(0, n))
+
+
+def _broken_at_end(demand: Demand, stage: Stage) -> Formula:
+    """The interval is over, and its last tick left a demand unmet."""
+    if stage.leaves == FALSE:
+        return FALSE
+    return and_(stage.leaves, previous(_fails(demand, stage)))
+
+
+def _fails(demand: Demand, stage: Stage) -> Formula:
+    """The interval may not end here."""
+    match demand.kind:
+        case Kind.FINALLY:
+            return and_(stage.open(TRUE), not_(demand.response))
+        case Kind.EVENTUALLY:
+            return stage.open(not_(demand.response))
+        case _:
+            return FALSE
+
+
+def _owed(demand: Demand, stage: Stage) -> Formula:
+    """A demand waits for what follows.
+
+    Demands without a deadline that only forbid (`always`, `until`, `before`) wait for nothing:
+    they are kept as long as they are not broken.
+    """
+    q, n = demand.response, demand.ticks
+    match demand.kind:
+        case Kind.NEXT:
+            return stage.trigger
+        case Kind.FINALLY:
+            return stage.open(TRUE)
+        case Kind.EVENTUALLY:
+            return stage.open(not_(q))
+        case Kind.WITHIN | Kind.AFTER:
+            return stage.open(not_(q))  # one that is overdue has been broken before
+        case Kind.FOR:
+            return stage.open(TRUE, Interval(0, n - 1)) if n else FALSE
+        case Kind.NOT_AFTER:
+            return stage.open(not_(q), Interval(0, n))
+        case Kind.IMMEDIATELY | Kind.ALWAYS | Kind.UNTIL | Kind.BEFORE:
+            return FALSE
+        case _:
+            assert_never(demand.kind)
+
+
+def _doom(demand: Demand, stage: Stage) -> Formula:
+    """Demands are open that cannot all be met.
+
+    Where an interval can end before the deadline, its end would void them.
+    """
+    if not stage.endless:
+        return FALSE
+    if demand.kind is Kind.AFTER and stage.recurs:
+        # The response may not come up to n ticks after this trigger, and must come before that.
+        return and_(stage.trigger, previous(stage.open(not_(demand.response))))
+    return FALSE
+
+
+def _settled(demand: Demand, stage: Stage) -> Formula:
+    """Every demand has been met, and no other can begin."""
+    if demand.kind is Kind.FINALLY and stage.endless:
+        return TRUE  # an interval without an end has no last tick
+    return stage.over if stage.recurs else or_(stage.over, _met(demand, stage))
+
+
+def _met(demand: Demand, stage: Stage) -> Formula:
+    """The one demand, of the first tick of the interval, has been met or has passed."""
+    q, n = demand.response, demand.ticks
+    match demand.kind:
+        case Kind.IMMEDIATELY:
+            return once(stage.left)
+        case Kind.NEXT:
+            return once(stage.left, Interval(1, None))
+        case Kind.FOR:
+            return once(stage.left, Interval(n, None))
+        case Kind.EVENTUALLY | Kind.WITHIN | Kind.BEFORE:
+            return once(and_(stage.inside, q))
+        case Kind.UNTIL:
+            return once(and_(stage.inside, demand.stop))
+        case Kind.AFTER:
+            return once(stage.left, Interval(n + 1, None))
+        case Kind.NOT_AFTER:
+            return or_(once(and_(stage.inside, q)), once(stage.left, Interval(n + 1, None)))
+        case Kind.FINALLY | Kind.ALWAYS:
+            return FALSE
+        case _:
+            assert_never(demand.kind)
+
+
+def _horizon(demand: Demand) -> int | None:
+    match demand.kind:
+        case Kind.IMMEDIATELY:
+            return 0
+        case Kind.NEXT:
+            return 1
+        case Kind.WITHIN | Kind.FOR:
+            return demand.ticks
+        case Kind.AFTER | Kind.NOT_AFTER:
+            return demand.ticks + 1
+        case Kind.FINALLY | Kind.EVENTUALLY | Kind.ALWAYS | Kind.UNTIL | Kind.BEFORE:
+            return None
+        case _:
+            assert_never(demand.kind)
+
+
+def _unless(broken: Formula) -> Formula:
+    """`! broken`, as a reader would write it: `a & !b` becomes `a -> b`."""
+    match broken:
+        case And(args):
+            return implies(and_(*args[:-1]), _unless(args[-1]))
+        case Or(args):
+            return and_(*map(_unless, args))
+        case Historically(arg, ago):
+            return once(_unless(arg), ago)
+        case Implies(left, right):
+            return and_(left, _unless(right))
+        case Not(arg):
+            return arg
+        case _:
+            return not_(broken)

@@ -1,0 +1,103 @@
+"""One requirement with everything that is known of its meaning."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+from compiler.formalization.obligation import obligation
+from compiler.formalization.past import Watch
+from compiler.formalization.predicates import Past
+from compiler.logic.formula import Formula, atoms
+from fretish.bindings.declarations import Declarations, Variable
+from fretish.checking import conditions
+from fretish.clock import Clock
+from fretish.diagnostics.source import Source
+from fretish.documents import Requirement
+from fretish.expressions import Name, names
+from fretish.printer import canonical
+from fretish.printer import sentence as printed
+from fretish.syntax import Sentence
+
+
+@dataclass(frozen=True, slots=True)
+class Rule:
+    """A requirement, formalized: one meaning in three formulas, and as signals to watch."""
+
+    requirement: Requirement
+    sentence: Sentence
+    ticks: int | None
+    """What the duration counts; None where the sentence has none."""
+    clock: Clock | None
+    """None where no bindings are at hand."""
+    ft_infinite: Formula
+    """Future-time, on infinite traces."""
+    ft_finite: Formula
+    """Future-time, on finite traces, with `LAST`; at the first tick."""
+    pt: Formula
+    """Past-time; at the last tick."""
+    watch: Watch
+    pctl: Formula | None
+    """PCTL*; None where the sentence gives no probability."""
+    glossary: Mapping[str, Variable]
+    """Every variable that the bindings declare, bound or not."""
+    declarations: Declarations | None = None
+    """The bindings as a whole; None where none are at hand."""
+
+    @property
+    def id(self) -> str:
+        """The requirement's id."""
+        return self.requirement.id
+
+    @property
+    def propositions(self) -> tuple[str, ...]:
+        """The atoms of the sentence, in the order of the future-time formula.
+
+        A formula may lack some: `finally` says nothing of an infinite run.
+        """
+        formulas = (self.ft_infinite, self.ft_finite, self.pt, *self.watch.signals)
+        return tuple(dict.fromkeys(name for formula in formulas for name in atoms(formula)))
+
+    @property
+    def watched(self) -> tuple[str, ...]:
+        """The propositions that a monitor needs: predicates that look back are none of them.
+
+        Where triggers are counted, each on its own, those of all parts of the sentence are needed.
+        """
+        needed = {name for signal in self.watch.signals for name in atoms(signal)}
+        counted: tuple[str, ...] = ()
+        if self.sentence.probability is not None:
+            counted = obligation(self.sentence, self.ticks or 0, Past()).atoms
+        known = dict.fromkeys((*self.propositions, *counted))
+        return tuple(name for name in known if name in needed or name in counted)
+
+    @property
+    def variables(self) -> tuple[str, ...]:
+        """Every variable of the sentence, also those within comparisons, as they come in it."""
+        found = [
+            name
+            for expression in conditions(self.sentence)
+            for name in names(expression)
+            if name.id != "FTP"
+        ]
+        return tuple(dict.fromkeys(name.id for name in sorted(found, key=_place)))
+
+    @property
+    def fingerprint(self) -> str:
+        """SHA-256 of the canonical sentence: white space and wording of key words do not count."""
+        return hashlib.sha256(canonical(self.sentence).encode()).hexdigest()
+
+
+def _place(name: Name) -> int:
+    return name.span.start if name.span else 0
+
+
+def plain(rule: Rule) -> Rule:
+    """The rule of the same sentence without its probability, under the same id."""
+    if rule.sentence.probability is None:
+        return rule
+    sentence = replace(rule.sentence, probability=None)
+    source = Source(rule.requirement.wording.source.name, printed(sentence))
+    requirement = replace(rule.requirement, wording=source.span())
+    return replace(rule, requirement=requirement, sentence=sentence, pctl=None)

@@ -1,0 +1,263 @@
+"""Sentences without the operator X: for languages whose steps are not ticks.
+
+A sentence that counts no ticks does not change its verdict when a trace stutters, so it has a form
+without X, though its formula in `compiler/formalization/future.py` marks the ends of intervals by
+X. Here the form is built from two dual operators that keep within an interval of the scope, and
+each of its shapes is proved equal to that formula by Spot, with plain propositions for the
+expressions: what holds of propositions holds of whatever stands in their places. Source: Peled and
+Wilke, Stutter-invariant temporal properties are expressible without the next-time operator, IPL 63
+(1997), for the existence of such forms; the forms are our own.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import cache
+
+from compiler.formalization.future import future
+from compiler.formalization.obligation import Demand, Kind, Obligation
+from compiler.logic import formula as f
+from compiler.logic.formula import (
+    FALSE,
+    TRUE,
+    Formula,
+    and_,
+    eventually,
+    globally,
+    implies,
+    not_,
+    or_,
+    release,
+    until,
+)
+from fretish.syntax import ConditionKind, ScopeKind
+
+COUNTING = frozenset({Kind.NEXT, Kind.WITHIN, Kind.FOR, Kind.AFTER, Kind.NOT_AFTER})
+"""Demands that count ticks: a trace that stutters may change their verdict."""
+_OPEN = (None, ScopeKind.AFTER, ScopeKind.ONLY_BEFORE)
+"""Scopes with an interval that never ends."""
+
+
+def is_next_free(formula: Formula) -> bool:
+    """Whether it is logic, F, G, U and R, with no bound."""
+    match formula:
+        case f.Eventually(_, ahead) | f.Globally(_, ahead) if ahead != f.EVER:
+            return False
+        case (
+            f.Const()
+            | f.Atom()
+            | f.Not()
+            | f.And()
+            | f.Or()
+            | f.Xor()
+            | f.Implies()
+            | f.Iff()
+            | f.Eventually()
+            | f.Globally()
+            | f.Until()
+            | f.Release()
+        ):
+            return all(is_next_free(part) for part in f.children(formula))
+        case _:
+            return False
+
+
+def next_free(obligation: Obligation) -> Formula | None:
+    """The formula on infinite traces without X; None where the demand counts ticks."""
+    if obligation.demand.kind in COUNTING:
+        return None
+    return _Interval(obligation.scope, obligation.mode).everywhere(obligation)
+
+
+@cache
+def is_proved(scope: ScopeKind | None, condition: ConditionKind | None, kind: Kind) -> bool:
+    """Whether Spot finds the shape equal to the formula of `compiler/formalization/future.py`."""
+    from compiler.logic.spot import equivalent
+
+    shape = _shape(scope, condition, kind)
+    ours = next_free(shape)
+    return ours is not None and equivalent(ours, f.endless(future(shape)))
+
+
+def unbounded(obligation: Obligation) -> Formula | None:
+    """`within n` without its n: the response, or the end of the interval, at some time.
+
+    `within` is satisfied by an interval that ends too soon, so that `eventually`, which is not,
+    would be stronger where intervals end. None for all other demands, and for the `only` scopes,
+    where a demand within a bound is one that is not met for that long.
+    """
+    scope = obligation.scope
+    if obligation.demand.kind is not Kind.WITHIN or (scope is not None and scope.negates):
+        return None
+    interval = _Interval(scope, obligation.mode)
+    met = or_(interval.outside, obligation.demand.response)
+    weak = replace(obligation, demand=Demand(Kind.EVENTUALLY, met))
+    return interval.everywhere(weak, eventually(met))
+
+
+@cache
+def is_weaker(scope: ScopeKind | None, condition: ConditionKind | None) -> bool:
+    """Whether Spot finds the unbounded shape to be what remains of `within n` for any n.
+
+    The bounds of the formula stand under no negation, so that it implies itself without them,
+    whatever n is; and that is what the shape is equal to.
+    """
+    from compiler.logic.spot import equivalent
+
+    shape = _shape(scope, condition, Kind.WITHIN, 2)
+    weak = unbounded(shape)
+    return weak is not None and equivalent(_without_bounds(f.endless(future(shape))), weak)
+
+
+def _without_bounds(formula: Formula) -> Formula:
+    if isinstance(formula, f.Eventually):
+        return eventually(_without_bounds(formula.arg))
+    return f.rebuild(formula, _without_bounds)
+
+
+def never_begins(obligation: Obligation) -> Formula | None:
+    """That the sentence never demands anything: no interval has a trigger.
+
+    Without a condition: that no interval begins; where one begins at the start of every trace,
+    that its mode never comes. None where neither scope nor condition says when.
+    """
+    m, c = obligation.mode, obligation.trigger
+    waits = obligation.condition is not None
+    match obligation.scope:
+        case None:
+            return globally(not_(c)) if waits else None
+        case ScopeKind.IN:
+            return globally(not_(and_(m, c)))
+        case ScopeKind.NOT_IN | ScopeKind.ONLY_IN:
+            return globally(not_(and_(not_(m), c)))
+        case ScopeKind.AFTER:
+            return globally(implies(m, globally(implies(not_(m), globally(not_(c))))))
+        case ScopeKind.ONLY_BEFORE:
+            return globally(implies(m, globally(not_(c))))
+        case ScopeKind.BEFORE | ScopeKind.ONLY_AFTER:
+            if not waits:
+                return globally(not_(m))
+            never = _Interval(obligation.scope, m).throughout(not_(c))
+            return or_(m, never) if obligation.scope is ScopeKind.BEFORE else never
+
+
+def _shape(
+    scope: ScopeKind | None, condition: ConditionKind | None, kind: Kind, ticks: int = 0
+) -> Obligation:
+    """A sentence about plain propositions."""
+    m, c, r, q = map(f.Atom, ("m", "c", "r", "q"))
+    return Obligation(
+        scope,
+        m if scope else TRUE,
+        condition,
+        c if condition else TRUE,
+        Demand(kind, r, ticks, q),
+    )
+
+
+class _Interval:
+    """An interval of the scope, from any tick inside of it on.
+
+    `inside` is true at its ticks; where it is None, the interval has no end, or (only after) it
+    ends behind the first run of the mode.
+    """
+
+    def __init__(self, scope: ScopeKind | None, mode: Formula) -> None:
+        self.scope = scope
+        self.m = mode
+        self.last = mode if scope in (ScopeKind.IN, ScopeKind.ONLY_AFTER) else not_(mode)
+        """What is true where the interval may end, and false right behind it."""
+
+    @property
+    def outside(self) -> Formula:
+        """False at each tick of the interval, and true behind its end."""
+        return FALSE if self.scope in _OPEN else not_(self.last)
+
+    def release(self, frees: Formula, x: Formula) -> Formula:
+        """X from here on, up to and including the first tick with `frees`, inside."""
+        if self.scope in _OPEN:
+            return release(frees, x)
+        here = release(or_(not_(self.last), frees), _given(self.last, x))
+        if self.scope is not ScopeKind.ONLY_AFTER:
+            return here
+        return release(or_(self.m, frees), and_(or_(self.m, x), implies(self.m, here)))
+
+    def until(self, g: Formula, h: Formula) -> Formula:
+        """H at some tick from here on, and g at all ticks before it, inside."""
+        if self.scope in _OPEN:
+            return until(g, h)
+        here = until(and_(self.last, g), and_(self.last, h))
+        if self.scope is not ScopeKind.ONLY_AFTER:
+            return here
+        before = not_(self.m)
+        return until(and_(before, g), or_(and_(before, h), and_(self.m, here)))
+
+    def throughout(self, x: Formula) -> Formula:
+        """X from here on, inside."""
+        return self.release(FALSE, x)
+
+    def everywhere(self, obligation: Obligation, demanded: Formula | None = None) -> Formula:
+        """The obligation in all intervals of the scope, seen from the first tick."""
+        m = self.m
+        first, always = self._enforced(obligation, demanded)
+        kept = and_(first, self.throughout(always))
+        match self.scope:
+            case None | ScopeKind.ONLY_AFTER:
+                return kept
+            case ScopeKind.IN | ScopeKind.NOT_IN | ScopeKind.ONLY_IN:
+                entered = _given(self.last, first)
+                at_entries = globally(or_(self.last, release(self.last, entered)))
+                return and_(entered, at_entries, globally(_given(self.last, always)))
+            case ScopeKind.BEFORE:
+                return or_(m, kept)
+            case ScopeKind.AFTER:
+                left = release(not_(m), or_(m, kept))
+                return release(m, implies(m, left))
+            case ScopeKind.ONLY_BEFORE:
+                return release(m, implies(m, kept))
+
+    def _enforced(
+        self, obligation: Obligation, demanded: Formula | None
+    ) -> tuple[Formula, Formula]:
+        """What holds at the first tick of an interval, and what holds at all of its ticks."""
+        demand = demanded if demanded is not None else self._demanded(obligation.demand)
+        c = obligation.trigger
+        if obligation.condition is None:
+            return demand, TRUE
+        given = implies(c, demand)
+        if obligation.condition is ConditionKind.HOLDING:
+            return TRUE, given
+        return given, or_(c, self.release(c, given))
+
+    def _demanded(self, demand: Demand) -> Formula:
+        """The demand at a trigger, here and now."""
+        r, q = demand.response, demand.stop
+        match demand.kind:
+            case Kind.IMMEDIATELY:
+                return r
+            case Kind.EVENTUALLY:
+                return self.until(TRUE, r)
+            case Kind.ALWAYS:
+                return self.throughout(r)
+            case Kind.UNTIL:
+                return self.release(q, or_(q, r))
+            case Kind.BEFORE:
+                return self.release(r, not_(q))
+            case Kind.FINALLY:
+                return self._finally(r)
+            case _:
+                raise AssertionError(f"it counts ticks: {demand.kind}")
+
+    def _finally(self, r: Formula) -> Formula:
+        """No stretch without r leads up to the end of the interval."""
+        if self.scope in _OPEN:
+            return TRUE
+        idle = and_(self.last, not_(r))
+        return self.throughout(not_(and_(idle, until(idle, not_(self.last)))))
+
+
+def _given(inside: Formula, said: Formula) -> Formula:
+    """`inside -> (a -> b)` as `inside & a -> b`."""
+    if isinstance(said, f.Implies):
+        return implies(and_(inside, said.left), said.right)
+    return implies(inside, said)

@@ -1,0 +1,1 @@
+"""Temporal formulas: tree, definition, evaluation, printing, and Spot."""

@@ -1,0 +1,210 @@
+"""Spot: the only module that imports it, and only when it is called.
+
+Bounds are small here: Spot expands them into chains of X, so nothing on the way from a sentence
+to its files may depend on this room.
+"""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
+
+from compiler.logic import printing
+from compiler.logic.formula import (
+    Atom,
+    Eventually,
+    Formula,
+    Globally,
+    Interval,
+    atoms,
+    children,
+    longest_bound,
+    rebuild,
+)
+from fretish.reading.recursion import deep
+
+
+def equivalent(left: Formula, right: Formula) -> bool:
+    """Whether two future-time formulas hold on the same infinite traces (and `LAST` is free)."""
+    return same_language(printing.future(left), printing.future(right))
+
+
+def same_language(left: str, right: str) -> bool:
+    """Whether two LTL formulas in Spot's syntax are equivalent.
+
+    Raises:
+        SyntaxError: one of them is not LTL.
+
+    Source: Duret-Lutz et al., From Spot 2.0 to Spot 2.10, CAV 2022.
+    """
+    spot = _spot()
+    return bool(spot.are_equivalent(spot.formula(left), spot.formula(right)))
+
+
+def holds_on(
+    formula: Formula, prefix: Sequence[Mapping[str, bool]], loop: Sequence[Mapping[str, bool]]
+) -> bool:
+    """Whether an endless trace satisfies a future-time formula, as Spot's automaton tells it.
+
+    Args:
+        formula: its bounds are small, for Spot expands them; it has no `LAST`.
+        prefix: the values of its atoms at the first ticks.
+        loop: at least one tick, which come again and again.
+
+    Source: Duret-Lutz et al., CAV 2022 (`twa_word`).
+    """
+    spot = _spot()
+    parts = [*map(_letter, prefix), f"cycle{{{'; '.join(map(_letter, loop))}}}"]
+    word = spot.parse_word("; ".join(parts), spot.make_bdd_dict())
+    automaton = spot.formula(printing.future(formula)).translate(dict=word.get_dict())
+    return bool(word.as_automaton().intersects(automaton))
+
+
+def _letter(values: Mapping[str, bool]) -> str:
+    """A conjunction of literals, in Spot's syntax."""
+    literals = [
+        f"{'' if value else '!'}{printing.text(Atom(name), printing.SPOT)}"
+        for name, value in values.items()
+    ]
+    return " & ".join(literals) or "1"
+
+
+_PROVABLE_BOUND = 12
+"""A longer bound is not given to Spot, which expands it into a chain of X."""
+
+
+@deep
+def simplified(formula: Formula) -> str | None:
+    """A shorter text in Spot's syntax that says the same on infinite traces, if there is one.
+
+    Bounded operators are opaque while Spot rewrites, so that bounds of any size stay one operator;
+    what is true of the formula around them is true whatever they mean. Spot then proves the result
+    equivalent through automata, around the opaque operators, and outright where bounds are small.
+
+    Source: Duret-Lutz et al., CAV 2022, and Spot's documentation of tl_simplifier.
+    """
+    spot = _spot()
+    opaque: dict[str, Formula] = {}
+    outline = spot.formula(printing.future(_hide(formula, opaque)))
+    shorter = spot.tl_simplifier(spot.tl_simplifier_options(3)).simplify(outline)
+    assert spot.are_equivalent(outline, shorter), "Spot's simplification is not equivalent"
+    text = str(shorter)
+    size = spot.length(shorter)
+    for name, bounded in reversed(opaque.items()):
+        size += text.count(name) * (_length(bounded) - 1)
+        text = text.replace(name, f"({printing.text(bounded, printing.SPOT)})")
+    if longest_bound(formula) <= _PROVABLE_BOUND:
+        assert same_language(text, printing.future(formula)), "simplification is not equivalent"
+    exact = printing.text(formula, printing.SPOT)
+    return text if size < _length(formula) and len(text) < len(exact) else None
+
+
+def _length(formula: Formula) -> int:
+    """How many operators and propositions, as Spot counts them: `a & b & c` has five."""
+    parts = children(formula)
+    return max(1, len(parts) - 1) + sum(map(_length, parts))
+
+
+def _hide(formula: Formula, opaque: dict[str, Formula]) -> Formula:
+    """The formula with a fresh proposition for each bounded operator, which `opaque` remembers."""
+    match formula:
+        case Eventually(_, Interval(_, int())) | Globally(_, Interval(_, int())):
+            inner = rebuild(formula, lambda part: _hide(part, opaque))
+            known = {bounded: name for name, bounded in opaque.items()}
+            name = known.get(inner) or f"_bounded_{len(opaque)}_"  # no name of FRETish
+            opaque[name] = inner
+            return Atom(name)
+        case _:
+            return rebuild(formula, lambda part: _hide(part, opaque))
+
+
+@deep
+def violation(
+    labels: Sequence[frozenset[str]],
+    edges: Sequence[Sequence[int]],
+    initial: int,
+    formula: Formula,
+) -> tuple[tuple[int, ...], tuple[int, ...]] | None:
+    """A run of a graph that does not keep the formula; None where every run keeps it.
+
+    Args:
+        labels: shape (states,), the atoms that are true in each.
+        edges: shape (states,), at least one state that comes next.
+        initial: where runs begin.
+        formula: future-time, on infinite runs.
+
+    Returns:
+        The states of a prefix, which may be empty, and those of a cycle, which is not.
+
+    Source: Duret-Lutz et al., CAV 2022: product with the automaton of the negation on the fly.
+    """
+    spot = _spot()
+    names = {name: f"p{i}" for i, name in enumerate(dict.fromkeys(atoms(formula)))}
+    renamed = spot.formula(printing.future(_renamed(formula, names)))
+    dictionary = spot.make_bdd_dict()
+    graph = _graph(spot.make_kripke_graph(dictionary), labels, edges, names)
+    graph.set_init_state(initial)
+    negation = spot.translate(spot.formula.Not(renamed), dict=dictionary)
+    run = spot.otf_product(graph, negation).accepting_run()
+    if run is None:
+        return None
+    run = run.reduce().project(graph)
+    prefix, cycle = (
+        tuple(graph.state_number(step.s) for step in part) for part in (run.prefix, run.cycle)
+    )
+    return prefix, cycle
+
+
+def _renamed(formula: Formula, names: dict[str, str]) -> Formula:
+    """An atom's name may be any text: Spot sees plain ones only."""
+    if isinstance(formula, Atom):
+        return Atom(names[formula.name])
+    return rebuild(formula, lambda part: _renamed(part, names))
+
+
+def _graph(
+    graph: Any,
+    labels: Sequence[frozenset[str]],
+    edges: Sequence[Sequence[int]],
+    names: dict[str, str],
+) -> Any:
+    """Spot's Kripke graph, with the numbers of its states as they are here."""
+    valuation = _valuations(graph, names)
+    for number, label in enumerate(labels):
+        state = graph.new_state(valuation(label))
+        assert state == number
+    for state, following in enumerate(edges):
+        for other in following:
+            graph.new_edge(state, other)
+    return graph
+
+
+def _valuations(graph: Any, names: dict[str, str]) -> Callable[[frozenset[str]], Any]:
+    import buddy
+
+    variables = {name: buddy.bdd_ithvar(graph.register_ap(p)) for name, p in names.items()}
+    known: dict[frozenset[str], Any] = {}
+
+    def valuation(label: frozenset[str]) -> Any:
+        true = label.intersection(variables)
+        if true not in known:
+            known[true] = buddy.bddtrue
+            for name, variable in variables.items():
+                known[true] &= variable if name in true else buddy.bdd_not(variable)
+        return known[true]
+
+    return valuation
+
+
+def version() -> str:
+    """Of Spot."""
+    return str(_spot().version())
+
+
+def _spot() -> Any:
+    with warnings.catch_warnings():
+        # SWIG's deprecations are not ours; as errors they would end the process.
+        warnings.simplefilter("ignore")
+        import spot
+    return spot

@@ -1,0 +1,1 @@
+"""A requirements folder as one value; import from FRET; formatting."""

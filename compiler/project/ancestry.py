@@ -1,0 +1,106 @@
+"""Where the parents of requirements lead: to a hazard, to nothing, or in a circle."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterator, Sequence
+
+from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity, suggestion
+from fretish.documents import Requirement
+from fretish.reading.natural_order import natural
+
+
+def unknown_parents(
+    written: Sequence[Requirement],
+    hazards: Collection[str],
+    above: Collection[str],
+    file: str | None,
+) -> Iterator[Diagnostic]:
+    """F501 for each parent that is neither a hazard, nor a requirement, here or in another tool.
+
+    Where nothing is read that could declare one, it is said once for all of them.
+
+    Args:
+        written: the requirements.
+        hazards: ids of the hazards.
+        above: ids of the parents in other tools.
+        file: where the hazards are; None where there are none.
+    """
+    ids = [requirement.id for requirement in written]
+    known = [*sorted({*hazards, *above}, key=natural), *ids]
+    unknown = [(r, parent) for r in written for parent in r.parents if parent not in known]
+    if unknown and file is None and not above:
+        requirement, parent = unknown[0]
+        more = len(unknown) - 1
+        others = (
+            f" ({more} more {'parent is' if more == 1 else 'parents are'}, too)" if more else ""
+        )
+        yield _unknown(
+            requirement,
+            f"there is no `hazards.toml`: the parent `{parent}` of {requirement.id} is declared "
+            f"nowhere{others}",
+            "write `hazards.toml` beside the requirements, or name it with `--hazards`",
+        )
+        return
+    for requirement, parent in unknown:
+        near = suggestion(parent, known)
+        yield _unknown(
+            requirement,
+            f"{requirement.id} names the parent `{parent}`, which is not declared",
+            f"did you mean `{near}`?" if near else "declare it in hazards.toml",
+        )
+
+
+def _unknown(requirement: Requirement, message: str, mend: str) -> Diagnostic:
+    place = requirement.place("parents")
+    return Diagnostic(Code.UNKNOWN_PARENT, message, place, mend, Severity.WARNING)
+
+
+def circles(written: Sequence[Requirement]) -> Iterator[Diagnostic]:
+    """F526 for each circle of parents, once, at its first requirement."""
+    by_id = {requirement.id: requirement for requirement in written}
+    told: set[frozenset[str]] = set()
+    for requirement in written:
+        circle = _circle(requirement.id, by_id)
+        if circle and frozenset(circle) not in told:
+            told.add(frozenset(circle))
+            yield Diagnostic(
+                Code.PARENTS_IN_A_CIRCLE,
+                f"{requirement.id} is its own ancestor: {' → '.join(circle)}",
+                requirement.place("parents"),
+                help="take one of these links out of `parents`",
+            )
+
+
+def _circle(start: str, by_id: dict[str, Requirement]) -> list[str]:
+    """A shortest way from a requirement up to itself; empty where there is none."""
+    came: dict[str, str] = {}
+    waiting = [start]
+    for id in waiting:  # it grows while it is walked: breadth first
+        for parent in by_id[id].parents if id in by_id else ():
+            if parent == start:
+                way = [start, id]
+                while way[-1] != start:
+                    way.append(came[way[-1]])
+                return way[::-1]
+            if parent not in came:
+                came[parent] = id
+                waiting.append(parent)
+    return []
+
+
+def without_hazard(
+    active: Sequence[Requirement], declared: Collection[str]
+) -> Iterator[Requirement]:
+    """The requirements that name parents, none of which leads to anything declared.
+
+    Args:
+        active: those in force; the way to a hazard leads through no others.
+        declared: ids of hazards, and of parents in other tools.
+    """
+    reached = {requirement.id for requirement in active if {*declared} & {*requirement.parents}}
+    while True:
+        more = {r.id for r in active if reached & {*r.parents}} - reached
+        if not more:
+            break
+        reached |= more
+    return (r for r in active if r.parents and r.id not in reached)

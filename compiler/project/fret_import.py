@@ -1,0 +1,442 @@
+"""FRET's exchange formats → `.fret` files and `bindings.toml`.
+
+Only what a person wrote is taken over: sentences, names, comments. FRET's formulas are not: they
+are made anew from the sentence, because an export can carry those of an older one.
+Source: NASA FRET v3.1, its export of requirements and variables (JSON), and its import of CSV.
+"""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+import re
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import PurePosixPath
+from typing import Any
+
+import tomli_w
+
+from compiler.files.artifact import Artifact
+from compiler.files.checked_json import parsed
+from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity, suggestion
+from fretish.diagnostics.source import Source
+from fretish.parser import parse
+from fretish.reading.limits import within
+
+STATUSES = {"completed": "approved", "deprecated": "retired"}
+"""FRET's status → ours; every other one is a draft."""
+
+OWN = "fretc"
+"""Where a record of `--emit fret-json` has the title and the text, for which FRET has no field."""
+_KEPT = ("project", "comments", "status", "_id", "reqid")
+_VARIABLE_FIELDS = frozenset(
+    "_id project component_name variable_name dataType idType description reqs".split()
+)
+_NOT_KEPT = frozenset({"modeldoc", "completed", "smvCompleted", "r2u2Completed", "_rev"})
+
+
+@dataclass(frozen=True, slots=True)
+class Imported:
+    """One requirement of the export."""
+
+    id: str
+    fulltext: str
+    header: Mapping[str, Any]
+    project: str
+
+
+@dataclass(frozen=True, slots=True)
+class Import:
+    """What an export becomes."""
+
+    artifacts: tuple[Artifact, ...] = ()
+    diagnostics: tuple[Diagnostic, ...] = ()
+    requirements: int = 0
+    variables: int = 0
+    mapping: Mapping[str, str] = field(default_factory=dict)
+
+
+def read_export(source: Source, columns: Mapping[str, str]) -> Import:
+    """Read FRET's JSON, or a CSV of any tool.
+
+    Args:
+        source: the file; `.csv` by its name, JSON otherwise.
+        columns: for CSV, the names of the columns `id`, `text` and `project`.
+    """
+    found = within(len(source.text), source.span(0, 0), lambda: _read(source, columns))
+    return Import((), (found,), 0, 0) if isinstance(found, Diagnostic) else found
+
+
+def _read(source: Source, columns: Mapping[str, str]) -> Import:
+    if source.name.lower().endswith(".csv"):
+        return _from_csv(source, columns)
+    return _from_json(source)
+
+
+# JSON ------------------------------------------------------------------------------------------
+
+
+def _from_json(source: Source) -> Import:
+    try:
+        data: Any = parsed(source.text).value
+    except json.JSONDecodeError as error:
+        return _failed(f"it is not JSON: {error.msg.lower()}", source, error.pos)
+    except ValueError as error:  # a number of more digits than Python reads
+        return _failed(f"it is not JSON: {error}", source)
+    except RecursionError:
+        return _failed("it is nested too deep", source)
+    parts = _parts(data)
+    if isinstance(parts, str):
+        return _failed(parts, source)
+    requirements, variables = parts
+    said: list[Diagnostic] = []
+    found = list(_requirements(requirements, source, said))
+    declared = _variables(variables, source, said)
+    files = [*_documents(found), *_glossary(declared)]
+    return Import(tuple(files), tuple(said), len(found), len(declared))
+
+
+def _parts(data: Any) -> tuple[list[Mapping[str, Any]], list[Mapping[str, Any]]] | str:
+    """The requirements and the variables of an export, old or new; or what is wrong with it."""
+    if isinstance(data, list):
+        records = _records(data)
+        if len(records) < len(data):
+            return "it is an array of something else than objects"
+        return (records, []) if records and "reqid" in records[0] else ([], records)
+    if not isinstance(data, dict):
+        return "it is neither an array nor an object"
+    if "requirement" in data:  # one requirement, as FRET's external mode exports it
+        data = {"requirements": [data["requirement"]], "variables": data.get("variables", [])}
+    if "requirements" not in data and "variables" not in data:
+        return "it has neither `requirements` nor `variables`"
+    requirements, variables = data.get("requirements", []), data.get("variables", [])
+    if isinstance(variables, dict):  # {"regular": [...], "modes": [...]}, or {"docs": [...]}
+        variables = [record for part in variables.values() for record in _records(part)]
+    return _records(requirements), _records(variables)
+
+
+def _records(value: Any) -> list[Mapping[str, Any]]:
+    if not isinstance(value, list):
+        return []
+    return [record for record in value if isinstance(record, dict)]
+
+
+def _requirements(
+    records: Iterable[Mapping[str, Any]], source: Source, said: list[Diagnostic]
+) -> Iterator[Imported]:
+    taken: set[str] = set()
+    ids: dict[tuple[str, str], str] = {}
+    kept: list[tuple[str, str, Mapping[str, Any]]] = []
+    for number, record in enumerate(records, 1):
+        reqid, fulltext = _text(record.get("reqid")), _text(record.get("fulltext")).strip()
+        if not fulltext:
+            said.append(_skipped(f"requirement {number} ({reqid or 'no id'}) has no text", source))
+            continue
+        project = _text(record.get("project"))
+        wanted = _id(reqid or f"requirement-{number}")
+        id = _unique(wanted, project, taken)
+        if id != wanted:
+            of = f" of project {project}" if project else ""
+            said.append(
+                _told(
+                    Code.RENAMED,
+                    f"requirement {number} ({reqid}{of}) is imported as `{id}`: `{wanted}` is "
+                    "taken, and capitals do not tell ids apart",
+                    source,
+                    "rename it in its project, or import each project into a folder of its own",
+                )
+            )
+        ids[project, reqid] = id
+        kept.append((id, fulltext, record))
+    for id, fulltext, record in kept:
+        project = _text(record.get("project"))
+        yield Imported(id, _unfenced(fulltext), _header(id, record, ids), project)
+        said.extend(_unread(id, fulltext))
+
+
+def _unfenced(text: str) -> str:
+    """A line `+++` would end the sentence and begin a header: it is moved in by a space."""
+    return re.sub(r"^\ufeff?(?=\+\+\+)", " ", text, flags=re.MULTILINE)
+
+
+def _header(
+    id: str, record: Mapping[str, Any], ids: Mapping[tuple[str, str], str]
+) -> dict[str, Any]:
+    """The `.fret` header; what fretc does not use goes below `fret`."""
+    kept = {key: _text(record.get(key)) for key in _KEPT}
+    if kept["reqid"] == id:
+        del kept["reqid"]
+    stated = _text(record.get("parent_reqid"))
+    named = [part.strip() for part in stated.split(",") if part.strip()]
+    parents = [ids.get((kept["project"], name), name) for name in named]
+    if ", ".join(parents) != stated:
+        kept["parent_reqid"] = stated
+    own = record.get(OWN)
+    told = (
+        {name: _text(own.get(name)) for name in ("title", "text")} if isinstance(own, dict) else {}
+    )
+    header: dict[str, Any] = {
+        "id": id,
+        **told,
+        "parents": parents,
+        "rationale": _text(record.get("rationale")),
+        "status": STATUSES.get(kept["status"], "draft"),
+        "fret": {key: value for key, value in kept.items() if value},
+    }
+    return {key: value for key, value in header.items() if value not in ("", [], {})}
+
+
+def _unread(id: str, fulltext: str) -> Iterator[Diagnostic]:
+    """The sentence is taken over as it is, and said to be no FRETish."""
+    source = Source(f"{id} (fulltext)", fulltext)
+    if re.fullmatch(r'"[^"]*"', fulltext):
+        return
+    tree = parse(source.span())
+    if isinstance(tree, Diagnostic):
+        yield Diagnostic(tree.code, tree.message, tree.span, tree.help, Severity.WARNING)
+
+
+def _id(text: str) -> str:
+    """Letters, digits, `_`, `-` and `.`: what an id may have."""
+    cleaned = re.sub(r"[^A-Za-z0-9_.-]+", "-", text).strip("-._")
+    return cleaned or "requirement"
+
+
+def _unique(id: str, project: str, taken: set[str]) -> str:
+    """Ids differ by more than capitals; FRET's differ within a project only."""
+    candidates = [id, f"{_id(project)}-{id}" if project else f"{id}-2"]
+    candidates += [f"{id}-{n}" for n in range(2, len(taken) + 3)]
+    free = next(c for c in candidates if c.lower() not in taken)
+    taken.add(free.lower())
+    return free
+
+
+def _text(value: Any) -> str:
+    """FRET writes lists and null where there is no text."""
+    text = value if isinstance(value, str) else "" if value in (None, [], {}) else str(value)
+    return text.encode("utf-8", "replace").decode()  # half of a character is none
+
+
+def _documents(requirements: Sequence[Imported]) -> Iterator[Artifact]:
+    """One `.fret` file for each project."""
+    by_project: dict[str, list[Imported]] = {}
+    for requirement in requirements:
+        by_project.setdefault(requirement.project, []).append(requirement)
+    taken: set[str] = set()
+    for project, members in sorted(by_project.items()):
+        text = "\n".join(_pair(member) for member in members)
+        name = _unique(_id(project or "requirements").lower(), "", taken)
+        yield Artifact(PurePosixPath(f"{name}.fret"), text)
+
+
+def _pair(requirement: Imported) -> str:
+    return f"+++\n{tomli_w.dumps(requirement.header)}+++\n{requirement.fulltext}\n"
+
+
+# Variables -------------------------------------------------------------------------------------
+
+
+def _variables(
+    records: Iterable[Mapping[str, Any]], source: Source, said: list[Diagnostic]
+) -> dict[str, dict[str, Any]]:
+    """`[variable.NAME]` tables: names are those of one folder, whatever project they are of.
+
+    Of several variables of a name the first stays, and what the others say else is told (F530).
+    """
+    tables: dict[str, dict[str, Any]] = {}
+    for record in records:
+        name = _text(record.get("variable_name"))
+        if not name or record.get("modeldoc") is True:
+            continue
+        table = _variable(record)
+        first = tables.setdefault(name, table)
+        if first != table:
+            said.append(_merged(name, first, table, source))
+    return tables
+
+
+def _variable(record: Mapping[str, Any]) -> dict[str, Any]:
+    """What is kept of a variable."""
+    kept = {
+        key: _plain(value)
+        for key, value in sorted(record.items())
+        if key not in _VARIABLE_FIELDS | _NOT_KEPT and value not in ("", None, [], {}, False)
+    }
+    table = {
+        "component": _text(record.get("component_name")),
+        "type": _text(record.get("dataType")),
+        "role": _text(record.get("idType")).lower(),
+        "text": _text(record.get("description")),
+        "fret": {**kept, **_of_project(record)},
+    }
+    return {key: value for key, value in table.items() if value}
+
+
+def _merged(
+    name: str, first: Mapping[str, Any], other: Mapping[str, Any], source: Source
+) -> Diagnostic:
+    lost = [
+        key for key in ("component", "type", "role", "text") if first.get(key) != other.get(key)
+    ]
+    one, two = first.get("fret", {}), other.get("fret", {})
+    lost += sorted(key for key in {*one, *two} if one.get(key) != two.get(key))
+    what = ", ".join(f"{key} `{other.get(key, two.get(key, ''))}`" for key in lost)
+    return _told(
+        Code.MERGED_VARIABLE,
+        f"a second variable `{name}` is left out: it has {what}",
+        source,
+        "import each project into a folder of its own, or make the two say the same",
+    )
+
+
+def _plain(value: Any) -> Any:
+    """As TOML has it: texts, numbers, and lists of them; what it lacks as JSON text."""
+    if isinstance(value, str):
+        return _text(value)
+    if isinstance(value, int | float):
+        return value
+    if isinstance(value, list) and None not in value:
+        return [_plain(item) for item in value]
+    return json.dumps(value)
+
+
+def _of_project(record: Mapping[str, Any]) -> dict[str, str]:
+    project = _text(record.get("project"))
+    return {"project": project} if project else {}
+
+
+def _glossary(tables: Mapping[str, Mapping[str, Any]]) -> Iterator[Artifact]:
+    if tables:
+        text = (
+            "# The variables of the requirements, as FRET's glossary has them. To audit logs,\n"
+            "# declare a [clock], and bind each variable by a [proposition.NAME] over signals.\n\n"
+        )
+        yield Artifact(
+            PurePosixPath("bindings.toml"),
+            text + tomli_w.dumps({"variable": {name: dict(t) for name, t in tables.items()}}),
+        )
+
+
+# CSV -------------------------------------------------------------------------------------------
+
+_GUESSES = {
+    "id": ("id", "reqid", "requirement id", "requirement", "req id", "identifier", "key"),
+    "text": ("fulltext", "text", "description", "requirement text", "summary", "statement"),
+    "project": ("project", "module", "component"),
+}
+
+
+def _from_csv(source: Source, columns: Mapping[str, str]) -> Import:
+    delimiter = _delimiter(source.text)
+    try:
+        reader = csv.DictReader(
+            io.StringIO(source.text), restkey="", strict=True, delimiter=delimiter
+        )
+        rows = list(reader)
+        names = [name for name in reader.fieldnames or () if name]
+    except csv.Error as error:
+        return _failed(f"it is not CSV: {error}", source)
+    if not rows:
+        return _failed(
+            "it has a header and no rows" if source.text.strip() else "it is empty", source
+        )
+    chosen = _columns(names, columns, source)
+    if isinstance(chosen, Diagnostic):
+        return Import((), (chosen,))
+    said: list[Diagnostic] = []
+    found = list(_requirements((_row(row, chosen) for row in rows), source, said))
+    return Import(tuple(_documents(found)), tuple(said), len(found), 0, chosen)
+
+
+_DELIMITERS = ",;\t"
+
+
+def _delimiter(text: str) -> str:
+    """What parts the header into the most columns: a comma, a semicolon or a tab.
+
+    Spreadsheets write semicolons where a comma parts the digits of a number. The first of these
+    wins where two part it alike.
+    """
+
+    def columns(delimiter: str) -> int:
+        try:
+            return len(next(csv.reader(io.StringIO(text), delimiter=delimiter), ()))
+        except csv.Error:
+            return 0
+
+    return max(_DELIMITERS, key=columns)
+
+
+def _columns(
+    names: Sequence[str], asked: Mapping[str, str], source: Source
+) -> dict[str, str] | Diagnostic:
+    """Which column is which: as asked for, or by its name."""
+    chosen: dict[str, str] = {}
+    for part, guesses in _GUESSES.items():
+        wanted = asked.get(part)
+        if wanted is not None and wanted not in names:
+            near = suggestion(wanted, names)
+            return _bad(
+                f"there is no column `{wanted}`",
+                source,
+                f"did you mean `{near}`?" if near else f"there are {', '.join(names)}",
+            )
+        by_name = {name.strip().lower(): name for name in reversed(names) if name}
+        guess = next((by_name[g] for g in guesses if g in by_name), None)
+        if wanted or guess:
+            chosen[part] = wanted or str(guess)
+    if "text" not in chosen:
+        return _bad(
+            "no column looks like the text of a requirement",
+            source,
+            f"name it with `--text-column`; there are {', '.join(names)}",
+        )
+    return chosen
+
+
+def _row(row: Mapping[str | None, Any], chosen: Mapping[str, str]) -> dict[str, Any]:
+    """As a FRET record; text that is no FRETish is quoted, as FRET does, and kept as free text."""
+    text = _text(row.get(chosen["text"])).strip()
+    if text and isinstance(parse(Source("row", text).span()), Diagnostic):
+        text = '"' + text.replace('"', "'") + '"'
+    used = set(chosen.values())
+    rest = [
+        f"{name}: {value}" for name, value in row.items() if name and name not in used and value
+    ]
+    return {
+        "reqid": row.get(chosen.get("id", "")),
+        "project": row.get(chosen.get("project", "")),
+        "fulltext": text,
+        "rationale": "\n".join(rest),
+    }
+
+
+# Mistakes --------------------------------------------------------------------------------------
+
+
+def _failed(why: str, source: Source, at: int = 0) -> Import:
+    return Import((), (_bad(why, source, "give it an export of FRET (JSON), or a CSV", at),))
+
+
+def _bad(why: str, source: Source, mend: str, at: int = 0) -> Diagnostic:
+    return Diagnostic(
+        Code.BAD_EXPORT,
+        f"`{source.name}` cannot be imported: {why}",
+        source.span(at, min(at + 1, len(source.text))),
+        help=mend,
+    )
+
+
+def _told(code: Code, what: str, source: Source, mend: str) -> Diagnostic:
+    return Diagnostic(code, what, Source(source.name, "").span(), mend, Severity.WARNING)
+
+
+def _skipped(why: str, source: Source) -> Diagnostic:
+    return Diagnostic(
+        Code.BAD_EXPORT,
+        f"{why}: it is left out",
+        Source(source.name, "").span(),
+        severity=Severity.WARNING,
+    )

@@ -1,0 +1,67 @@
+"""The interceptor that the bindings declare, as its core counts it: in ticks of its own timer."""
+
+from __future__ import annotations
+
+from dataclasses import asdict
+
+from fretish.bindings.canonical import clock, digest
+from fretish.bindings.declarations import (
+    Assumed,
+    Declarations,
+    Form,
+    Interception,
+    Requests,
+)
+from monitors.interceptor import Options
+
+
+def options(interception: Interception) -> Options:
+    """Durations become ticks, rounded up.
+
+    Ticks come at their own times: `hold` of n ticks ends with the n-th tick after the request, more
+    than n - 1 periods after it; a timeout of n ticks halts no later than n periods after the last
+    message.
+    """
+    if interception.form is Form.EVENT:
+        return Options(0, 0, 0, 0, event_driven=True, latching=interception.latching)
+    period = interception.period
+    return Options(
+        hold=ticks(interception.hold, period),
+        stop_timeout=ticks(interception.stop_timeout, period),
+        scan_timeout=ticks(interception.scan_timeout, period),
+        command_timeout=ticks(interception.command_timeout, period),
+        latching=interception.latching,
+    )
+
+
+ASSUMED = "[interceptor] and [assume]"
+"""What a proof about the closed loop rests on beside texts, as its evidence calls it."""
+
+
+def assumed(declarations: Declarations) -> str:
+    """SHA-256 of what the bindings say of the interceptor and of what is assumed; "" if nothing.
+
+    Their meaning counts, not how it is written; the clock does, for times are told in ticks.
+    """
+    if declarations.assumed is None:
+        return ""
+    loop = (declarations.interceptor, declarations.assumed)
+    told = [{**asdict(part), "span": None} if part else None for part in loop]
+    return digest([clock(declarations.clock), *told])
+
+
+def ticks(duration: int, period: int) -> int:
+    """How many periods cover the duration; both in nanoseconds, the period above 0."""
+    return -(-duration // period)
+
+
+def repetition(given: Assumed, tick: int) -> int | None:
+    """Ticks after which a request that does not change is sent again; None: never.
+
+    Args:
+        given: what the bindings say of the safety function.
+        tick: of its clock, nanoseconds.
+    """
+    if given.requests is Requests.LEVEL:
+        return 1
+    return ticks(given.heartbeat, tick) or None

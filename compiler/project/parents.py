@@ -1,0 +1,337 @@
+"""Requirements that live in other tools, as parents of ours: their ids, titles and texts.
+
+Each tool's own reading counts, never one that looks like it: of StrictDoc, Doorstop and
+sphinx-needs the file is read that the tool itself exports, and ReqIF by the library `reqif`. An
+export is plain data, so nothing of a stranger's document is executed; StrictDoc's library would run
+`strictdoc_config.py`, and needs some seventy packages; Doorstop's follows `!include`.
+
+Sources: StrictDoc, `strictdoc export --formats=json`; Doorstop, `doorstop export --yaml`;
+sphinx-needs, needs.json; OMG, Requirements Interchange Format (ReqIF) 1.2.
+"""
+
+from __future__ import annotations
+
+import lzma
+import zipfile
+import zlib
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+from typing import Any
+from xml.etree import ElementTree
+
+from compiler.files.checked_json import MisshapenError, plain
+from compiler.files.settings import Settings
+from compiler.files.text_files import regular
+from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.diagnostics.source import Source, Span
+from fretish.reading.limits import within
+from fretish.reading.yaml_text import loaded
+
+
+@dataclass(frozen=True, slots=True)
+class Parent:
+    """One requirement of another tool."""
+
+    id: str
+    title: str
+    text: str
+    source: str
+    """The document that it is in."""
+
+
+class UnreadableError(Exception):
+    """The document is not what its name says; the text says why."""
+
+
+def parents(settings: Settings) -> tuple[Mapping[str, Parent], tuple[Diagnostic, ...]]:
+    """Every parent in the documents of the settings, and what is wrong with these."""
+    found: dict[str, Parent] = {}
+    wrong = []
+    for name in settings.parents:
+        reading = partial(_all, settings.folder / name, name)
+        try:
+            _demand_within(settings, settings.folder / name)
+            read = within(_size(settings.folder / name), _place(settings, name), reading)
+            if isinstance(read, Diagnostic):
+                wrong.append(read)
+                continue
+            for parent in read:
+                found.setdefault(parent.id, parent)
+        except ModuleNotFoundError:
+            wrong.append(_missing(settings, name))
+        except (UnreadableError, OSError) as error:
+            why = error.strerror if isinstance(error, OSError) else str(error)
+            wrong.append(_unreadable(settings, name, why or str(error)))
+    return found, tuple(wrong)
+
+
+def _demand_within(settings: Settings, path: Path) -> None:
+    """The settings may be somebody else's: they make us read nothing outside of his project.
+
+    Raises:
+        UnreadableError: it, or a document in it, is outside.
+    """
+    for each in (path, *(sorted(path.glob("*.yml")) if path.is_dir() else ())):
+        if not settings.holds(each):
+            raise UnreadableError(_OUTSIDE)
+
+
+_OUTSIDE = "it lies outside of the project"
+
+
+def _all(path: Path, name: str) -> tuple[Parent, ...]:
+    return tuple(_read(path, name))
+
+
+def _size(path: Path) -> int:
+    """Bytes of a document, or of a folder of documents."""
+    return sum(one.stat().st_size for one in (path.glob("*.yml") if path.is_dir() else [path]))
+
+
+def _unreadable(settings: Settings, name: str, why: str) -> Diagnostic:
+    return Diagnostic(
+        Code.BAD_PARENTS,
+        f"the parents in `{name}` cannot be read: {why}",
+        _place(settings, name),
+        help="name its folder, if it is meant: `fretc --parents FOLDER COMMAND ...`"
+        if why == _OUTSIDE
+        else _EXPORTS.get(Path(name).suffix.lower(), _EXPORTS[""]),
+    )
+
+
+_EXPORTS = {
+    ".sdoc": "name what StrictDoc writes: `strictdoc export --formats=json`, then `index.json`",
+    ".yml": "name what Doorstop writes: `doorstop export --yaml all FOLDER`",
+    "": "name the JSON export of StrictDoc, the YAML export of Doorstop, needs.json, or a .reqif",
+}
+
+
+def _missing(settings: Settings, name: str) -> Diagnostic:
+    return Diagnostic(
+        Code.MISSING_EXTRA,
+        f"the parents in `{name}` need `reqif`",
+        _place(settings, name),
+        help="install the extra: pip install 'fretc[reqif]' "
+        "(in a checkout: .venv/bin/pip install '.[reqif]')",
+    )
+
+
+def _place(settings: Settings, name: str) -> Span:
+    tables = settings.tables
+    place = tables.value("tool", "fretc", "parents") if tables else Source(name, "").span()
+    at = place.text.find(name)
+    return place.part(at, at + len(name)) if at >= 0 else place
+
+
+def _read(path: Path, name: str) -> Iterator[Parent]:
+    if path.is_dir():
+        return _exports(path, name)
+    match path.suffix.lower():
+        case ".json":
+            return _json(_text(path), name)
+        case ".yml" | ".yaml":
+            return _doorstop(path, name)
+        case ".reqif":
+            return _reqif(_text(path), name)
+        case ".reqifz":
+            return _reqifz(path, name)
+        case ".sdoc":
+            raise UnreadableError("only StrictDoc itself reads its documents for certain")
+        case _:
+            raise UnreadableError("no format is known by that ending")
+
+
+_MOST = 64 * 2**20
+"""Bytes of a document; more is none of requirements."""
+
+
+def _text(path: Path) -> str:
+    with regular(path) as file:
+        return _decoded(file.read(_MOST + 1))
+
+
+def _decoded(data: bytes) -> str:
+    if len(data) > _MOST:
+        raise UnreadableError(f"it is larger than {_MOST // 2**20} MiB")
+    try:
+        return data.decode("utf-8-sig")
+    except UnicodeDecodeError:
+        raise UnreadableError("it is not UTF-8 text") from None
+
+
+def _parent(id: str, title: str | None, text: str | None, source: str) -> Parent:
+    return Parent(id.strip(), (title or "").strip(), (text or "").strip(), source)
+
+
+def _json(text: str, name: str) -> Iterator[Parent]:
+    """An export of StrictDoc, or of sphinx-needs."""
+    try:
+        data: Any = plain(text)
+    except MisshapenError as error:
+        raise UnreadableError(f"it is not JSON: {error}") from None
+    if isinstance(data, dict) and isinstance(data.get("DOCUMENTS"), list):
+        return _strictdoc(data["DOCUMENTS"], name)
+    if isinstance(data, dict) and "versions" in data:
+        return _needs(data, name)
+    raise UnreadableError("it has neither `DOCUMENTS`, as StrictDoc writes, nor `versions`")
+
+
+# StrictDoc -------------------------------------------------------------------------------------
+
+_NO_TEXT = ("UID", "MID", "TITLE", "NODES", "RELATIONS", "GRAMMAR", "OPTIONS", "STATUS", "TAGS")
+
+
+def _strictdoc(documents: Sequence[Any], name: str) -> Iterator[Parent]:
+    """Every node with a UID below the documents, of whatever type their grammars have."""
+    waiting = [node for document in reversed(documents) for node in _nodes(document)]
+    while waiting:
+        node = waiting.pop()
+        uid = node.get("UID")
+        if isinstance(uid, str):
+            yield _parent(uid, str(node.get("TITLE") or ""), _statement(node), name)
+        waiting.extend(_nodes(node))
+
+
+def _nodes(node: Any) -> list[dict[str, Any]]:
+    """What is below it, the first one last."""
+    below = node.get("NODES", []) if isinstance(node, dict) else None
+    if not isinstance(below, list) or not all(isinstance(each, dict) for each in below):
+        raise UnreadableError("its nodes are not as StrictDoc writes them")
+    return below[::-1]
+
+
+def _statement(node: Mapping[str, Any]) -> str:
+    """Its statement; all other texts of a node whose grammar has none."""
+    if "STATEMENT" in node:
+        return str(node["STATEMENT"])
+    told = {k: v for k, v in node.items() if k not in _NO_TEXT and not k.startswith("_")}
+    return "\n".join(value for value in told.values() if isinstance(value, str))
+
+
+# Doorstop --------------------------------------------------------------------------------------
+
+
+def _exports(folder: Path, name: str) -> Iterator[Parent]:
+    """Every document in a folder of exports."""
+    if any(folder.rglob(".doorstop.yml")):
+        raise UnreadableError("it holds the items; `doorstop export --yaml all FOLDER` writes them")
+    paths = sorted(folder.glob("*.yml"))
+    if not paths:
+        raise UnreadableError("no export of Doorstop (`*.yml`) is in it")
+    for path in paths:
+        yield from _doorstop(path, name)
+
+
+def _doorstop(path: Path, name: str) -> Iterator[Parent]:
+    """The items of one exported document; Doorstop exports the active ones."""
+    try:
+        found = loaded(_text(path))
+    except ValueError as error:
+        raise UnreadableError(f"{path.name} is not YAML that is read: {error}") from None
+    if not isinstance(found, dict) or not all(_is_item(item) for item in found.values()):
+        raise UnreadableError(f"{path.name} is no export of Doorstop")
+    for uid, item in found.items():
+        if item.get("active", True):
+            yield _parent(str(uid), item.get("header"), item["text"], name)
+
+
+def _is_item(item: Any) -> bool:
+    if not isinstance(item, dict) or "level" not in item:
+        return False
+    return isinstance(item.get("text"), str) and isinstance(item.get("header", ""), str)
+
+
+# sphinx-needs ----------------------------------------------------------------------------------
+
+
+def _needs(data: Mapping[str, Any], name: str) -> Iterator[Parent]:
+    """The needs of the current version."""
+    versions, current = data["versions"], data.get("current_version")
+    if not isinstance(versions, dict) or not isinstance(current, str) or current not in versions:
+        raise UnreadableError("its `current_version` is not among its `versions`")
+    version = versions[current]
+    needs = version.get("needs") if isinstance(version, dict) else None
+    if not isinstance(needs, dict):
+        raise UnreadableError("its version has no `needs`")
+    for id, need in needs.items():
+        if not isinstance(need, dict):
+            raise UnreadableError(f"`{id}` is no need")
+        content = need.get("content", need.get("description"))
+        yield _parent(id, str(need.get("title") or ""), str(content or ""), name)
+
+
+# ReqIF -----------------------------------------------------------------------------------------
+
+_LEAST_PACKED, _RATIO = 2**22, 50
+"""An archive unpacks to so many bytes, and so many more for each of its own: XML packs well."""
+_NAMES = ("ReqIF.ForeignID", "ReqIF.Name", "ReqIF.ChapterName", "ReqIF.Text", "UID", "TITLE")
+
+
+def _reqifz(path: Path, name: str) -> Iterator[Parent]:
+    try:
+        with regular(path) as file, zipfile.ZipFile(file) as archive:
+            inside = sorted(n for n in archive.namelist() if n.lower().endswith(".reqif"))
+            most = _LEAST_PACKED + _RATIO * path.stat().st_size
+            if sum(archive.getinfo(each).file_size for each in inside) > most:
+                raise UnreadableError("it unpacks to far more than such archives do")
+            texts = [_inside(archive, each) for each in inside]
+    except (zipfile.BadZipFile, zlib.error, lzma.LZMAError, EOFError, RuntimeError, ValueError):
+        texts = []  # RuntimeError: it is encrypted, or packed in a way that Python does not know
+    if not texts:
+        raise UnreadableError("it is no archive of ReqIF files")
+    for text in texts:
+        yield from _reqif(text, name)
+
+
+def _inside(archive: zipfile.ZipFile, member: str) -> str:
+    with archive.open(member) as file:
+        return _decoded(file.read(_MOST + 1))
+
+
+def _reqif(text: str, name: str) -> Iterator[Parent]:
+    """Every SPEC-OBJECT, by its foreign id where it has one, else by its identifier."""
+    from reqif.parser import ReqIFParser
+
+    if "<!DOCTYPE" in text or "<!ENTITY" in text:
+        raise UnreadableError("it declares a document type, which ReqIF has none of")
+    try:
+        content = ReqIFParser.parse_from_string(text).core_content.req_if_content
+        types, objects = content.spec_types or (), content.spec_objects or ()
+        names = {
+            definition.identifier: definition.long_name or ""
+            for kind in types
+            for definition in getattr(kind, "attribute_definitions", None) or ()
+        }
+        found = [_spec_object(each, names, name) for each in objects]
+    except Exception as error:  # the library has no exception of its own for what it cannot read
+        raise UnreadableError(f"the library `reqif` does not take it: {_first(error)}") from None
+    yield from found
+
+
+def _first(error: Exception) -> str:
+    """The first line of what it says."""
+    return next(iter(str(error).splitlines()), "") or type(error).__name__
+
+
+def _spec_object(spec: Any, names: Mapping[str, str], source: str) -> Parent:
+    values = {
+        names.get(attribute.definition_ref, ""): _value(attribute)
+        for attribute in spec.attributes or ()
+    }
+    known = {name: values[name] for name in _NAMES if name in values}
+    id = known.get("ReqIF.ForeignID") or known.get("UID") or spec.identifier
+    title = known.get("ReqIF.Name") or known.get("ReqIF.ChapterName") or known.get("TITLE")
+    text = known.get("ReqIF.Text") or "\n".join(v for n, v in values.items() if n not in _NAMES)
+    return _parent(id, title or spec.long_name, text, source)
+
+
+def _value(attribute: Any) -> str:
+    """The value as text; of XHTML without its elements."""
+    value = attribute.value
+    if isinstance(value, list):
+        return ", ".join(map(str, value))
+    if attribute.value_stripped_xhtml is None:
+        return str(value or "")
+    return "".join(ElementTree.fromstring(f"<x>{attribute.value_stripped_xhtml}</x>").itertext())

@@ -1,0 +1,342 @@
+"""`--emit ajpf-bundle`: an agent, its environment and its properties, ready for AJPF.
+
+A folder for each requirement. What is generated is checked before it is emitted, in the model of
+`compiler/agents/model.py`: the agent keeps the requirement, the controls and a mutant without the
+response do not. An agent for which that is not so is refused. Source: Dennis, Fisher, Verifiable
+autonomous systems, Cambridge University Press (2023), chapter 5 (verification environments);
+MCAPL's environment for verification.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from importlib.resources import files
+from pathlib import PurePosixPath
+from typing import Any
+
+from compiler.files.artifact import Artifact
+from compiler.files.edition import __version__
+from compiler.files.templating import render, to_json
+from compiler.files.text_files import sha256
+from compiler.formalization.rule import Rule
+from compiler.logic.claims import Evidence, NotChecked, Proved
+from compiler.targets.ajpf import properties as ajpf
+from compiler.targets.ajpf.safety_function import Drawn, Sif, sif
+from compiler.targets.target import DEFAULT, Options, Target, stem
+from fretish import expressions as e
+from fretish.bindings.declarations import Declarations, Modality
+from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
+from fretish.expressions import MIRRORED
+from fretish.reading.recursion import deep
+
+SCHEMA = "fretc-ajpf-bundle-1"
+_WEAKEN = Options(weaken=True)
+
+
+@deep
+def refusal(rule: Rule, options: Options = DEFAULT) -> Diagnostic | None:
+    """F601 for what AJPF or the agent cannot say; F614 where the agent would not do its duty."""
+    refused = ajpf.refusal(rule, options)
+    if refused is not None:
+        return refused
+    found = shown(rule, options)
+    return found if isinstance(found, Diagnostic) else _not_kept(rule, found.evidence)
+
+
+@dataclass(frozen=True, slots=True)
+class Shown:
+    """An agent, and what the model says of its texts."""
+
+    sif: Sif
+    evidence: tuple[Evidence, ...]
+
+    @property
+    def is_kept(self) -> bool:
+        """Whether all of it is as it has to be."""
+        return all(isinstance(line.result, Proved) for line in self.evidence)
+
+
+def forms(rule: Rule) -> tuple[Sif, ...] | Diagnostic:
+    """The agents that may be made: one that asks for the whole condition, and one that does not.
+
+    One where that is the same; F601 where there is none.
+    """
+    asking, bare = sif(rule), sif(rule, guarded=False)
+    if isinstance(asking, Diagnostic):
+        return asking
+    if isinstance(bare, Diagnostic) or not bare.over_responds:
+        return (asking,)
+    return (asking, bare)
+
+
+@deep
+def shown(rule: Rule, options: Options = DEFAULT, limit: int | None = None) -> Shown | Diagnostic:
+    """The first form of the agent that is shown to keep its requirement, the guarded one first.
+
+    Args:
+        rule: one that `ajpf.refusal` does not refuse, with the same options.
+        options: `weaken` counts.
+        limit: how many states are explored of each form.
+
+    Returns:
+        Where no form is shown to keep it, the guarded one; F601 where there is none at all.
+    """
+    from compiler.agents.checking import STATES, agent_evidence
+
+    known = forms(rule)
+    if isinstance(known, Diagnostic):
+        return known
+    found: list[Shown] = []
+    for made in known:
+        files = texts(rule, made, options)
+        found.append(Shown(made, agent_evidence(rule, files, made.percepts, limit or STATES)))
+        if found[-1].is_kept:
+            return found[-1]
+        if any(isinstance(line.result, NotChecked) for line in found[-1].evidence):
+            break  # an agent that responds to more has more states
+    return found[0]
+
+
+def _not_kept(rule: Rule, evidence: Sequence[Evidence]) -> Diagnostic | None:
+    for line in evidence:
+        if isinstance(line.result, Proved):
+            continue
+        result = line.result
+        why = result.reason if isinstance(result, NotChecked) else result.detail
+        return Diagnostic(
+            Code.NOT_KEPT,
+            f"the agent that would be made of {rule.id} is not shown to keep it: {why}",
+            rule.requirement.wording,
+            help="an agent needs time to react: use `eventually`, no scope or stop condition that "
+            "may come first, and few triggers",
+        )
+    return None
+
+
+@deep
+def emit(rules: Sequence[Rule], options: Options = DEFAULT) -> tuple[Artifact, ...]:
+    """A folder `<id>_ajpf/` for each rule."""
+    return tuple(artifact for rule in rules for artifact in _bundle(rule, options))
+
+
+def _bundle(rule: Rule, options: Options) -> Iterator[Artifact]:
+    found = shown(rule, options)
+    assert isinstance(found, Shown), f"{rule.id} was to be refused"
+    assert found.is_kept, f"{rule.id} was to be refused"
+    made = found.sif
+    made_of = {
+        **texts(rule, made, options),
+        **_configuration(rule, made, options),
+        "run.py": files("compiler.targets.ajpf").joinpath("runner.py").read_text(encoding="utf-8"),
+        "README.md": render("ajpf-bundle/README.md.j2", id=rule.id),
+    }
+    manifest = f"{to_json(_manifest(rule, made, options, made_of))}\n"
+    for name, text in {**made_of, "manifest.json": manifest}.items():
+        yield Artifact(PurePosixPath(package(rule)) / name, text)
+
+
+def package(rule: Rule) -> str:
+    """The name of the folder, which is that of the Java package: neither has room for more."""
+    name = re.sub(r"[^a-z0-9]+", "_", stem(rule)).strip("_")
+    return f"{name if name[:1].isalpha() else f'r{name}'}_ajpf"
+
+
+def texts(rule: Rule, made: Sif, options: Options = DEFAULT) -> dict[str, str]:
+    """What the model looks at, and what is emitted: by the names of the files."""
+    return {
+        "SIF.gwen": _agent(rule, made, made.plans, "the agent of"),
+        "SIF_mutant.gwen": _agent(
+            rule, made, made.mutant, "an agent without the response, which is to break"
+        ),
+        "SIF.psl": ajpf.text(rule, options),
+    }
+
+
+def _sentence(rule: Rule) -> str:
+    return " ".join(rule.requirement.wording.text.split())
+
+
+def _agent(rule: Rule, made: Sif, plans: Sequence[Drawn], what: str) -> str:
+    return render(
+        "ajpf-bundle/agent.gwen.j2",
+        title=f"{what} {rule.id}",
+        sentence=_sentence(rule),
+        over_responds=made.over_responds,
+        agent=made.agent,
+        plans=[_plan(plan) for plan in plans],
+    )
+
+
+def _plan(plan: Drawn) -> str:
+    guards = [f"{'' if g.positive else '~'}B {g.belief}" for g in plan.guards] or ["True"]
+    deeds = f" <- {', '.join(map(str, plan.deeds))}" if plan.deeds else ""
+    return f"{plan.event} : {{{', '.join(guards)}}}{deeds};"
+
+
+def _configuration(rule: Rule, made: Sif, options: Options) -> dict[str, str]:
+    """What MCAPL and Java PathFinder read beside."""
+    name = package(rule)
+    texts = {
+        "Env.java": render(
+            "ajpf-bundle/Env.java.j2",
+            package=name,
+            percepts=made.percepts,
+        )
+    }
+    for agent in ("SIF", "SIF_mutant"):
+        texts[f"{agent}.ail"] = render(
+            "ajpf-bundle/agent.ail.j2", title=rule.id, file=f"{agent}.gwen", package=name
+        )
+    for check in _checks(rule, options):
+        texts[check["jpf"]] = render(
+            "ajpf-bundle/check.jpf.j2", title=rule.id, ail=check["agent"], key=check["key"]
+        )
+    return texts
+
+
+def _checks(rule: Rule, options: Options) -> list[dict[str, str]]:
+    """What AJPF is asked, and what it is to say."""
+    main, *controls = ajpf.properties(rule, options)
+    return [
+        _check("requirement", main, "SIF", main.key, main.expected, main.why),
+        *(_check("control", c, "SIF", c.key, c.expected, c.why) for c in controls),
+        _check(
+            "mutant",
+            main,
+            "SIF_mutant",
+            f"{main.key}_mutant",
+            ajpf.VIOLATED,
+            "an agent without the response breaks the requirement",
+        ),
+    ]
+
+
+def _check(
+    role: str, stated: ajpf.Stated, agent: str, name: str, expected: str, why: str
+) -> dict[str, str]:
+    return {
+        "role": role,
+        "key": stated.key,
+        "agent": f"{agent}.ail",
+        "jpf": f"{name}.jpf",
+        "property": stated.text,
+        "expected": expected,
+        "why": why,
+    }
+
+
+def _manifest(rule: Rule, made: Sif, options: Options, texts: Mapping[str, str]) -> dict[str, Any]:
+    from compiler.logic import printing
+
+    return {
+        "schema": SCHEMA,
+        "fretc": __version__,
+        "requirement": rule.id,
+        "sentence": _sentence(rule),
+        "fingerprint": rule.fingerprint,
+        "formulas": {
+            "ft_infinite": printing.readable(rule.ft_infinite),
+            "ft_finite": printing.readable(rule.ft_finite),
+            "pt": printing.readable(rule.pt),
+        },
+        "weakened": ajpf.weakened(rule, options),
+        "agent": made.agent,
+        "percepts": list(made.percepts),
+        "responses": list(made.responses),
+        "released": made.released,
+        "over_responds": made.over_responds,
+        "atoms": [_atom(rule, made, name) for name in (*made.percepts, *made.responses)],
+        "checks": _checks(rule, options),
+        "files": {name: sha256(text) for name, text in sorted(texts.items())},
+    }
+
+
+def _atom(rule: Rule, made: Sif, name: str) -> dict[str, Any]:
+    declared = rule.glossary.get(name)
+    return {
+        "proposition": name,
+        "modality": str(declared.modality if declared else Modality.BELIEF),
+        "part": "percept" if name in made.percepts else "response",
+        "role": declared.role if declared else "",
+        "text": declared.text if declared else "",
+        **_binding(rule.declarations, name),
+    }
+
+
+def _binding(declarations: Declarations | None, name: str) -> dict[str, Any]:
+    """What the proposition is in messages; nothing where it is not bound."""
+    bound = declarations.propositions.get(name) if declarations else None
+    if declarations is None or bound is None:
+        return {}
+    place = bound.span.text.strip("\"'") if bound.span else ""
+    compared = list(_comparisons(declarations, bound.expression))
+    return {"expression": place, "comparisons": compared}
+
+
+def _comparisons(declarations: Declarations, expression: e.Expression) -> Iterator[dict[str, Any]]:
+    """Each comparison of a number from messages with a number that is written down."""
+    if isinstance(expression, e.Comparison):
+        left, op, right = expression.left, expression.op, expression.right
+        if isinstance(left, e.Quantity | e.Number):
+            left, op, right = right, MIRRORED.get(op, op), left
+        named = next((n.id for n in e.names(left)), "")
+        signal = declarations.signals.get(named)
+        if isinstance(right, e.Quantity | e.Number) and signal is not None:
+            yield {
+                "signal": signal.name,
+                "topic": signal.path.topic,
+                "field": ".".join(signal.path.fields),
+                "type": signal.type,
+                "comparison": op,
+                "threshold": right.digits,
+                "unit": right.unit if isinstance(right, e.Quantity) else "",
+            }
+    for part in e.children(expression):
+        yield from _comparisons(declarations, part)
+
+
+def _refuse(rule: Rule) -> Diagnostic | None:
+    return refusal(rule)
+
+
+def _refuse_weak(rule: Rule) -> Diagnostic | None:
+    return refusal(rule, _WEAKEN)
+
+
+@deep
+def remark(rule: Rule, options: Options = DEFAULT) -> Diagnostic | None:
+    """What is to be known of the properties (F605, F606, F607); else of the agent (F615)."""
+    told = ajpf.remark(rule, options)
+    found = shown(rule, options) if told is None else told
+    if not isinstance(found, Shown) or not found.sif.over_responds:
+        return told
+    return Diagnostic(
+        Code.OVER_RESPONDS,
+        f"the agent of {rule.id} responds to every event of its condition, also where the rest "
+        "of the condition does not hold",
+        rule.sentence.condition.span if rule.sentence.condition else rule.requirement.wording,
+        "percepts are believed one after the other, so that an agent which asks for the rest may "
+        "miss its trigger; where that is too often, bind the whole condition to one proposition",
+        Severity.WARNING,
+    )
+
+
+def _remark(rule: Rule) -> Diagnostic | None:
+    return remark(rule)
+
+
+def _remark_weak(rule: Rule) -> Diagnostic | None:
+    return remark(rule, _WEAKEN)
+
+
+_SUMMARY = "an agent, its environment and its properties, ready for AJPF"
+TARGET = Target(
+    "ajpf-bundle",
+    _SUMMARY,
+    emit,
+    _refuse,
+    _remark,
+    weak=Target("ajpf-bundle", _SUMMARY, emit, _refuse_weak, _remark_weak),
+)

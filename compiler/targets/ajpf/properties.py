@@ -1,0 +1,339 @@
+"""`--emit ajpf`: a property file for the AJPF model checker of MCAPL.
+
+AJPF's language is LTL without next, without past, without time: what is emitted is the next-free
+form of the sentence (`compiler/formalization/without_next.py`), and the rest is refused. Beside
+each property stand its controls, which are expected to be violated: where one holds, the property
+holds of nothing. Source: Dennis et al., Model checking agent programming languages, ASE 19 (2012);
+the property parser of MCAPL. Controls: Kupferman and Vardi, Vacuity detection in temporal model
+checking, STTT 4 (2003).
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import PurePosixPath
+from typing import Literal
+
+from compiler.agents.psl_grammar import AGENT, FUNCTOR, KEY_WORDS
+from compiler.agents.psl_printing import property_text
+from compiler.files.artifact import Artifact
+from compiler.files.templating import render
+from compiler.formalization import without_next as nextfree
+from compiler.formalization.obligation import Uninterpreted, boolean, obligation
+from compiler.formalization.rule import Rule
+from compiler.logic import formula as f
+from compiler.logic.printing import is_compound
+from compiler.targets.target import (
+    DEFAULT,
+    Options,
+    Target,
+    not_expressible,
+    stem,
+    too_long,
+)
+from fretish import syntax as s
+from fretish.bindings.declarations import Modality
+from fretish.checking import LOOK_AHEAD, LOOK_BACK, calls, conditions
+from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
+from fretish.expressions import names
+from fretish.printer import timing as printing_of
+from fretish.reading.recursion import deep
+
+HOLDS: Literal["HOLDS"] = "HOLDS"
+VIOLATED: Literal["VIOLATED"] = "VIOLATED"
+_WEAKEN = Options(weaken=True)
+_COUNTING = (s.Next, s.Within, s.For, s.After)
+"""A reasoning cycle of an agent is many states: a number of them means nothing, not even 0."""
+_MOST_LEVELS = 500
+_MONITOR = "check it with `--emit monitor`"
+
+
+_TRIGGERED = "a trigger comes; if it never does, {} demands nothing"
+_COMES = "the mode comes; if it never does, {} demands nothing"
+_ENDS = "the mode comes; if it never does, the scope of {} never ends"
+_LACKS = "the mode is not on all the time; if it is, {} demands nothing"
+_ENTERED = {
+    s.ScopeKind.IN: _COMES,
+    s.ScopeKind.ONLY_BEFORE: _COMES,
+    s.ScopeKind.NOT_IN: _LACKS,
+    s.ScopeKind.ONLY_IN: _LACKS,
+    s.ScopeKind.AFTER: "the mode comes and goes; if it never does, {} demands nothing",
+    s.ScopeKind.BEFORE: _ENDS,
+    s.ScopeKind.ONLY_AFTER: _ENDS,
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Stated:
+    """One property of a file: `key: text`, what AJPF is expected to say of it, and why."""
+
+    key: str
+    text: str
+    expected: Literal["HOLDS", "VIOLATED"]
+    why: str
+
+
+@deep
+def properties(rule: Rule, options: Options = DEFAULT) -> tuple[Stated, ...]:
+    """The requirement, and the controls that make a verdict about it mean something.
+
+    Args:
+        rule: one that `refusal` does not refuse, with the same options.
+        options: `weaken` counts.
+    """
+    formula = _formula(rule, options)
+    assert formula is not None, f"{rule.id} was to be refused"
+    key = _key(rule.id)
+    loss = weakened(rule, options) is not None
+    why = "weaker than the requirement" if loss else "the requirement"
+    return (
+        Stated(key, _text(formula, rule), HOLDS, why),
+        *(
+            Stated(f"{key}_{name}", _text(control, rule), VIOLATED, reason)
+            for name, control, reason in _controls(rule, key)
+            if not isinstance(control, f.Const)
+        ),
+    )
+
+
+def weakened(rule: Rule, options: Options = DEFAULT) -> str | None:
+    """What is lost where less is emitted than the requirement says, in words; None: nothing is."""
+    if not options.weaken or not _can_be_weakened(rule):
+        return None
+    loss = (
+        f"`{printing_of(rule.sentence.timing)}` has lost its bound: a response that comes later, "
+        "however late, satisfies it"
+    )
+    scope = rule.sentence.scope
+    if scope is None or scope.kind is s.ScopeKind.AFTER:
+        return loss
+    return f"{loss}, and so does a stretch of the scope that ends without one, however long"
+
+
+def _can_be_weakened(rule: Rule) -> bool:
+    """`within` only: without their numbers the other timings say nothing, or something else.
+
+    Nor in the `only` scopes, where the demand is that the response is missed for that long.
+    """
+    scope = rule.sentence.scope
+    negates = scope is not None and scope.kind.negates
+    return isinstance(rule.sentence.timing, s.Within) and not negates
+
+
+# What is refused --------------------------------------------------------------------------------
+
+
+@deep
+def refusal(rule: Rule, options: Options = DEFAULT) -> Diagnostic | None:
+    """F601 for the first part of the rule that AJPF's language cannot say; F604."""
+    return (
+        _refused_timing(rule, options)
+        or _refused_name(rule)
+        or _refused_form(rule, _formula(rule, options))
+    )
+
+
+def _refused_timing(rule: Rule, options: Options) -> Diagnostic | None:
+    if rule.pctl is not None:
+        return _not(rule, "the probability", "leave it out, or use a probabilistic tool")
+    for expression in conditions(rule.sentence):
+        for name in (*calls(expression), *(n.id for n in names(expression))):
+            if name in LOOK_BACK | LOOK_AHEAD:
+                mend = (
+                    "it has no past, and counts no steps ahead: make it a proposition, and bind it"
+                )
+                return _not(rule, f"`{name}`", mend)
+    timing = rule.sentence.timing
+    if not isinstance(timing, _COUNTING) or weakened(rule, options):
+        return None
+    mend = f"AJPF has no next, no past and no time; {_MONITOR}"
+    if _can_be_weakened(rule):
+        mend = (
+            "AJPF has no next, no past and no time; state the requirement with `eventually`, "
+            f"let the file say less with `--weaken`, or {_MONITOR}"
+        )
+    elif options.weaken:
+        mend = f"no weaker form of it says anything of use: {_MONITOR}"
+    return _not(rule, f"the timing `{printing_of(timing)}`", mend)
+
+
+def _refused_name(rule: Rule) -> Diagnostic | None:
+    agent = rule.sentence.component
+    if not AGENT.fullmatch(agent) or agent in KEY_WORDS:
+        mend = "begin with a letter, use letters, digits and `_` only, and no key word of AJPF"
+        return _not(rule, f"the agent name `{agent}`", mend)
+    for name in rule.propositions:
+        if is_compound(name):
+            mend = "give it a name of its own that begins with a small letter, and bind that"
+            return _not(rule, f"the proposition `{name}`", mend)
+        if not FUNCTOR.fullmatch(name):
+            mend = "begin with a small letter, and use letters, digits and `_` only"
+            return _not(rule, f"the proposition `{name}`", mend)
+    return None
+
+
+def _refused_form(rule: Rule, formula: f.Formula | None) -> Diagnostic | None:
+    if formula is None:
+        return Diagnostic(
+            Code.NOT_PROVED,
+            f"the form of {rule.id} for AJPF is not proved equal to the requirement",
+            rule.requirement.wording,
+            help=f"this is a fault of fretc: report it, and {_MONITOR}",
+        )
+    if isinstance(formula, f.Const):
+        return _not(rule, "a formula that is constant", "it says nothing")
+    long = too_long("AJPF", rule, formula)
+    if long is not None:
+        return long
+    levels = _levels(_text(formula, rule))
+    if levels > _MOST_LEVELS:
+        mend = "give parts of the expressions names of their own"
+        return _not(rule, f"{levels} parentheses within each other", mend)
+    return None
+
+
+def _not(rule: Rule, what: str, mend: str) -> Diagnostic:
+    return not_expressible("AJPF", rule, what, mend)
+
+
+def _levels(text: str) -> int:
+    level = deepest = 0
+    for character in text:
+        level += (character == "(") - (character == ")")
+        deepest = max(deepest, level)
+    return deepest
+
+
+# What is said -----------------------------------------------------------------------------------
+
+
+def _formula(rule: Rule, options: Options) -> f.Formula | None:
+    """The rule's own formula where it has no X, else its next-free form; None: not proved."""
+    meant = obligation(rule.sentence, rule.ticks or 0)
+    condition = meant.condition
+    if weakened(rule, options):
+        return nextfree.unbounded(meant) if nextfree.is_weaker(meant.scope, condition) else None
+    if nextfree.is_next_free(rule.ft_infinite):
+        return rule.ft_infinite
+    proved = nextfree.is_proved(meant.scope, condition, meant.demand.kind)
+    return nextfree.next_free(meant) if proved else None
+
+
+def _controls(rule: Rule, key: str) -> Iterator[tuple[str, f.Formula, str]]:
+    """Name, formula and reason of each control; it may be constant where an expression is."""
+    meant = obligation(rule.sentence, rule.ticks or 0)
+    response = boolean(rule.sentence.response, Uninterpreted().alone())
+    never = nextfree.never_begins(meant)
+    if never is not None:
+        entered = _TRIGGERED if meant.scope is None else _ENTERED[meant.scope]
+        why = entered if meant.condition is None else _TRIGGERED
+        yield "reach", never, why.format(key)
+    timing = rule.sentence.timing
+    negates = meant.scope is not None and meant.scope.negates
+    # What `never` forbids, an `only` scope demands outside of its mode, and the other way round: a
+    # prohibition is kept by not responding, and nothing is wrong with that.
+    if negates is isinstance(timing, s.Never):
+        reason = f"the response comes; if it never does, {key} holds without it"
+        yield "resp", f.globally(f.not_(response)), reason
+    if isinstance(timing, s.Before) and not negates:
+        reason = f"the stop condition comes; if it never does, {key} demands nothing"
+        yield "stop", f.globally(f.not_(meant.demand.stop)), reason
+
+
+def _text(formula: f.Formula, rule: Rule) -> str:
+    agent = rule.sentence.component
+
+    def spell(name: str) -> str:
+        declared = rule.glossary.get(name)
+        modality = declared.modality if declared else Modality.BELIEF
+        return f"{modality}({agent},{name})"
+
+    return property_text(formula, spell)
+
+
+def _key(id: str) -> str:
+    """The id as a key: what `target.args` cannot carry becomes `_`."""
+    return re.sub(r"[^A-Za-z0-9_.-]", "_", id)
+
+
+# What a user should know ------------------------------------------------------------------------
+
+
+def remark(rule: Rule, options: Options = DEFAULT) -> Diagnostic | None:
+    """F605, F606, F607: what AJPF's verdict will not mean, or will be in any case."""
+    loss = weakened(rule, options)
+    if loss is not None:
+        told = f"the property of {rule.id} is weaker than the requirement: {loss}"
+        return _warning(rule, Code.WEAKENED, told, "check the bound with `--emit monitor`")
+    sentence = rule.sentence
+    scope = sentence.scope.kind if sentence.scope else None
+    now = isinstance(sentence.timing, s.Immediately | s.Always | s.Until)
+    if not now or (scope is not None and scope.negates):
+        return None
+    if sentence.condition is None and scope in (None, s.ScopeKind.NOT_IN, s.ScopeKind.BEFORE):
+        return _warning(
+            rule,
+            Code.STATE_ZERO,
+            f"{rule.id} demands its response in the first state, where no percept is believed yet",
+            "make the response an initial belief, or state it with a condition and `eventually`",
+        )
+    return _warning(
+        rule,
+        Code.NO_TIME_TO_REACT,
+        f"{rule.id} demands its response in the very state of its trigger: it is false of every "
+        "agent that has to react",
+        "an agent needs some nine states from a percept to its answer: state it with `eventually`",
+    )
+
+
+def _warning(rule: Rule, code: Code, message: str, mend: str) -> Diagnostic:
+    place = rule.sentence.timing_span or rule.requirement.wording
+    return Diagnostic(code, message, place, mend, Severity.WARNING)
+
+
+@deep
+def emit(rules: Sequence[Rule], options: Options = DEFAULT) -> tuple[Artifact, ...]:
+    """`<id>.psl` for each rule: the property, its key the requirement's id, and its controls."""
+    return tuple(
+        Artifact(PurePosixPath(f"{stem(rule)}.psl"), text(rule, options)) for rule in rules
+    )
+
+
+def text(rule: Rule, options: Options = DEFAULT) -> str:
+    """The property file of one rule."""
+    return render(
+        "ajpf/properties.psl.j2",
+        id=rule.id,
+        sentence=" ".join(rule.requirement.wording.text.split()),
+        loss=weakened(rule, options),
+        properties=properties(rule, options),
+    )
+
+
+def _refuse(rule: Rule) -> Diagnostic | None:
+    return refusal(rule)
+
+
+def _refuse_weak(rule: Rule) -> Diagnostic | None:
+    return refusal(rule, _WEAKEN)
+
+
+def _remark(rule: Rule) -> Diagnostic | None:
+    return remark(rule)
+
+
+def _remark_weak(rule: Rule) -> Diagnostic | None:
+    return remark(rule, _WEAKEN)
+
+
+_SUMMARY = "a property file for the AJPF model checker"
+TARGET = Target(
+    "ajpf",
+    _SUMMARY,
+    emit,
+    _refuse,
+    _remark,
+    weak=Target("ajpf", _SUMMARY, emit, _refuse_weak, _remark_weak),
+)

@@ -1,0 +1,227 @@
+"""The safety instrumented function of one requirement: which agent reacts to its trigger.
+
+A condition in disjunctive form becomes plans: one for each event that can make it true, guarded by
+what else has to hold. The response is an action for each of its propositions, and the belief that
+it was done. Percepts come one after the other: where one of them is negated, a property sees the
+condition true between two of them, and by the time the event is planned the guard drops it. The
+form without those guards responds to every such event, also where the rest does not hold.
+One trigger with one response is released when it goes, without a guard: with one, the event of a
+trigger that comes back during the release is discarded, and the response is lost. All others are
+not released: events would come faster than they are handled. They respond once, and a guard tells
+that they have.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from compiler.agents.gwendolen import Action, Change, Deed, Guard
+from compiler.formalization.rule import Rule
+from compiler.targets.target import not_expressible
+from fretish import expressions as e
+from fretish import syntax as s
+from fretish.bindings.declarations import Modality
+from fretish.diagnostics.diagnostic import Diagnostic
+
+RESERVED = frozenset(("achieve", "perform"))
+_BUILT_IN = frozenset(
+    "sum minus div times append toString print printstate printagentstate remove_shared "
+    "assert_shared query substring".split()
+)
+"""Actions that MCAPL carries out itself, with arguments that it expects."""
+_TARGET = "an agent"
+
+
+@dataclass(frozen=True, slots=True)
+class Drawn:
+    """A plan of the agent."""
+
+    event: Change
+    guards: tuple[Guard, ...]
+    deeds: tuple[Deed, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Sif:
+    """The agent of one requirement, and what its environment draws."""
+
+    agent: str
+    percepts: tuple[str, ...]
+    """Propositions of the scope, the condition and the stop condition, in this order."""
+    responses: tuple[str, ...]
+    plans: tuple[Drawn, ...]
+    mutant: tuple[Drawn, ...]
+    """The plans without what makes the response true."""
+    released: bool
+    """Whether the response is taken back when the trigger goes."""
+    over_responds: bool
+    """Whether plans do not ask for the rest of the condition, and so respond without it too."""
+
+
+Term = tuple[tuple[str, bool], ...]
+"""A conjunction: propositions, each true or false."""
+
+
+def sif(rule: Rule, guarded: bool = True) -> Sif | Diagnostic:
+    """The agent that reacts as the rule demands; or F601 for what no such agent can be made of.
+
+    Args:
+        rule: the requirement.
+        guarded: whether plans ask for the rest of the condition, where there is any.
+    """
+    sentence = rule.sentence
+    if sentence.condition is None:
+        mend = "an agent reacts to an event: state what triggers it, `whenever ...`"
+        return not_expressible(_TARGET, rule, "a sentence without a condition", mend)
+    terms = _terms(rule, sentence.condition.expression)
+    if isinstance(terms, Diagnostic):
+        return terms
+    responses = _responses(rule)
+    if isinstance(responses, Diagnostic):
+        return responses
+    percepts = _percepts(sentence)
+    wrong = _wrong_name(rule, percepts, responses)
+    if wrong is not None:
+        return wrong
+    believed = [name for name in responses if _is_belief(rule, name)]
+    released = len(terms) == len(terms[0]) == len(responses) == len(believed) == 1
+    answer = tuple(deed for name in responses for deed in _answer(rule, name))
+    spoilt = tuple(Action(_action(rule, name)) for name in believed)
+    last = Guard(False, believed[-1]) if believed and not released else None
+    plans, mutant = (
+        (
+            *_reactions(terms if guarded else _alone(terms), deeds, last),
+            *(_releases(terms, responses) if released else ()),
+        )
+        for deeds in (answer, spoilt)
+    )
+    bare = not guarded and terms != _alone(terms)
+    return Sif(sentence.component, percepts, responses, plans, mutant, released, bare)
+
+
+def _terms(rule: Rule, condition: e.Expression) -> tuple[Term, ...] | Diagnostic:
+    """The condition as a disjunction; each term has a proposition that has to be true."""
+    parts = condition.args if isinstance(condition, e.Or) else (condition,)
+    terms: list[Term] = []
+    for part in parts:
+        literals = [_literal(x) for x in (part.args if isinstance(part, e.And) else (part,))]
+        term = tuple(literal for literal in literals if literal is not None)
+        if len(term) < len(literals):
+            mend = "write it as `a`, `a & b` or `(a & !b) | c`, or give its parts names"
+            return not_expressible(_TARGET, rule, "the shape of the condition", mend)
+        if not any(positive for _, positive in term):
+            mend = "an absence at the start raises no event: name the opposite, and bind that"
+            return not_expressible(_TARGET, rule, "a condition that only negates", mend)
+        terms.append(term)
+    return tuple(terms)
+
+
+def _alone(terms: tuple[Term, ...]) -> tuple[Term, ...]:
+    """Each literal as a term of its own."""
+    return tuple(dict.fromkeys((literal,) for term in terms for literal in term))
+
+
+def _literal(expression: e.Expression) -> tuple[str, bool] | None:
+    match expression:
+        case e.Name(id):
+            return id, True
+        case e.Not(e.Name(id)):
+            return id, False
+        case _:
+            return None
+
+
+def _responses(rule: Rule) -> tuple[str, ...] | Diagnostic:
+    response = rule.sentence.response
+    parts = response.args if isinstance(response, e.And) else (response,)
+    found = [part.id for part in parts if isinstance(part, e.Name)]
+    if len(found) == len(parts):
+        return tuple(dict.fromkeys(found))
+    mend = "an agent does things: state what is to be so, as `a` or `a & b`"
+    return not_expressible(_TARGET, rule, "the shape of the response", mend)
+
+
+def _percepts(sentence: s.Sentence) -> tuple[str, ...]:
+    """What is drawn freely: everything that says when, and nothing that says what."""
+    assert sentence.condition is not None
+    timing = sentence.timing
+    said = [
+        *([sentence.scope.mode] if sentence.scope else []),
+        sentence.condition.expression,
+        *([timing.stop] if isinstance(timing, s.Until | s.Before) else []),
+    ]
+    return tuple(dict.fromkeys(name.id for part in said for name in e.names(part)))
+
+
+def _wrong_name(
+    rule: Rule, percepts: tuple[str, ...], responses: tuple[str, ...]
+) -> Diagnostic | None:
+    for name in percepts:
+        if name in responses:
+            mend = "an environment that shows the response verifies any agent: use two names"
+            return not_expressible(_TARGET, rule, f"`{name}` as trigger and response", mend)
+        if _modality(rule, name) is not Modality.BELIEF:
+            mend = 'the environment shows it: leave its `modality`, or make it "B"'
+            return not_expressible(_TARGET, rule, f"the trigger `{name}`, not a belief,", mend)
+    for name in responses:
+        if _modality(rule, name) not in (Modality.BELIEF, Modality.DONE):
+            mend = 'an agent brings about a belief ("B") or does an action ("D")'
+            return not_expressible(_TARGET, rule, f"the response `{name}`, neither,", mend)
+        action = name if _modality(rule, name) is Modality.DONE else _action(rule, name)
+        if action in _BUILT_IN or action in RESERVED:
+            mend = "MCAPL has an action or a word of that name: use another"
+            return not_expressible(_TARGET, rule, f"the action `{action}`", mend)
+    reserved = next((n for n in (*percepts, *responses) if n in RESERVED), None)
+    if reserved is None:
+        return None
+    mend = "it is a reserved word of Gwendolen: use another"
+    return not_expressible(_TARGET, rule, f"the name `{reserved}`", mend)
+
+
+def _modality(rule: Rule, name: str) -> Modality:
+    declared = rule.glossary.get(name)
+    return declared.modality if declared else Modality.BELIEF
+
+
+def _is_belief(rule: Rule, *names: str) -> bool:
+    return all(_modality(rule, name) is Modality.BELIEF for name in names)
+
+
+def _answer(rule: Rule, name: str) -> tuple[Deed, ...]:
+    """An action, and the belief that it was done; the action itself where that is what is meant."""
+    if not _is_belief(rule, name):
+        return (Action(name),)
+    return Action(_action(rule, name)), Change("+", name)
+
+
+def _action(rule: Rule, name: str) -> str:
+    """What the agent does to make it true, as the bindings call it."""
+    declared = rule.glossary.get(name)
+    return (declared.action if declared else "") or f"do_{name}"
+
+
+def _reactions(
+    terms: tuple[Term, ...], answer: tuple[Deed, ...], last: Guard | None
+) -> tuple[Drawn, ...]:
+    """A plan for each event that can make a term true; `last` tells that it was answered."""
+    plans = [
+        Drawn(
+            Change("+" if positive else "-", name),
+            (
+                *(Guard(value, other) for other, value in term if other != name),
+                *([last] if last else []),
+            ),
+            answer,
+        )
+        for term in terms
+        for name, positive in term
+    ]
+    return tuple(dict.fromkeys(plans))
+
+
+def _releases(terms: tuple[Term, ...], responses: tuple[str, ...]) -> tuple[Drawn, ...]:
+    """The only response is taken back when the only trigger goes."""
+    (((trigger, _),),) = terms
+    (response,) = responses
+    deeds = (Action(f"undo_{response}"), Change("-", response))
+    return (Drawn(Change("-", trigger), (), deeds),)

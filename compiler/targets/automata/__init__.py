@@ -1,0 +1,1 @@
+"""Files that show the reference automaton: HOA, DOT, SMV."""

@@ -1,0 +1,198 @@
+"""The automaton of a sentence with its expressions on the edges, for tools and for pictures.
+
+States that decide become one each: `violated`, from which nothing satisfies the sentence, and
+`satisfied`, from which nothing violates it. So a run enters them at the first tick that decides.
+Source of the verdicts: Bauer, Leucker, Schallhart, Runtime verification for LTL and TLTL, TOSEM
+20 (2011).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from functools import lru_cache
+
+from compiler.formalization.letters import occurring, parts
+from compiler.formalization.obligation import Kind, obligation
+from compiler.formalization.reference import (
+    BROKEN,
+    Automaton,
+    Letter,
+    Phase,
+    State,
+    Template,
+    accepting,
+    explore,
+    template,
+)
+from compiler.formalization.rule import Rule
+from compiler.logic import formula as f
+from compiler.logic.implicants import Term, cover
+from fretish.reading.recursion import deep
+from fretish.syntax import ScopeKind
+
+MOST_STATES = 100_000
+"""A larger automaton is not written: no tool would read it."""
+PLACES = ("mode", "condition", "response", "stop")
+"""What the places of a letter are called."""
+
+
+@dataclass(frozen=True, slots=True)
+class Chart:
+    """Deterministic, and complete over the letters that occur; the start comes first."""
+
+    template: Template
+    inputs: Mapping[int, f.Formula]
+    """The expressions that the sentence has, by their place in a letter."""
+    letters: tuple[Letter, ...]
+    """Those that can occur, and perhaps more, which no valuation of the propositions has."""
+    states: tuple[State, ...]
+    """Those that have not decided."""
+    moves: tuple[tuple[int, ...], ...]
+    """For each of these states and each letter: the index of the next state, which may be one of
+    the two below."""
+    start: int
+
+    @property
+    def violated(self) -> int:
+        """The index of the state from which nothing satisfies the sentence."""
+        return len(self.states)
+
+    @property
+    def satisfied(self) -> int:
+        """The index of the state from which nothing violates the sentence."""
+        return len(self.states) + 1
+
+    def accepts(self, index: int) -> bool:
+        """Büchi acceptance: an infinite run satisfies the sentence by such states for ever."""
+        if index >= len(self.states):
+            return index == self.satisfied
+        return accepting(self.template, self.states[index])
+
+    def has(self, index: int) -> bool:
+        """Whether the state can be reached."""
+        return index in {self.start, *(after for row in self.moves for after in row)}
+
+    def guard(self, letters: Iterable[Letter]) -> list[Term]:
+        """The letters as conjunctions over the places of `inputs`; an empty one is true."""
+        chosen = set(letters)
+        places = tuple(self.inputs)
+
+        def vectors(some: Iterable[Letter]) -> list[tuple[bool, ...]]:
+            return sorted(tuple(letter[place] for place in places) for letter in some)
+
+        terms = cover(vectors(chosen), vectors(set(self.letters) - chosen))
+        return [{places[i]: value for i, value in term.items()} for term in terms]
+
+
+@deep
+def chart(rule: Rule) -> Chart:
+    """The automaton of a rule.
+
+    Raises:
+        TooManyStatesError: it has more than `MOST_STATES` states.
+    """
+    automaton = explored(rule)
+    kept = [i for i, verdict in enumerate(automaton.verdicts) if verdict == "pending"]
+    numbers = {old: new for new, old in enumerate(kept)}
+    numbers[BROKEN] = len(kept)
+    for index, verdict in enumerate(automaton.verdicts):
+        if verdict != "pending":
+            numbers[index] = len(kept) + (verdict == "satisfied")
+    return Chart(
+        automaton.template,
+        {i: part for i, part in enumerate(parts(rule.sentence)) if part is not None},
+        automaton.letters,
+        tuple(automaton.states[i] for i in kept),
+        tuple(tuple(numbers[after] for after in automaton.moves[i]) for i in kept),
+        numbers[0],
+    )
+
+
+@deep
+def explored(rule: Rule) -> Automaton:
+    """The automaton of a rule over the letters that can occur.
+
+    Raises:
+        TooManyStatesError: it has more than `MOST_STATES`.
+    """
+    kind = template(rule.sentence, rule.ticks or 0)
+    return _cached(kind, occurring(rule.sentence))
+
+
+@lru_cache(maxsize=4)  # a rule is asked whether it is refused before it is emitted
+def _cached(kind: Template, letters: tuple[Letter, ...]) -> Automaton:
+    return explore(kind, letters, MOST_STATES)
+
+
+@deep
+def kind(rule: Rule) -> Kind:
+    """What is demanded; `only` scopes demand the dual of their timing."""
+    return obligation(rule.sentence, rule.ticks or 0).demand.kind
+
+
+def words(demanded: Kind, template: Template, state: State) -> tuple[str, ...]:
+    """What a state remembers, for people; the last but `condition was true` is of its counter.
+
+    Args:
+        demanded: what `kind` says of the rule.
+        template: of its sentence.
+        state: one that has not decided.
+    """
+    enforced = state.phase in (Phase.INSIDE, Phase.LAST_RUN)
+    said = []
+    if state.phase is Phase.OUTSIDE and template.scope in _FROM_THE_START:
+        said.append(START)
+    elif template.scope is not None:
+        said.append(_PHASES[state.phase])
+    if enforced:
+        idle = "waiting" if template.condition else "nothing more is owed"
+        said.append(_counted(demanded, state.counted) if state.counted else idle)
+    if state.held:
+        said.append("condition was true")
+    return tuple(said)
+
+
+START = "start"
+"""What the state before the first tick is called, where no other tick leads to it."""
+_FROM_THE_START = (None, ScopeKind.BEFORE, ScopeKind.ONLY_AFTER)
+"""The scopes in which no tick lies before an interval."""
+_PHASES: Mapping[Phase, str] = {
+    Phase.OUTSIDE: "not enforced",
+    Phase.FIRST_RUN: "not enforced, in the first run of the mode",
+    Phase.INSIDE: "enforced",
+    Phase.LAST_RUN: "enforced, in the first run of the mode",
+    Phase.OVER: "not enforced any more",
+}
+
+COUNTING = (Kind.WITHIN, Kind.FOR, Kind.AFTER, Kind.NOT_AFTER)
+"""The demands whose counter counts ticks."""
+
+
+def _counted(demanded: Kind, count: int) -> str:
+    match demanded:
+        case Kind.IMMEDIATELY:
+            raise AssertionError("it counts nothing")
+        case Kind.NEXT:
+            return "due at the next tick"
+        case Kind.FINALLY:
+            return f"due at the end, {'held' if count < 0 else 'missing'} at this tick"
+        case Kind.ALWAYS:
+            return "owed for ever"
+        case Kind.UNTIL:
+            return "owed until the stop condition"
+        case Kind.FOR:
+            return f"owed for {_ticks(count)} more"
+        case Kind.EVENTUALLY | Kind.BEFORE:
+            return "open"
+        case Kind.WITHIN:
+            return f"open for {_ticks(count)}"
+        case Kind.AFTER:
+            return f"open {'twice ' if count < 0 else ''}for {_ticks(abs(count))}"
+        case Kind.NOT_AFTER:
+            ago = [str(k + 1) for k in range(count.bit_length()) if count >> k & 1]
+            return f"open since {', '.join(ago)} ticks ago"
+
+
+def _ticks(count: int) -> str:
+    return "1 tick" if count == 1 else f"{count} ticks"

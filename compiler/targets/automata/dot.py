@@ -1,0 +1,121 @@
+"""`--emit dot`: the automaton of a requirement as a picture, for Graphviz.
+
+What a state is, is said in words and by its shape, never by a colour alone. States that count ticks
+are one node (`compiler.targets.automata.folding`). Source of the language: Graphviz, The DOT
+Language.
+"""
+
+from __future__ import annotations
+
+import textwrap
+from collections.abc import Iterable, Mapping, Sequence
+from pathlib import PurePosixPath
+
+from compiler.files.artifact import Artifact
+from compiler.files.templating import render
+from compiler.formalization.record import wording
+from compiler.formalization.rule import Rule
+from compiler.logic import formula as f
+from compiler.logic import printing
+from compiler.logic.implicants import Term
+from compiler.targets.automata.chart import PLACES, chart
+from compiler.targets.automata.folding import OPEN, SATISFIED, VIOLATED, Edge, Node, folded
+from compiler.targets.automata.refusals import refusal
+from compiler.targets.target import DEFAULT, Options, Target, stem
+from fretish.diagnostics.diagnostic import Diagnostic
+from fretish.meaning import meaning
+from fretish.reading.recursion import deep
+
+_LONGEST = 32
+"""Characters of an expression that stands on edges; a longer one is named, and told below."""
+_WIDTH = 76
+"""Characters of a line below the picture."""
+
+
+def refuse(rule: Rule) -> Diagnostic | None:
+    """F601 for a probability or a temporal predicate, F670 for too many states."""
+    return refusal(rule, "DOT")
+
+
+@deep
+def emit(rules: Sequence[Rule], options: Options = DEFAULT) -> tuple[Artifact, ...]:
+    """`<id>.dot` for each rule."""
+    return tuple(Artifact(PurePosixPath(f"{stem(rule)}.dot"), _text(rule)) for rule in rules)
+
+
+def _text(rule: Rule) -> str:
+    picture = folded(rule)
+    automaton = chart(rule)
+    inputs, guard = automaton.inputs, automaton.guard
+    long = {i: part for i, part in inputs.items() if len(printing.readable(part)) > _LONGEST}
+    spelt = {i: f.Atom(PLACES[i]) if i in long else part for i, part in inputs.items()}
+    return render(
+        "dot/automaton.dot.j2",
+        id=rule.id,
+        title=_lines(_caption(rule, long, picture.nodes)),
+        start=picture.start,
+        nodes=[(node.name, _lines(_said(node)), _look(node)) for node in picture.nodes],
+        edges=[
+            (edge.source, edge.target, _lines(_told(edge, guard(edge.letters), spelt)))
+            for edge in picture.edges
+        ],
+    )
+
+
+def _caption(rule: Rule, long: Mapping[int, f.Formula], nodes: Sequence[Node]) -> list[str]:
+    said = [f"{rule.id}: {wording(rule.requirement)}"]
+    said.append(meaning(rule.sentence, rule.ticks, rule.clock))
+    said.extend(f"{PLACES[i]}: {printing.readable(part)}" for i, part in long.items())
+    if any(node.counts for node in nodes):
+        said.append("On edges: [a condition on k], / what k becomes.")
+    if any(not node.accepts and node.name != VIOLATED for node in nodes):
+        said.append("A run that stays among dashed states for ever violates the requirement.")
+    return [line for text in said for line in textwrap.wrap(" ".join(text.split()), _WIDTH)]
+
+
+def _said(node: Node) -> list[str]:
+    if node.counts is None:
+        return list(node.words)
+    low, high = node.counts
+    counts = f"k = {low}" if low == high else f"k = {low}..{high} ticks"
+    return [f"{word}: {counts}" if word in OPEN else word for word in node.words]
+
+
+def _look(node: Node) -> str:
+    if node.name == VIOLATED:
+        return "shape=doubleoctagon"
+    if node.name == SATISFIED:
+        return "shape=doublecircle"
+    shape = "shape=box" if node.counts else "shape=ellipse"
+    return shape if node.accepts else f"{shape}, style=dashed"
+
+
+def _told(edge: Edge, terms: Sequence[Term], spelt: Mapping[int, f.Formula]) -> list[str]:
+    said = [_expression(terms, spelt)]
+    if edge.condition:
+        said.append(f"[{edge.condition}]")
+    if edge.change:
+        said.append(f"/ {edge.change}")
+    return said
+
+
+def _expression(terms: Sequence[Term], spelt: Mapping[int, f.Formula]) -> str:
+    return printing.readable(
+        f.or_(
+            *(
+                f.and_(
+                    *(spelt[i] if value else f.not_(spelt[i]) for i, value in sorted(term.items()))
+                )
+                for term in terms
+            )
+        )
+    )
+
+
+def _lines(texts: Iterable[str]) -> str:
+    """A label in double quotes, one text a line; none of it is a command of Graphviz."""
+    escaped = (text.replace("\\", "\\\\").replace('"', '\\"') for text in texts)
+    return '"' + r"\n".join(escaped) + '"'
+
+
+TARGET = Target("dot", "a picture of the automaton, for Graphviz", emit, refuse)

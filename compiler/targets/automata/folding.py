@@ -1,0 +1,197 @@
+"""A chart that stays small: states that differ in what they have counted are one node.
+
+A bound of 1 000 ticks is one node `open: k = 1..1000` with conditions on k, and changes of k, on
+its edges, so that a person can read it, and lose nothing.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
+
+from compiler.formalization.obligation import Kind
+from compiler.formalization.reference import Letter, State
+from compiler.formalization.rule import Rule
+from compiler.targets.automata.chart import COUNTING, START, Chart, chart, kind, words
+
+VIOLATED, SATISFIED = "violated", "satisfied"
+OPEN = ("open", "open twice", "owed")
+"""The words of nodes that count."""
+
+
+@dataclass(frozen=True, slots=True)
+class Node:
+    """States that differ in their counter only."""
+
+    name: str
+    words: tuple[str, ...]
+    counts: tuple[int, int] | None
+    """The least and the greatest k; None where nothing is counted."""
+    accepts: bool
+    """A run may stay here for ever."""
+
+
+@dataclass(frozen=True, slots=True)
+class Edge:
+    """From all states of a node for which the condition holds."""
+
+    source: str
+    target: str
+    letters: frozenset[Letter]
+    """Of mode, condition, response and stop condition."""
+    condition: str = ""
+    """On k, or on triggers of the past; empty: always."""
+    change: str = ""
+    """Of k; empty where the target counts nothing, or k stays."""
+
+
+@dataclass(frozen=True, slots=True)
+class Folded:
+    """Deterministic, as the chart is; what has decided has no edges."""
+
+    nodes: tuple[Node, ...]
+    edges: tuple[Edge, ...]
+    start: str
+
+
+def folded(rule: Rule) -> Folded:
+    """The chart of a rule, folded; a start that does as another node does is that node.
+
+    Raises:
+        TooManyStatesError: the automaton has more than `chart.MOST_STATES` states.
+    """
+    return _without_twin(_Folding(rule, chart(rule)).result())
+
+
+class _Folding:
+    def __init__(self, rule: Rule, unfolded: Chart) -> None:
+        self.chart = unfolded
+        self.demanded = kind(rule)
+        self.scoped = rule.sentence.scope is not None
+        self.ticks = unfolded.template.ticks
+        self.registers = self.demanded is Kind.NOT_AFTER and rule.sentence.condition is not None
+        self.groups: dict[object, list[int]] = {}
+        for index, state in enumerate(unfolded.states):
+            self.groups.setdefault(self._key(index, state), []).append(index)
+        self.names = {
+            index: f"s{number}"
+            for number, members in enumerate(self.groups.values())
+            for index in members
+        }
+        self.names |= {unfolded.violated: VIOLATED, unfolded.satisfied: SATISFIED}
+
+    def _key(self, index: int, state: State) -> object:
+        if index == self.chart.start:
+            return "start"
+        counted = state.counted
+        if self.registers:
+            counted = 0  # its triggers are told by conditions on edges
+        elif self.demanded in COUNTING:
+            counted = (counted > 0) - (counted < 0)
+        return state.phase, state.held, counted
+
+    def result(self) -> Folded:
+        edges = [
+            edge
+            for members in self.groups.values()
+            for edge in self._edges(self.names[members[0]], members)
+        ]
+        nodes = [self._node(members) for members in self.groups.values()]
+        for index, name in ((self.chart.violated, VIOLATED), (self.chart.satisfied, SATISFIED)):
+            if self.chart.has(index):
+                nodes.append(Node(name, (name,), None, name == SATISFIED))
+        return Folded(tuple(nodes), tuple(edges), self.names[self.chart.start])
+
+    def _count(self, index: int) -> int | None:
+        """What a state has counted: k ticks, or the register of its triggers."""
+        if index >= len(self.chart.states):
+            return None
+        counted = self.chart.states[index].counted
+        if self.registers:
+            return counted
+        if self.demanded not in COUNTING or counted == 0:
+            return None
+        if self.demanded is Kind.NOT_AFTER:
+            return counted.bit_length()
+        return abs(counted)
+
+    def _node(self, members: Sequence[int]) -> Node:
+        state = self.chart.states[members[0]]
+        said = list(words(self.demanded, self.chart.template, state))
+        counts = sorted(k for index in members if (k := self._count(index)) is not None)
+        if counts and not self.registers:  # the ticks of one state are k of all of them
+            word = 1 if self.scoped else 0
+            said[word] = "owed" if self.demanded is Kind.FOR else OPEN[state.counted < 0]
+        return Node(
+            self.names[members[0]],
+            tuple(said),
+            (counts[0], counts[-1]) if counts and not self.registers else None,
+            all(self.chart.accepts(index) for index in members),
+        )
+
+    def _edges(self, source: str, members: Sequence[int]) -> Iterator[Edge]:
+        """Letters that lead to the same node, under the same condition, are one edge."""
+        found: dict[tuple[str, str, str], list[Letter]] = {}
+        for place, letter in enumerate(self.chart.letters):
+            targets: dict[str, list[tuple[int, int]]] = {}
+            for index in members:
+                after = self.chart.moves[index][place]
+                targets.setdefault(self.names[after], []).append((index, after))
+            for target, moves in targets.items():
+                condition = self._condition([index for index, _ in moves], members)
+                key = (target, condition, self._change(moves))
+                found.setdefault(key, []).append(letter)
+        for (target, condition, change), letters in found.items():
+            yield Edge(source, target, frozenset(letters), condition, change)
+
+    def _condition(self, chosen: Sequence[int], members: Sequence[int]) -> str:
+        if len(chosen) == len(members):
+            return ""
+        some = sorted(k for index in chosen if (k := self._count(index)) is not None)
+        every = sorted(k for index in members if (k := self._count(index)) is not None)
+        if self.registers:
+            due = {k >> self.ticks & 1 for k in some}
+            assert len(due) == 1, "the trigger of n + 1 ticks ago decides"
+            word = "an" if due == {1} else "no"
+            return f"{word} unanswered trigger {_ago(self.ticks + 1)}"
+        assert some in (every[: len(some)], every[-len(some) :]), "one end of the count decides"
+        if len(some) == 1:
+            return f"k = {some[0]}"
+        return f"k <= {some[-1]}" if some[0] == every[0] else f"k >= {some[0]}"
+
+    def _change(self, moves: Iterable[tuple[int, int]]) -> str:
+        if self.registers:
+            return ""
+        changes = {(self._count(index), self._count(after)) for index, after in moves}
+        after = {k for _, k in changes}
+        if after == {None}:
+            return ""
+        if len(after) == 1:
+            return f"k := {after.pop()}"
+        steps = {k - before for before, k in changes if before is not None and k is not None}
+        assert len(steps) == 1, "all counters go the same way"
+        step = steps.pop()
+        return "" if step == 0 else f"k := k {'+' if step > 0 else '-'} {abs(step)}"
+
+
+def _ago(ticks: int) -> str:
+    return "1 tick ago" if ticks == 1 else f"{ticks} ticks ago"
+
+
+def _without_twin(whole: Folded) -> Folded:
+    """Without the start, where another node accepts as it does and has the same edges."""
+    by_name = {node.name: node for node in whole.nodes}
+    start = by_name[whole.start]
+    if start.words != (START,):
+        return whole
+    for node in whole.nodes:
+        same = node is not start and node.counts is None and node.accepts is start.accepts
+        if same and _leaving(whole, start.name) == _leaving(whole, node.name):
+            nodes = tuple(other for other in whole.nodes if other is not start)
+            edges = tuple(edge for edge in whole.edges if edge.source != start.name)
+            return Folded(nodes, edges, node.name)
+    return whole
+
+
+def _leaving(whole: Folded, name: str) -> set[Edge]:
+    return {replace(edge, source="") for edge in whole.edges if edge.source == name}

@@ -1,0 +1,163 @@
+"""`--emit hoa`: the infinite traces of a requirement, as an automaton in the HOA format.
+
+The automaton is that of the definition (`compiler.formalization.reference`), never a translated
+formula: a bound of n ticks is some n states. It is deterministic and complete; a run that is lost
+ends in a sink that does not accept. What counts is Büchi acceptance, which is enough for every
+sentence: a demand without a deadline is one thing that has to come again and again. Source: Babiak
+et al., The Hanoi Omega-Automata Format, CAV 2015, and its specification, version 1.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from pathlib import PurePosixPath
+
+from compiler.files.artifact import Artifact
+from compiler.files.edition import __version__
+from compiler.files.templating import render
+from compiler.formalization.record import wording
+from compiler.formalization.reference import Letter
+from compiler.formalization.rule import Rule
+from compiler.logic import formula as f
+from compiler.logic import printing
+from compiler.logic.implicants import Term
+from compiler.targets.automata.chart import PLACES, Chart, chart, kind, words
+from compiler.targets.automata.refusals import refusal
+from compiler.targets.target import DEFAULT, Options, Target, stem
+from fretish.diagnostics.diagnostic import Diagnostic
+from fretish.reading.recursion import deep
+
+
+def refuse(rule: Rule) -> Diagnostic | None:
+    """F601 for a probability or a temporal predicate, F670 for too many states."""
+    return refusal(rule, "HOA")
+
+
+@deep
+def emit(rules: Sequence[Rule], options: Options = DEFAULT) -> tuple[Artifact, ...]:
+    """`<id>.hoa` for each rule."""
+    return tuple(Artifact(PurePosixPath(f"{stem(rule)}.hoa"), _text(rule)) for rule in rules)
+
+
+def _text(rule: Rule) -> str:
+    automaton = chart(rule)
+    atoms = tuple(
+        dict.fromkeys(name for part in automaton.inputs.values() for name in f.atoms(part))
+    )
+    numbers = _numbers(automaton)
+    rejecting = [old for old in numbers if not automaton.accepts(old)]
+    return render(
+        "hoa/automaton.hoa.j2",
+        id=rule.id,
+        version=__version__,
+        sentence=_comment(wording(rule.requirement)),
+        propositions=[printing.readable(f.Atom(name)) for name in atoms],
+        buchi=bool(rejecting),
+        # Then no cycle has both accepting and rejecting states.
+        weak=set(rejecting) <= {automaton.violated},
+        aliases=_Aliases(atoms).of(automaton.inputs),
+        start=numbers[automaton.start],
+        states=list(_states(rule, automaton, numbers)),
+    )
+
+
+def _comment(text: str) -> str:
+    """Without the marks that begin and end comments, which nest."""
+    return " ".join(text.split()).replace("*/", "* /").replace("/*", "/ *")
+
+
+def _numbers(automaton: Chart) -> dict[int, int]:
+    """The states that can be reached, numbered without gaps."""
+    deciding = [i for i in (automaton.violated, automaton.satisfied) if automaton.has(i)]
+    return {old: new for new, old in enumerate([*range(len(automaton.states)), *deciding])}
+
+
+def _states(
+    rule: Rule, automaton: Chart, numbers: Mapping[int, int]
+) -> Iterator[tuple[int, str, bool, list[tuple[str, int]]]]:
+    """Number, name, whether it accepts, and edges of each state."""
+    demanded = kind(rule)
+    known: dict[tuple[Letter, ...], str] = {}
+    for index, row in enumerate(automaton.moves):
+        targets: dict[int, list[Letter]] = {}
+        for letter, after in zip(automaton.letters, row, strict=True):
+            targets.setdefault(after, []).append(letter)
+        edges = []
+        for after, letters in targets.items():
+            key = tuple(letters)
+            if key not in known:
+                known[key] = _label(automaton.guard(letters))
+            edges.append((known[key], numbers[after]))
+        name = ", ".join(words(demanded, automaton.template, automaton.states[index]))
+        yield numbers[index], name, automaton.accepts(index), edges
+    for index, name in ((automaton.violated, "violated"), (automaton.satisfied, "satisfied")):
+        if index in numbers:
+            accepts = automaton.accepts(index)
+            yield numbers[index], name, accepts, [("t", numbers[index])]
+
+
+def _label(terms: Iterable[Term]) -> str:
+    """Over the aliases: `@condition & !@response | @stop`."""
+    return " | ".join(
+        " & ".join(f"{'' if value else '!'}@{PLACES[i]}" for i, value in sorted(term.items()))
+        or "t"
+        for term in terms
+    )
+
+
+class _Aliases:
+    """Definitions of the expressions, over the numbers of propositions.
+
+    HOA has neither implication nor equivalence. What these would need twice gets an alias of its
+    own, so that a text is as long as its formula.
+    """
+
+    def __init__(self, atoms: Sequence[str]) -> None:
+        self._numbers = {name: str(i) for i, name in enumerate(atoms)}
+        self._found: dict[str, str] = {}
+
+    def of(self, inputs: Mapping[int, f.Formula]) -> Mapping[str, str]:
+        """The text of each alias by its name; what it uses comes first."""
+        for place, part in inputs.items():
+            text = self._text(part)
+            self._found[PLACES[place]] = text
+        return self._found
+
+    def _text(self, formula: f.Formula) -> str:
+        match formula:
+            case f.Const(value):
+                return "t" if value else "f"
+            case f.Atom(name):
+                return self._numbers[name]
+            case f.Not(arg):
+                return f"!{self._operand(arg)}"
+            case f.And(args):
+                return " & ".join(map(self._operand, args))
+            case f.Or(args):
+                return " | ".join(map(self._operand, args))
+            case f.Implies(left, right):
+                return f"!{self._operand(left)} | {self._operand(right)}"
+            case f.Iff(left, right):
+                a, b = self._short(left), self._short(right)
+                return f"{a} & {b} | !{a} & !{b}"
+            case f.Xor(left, right):
+                a, b = self._short(left), self._short(right)
+                return f"{a} & !{b} | !{a} & {b}"
+            case _:
+                raise AssertionError(f"not of one tick: {formula}")
+
+    def _operand(self, formula: f.Formula) -> str:
+        text = self._text(formula)
+        return text if isinstance(formula, f.Const | f.Atom | f.Not) else f"({text})"
+
+    def _short(self, formula: f.Formula) -> str:
+        """The text of an atom or a constant, or else an alias for it."""
+        text = self._text(formula)
+        if isinstance(formula, f.Const | f.Atom):
+            return text
+        name = f"part{len(self._found)}"
+        self._found[name] = text
+        return f"@{name}"
+
+
+TARGET = Target("hoa", "a deterministic Büchi automaton in the HOA format", emit, refuse)

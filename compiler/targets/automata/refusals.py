@@ -1,0 +1,45 @@
+"""What several targets refuse: sentences of which an automaton tells too little."""
+
+from __future__ import annotations
+
+from compiler.formalization.letters import temporal_predicate
+from compiler.formalization.reference import TooManyStatesError
+from compiler.formalization.rule import Rule
+from compiler.targets.automata.chart import MOST_STATES, explored
+from compiler.targets.target import not_expressible
+from fretish.diagnostics.diagnostic import Code, Diagnostic
+
+
+def refusal(rule: Rule, target: str) -> Diagnostic | None:
+    """F601 or F670 where the sentence has no automaton, or none that is small enough."""
+    return no_automaton(rule, target) or _too_large(rule)
+
+
+def no_automaton(rule: Rule, target: str) -> Diagnostic | None:
+    """F601 for a sentence that says more than a counter automaton can tell."""
+    if rule.pctl is not None:
+        return not_expressible(
+            target, rule, "the probability", "leave it out, or use `--emit prism`"
+        )
+    predicate = temporal_predicate(rule.sentence)
+    if predicate is not None:
+        return not_expressible(
+            target,
+            rule,
+            f"the predicate `{predicate}`",
+            "say it by a condition or a timing, or check it with `--emit monitor`",
+        )
+    return None
+
+
+def _too_large(rule: Rule) -> Diagnostic | None:
+    try:
+        explored(rule)
+    except TooManyStatesError:
+        return Diagnostic(
+            Code.TOO_LARGE,
+            f"the automaton of {rule.id} has more than {MOST_STATES} states",
+            rule.requirement.wording,
+            help="state a shorter duration, use a clock with longer ticks, or `--emit smv`",
+        )
+    return None

@@ -1,0 +1,303 @@
+"""The counter automaton of a sentence as a module of NuSMV, symbol by symbol.
+
+It says what `compiler.formalization.reference` says: the phase of the scope, the trigger of the
+condition, the count of the timing. A state is that before a tick; `violated` already knows the tick
+itself.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import assert_never
+
+from compiler.formalization.obligation import Kind, Obligation
+from fretish.syntax import ConditionKind, ScopeKind
+
+Cases = tuple[tuple[str, str], ...]
+"""(condition, value), the first that holds counts; the last condition is TRUE."""
+
+
+@dataclass(frozen=True, slots=True)
+class Variable:
+    """A state variable."""
+
+    name: str
+    type: str
+    initial: str
+    next: Cases
+    comment: str
+
+
+@dataclass(frozen=True, slots=True)
+class Definition:
+    """A name for an expression."""
+
+    name: str
+    value: Cases
+    comment: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Module:
+    """What stands between `MODULE` and the next one."""
+
+    parameters: tuple[str, ...]
+    variables: tuple[Variable, ...]
+    definitions: tuple[Definition, ...]
+
+
+def monitor(obligation: Obligation) -> Module:
+    """The module of a sentence; its parameters are those of its expressions that it has.
+
+    Its definitions `violated` (a demand is broken, for good) and, with `eventually` and
+    `finally`, `unmet` (a demand is open that the end of the interval would break).
+    """
+    counter = _counter(obligation)
+    stops = obligation.demand.kind in (Kind.UNTIL, Kind.BEFORE)
+    has = {
+        "mode": obligation.scope is not None,
+        "condition": obligation.condition is not None,
+        "response": True,
+        "stop": stops,
+    }
+    failed = Variable(
+        "failed", "boolean", "FALSE", _plain("violated"), "a demand was broken at a tick before"
+    )
+    return Module(
+        tuple(name for name, there in has.items() if there),
+        (*_scope_variables(obligation), *counter.variables, failed),
+        (
+            *_scope_definitions(obligation),
+            *counter.definitions,
+            Definition("violated", _plain("failed | broken"), "for good: nothing repairs it"),
+        ),
+    )
+
+
+def _plain(value: str) -> Cases:
+    return (("TRUE", value),)
+
+
+# Scope and condition --------------------------------------------------------------------------
+
+_PHASES: Mapping[ScopeKind | None, tuple[str, Cases]] = {
+    None: ("", _plain("inside")),
+    ScopeKind.IN: ("", (("mode", "inside"), ("TRUE", "outside"))),
+    ScopeKind.NOT_IN: ("", (("mode", "outside"), ("TRUE", "inside"))),
+    ScopeKind.ONLY_IN: ("", (("mode", "outside"), ("TRUE", "inside"))),
+    ScopeKind.BEFORE: ("over", (("mode | phase = over", "over"), ("TRUE", "inside"))),
+    ScopeKind.AFTER: (
+        "first_run",
+        (
+            ("phase = inside | (phase = first_run & !mode)", "inside"),
+            ("mode", "first_run"),
+            ("TRUE", "outside"),
+        ),
+    ),
+    ScopeKind.ONLY_BEFORE: ("", (("mode | phase = inside", "inside"), ("TRUE", "outside"))),
+    ScopeKind.ONLY_AFTER: (
+        "last_run, over",
+        (
+            ("phase = over | (phase = last_run & !mode)", "over"),
+            ("mode", "last_run"),
+            ("TRUE", "inside"),
+        ),
+    ),
+}
+"""Phases beside `outside` and `inside`; and that of a tick, from that of the tick before."""
+
+
+def _is_everywhere(obligation: Obligation) -> bool:
+    """No phase is needed: not even the first tick is told apart."""
+    return obligation.scope is None and obligation.condition is not None
+
+
+def _scope_variables(obligation: Obligation) -> Iterator[Variable]:
+    more, _ = _PHASES[obligation.scope]
+    if not _is_everywhere(obligation):
+        values = ", ".join(("outside", "inside", *([more] if more else [])))
+        told = "where the tick before lies"
+        yield Variable("phase", f"{{{values}}}", "outside", _plain("now"), told)
+    if obligation.condition is ConditionKind.TRIGGER:
+        yield Variable(
+            "held",
+            "boolean",
+            "FALSE",
+            _plain("enforced & condition"),
+            "the condition held at the tick before, in the same interval",
+        )
+
+
+def _scope_definitions(obligation: Obligation) -> Iterator[Definition]:
+    more, cases = _PHASES[obligation.scope]
+    inside = ["inside", *(["last_run"] if "last_run" in more else [])]
+    if _is_everywhere(obligation):
+        yield Definition("enforced", _plain("TRUE"), "at every tick")
+    else:
+        yield Definition("now", cases, "where this tick lies")
+        enforced = " | ".join(f"now = {phase}" for phase in inside)
+        yield Definition("enforced", _plain(enforced), "in an interval")
+    match obligation.condition:
+        case None:
+            first = " & ".join(f"phase != {phase}" for phase in inside)
+            yield Definition("triggered", _plain(f"enforced & {first}"), "at its first tick")
+        case ConditionKind.HOLDING:
+            yield Definition("triggered", _plain("enforced & condition"))
+        case ConditionKind.TRIGGER:
+            yield Definition("triggered", _plain("enforced & condition & !held"))
+
+
+# Timing ---------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True)
+class _Counter:
+    variables: tuple[Variable, ...]
+    definitions: tuple[Definition, ...]
+
+
+def _counter(obligation: Obligation) -> _Counter:
+    n = obligation.demand.ticks
+    match obligation.demand.kind:
+        case Kind.WITHIN | Kind.FOR if n == 0:  # a range of one number is no range
+            return _flag(None, broken="triggered & !response")
+        case Kind.IMMEDIATELY:
+            return _flag(None, broken="triggered & !response")
+        case Kind.NEXT:
+            comment = "the tick before was a trigger"
+            return _flag("triggered", comment, broken="enforced & open & !response")
+        case Kind.EVENTUALLY:
+            left = _left(obligation)
+            return _at_the_end(_flag("unmet", "no response yet", broken=left), "!response")
+        case Kind.FINALLY:
+            return _finally(_left(obligation))
+        case Kind.ALWAYS:
+            return _flag("due", "there was a trigger", broken="due & !response", due=True)
+        case Kind.UNTIL:
+            broken = "due & !stop & !response"
+            return _flag("due & !stop", "no stop condition yet", broken=broken, due=True)
+        case Kind.BEFORE:
+            return _flag("due & !response", "no response yet", broken="due & stop", due=True)
+        case Kind.WITHIN:
+            return _within(n)
+        case Kind.FOR:
+            return _for(n)
+        case Kind.AFTER:
+            return _after(n)
+        case Kind.NOT_AFTER:
+            return _not_after(n) if obligation.condition is None else _register(n)
+        case _:
+            assert_never(obligation.demand.kind)
+
+
+_DUE = Definition("due", _plain("triggered | (enforced & open)"), "a demand is open at this tick")
+
+
+def _left(obligation: Obligation) -> str:
+    """The interval has ended, with the tick before, and a demand is open."""
+    return "FALSE" if obligation.scope is None else "!enforced & open"
+
+
+def _flag(kept: str | None, comment: str = "", *, broken: str, due: bool = False) -> _Counter:
+    """One bit: whether a demand is open; `kept` is for the next tick."""
+    broken_at = Definition("broken", _plain(broken), "at this tick")
+    opened = () if kept is None else (Variable("open", "boolean", "FALSE", _plain(kept), comment),)
+    return _Counter(opened, (*([_DUE] if due else []), broken_at))
+
+
+def _at_the_end(counter: _Counter, missing: str) -> _Counter:
+    unmet = Definition("unmet", _plain(f"due & {missing}"), "and would fail if the interval ended")
+    return _Counter(counter.variables, (_DUE, unmet, *counter.definitions))
+
+
+def _finally(left: str) -> _Counter:
+    """`open`: there was a trigger; the response at the tick before is the last of an interval."""
+    answered = Variable(
+        "answered", "boolean", "FALSE", _plain("response"), "the response held at the tick before"
+    )
+    opened = Variable("open", "boolean", "FALSE", _plain("due"), "there was a trigger")
+    broken = "FALSE" if left == "FALSE" else f"{left} & !answered"
+    counter = _Counter((opened, answered), (Definition("broken", _plain(broken), "at its end"),))
+    return _at_the_end(counter, "!response")
+
+
+def _count(most: int, cases: Cases, comment: str) -> Variable:
+    return Variable("count", f"0..{most}", "0", cases, comment)
+
+
+_COUNTED = Definition(
+    "due", _plain("triggered | (enforced & count > 0)"), "a demand is open at this tick"
+)
+
+
+def _within(n: int) -> _Counter:
+    count = _count(
+        n,
+        (("!due | response", "0"), (f"count = {n}", str(n)), ("TRUE", "count + 1")),
+        "ticks that the oldest open trigger has seen",
+    )
+    broken = Definition("broken", _plain(f"due & !response & count = {n}"), "the deadline")
+    return _Counter((count,), (_COUNTED, broken))
+
+
+def _for(n: int) -> _Counter:
+    count = _count(
+        n,
+        (
+            ("!enforced", "0"),
+            ("triggered", str(n)),
+            ("count > 0", "count - 1"),
+            ("TRUE", "0"),
+        ),
+        "ticks that the newest trigger is still owed",
+    )
+    return _Counter((count,), (_COUNTED, Definition("broken", _plain("due & !response"))))
+
+
+def _after(n: int) -> _Counter:
+    count = _count(
+        n + 1,
+        ((f"!due | count = {n + 1}", "0"), ("TRUE", "count + 1")),
+        "ticks that the oldest open trigger has seen",
+    )
+    clash = Variable(
+        "clash",
+        "boolean",
+        "FALSE",
+        _plain(f"clashes & count < {n + 1}"),
+        "a trigger has come since: it forbids the response that the oldest demands",
+    )
+    clashes = Definition("clashes", _plain("enforced & (clash | (count > 0 & triggered))"))
+    too_early = f"(count < {n + 1} & response)"
+    too_late = f"(count = {n + 1} & (clashes | !response))"
+    broken = Definition("broken", _plain(f"due & ({too_early} | {too_late})"))
+    return _Counter((count, clash), (_COUNTED, clashes, broken))
+
+
+def _not_after(n: int) -> _Counter:
+    """With one trigger an interval, a count tells when it was."""
+    count = _count(
+        n + 1,
+        ((f"!due | response | count = {n + 1}", "0"), ("TRUE", "count + 1")),
+        "ticks since the trigger, while no response has come",
+    )
+    broken = Definition("broken", _plain(f"enforced & response & count = {n + 1}"))
+    return _Counter((count,), (_COUNTED, broken))
+
+
+def _register(n: int) -> _Counter:
+    """Each trigger forbids the response at a tick of its own, so each is remembered."""
+    kept = "enforced & !response"
+    ago = [
+        Variable(
+            f"ago_{k}",
+            "boolean",
+            "FALSE",
+            _plain(f"{kept} & {'triggered' if k == 1 else f'ago_{k - 1}'}"),
+            f"a trigger {k} tick{'s' if k > 1 else ''} ago, and no response since",
+        )
+        for k in range(1, n + 2)
+    ]
+    broken = Definition("broken", _plain(f"enforced & response & ago_{n + 1}"))
+    return _Counter(tuple(ago), (broken,))

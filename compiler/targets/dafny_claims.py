@@ -1,0 +1,169 @@
+"""What a file of `--emit dafny` claims, and what of the closed loop it can say at all."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from compiler.formalization.obligation import Uninterpreted, boolean
+from compiler.formalization.rule import Rule
+from compiler.logic import formula as f
+from compiler.logic.claims import Layer
+from compiler.logic.printing import identifier
+from compiler.project.interceptor_options import options as core
+from compiler.project.interceptor_options import repetition, ticks
+from fretish import syntax as s
+from fretish.bindings.declarations import Declarations, Form, Requests
+from fretish.printer import timing as printed
+
+CHANNELS = (
+    ("Stop", "stop", "StopHeard"),
+    ("Scan", "scan", "ScanHeard"),
+    ("Command", "command", "CommandHeard"),
+)
+"""What an interceptor hears: in names of lemmas, in names of its numbers, and in its events."""
+
+
+@dataclass(frozen=True, slots=True)
+class Delay:
+    """From a trigger to the response, in ticks of the requirement's clock."""
+
+    reach: int
+    """A request is heard before the end of the tick so many ticks after the trigger: latency
+    rounded up, less the tick itself, and for each message that may be lost in a row the time to the
+    next one: a tick, or the heartbeat."""
+    braking: int
+    """At so many ends of ticks in a row the wheels have zero: braking rounded up, and the tick in
+    which it began."""
+
+    @property
+    def total(self) -> int:
+        """What the bound of the requirement must not be below."""
+        return self.reach + self.braking
+
+
+def loopless(rule: Rule, declarations: Declarations | None) -> str | None:
+    """Why nothing is said of the closed loop; None where something is."""
+    if declarations is None or declarations.interceptor is None:
+        return "the bindings have no [interceptor], and the plain form waits for a command to stop"
+    if declarations.interceptor.form is Form.EVENT:
+        return "the event form waits for a command to stop, so no delay bounds its answer"
+    timing = rule.sentence.timing
+    if not isinstance(timing, s.Within | s.Eventually):
+        return f"it is about answers, and `{printed(timing)}` asks for something else"
+    assumed = declarations.assumed
+    response = boolean(rule.sentence.response, Uninterpreted().alone())
+    if assumed is not None and response != f.Atom(identifier(assumed.stands)):
+        return f"what a stop brings about is `{assumed.stands}`, and the response is something else"
+    return None
+
+
+def delay(rule: Rule, declarations: Declarations | None) -> Delay | str | None:
+    """What [assume] amounts to, or why it is no number of ticks; None where there is none."""
+    assumed = declarations.assumed if declarations else None
+    if assumed is None:
+        return None
+    period = rule.clock.period if rule.clock else None
+    if period is None:
+        return "the clock ticks by message, so a latency is no number of ticks"
+    every = repetition(assumed, period)
+    if every is None and assumed.lost:
+        return "a request that is sent once may be lost ([assume] requests, lost and no heartbeat)"
+    reach = max(ticks(assumed.latency, period) - 1, 0) + assumed.lost * (every or 0)
+    return Delay(reach, ticks(assumed.braking, period) + 1)
+
+
+@dataclass(frozen=True, slots=True)
+class Claim:
+    """What is known once every lemma and method of the file is verified."""
+
+    layer: Layer
+    sentence: str
+    assumptions: tuple[str, ...] = ()
+    unshown: str | None = None
+    """Why the file does not show it."""
+
+
+def claims(rule: Rule, declarations: Declarations | None) -> tuple[Claim, ...]:
+    """The claims of a rule's file, in its order; none for a part that it leaves out."""
+    return (
+        _monitor_claim(rule),
+        _interceptor_claim(declarations),
+        *_loop_claims(rule, declarations),
+    )
+
+
+def _monitor_claim(rule: Rule) -> Claim:
+    timing = rule.sentence.timing
+    every = ", for every bound" if s.duration(timing) else ""
+    if isinstance(timing, s.Eventually | s.Finally):
+        says = "has an open demand exactly where the definition leaves one unanswered"
+    else:
+        says = "is violated exactly where the definition is"
+    sentence = f"the counter of `{printed(timing)}` {says}, on every sequence of ticks{every}"
+    return Claim(Layer.MONITOR, sentence)
+
+
+def _interceptor_claim(declarations: Declarations | None) -> Claim:
+    if declarations is None or declarations.interceptor is None:
+        sentence = "the plain interceptor latches the stop, publishes only zero then, and else "
+        return Claim(Layer.INTERCEPTOR, f"{sentence}forwards commands unchanged")
+    options = core(declarations.interceptor)
+    kept = ["a model of the interceptor publishes only zero while it is halted, and else commands"]
+    if not options.event_driven:
+        kept.append(f"a request gives {options.hold} ticks of zero")
+    kept += [
+        f"{timeout} ticks without a {channel} halt"
+        for _, channel, _ in CHANNELS
+        if (timeout := getattr(options, f"{channel}_timeout"))
+    ]
+    if options.latching:
+        kept.append("a stop is for ever")
+    return Claim(Layer.INTERCEPTOR, "; ".join(kept))
+
+
+_ASSUMED = (
+    "the safety function requests a stop while a demand is open, and its messages keep their order",
+    "of an open demand a request is heard in the tick `reach` ticks after the trigger, or before",
+    "the response holds once the wheels had only zero at the ends of `braking` ticks in a row",
+)
+
+
+def _assumed(declarations: Declarations | None) -> tuple[str, ...]:
+    """On change only, a demand that begins while a stop is requested brings no message with it."""
+    assumed = declarations.assumed if declarations else None
+    if assumed is None or assumed.requests is Requests.LEVEL:
+        return _ASSUMED
+    requests, heard, stands = _ASSUMED
+    return (requests, f"{heard}; or one from before the trigger is still in force", stands)
+
+
+def _loop_claims(rule: Rule, declarations: Declarations | None) -> Iterator[Claim]:
+    if loopless(rule, declarations) is not None:
+        return
+    given = _assumed(declarations)
+    known, bound = delay(rule, declarations), rule.ticks
+    every = "for every bound n and every delay reach + braking of at most n"
+    sentence = f"never violated, {every}"
+    if bound is None:
+        sentence = "every trigger is answered within reach + braking ticks, whatever they are"
+    yield Claim(Layer.BOUNDS, sentence, given)
+    if known is not None:
+        yield _declared_claim(known, bound, given)
+
+
+def _declared_claim(known: Delay | str, bound: int | None, given: tuple[str, ...]) -> Claim:
+    """The same for the numbers of [assume]."""
+    at = "the declared delay" if bound is None else f"the bound of {bound} ticks"
+    if isinstance(known, str):
+        return Claim(Layer.BOUNDS, f"never late at {at}", given, known)
+    numbers = (
+        f"reach = {known.reach} ticks ([assume] latency and lost)",
+        f"braking = {known.braking} ticks ([assume] braking)",
+    )
+    if bound is None:
+        sentence = f"every trigger is answered within {known.total} ticks, the declared delay"
+        return Claim(Layer.BOUNDS, sentence, (*given, *numbers))
+    late = f"the declared delay of {known.total} ticks is more than the bound of {bound}"
+    sentence = f"never violated at {at} and the declared delay of {known.total}"
+    return Claim(Layer.BOUNDS, sentence, (*given, *numbers), late if known.total > bound else None)

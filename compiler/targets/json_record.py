@@ -1,0 +1,26 @@
+"""`--emit json`: everything that is known of a requirement, for other programs."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import PurePosixPath
+
+from compiler.files.artifact import Artifact
+from compiler.files.templating import render
+from compiler.formalization.record import record
+from compiler.formalization.rule import Rule
+from compiler.targets.target import DEFAULT, Options, Target, stem
+
+
+def emit(rules: Sequence[Rule], options: Options = DEFAULT) -> tuple[Artifact, ...]:
+    """`<id>.json` for each rule."""
+    return tuple(
+        Artifact(
+            PurePosixPath(f"{stem(rule)}.json"),
+            render("json/requirement.json.j2", requirement=record(rule)),
+        )
+        for rule in rules
+    )
+
+
+TARGET = Target("json", "everything known of the requirement, for programs", emit)

@@ -1,0 +1,1 @@
+"""Standalone Python: the monitor and the interceptor node."""

@@ -1,0 +1,222 @@
+"""`--emit interceptor`: the node between the planner and the wheels, as one Python file.
+
+The core is the text of `monitors/interceptor.py`; the options are those of the bindings; below a
+marked line is a thin ROS node around them. All rules share it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from pathlib import PurePosixPath
+from typing import Any
+
+from compiler.files.artifact import Artifact
+from compiler.files.edition import __version__
+from compiler.files.templating import render
+from compiler.formalization.rule import Rule
+from compiler.project.interceptor_options import options as counted
+from compiler.project.interceptor_options import repetition, ticks
+from compiler.targets.target import DEFAULT, Options, Target
+from fretish.bindings.declarations import Declarations, Form, Interception
+from fretish.bindings.interceptor import TABLE
+from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
+from fretish.diagnostics.source import Source
+from monitors.source_text import interceptor as core
+
+NAME = "interceptor.py"
+MARKER = "# The ROS node ".ljust(97, "-")
+"""The core and its options stand before this line, the node after it."""
+
+
+def refuse(options: Options) -> Diagnostic | None:
+    """F323: nothing says between which topics the interceptor stands."""
+    declared = options.declarations
+    if declared is not None and declared.interceptor is not None:
+        return None
+    source = Source("bindings.toml", "") if declared is None else declared.source
+    what = "there are no bindings, and so" if declared is None else "the bindings declare"
+    return Diagnostic(
+        Code.NO_INTERCEPTOR,
+        f"{what} no interceptor",
+        source.span().part(0, 0),
+        help=f"add this table to {source.name}, with the topics of your robot:",
+        paste=TABLE,
+    )
+
+
+# Remarks --------------------------------------------------------------------------------------
+
+
+def remarks(options: Options) -> tuple[Diagnostic, ...]:
+    """F630 to F633: what can go wrong although the node does what it is told to."""
+    declared = options.declarations
+    if declared is None or declared.interceptor is None:
+        return ()
+    node = declared.interceptor
+    latched = (_latching(node),) if node.latching else ()
+    if node.form is Form.EVENT:
+        return (*latched, _event_driven(node))
+    return (*latched, *_unwatched(node), *_short_hold(declared, node))
+
+
+def _warning(code: Code, message: str, node: Interception, mend: str) -> Diagnostic:
+    return Diagnostic(code, message, node.span, mend, Severity.WARNING)
+
+
+def _latching(node: Interception) -> Diagnostic:
+    return _warning(
+        Code.LATCHING,
+        "the interceptor latches: after the first stop nothing but a new start moves the robot, "
+        "whatever the safety function says",
+        node,
+        "write `latching = false`, or state in a requirement that a stop is final",
+    )
+
+
+def _event_driven(node: Interception) -> Diagnostic:
+    return _warning(
+        Code.EVENT_DRIVEN,
+        "the interceptor speaks only when a command comes: where the planner falls silent, the "
+        "wheels keep their last velocity, whatever stop is requested",
+        node,
+        'write `form = "timer"` and a `period`',
+    )
+
+
+def _unwatched(node: Interception) -> Iterator[Diagnostic]:
+    if not node.stop_timeout:
+        yield _warning(
+            Code.UNWATCHED,
+            f"no `stop_timeout`: where the safety function dies, or `{node.stop}` is cut, the "
+            "robot moves on",
+            node,
+            "add `stop_timeout`, some times as long as the safety function is ever silent",
+        )
+    if not node.scan_timeout:
+        yield _warning(
+            Code.UNWATCHED,
+            "no `scan_timeout`: where the sensor dies, only the safety function can notice",
+            node,
+            "add `scan` and `scan_timeout`, some times the period of the sensor",
+        )
+
+
+def _short_hold(declared: Declarations, node: Interception) -> Iterator[Diagnostic]:
+    """Requests may be lost, `lost` in a row, before one is heard."""
+    assumed, period = declared.assumed, declared.clock.period
+    if assumed is None or not assumed.lost or period is None:
+        return
+    sure = max(ticks(node.hold, node.period) - 1, 0) * node.period
+    gap = assumed.lost * period * (repetition(assumed, period) or 1)
+    if sure > gap:
+        return
+    yield _warning(
+        Code.SHORT_HOLD,
+        f"zero is held for {_duration(sure)} for certain, and messages may be lost for "
+        f"{_duration(gap)}: a robot that was stopped may move between two "
+        "requests",
+        node,
+        f"make `hold` longer than {_duration(gap + node.period)}",
+    )
+
+
+# The file -------------------------------------------------------------------------------------
+
+
+def emit(rules: Sequence[Rule], options: Options = DEFAULT) -> tuple[Artifact, ...]:
+    """`interceptor.py`.
+
+    Raises:
+        AssertionError: it was to be refused.
+    """
+    assert options.declarations is not None
+    assert options.declarations.interceptor is not None
+    source = PurePosixPath(options.declarations.source.name).name
+    return (Artifact(PurePosixPath(NAME), text(options.declarations.interceptor, source)),)
+
+
+def text(interception: Interception, source: str) -> str:
+    """The file.
+
+    Args:
+        interception: what the bindings declare.
+        source: the name of their file.
+    """
+    return render(
+        "interceptor/interceptor.py.j2",
+        imports=core().imports,
+        core=core().text,
+        options=[{"name": n, "value": v, "why": w} for n, v, w in _options(interception)],
+        node=_node(interception),
+        marker=MARKER,
+        source=source,
+        version=__version__,
+    )
+
+
+def _options(node: Interception) -> Iterator[tuple[str, Any, str]]:
+    """Name, value, and where it comes from."""
+    made = counted(node)
+    for name in ("hold", "stop_timeout", "scan_timeout", "command_timeout"):
+        duration = getattr(node, name)
+        every = f"at {_duration(node.period)} a tick"
+        why = f"{name} = {_duration(duration)}, {every}" if duration else f"no {name} is declared"
+        yield name, getattr(made, name), why
+    yield "event_driven", made.event_driven, f"form = {node.form}"
+    yield "latching", made.latching, f"latching = {str(node.latching).lower()}"
+
+
+def _node(node: Interception) -> dict[str, Any]:
+    timed = node.form is Form.TIMER
+    return {
+        "ros": node.ros,
+        "stop": node.stop,
+        "command": node.command,
+        "output": node.output,
+        "scan": node.scan,
+        "timed": timed,
+        "period": node.period / 10**9,
+        "summary": _summary(node),
+        "statuses": _STATUSES[node.ros],
+    }
+
+
+_STATUSES = {
+    1: "3 no ROS master has answered, 4 ROS has ended it: another node has taken its name, say",
+    2: "4 ROS has ended it",
+}
+"""What else `--help` says of how the node ends, for each ROS."""
+
+
+def _summary(node: Interception) -> str:
+    """What `--help` says."""
+    when = (
+        f"Every {_duration(node.period)}, on each command and at once on a request to stop"
+        if node.form is Form.TIMER
+        else "On each command"
+    )
+    scan = f", {node.scan} (LaserScan)" if node.scan else ""
+    return (
+        f"Hears {node.stop} (Bool), {node.command} (Twist){scan}.\n"
+        f"{when}\n"
+        f"it says the last command on {node.output},\nor zero where the robot must stand."
+    )
+
+
+_UNITS = (("s", 10**9), ("ms", 10**6), ("us", 10**3), ("ns", 1))
+
+
+def _duration(nanoseconds: int) -> str:
+    """`1200 ms`: in the largest unit in which it is a whole number."""
+    unit, size = next(one for one in _UNITS if nanoseconds % one[1] == 0)
+    return f"{nanoseconds // size} {unit}"
+
+
+TARGET = Target(
+    "interceptor",
+    "the node between the planner and the wheels, in Python",
+    emit,
+    refuse_project=refuse,
+    remarks=remarks,
+    per_rule=False,
+)

@@ -1,0 +1,268 @@
+"""`--emit monitor`: a standalone Python file, straight-line code over the watches of rules.
+
+Every temporal sub-formula has one variable, stepped at every tick, and one column over whole
+traces; rules in one file share what they have in common. The text of `monitors/kernel/` is copied
+in, so the file needs the standard library and nothing else.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import re
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from keyword import iskeyword
+from pathlib import PurePosixPath
+
+from compiler.files.artifact import Artifact
+from compiler.files.edition import __version__
+from compiler.files.templating import render
+from compiler.formalization.rule import Rule, plain
+from compiler.logic import printing
+from compiler.targets.python.program import (
+    MARKS,
+    Program,
+    locals_of,
+    marks_of,
+    negation,
+    program,
+)
+from compiler.targets.target import DEFAULT, Options, Target, not_expressible, stem
+from fretish import syntax as s
+from fretish.checking import LOOK_AHEAD, calls, conditions
+from fretish.clock import assumed_ticks
+from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
+from fretish.expressions import depth
+from monitors.source_text import kernel
+
+
+def refuse(rule: Rule) -> Diagnostic | None:
+    """F312: a monitor steps by ticks, so it must be known how long a tick is.
+
+    F601: Python reads no more than 200 parentheses within each other; and one run cannot show
+    a probability.
+    """
+    if max(map(depth, conditions(rule.sentence))) > _MOST_LEVELS:
+        return not_expressible(
+            "Python",
+            rule,
+            f"more than {_MOST_LEVELS} operators within each other",
+            "give parts of the expression names of their own",
+        )
+    ahead = next((n for e in conditions(rule.sentence) for n in calls(e) if n in LOOK_AHEAD), None)
+    if ahead is not None:
+        return not_expressible(
+            "a monitor", rule, f"`{ahead}`", "it looks ahead: state it by a timing, or look back"
+        )
+    first = next((name for name in rule.watched if _ASKS_FOR_FIRST.search(name)), None)
+    if first is not None:
+        return not_expressible(
+            "a monitor",
+            rule,
+            f"`FTP` within `{first}`",
+            "nothing is known of what is made of it there: state it outside",
+        )
+    if rule.pctl is not None:
+        return not_expressible(
+            "a monitor",
+            rule,
+            "the probability",
+            "one run does not tell a probability: `fretc audit` estimates it over many",
+        )
+    if assumed_ticks(rule.sentence, rule.clock) is None:
+        return None
+    return Diagnostic(
+        Code.NO_CLOCK,
+        f"no clock says how many ticks the duration of {rule.id} is",
+        rule.sentence.timing_span,
+        help='declare `[clock]` with `tick = "100 ms"` in bindings.toml, or write ticks',
+    )
+
+
+_ASKS_FOR_FIRST = re.compile(r'^[^"].*\bFTP\b')
+"""An atom whose text has the first tick in it; a quoted name only looks like one."""
+
+
+def remark(rule: Rule) -> Diagnostic | None:
+    """F203: whatever has happened, what follows can still make the verdict either way.
+
+    So it is with 12 of FRET's 288 templates: a demand for ever later at each trigger, on a stretch
+    that ends with the run. Source: Pnueli, Zaks, PSL model checking and run-time verification via
+    testers, FM 2006 (monitorability).
+    """
+    sentence = rule.sentence
+    scope = sentence.scope.kind if sentence.scope else None
+    if sentence.condition is None:
+        return None
+    later = scope in (None, s.ScopeKind.AFTER) and isinstance(sentence.timing, s.Eventually)
+    negated = scope is s.ScopeKind.ONLY_BEFORE and isinstance(sentence.timing, s.Always | s.Never)
+    if not later and not negated:
+        return None
+    return Diagnostic(
+        Code.NEVER_DECIDED,
+        f"no run, however long, can violate {rule.id} or confirm it: it sets no bound",
+        sentence.timing_span or rule.requirement.wording,
+        help="state a bound: `within ...` in place of `eventually`",
+        severity=Severity.WARNING,
+    )
+
+
+def emit(rules: Sequence[Rule], options: Options = DEFAULT) -> tuple[Artifact, ...]:
+    """`<id>_monitor.py` for each rule, or one file; they need Python 3.11 and nothing else."""
+    if options.one_file:
+        return (Artifact(PurePosixPath("monitors.py"), text(*rules)),)
+    return tuple(
+        Artifact(PurePosixPath(f"{_module(stem(rule))}_monitor.py"), text(rule)) for rule in rules
+    )
+
+
+def text(*rules: Rule) -> str:
+    """The Python source of one monitor for all of the rules.
+
+    Of a sentence with a probability it is the monitor of the same sentence without it, and says so.
+
+    Args:
+        rules: at least one, each with an id of its own, and all on one clock.
+    """
+    left_out = [rule for rule in rules if rule.sentence.probability]
+    rules = tuple(map(plain, rules))
+    names = tuple(dict.fromkeys(name for rule in rules for name in rule.watched))
+    prefixes = prefixes_of([rule.id for rule in rules])
+    parameters = parameters_of(names, prefixes.values())
+    made = program({rule.id: rule.watch for rule in rules}, parameters, prefixes)
+    runtime = kernel()
+    inputs = [_Input(name, parameters[name], _is_negated(name, made)) for name in names]
+    return render(
+        "monitor/monitor.py.j2",
+        title=", ".join(rule.id for rule in rules),
+        class_name=_class_name(rules[0].id) if len(rules) == 1 else "All",
+        version=__version__,
+        rules=[_described(rule) for rule in rules],
+        left_out=[_left_out(rule) for rule in left_out],
+        tick=str(rules[0].clock) if rules[0].clock else "not declared",
+        inputs=inputs,
+        row=_tuple([p.name for p in inputs]),
+        program=made,
+        digest=_digest(made, rules),
+        slots=_slots(made),
+        told=made.told,
+        marks=MARKS,
+        verdicts="Verdict" if len(rules) == 1 else "tuple[Verdict, ...]",
+        imports=runtime.imports,
+        kernel=runtime.text,
+    )
+
+
+def _digest(made: Program, rules: Sequence[Rule]) -> str:
+    """Of all that gives the cells of a rail their meaning."""
+    told = [(rule.id, rule.fingerprint, rule.ticks) for rule in rules]
+    return hashlib.sha256(repr((__version__, told, made)).encode()).hexdigest()
+
+
+def _tuple(names: Sequence[str]) -> str:
+    return f"({', '.join(names)}{',' * (len(names) == 1)})"
+
+
+def _slots(made: Program) -> list[str]:
+    """All that a rail keeps, numbers in names in their order."""
+    kept = {name for told in made.told for name in marks_of(told.prefix)}
+    names = {"doubt", "tick", *(cell.name for cell in made.cells), *kept}
+    return sorted(names, key=_natural)
+
+
+def _natural(name: str) -> list[str]:
+    """Numbers within names are in their own order."""
+    return [part.zfill(9) if part.isdigit() else part for part in re.split(r"(\d+)", name)]
+
+
+@dataclass(frozen=True, slots=True)
+class _Input:
+    """One proposition of a step."""
+
+    proposition: str
+    name: str
+    negated: bool
+    """Whether its negation is needed too."""
+
+
+def _is_negated(proposition: str, made: Program) -> bool:
+    return any(used.proposition == proposition and not used.positive for used in made.literals)
+
+
+def _left_out(rule: Rule) -> dict[str, str]:
+    odds = rule.sentence.probability
+    assert odds is not None
+    return {"id": rule.id, "odds": f"{odds.op} {odds.digits}", "fingerprint": rule.fingerprint}
+
+
+def _described(rule: Rule) -> dict[str, object]:
+    return {
+        "id": rule.id,
+        "sentence": " ".join(rule.requirement.wording.text.split()),
+        "fingerprint": rule.fingerprint,
+        "horizon": rule.watch.horizon,
+        "ft": printing.readable(rule.ft_infinite),
+        "finite": printing.readable(rule.ft_finite),
+        "pt": printing.readable(rule.pt),
+    }
+
+
+def _class_name(id: str) -> str:
+    name = _identifier(id)
+    return f"{name[0].upper()}{name[1:]}"
+
+
+def _identifier(id: str) -> str:
+    name = re.sub(r"\W", "_", id, flags=re.ASCII)
+    return name if name[0].isalpha() else f"R{name}"
+
+
+def _module(name: str) -> str:
+    return re.sub(r"[^a-z0-9_]", "_", name)
+
+
+def prefixes_of(ids: Iterable[str]) -> dict[str, str]:
+    """An identifier for each id, all different."""
+    prefixes: dict[str, str] = {}
+    for id in ids:
+        prefix = _identifier(id).lower()
+        while prefix in prefixes.values():
+            prefix += "_"
+        prefixes[id] = prefix
+    return prefixes
+
+
+_MOST_LEVELS = 60
+_SPOKEN = {"<=": "_le_", ">=": "_ge_", "!=": "_ne_", "<": "_lt_", ">": "_gt_", "=": "_eq_"}
+_TAKEN = frozenset(
+    "self every known doubt tick rows row must may first kept_first boolean Signals Marks previous "
+    "weak_previous once historically since released since_from since_between released_between "
+    "SATISFIED VIOLATED PENDING".split()
+)
+"""What the generated functions call their own, and what they call."""
+
+
+def parameters_of(names: Iterable[str], prefixes: Iterable[str]) -> dict[str, str]:
+    """A parameter of `step` for each proposition: its name as an identifier, all different."""
+    taken = {*_TAKEN, *(name for prefix in prefixes for name in marks_of(prefix))}
+    parameters: dict[str, str] = {}
+    for name in names:
+        parameter = printing.identifier(name) if not printing.is_compound(name) else _spoken(name)
+        if not parameter[0].isalpha():
+            parameter = f"p_{parameter}"
+        while iskeyword(parameter) or not taken.isdisjoint({parameter, negation(parameter)}):
+            parameter += "_"
+        taken.update(locals_of([parameter]))
+        parameters[name] = parameter
+    return parameters
+
+
+def _spoken(text: str) -> str:
+    """`(kias <= 90.0)` as `kias_le_90_0`."""
+    for operator, word in _SPOKEN.items():
+        text = text.replace(operator, word)
+    name = re.sub(r"\W+", "_", text, flags=re.ASCII).strip("_")
+    return re.sub(r"_+", "_", name) or "p"
+
+
+TARGET = Target("monitor", "a standalone runtime monitor in Python", emit, refuse, remark)

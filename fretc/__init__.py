@@ -1,0 +1,1 @@
+"""The product: what people call, from the shell or from Python."""

@@ -1,0 +1,1 @@
+"""Who vouches for what: keys, signatures, signed statements, and what fretc consists of."""

@@ -1,0 +1,149 @@
+"""What the installed fretc consists of: a software bill of materials in CycloneDX 1.6.
+
+The only module that imports cyclonedx, which an extra installs.
+
+Sources: CycloneDX 1.6, https://cyclonedx.org/docs/1.6/json/; Python core metadata 2.4.
+"""
+
+from __future__ import annotations
+
+import uuid
+from collections.abc import Iterable, Iterator, Mapping
+from importlib.metadata import Distribution, PackageNotFoundError, distribution
+from importlib.util import find_spec
+from typing import TYPE_CHECKING
+
+from compiler.files.dates import now
+from fretish.bindings.canonical import digest
+from fretish.diagnostics.diagnostic import Code, Diagnostic
+
+if TYPE_CHECKING:
+    from cyclonedx.model.bom import Bom
+    from cyclonedx.model.component import Component
+    from packaging.requirements import Requirement
+
+TOOL = "fretc"
+_OF_DEVELOPERS = ("dev", "peers")
+"""Extras that no command needs."""
+_SHORT = 64
+"""Characters: a longer licence is the text of one, not its name."""
+
+Name = tuple[str, frozenset[str]]
+"""A distribution and the extras of it that are asked for."""
+
+
+def missing() -> Diagnostic | None:
+    """F908, where what makes it is not installed."""
+    absent = [name for name in ("cyclonedx", "packaging") if find_spec(name) is None]
+    if not absent:
+        return None
+    return Diagnostic(
+        Code.MISSING_EXTRA,
+        f"a bill of materials needs {' and '.join(f'`{name}`' for name in absent)}",
+        help="install the extra: pip install 'fretc[sbom]' "
+        "(in a checkout: .venv/bin/pip install '.[sbom]')",
+    )
+
+
+def sbom(root: str = TOOL) -> str:
+    """The bill of a distribution and of all that it needs and that is installed, as JSON."""
+    from cyclonedx.output.json import JsonV1Dot6
+
+    return f"{JsonV1Dot6(_bom(root)).output_as_string(indent=2)}\n"
+
+
+def _bom(root: str) -> Bom:
+    from cyclonedx.model.bom import Bom, BomMetaData
+    from cyclonedx.model.component import ComponentType
+
+    needs = closure(root)
+    parts = {name: _component(distribution(name)) for name in needs}
+    parts[_canonical(root)].type = ComponentType.APPLICATION
+    main = parts[_canonical(root)]
+    versions = sorted((part.name, part.version) for part in parts.values())
+    bom = Bom(
+        components=[part for part in parts.values() if part is not main],
+        metadata=BomMetaData(component=main, timestamp=now()),
+        serial_number=uuid.uuid5(uuid.NAMESPACE_OID, digest(versions)),
+    )
+    for name, needed in needs.items():
+        bom.register_dependency(parts[name], [parts[other] for other in needed])
+    return bom
+
+
+def closure(root: str = TOOL) -> Mapping[str, tuple[str, ...]]:
+    """Each distribution that is needed and installed → those that it needs itself, sorted.
+
+    What an extra of the root needs counts where all of it is installed.
+    """
+    found: dict[str, set[str]] = {}
+    waiting: list[Name] = [(_canonical(root), frozenset(_installed_extras(root)))]
+    seen: set[Name] = set()
+    while waiting:
+        name, extras = one = waiting.pop()
+        if one in seen:
+            continue
+        seen.add(one)
+        needed = [each for each in _needed(name, extras) if _is_installed(each)]
+        found.setdefault(name, set()).update(map(_name, needed))
+        waiting.extend((_name(each), frozenset(each.extras)) for each in needed)
+    return {name: tuple(sorted(found[name] - {name})) for name in sorted(found)}
+
+
+def _installed_extras(root: str) -> Iterator[str]:
+    for extra in distribution(root).metadata.get_all("Provides-Extra", []):
+        mine = [each for each in _needed(root, [extra]) if each not in set(_needed(root, []))]
+        if extra not in _OF_DEVELOPERS and all(map(_is_installed, mine)):
+            yield extra
+
+
+def _needed(name: str, extras: Iterable[str]) -> Iterator[Requirement]:
+    """What a distribution needs here, with these extras."""
+    from packaging.requirements import Requirement
+
+    asked = ("", *extras)
+    for text in distribution(name).requires or ():
+        one = Requirement(text)
+        if one.marker is None or any(one.marker.evaluate({"extra": extra}) for extra in asked):
+            yield one
+
+
+def _is_installed(needed: Requirement) -> bool:
+    try:
+        distribution(needed.name)
+    except PackageNotFoundError:
+        return False
+    return True
+
+
+def _name(needed: Requirement) -> str:
+    return _canonical(needed.name)
+
+
+def _canonical(name: str) -> str:
+    from packaging.utils import canonicalize_name
+
+    return canonicalize_name(name)
+
+
+def _component(one: Distribution) -> Component:
+    from cyclonedx.contrib.license.factories import LicenseFactory
+    from cyclonedx.model.component import Component
+    from packageurl import PackageURL
+
+    name = _canonical(one.metadata["Name"])
+    purl = PackageURL("pypi", name=name, version=one.version)
+    licences = [LicenseFactory().make_from_string(text) for text in _licences(one)]
+    return Component(
+        name=name, version=one.version, purl=purl, bom_ref=str(purl), licenses=licences
+    )
+
+
+def _licences(one: Distribution) -> list[str]:
+    """As the distribution names them: an expression, else a name, else its classifiers."""
+    for field in ("License-Expression", "License"):
+        text = (one.metadata[field] or "").strip() if field in one.metadata else ""
+        if text and text != "UNKNOWN" and len(text) <= _SHORT and "\n" not in text:
+            return [text]
+    told = one.metadata.get_all("Classifier", [])
+    return [each.rpartition(" :: ")[2] for each in told if each.startswith("License :: ")]

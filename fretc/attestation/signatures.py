@@ -1,0 +1,305 @@
+"""Signatures beside a file (`FILE.intoto.jsonl`), held against the keys that count.
+
+Each line is an envelope. Nothing in it counts before a signature of it verifies; what an envelope
+says of itself (its payload, the name of its key) only explains why it does not count.
+
+Source: in-toto Attestation Framework, Bundle, https://github.com/in-toto/attestation.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from enum import StrEnum
+from importlib.util import find_spec
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from compiler.files.checked_json import MisshapenError
+from compiler.files.text_files import read as read_text
+from fretc.attestation import statement as attestation
+from fretc.attestation.statement import Statement, Subject
+from fretc.attestation.statement import read as read_statement
+from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.diagnostics.source import Source, Span
+from fretish.reading.limits import within
+
+if TYPE_CHECKING:
+    from fretc.attestation.keys import Sealed
+    from fretc.attestation.signers import Signer, Signers
+    from fretc.audit.evidence.reader import Evidence
+
+SUFFIX = ".intoto.jsonl"
+SIGNERS = "allowed_signers"
+"""Whose keys count, in the folder of the requirements."""
+
+
+@dataclass(frozen=True, slots=True)
+class Envelope:
+    """A line of the file."""
+
+    sealed: Sealed
+    statement: Statement
+    place: Span
+
+    @property
+    def text(self) -> str:
+        """The line."""
+        return self.place.text
+
+
+def beside(path: str) -> str:
+    """Where the signatures of a file are."""
+    return f"{path}{SUFFIX}"
+
+
+def read(path: str) -> tuple[Envelope, ...] | Diagnostic:
+    """The envelopes beside a file, none where there are no signatures; or what is wrong (F556)."""
+    source = read_text(beside(path))
+    if isinstance(source, Diagnostic):
+        return () if source.code is Code.NO_SUCH_FILE else source
+    return within(len(source.text), source.span(), lambda: _envelopes(source))
+
+
+def _envelopes(source: Source) -> tuple[Envelope, ...] | Diagnostic:
+    from fretc.attestation.keys import opened
+
+    found = []
+    start = 0
+    for line in source.text.split("\n"):
+        place = source.span(start, start + len(line))
+        start += len(line) + 1
+        if not line.strip():
+            continue
+        try:
+            sealed = opened(line)
+            found.append(Envelope(sealed, read_statement(sealed.payload), place))
+        except MisshapenError as error:
+            return _wrong(place, f"the line is no signed statement of fretc: {error}")
+    return tuple(found)
+
+
+def envelope(line: str) -> Envelope:
+    """One that was just made."""
+    from fretc.attestation.keys import opened
+
+    sealed = opened(line)
+    return Envelope(sealed, read_statement(sealed.payload), Source("", line).span())
+
+
+def _wrong(place: Span, what: str) -> Diagnostic:
+    return Diagnostic(
+        Code.BAD_SIGNATURES,
+        what,
+        place.part(0, 0),
+        help="take the file from your repository again, or remove it and sign anew: `fretc sign`",
+    )
+
+
+def appended(known: Sequence[Envelope], new: Envelope, current: frozenset[Subject]) -> str:
+    """The file with one envelope more.
+
+    Args:
+        known: those that are there. One of the same key about nothing else is replaced; one
+            about nothing that is still there is left out.
+        new: the one more.
+        current: everything that can be signed now.
+    """
+    return "".join(f"{one.text}\n" for one in (*kept(known, new, current), new))
+
+
+def kept(
+    known: Sequence[Envelope], new: Envelope, current: frozenset[Subject]
+) -> tuple[Envelope, ...]:
+    """The envelopes that stay beside a new one."""
+    return tuple(
+        one
+        for one in known
+        if (about := one.statement.main & current)
+        and not (one.sealed.keys == new.sealed.keys and about <= new.statement.main)
+    )
+
+
+# Judging ---------------------------------------------------------------------------------------
+
+
+class State(StrEnum):
+    """What is known of who signed a thing."""
+
+    SIGNED = "signed"
+    ANOTHER = "signed by another"
+    UNKNOWN = "signed with an unknown key"
+    CHANGED = "changed since it was signed"
+    NONE = "not signed"
+
+
+@dataclass(frozen=True, slots=True)
+class Signing:
+    """Who signed a thing, in words."""
+
+    state: State
+    text: str
+
+    @property
+    def is_good(self) -> bool:
+        """Whether it is signed by whoever must have signed it."""
+        return self.state is State.SIGNED
+
+
+@dataclass(frozen=True, slots=True)
+class _Judged:
+    """An envelope, the signers of whom a signature verifies, and those of whom none does."""
+
+    envelope: Envelope
+    subjects: frozenset[Subject]
+    by: tuple[Signer, ...]
+    broken: tuple[Signer, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Book:
+    """All signatures of a project, judged."""
+
+    signers: Signers | None
+    """None: there is no list, and no key counts."""
+    judged: tuple[_Judged, ...] = ()
+
+    def of(self, subject: Subject, name: str | None = None) -> Signing:
+        """Who signed exactly this.
+
+        Args:
+            subject: what it is now.
+            name: whoever must have signed it; None: any of the signers.
+        """
+        about = [one for one in self.judged if subject in one.subjects]
+        return self._of(about, subject, name)
+
+    def of_file(self, kind: str, sha256: str) -> Signing:
+        """Who signed a file of this content, whatever it is called."""
+        about = [one for one in self.judged if _has(one, kind, sha256)]
+        return self._of(about, Subject(kind, "", sha256), None)
+
+    def agreed(self, evidence: Evidence) -> Signing:
+        """Who signed evidence with a statement that says the same as the file."""
+        now = attestation.evidence(evidence, None)
+        whole = [one for one in self.judged if _agrees(one.envelope.statement, now)]
+        found = self.of_file(attestation.EVIDENCE, evidence.sha256)
+        if not found.is_good:
+            return found
+        if not any(one.by for one in whole):
+            return Signing(State.CHANGED, "the statement that was signed says something else")
+        return Book(self.signers, tuple(whole)).of_file(attestation.EVIDENCE, evidence.sha256)
+
+    def _of(self, about: Sequence[_Judged], subject: Subject, name: str | None) -> Signing:
+        by = list(dict.fromkeys(signer for one in about for signer in one.by))
+        good = [signer for signer in by if name is None or signer.goes_by(name)]
+        if good:
+            return Signing(State.SIGNED, f"signed by {_names(good)}")
+        if by:
+            return Signing(State.ANOTHER, f"signed by {_names(by)}, who is not {name}")
+        if about:
+            return Signing(State.UNKNOWN, self._unknown(about))
+        before = [signer for one in self.judged if _has_another(one, subject) for signer in one.by]
+        if before:
+            told = _names(dict.fromkeys(before))
+            return Signing(State.CHANGED, f"{told} signed it before it was changed")
+        return Signing(State.NONE, "nobody signed it")
+
+    def _unknown(self, about: Sequence[_Judged]) -> str:
+        keys = dict.fromkeys(key for one in about for key in one.envelope.sealed.keys)
+        names = {signer.key.fingerprint for one in about for signer in one.broken}
+        told = ", ".join(key for key in keys if key not in names)
+        if not told:
+            return "its signature does not verify"
+        if self.signers is None:
+            return f"there is a signature ({told}), and no list of signers"
+        return f"there is a signature with a key that is not among the signers ({told})"
+
+    def diagnostics(self) -> Iterator[Diagnostic]:
+        """F557 for each signature that does not verify, and what is wrong with the signers."""
+        yield from self.signers.remarks if self.signers else ()
+        for one in self.judged:
+            for signer in one.broken:
+                yield _broken(one.envelope, signer)
+
+
+def _agrees(signed: Statement, now: Statement) -> bool:
+    """Whether a statement of evidence says what is made of the file now, but for the proofs."""
+    says = {**signed.says, "proofs": now.says["proofs"]}
+    return signed.of(attestation.LOG) == now.of(attestation.LOG) and says == now.says
+
+
+NO_SIGNATURES = Book(None)
+
+
+def _has(one: _Judged, kind: str, sha256: str) -> bool:
+    return any((each.kind, each.sha256) == (kind, sha256) for each in one.subjects)
+
+
+def _has_another(one: _Judged, subject: Subject) -> bool:
+    """Whether the envelope is about an earlier content of it; of a file, the kind is enough."""
+    return any(
+        each.kind == subject.kind and subject.name in ("", each.name) for each in one.subjects
+    )
+
+
+def _names(signers: Iterable[Signer]) -> str:
+    return " and ".join(signer.name for signer in signers)
+
+
+def _broken(envelope: Envelope, signer: Signer) -> Diagnostic:
+    return Diagnostic(
+        Code.BROKEN_SIGNATURE,
+        f"the signature of {signer.name} does not verify: it, or what was signed, is not as it was",
+        envelope.place.part(0, 0),
+        help="ask the signer, and sign anew what is right; somebody may have forged this",
+    )
+
+
+def missing() -> Diagnostic | None:
+    """F908, where what is needed for signatures is not installed."""
+    absent = [name for name in ("securesystemslib", "cryptography") if find_spec(name) is None]
+    if not absent:
+        return None
+    return Diagnostic(
+        Code.MISSING_EXTRA,
+        f"signatures need {' and '.join(f'`{name}`' for name in absent)}",
+        help="install the extra: pip install 'fretc[sign]' "
+        "(in a checkout: .venv/bin/pip install '.[sign]')",
+    )
+
+
+def gathered(files: Sequence[str], signers: str | None) -> Book | Diagnostic:
+    """The signatures beside files, judged by a list of signers.
+
+    Args:
+        files: that may have been signed.
+        signers: path of the list; None: there is none.
+    """
+    if signers is None and not any(Path(beside(path)).exists() for path in files):
+        return Book(None)
+    absent = missing()
+    if absent is not None:
+        return absent
+    from fretc.attestation.signers import read as read_signers
+
+    listed = read_signers(signers) if signers is not None else None
+    return listed if isinstance(listed, Diagnostic) else book(files, listed)
+
+
+def book(files: Sequence[str], signers: Signers | None) -> Book | Diagnostic:
+    """The signatures beside files, judged."""
+    found: list[_Judged] = []
+    for path in files:
+        envelopes = read(path)
+        if isinstance(envelopes, Diagnostic):
+            return envelopes
+        found.extend(_judged(one, signers.signers if signers else ()) for one in envelopes)
+    return Book(signers, tuple(found))
+
+
+def _judged(envelope: Envelope, signers: Sequence[Signer]) -> _Judged:
+    named = [one for one in signers if one.key.fingerprint in envelope.sealed.keys]
+    good = tuple(one for one in named if envelope.sealed.is_signed_by(one.key))
+    bad = tuple(one for one in named if one not in good)
+    return _Judged(envelope, frozenset(envelope.statement.subjects), good, bad)

@@ -1,0 +1,163 @@
+"""`allowed_signers`: whose keys count, in the form that `ssh-keygen -Y verify` and git read.
+
+Source: ssh-keygen(1), ALLOWED SIGNERS.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+from fnmatch import fnmatchcase
+
+from compiler.files.text_files import read as read_text
+from compiler.files.text_files import sha256
+from fretc.attestation.keys import KEY_TYPES, PublicKey, UnusableKeyError, public_key
+from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
+from fretish.diagnostics.source import Source, Span
+from fretish.reading.limits import within
+
+NAMESPACE = "fretc"
+"""A line with `namespaces="..."` counts where this is one of them."""
+_LINE = re.compile(
+    r"""(?:"(?P<quoted>[^"\n]+)"|(?P<plain>[^\s"]+))[ \t]+
+        (?:(?P<options>(?:[^\s"]|"[^"\n]*")+)[ \t]+)?
+        (?P<type>(?:ssh|ecdsa|sk)-[\w.@-]+)[ \t]+(?P<key>[A-Za-z0-9+/=]+)(?:[ \t].*)?""",
+    re.VERBOSE,
+)
+_OPTION = re.compile(r'(?P<name>[\w-]+)(?:="(?P<value>[^"]*)")?(?:,|$)')
+
+
+@dataclass(frozen=True, slots=True)
+class Signer:
+    """A key, and the names of whoever has it."""
+
+    principals: tuple[str, ...]
+    """Names; `*` and `?` stand for any characters, and `!` begins one that is not meant."""
+    key: PublicKey
+
+    @property
+    def name(self) -> str:
+        """As it is shown, with the key."""
+        named = ", ".join(self.principals)
+        return f"{named} ({self.key.fingerprint})" if named else self.key.fingerprint
+
+    def goes_by(self, name: str) -> bool:
+        """Whether a person of that name has the key."""
+        denied = any(_fits(name, p[1:]) for p in self.principals if p.startswith("!"))
+        return not denied and any(_fits(name, p) for p in self.principals)
+
+
+def _fits(name: str, pattern: str) -> bool:
+    return fnmatchcase(name, pattern.replace("[", "[[]"))
+
+
+@dataclass(frozen=True, slots=True)
+class Signers:
+    """A whole file."""
+
+    file: str
+    sha256: str
+    signers: tuple[Signer, ...]
+    remarks: tuple[Diagnostic, ...] = ()
+    """About lines that do not count."""
+
+
+def read(path: str) -> Signers | Diagnostic:
+    """The signers of a file, or what is wrong with it (F548)."""
+    source = read_text(path)
+    if isinstance(source, Diagnostic):
+        return source
+    return within(len(source.text), source.span(), lambda: _read(source))
+
+
+def trusted(path: str) -> Signers | Diagnostic:
+    """The one public key of a file, in OpenSSH's form or in PEM; or the signers of it."""
+    source = read_text(path)
+    if isinstance(source, Diagnostic):
+        return source
+    words = source.text.split(None, 1)
+    if not words or (words[0] not in KEY_TYPES and not source.text.startswith("-----BEGIN ")):
+        return read(path)
+    try:
+        key = public_key(source.text)
+    except UnusableKeyError as error:
+        return bad_key(path, error)
+    return Signers(path, sha256(source.text), (Signer((), key),))
+
+
+def bad_key(path: str, error: UnusableKeyError) -> Diagnostic:
+    """F931."""
+    return Diagnostic(
+        Code.BAD_KEY,
+        f"the key in `{path}` cannot be used: {error}",
+        Source(path, "").span(),
+        help="name the private key to sign, its `.pub` to verify; `ssh-keygen -t ed25519` makes "
+        "both",
+    )
+
+
+def _read(source: Source) -> Signers | Diagnostic:
+    found: list[Signer] = []
+    remarks: list[Diagnostic] = []
+    for line in _lines(source):
+        one = _signer(line)
+        if isinstance(one, Diagnostic) and one.is_error:
+            return one
+        if isinstance(one, Diagnostic):
+            remarks.append(one)
+        elif one is not None:
+            found.append(one)
+    return Signers(source.name, sha256(source.text), tuple(found), tuple(remarks))
+
+
+def _lines(source: Source) -> Iterator[Span]:
+    """Those that say something."""
+    start = 0
+    for text in source.text.split("\n"):
+        line = text.rstrip()
+        if line.strip() and not line.lstrip().startswith("#"):
+            yield source.span(start + len(line) - len(line.lstrip()), start + len(line))
+        start += len(text) + 1
+
+
+def _signer(line: Span) -> Signer | Diagnostic | None:
+    """None where the key is for something else."""
+    found = _LINE.fullmatch(line.text)
+    if found is None:
+        return _wrong(line, "the line is not `NAME KEY-TYPE KEY`")
+    options = list(_OPTION.finditer(found["options"] or ""))
+    if "".join(option[0] for option in options) != (found["options"] or ""):
+        return _wrong(line, f"`{found['options']}` are no options")
+    for option in options:
+        if option["name"].lower() != "namespaces":
+            return _unused(line, f"fretc does not know `{option['name']}`")
+        if not _is_for_us(option["value"] or ""):
+            return None
+    if found["type"] not in KEY_TYPES:
+        return _unused(line, f"fretc does not take `{found['type']}`")
+    try:
+        key = public_key(f"{found['type']} {found['key']}")
+    except UnusableKeyError as error:
+        return _wrong(line, f"the key cannot be used: {error}")
+    return Signer(tuple((found["quoted"] or found["plain"]).split(",")), key)
+
+
+def _is_for_us(namespaces: str) -> bool:
+    return any(_fits(NAMESPACE, pattern) for pattern in namespaces.split(","))
+
+
+def _wrong(line: Span, what: str) -> Diagnostic:
+    mend = "write `name@example.org ssh-ed25519 AAAA...`, as ssh-keygen(1) says of ALLOWED SIGNERS"
+    return Diagnostic(Code.BAD_SIGNERS, what, line, help=mend)
+
+
+def _unused(line: Span, why: str) -> Diagnostic:
+    return Diagnostic(
+        Code.BAD_SIGNERS,
+        f"the key of this line does not count: {why}",
+        line,
+        help=f"name a key of {', '.join(f'`{each}`' for each in KEY_TYPES)}, without options or "
+        f'with `namespaces="{NAMESPACE}"`',
+        severity=Severity.WARNING,
+    )

@@ -1,0 +1,212 @@
+"""What is signed, as a statement: things with their SHA-256, and what is said of them.
+
+A statement of evidence names the evidence, its logs and proofs, and repeats what they say; one of
+reviews or waivers names each of them by itself, so that a later one leaves the others signed.
+
+Source: in-toto Attestation Framework, Statement v1, https://github.com/in-toto/attestation.
+"""
+
+from __future__ import annotations
+
+import json
+import platform
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from compiler.files.checked_json import MisshapenError, Shape, plain
+from compiler.files.edition import __version__, edition
+from compiler.files.shell_quoting import is_sha256
+from fretc.audit.evidence.basis import KINDS
+from fretc.audit.evidence.reader import Evidence, Result
+from fretc.report.traceability.lock import Review
+from fretc.report.traceability.waivers import Waiver
+from fretc.verification.reader import Proof, Proofs
+
+TYPE = "https://in-toto.io/Statement/v1"
+EVIDENCE, LOG, PROOFS, REVIEW, WAIVER, REPORT = (
+    "evidence", "log", "proofs", "review", "waiver", "report",
+)  # fmt: skip
+_KINDS = {
+    EVIDENCE: (EVIDENCE, LOG, PROOFS),
+    PROOFS: (PROOFS,),
+    REVIEW: (REVIEW,),
+    WAIVER: (WAIVER,),
+    REPORT: (REPORT,),
+}
+"""What a statement is about → the kinds of things that it may name."""
+
+
+@dataclass(frozen=True, slots=True)
+class Subject:
+    """A thing that is signed. Its kind is part of it: the hash of a log is no hash of evidence."""
+
+    kind: str
+    name: str
+    sha256: str
+
+    @property
+    def label(self) -> str:
+        """`review:R1`."""
+        return f"{self.kind}:{self.name}"
+
+
+@dataclass(frozen=True, slots=True)
+class Statement:
+    """What somebody signs."""
+
+    about: str
+    """One of the kinds."""
+    subjects: tuple[Subject, ...]
+    says: Mapping[str, Any] = field(default_factory=dict)
+    """What it repeats of them."""
+
+    @property
+    def main(self) -> frozenset[Subject]:
+        """What it is about: not the logs and proofs of evidence."""
+        return self.of(self.about)
+
+    def of(self, kind: str) -> frozenset[Subject]:
+        """The things of one kind."""
+        return frozenset(subject for subject in self.subjects if subject.kind == kind)
+
+
+def text(statement: Statement) -> bytes:
+    """Its JSON, with the tool that makes it."""
+    return json.dumps(
+        {
+            "_type": TYPE,
+            "subject": [
+                {"name": subject.label, "digest": {"sha256": subject.sha256}}
+                for subject in statement.subjects
+            ],
+            "predicateType": _uri(statement.about),
+            "predicate": {**statement.says, "tool": _tool()},
+        }
+    ).encode()
+
+
+def _tool() -> dict[str, str]:
+    python = platform.python_version()
+    return {"fretc": __version__, "edition": edition(), "python": python}
+
+
+def _uri(about: str) -> str:
+    return f"urn:fretc:{about}:1"
+
+
+def read(payload: bytes) -> Statement:
+    """A statement from its JSON.
+
+    Raises:
+        MisshapenError: it is none that fretc makes.
+    """
+    try:
+        whole = Shape(plain(payload.decode()))
+    except UnicodeDecodeError:
+        raise MisshapenError("the payload is not UTF-8 text") from None
+    whole.only("_type", "subject", "predicateType", "predicate")
+    whole.field("_type").one_of((TYPE,))
+    uri = whole.field("predicateType").one_of(tuple(map(_uri, _KINDS)))
+    about = next(kind for kind in _KINDS if _uri(kind) == uri)
+    subjects = tuple(_subject(each, about) for each in whole.field("subject").items())
+    predicate = whole.field("predicate").fields()
+    says = {key: each.value for key, each in predicate.items() if key != "tool"}
+    return Statement(about, subjects, says)
+
+
+def _subject(at: Shape, about: str) -> Subject:
+    at.only("name", "digest")
+    at.field("digest").only("sha256")
+    kind, colon, name = at.field("name").text().partition(":")
+    digest = at.field("digest").field("sha256")
+    if not colon or kind not in _KINDS[about]:
+        raise at.field("name").wrong(f"the name of something that is signed as `{about}`")
+    if not is_sha256(digest.text()):
+        raise digest.wrong("a SHA-256")
+    return Subject(kind, name, digest.text())
+
+
+# What is signed --------------------------------------------------------------------------------
+
+
+def evidence(file: Evidence, proofs: Proofs | None) -> Statement:
+    """Of audits, and of what was proved beside them."""
+    logs = dict.fromkeys(
+        Subject(LOG, result.run, result.hashes["log"])
+        for result in file.results
+        if "log" in result.hashes
+    )
+    return Statement(
+        EVIDENCE,
+        (
+            Subject(EVIDENCE, Path(file.file).name, file.sha256),
+            *logs,
+            *([_proofs(proofs)] if proofs else []),
+        ),
+        {
+            "fretc": file.fretc,
+            "requirements": _requirements(file.results),
+            "probabilities": [[one.requirement, one.answer] for one in file.probabilities],
+            "proofs": _proved(proofs.proofs) if proofs else [],
+        },
+    )
+
+
+def _requirements(results: Sequence[Result]) -> list[dict[str, Any]]:
+    """Of each requirement what its verdicts rest on, and the verdicts."""
+    found: dict[str, dict[str, Any]] = {}
+    for result in results:
+        rests_on = {kind: result.hashes[kind] for kind in KINDS if kind in result.hashes}
+        key = json.dumps([result.requirement, rests_on], sort_keys=True)
+        one = {"id": result.requirement, "rests_on": rests_on, "verdicts": []}
+        found.setdefault(key, one)["verdicts"].append([result.run, result.verdict])
+    return [*found.values()]
+
+
+def proofs(file: Proofs) -> Statement:
+    """Of what was proved."""
+    return Statement(PROOFS, (_proofs(file),), {"proofs": _proved(file.proofs)})
+
+
+def _proofs(file: Proofs) -> Subject:
+    return Subject(PROOFS, Path(file.file).name, file.sha256)
+
+
+def _proved(proofs: Sequence[Proof]) -> list[dict[str, Any]]:
+    return [
+        {
+            "requirement": proof.requirement,
+            "layer": proof.layer,
+            "claim": proof.claim,
+            "result": proof.result,
+            "artefacts": dict(proof.artefacts),
+        }
+        for proof in proofs
+    ]
+
+
+def reviews(found: Iterable[Review]) -> Statement:
+    """Of reviews, each by its seal."""
+    return Statement(REVIEW, tuple(map(review, found)))
+
+
+def review(found: Review) -> Subject:
+    """One review."""
+    return Subject(REVIEW, found.requirement, found.seal)
+
+
+def waivers(found: Iterable[Waiver]) -> Statement:
+    """Of waivers, each by its content."""
+    return Statement(WAIVER, tuple(map(waiver, found)))
+
+
+def waiver(found: Waiver) -> Subject:
+    """One waiver."""
+    return Subject(WAIVER, found.requirement, found.seal)
+
+
+def report(path: str, sha256: str) -> Statement:
+    """Of a report, in whatever form."""
+    return Statement(REPORT, (Subject(REPORT, Path(path).name, sha256),))

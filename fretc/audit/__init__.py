@@ -1,0 +1,1 @@
+"""Monitors run over logs: the plan, one log, many logs, many machines."""

@@ -1,0 +1,1 @@
+"""Bindings drafted from logs, and checked against them."""

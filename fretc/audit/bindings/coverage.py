@@ -1,0 +1,230 @@
+"""What the bound propositions were in recorded runs: true, false or unknown."""
+
+from __future__ import annotations
+
+import json
+import tomllib
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import asdict, dataclass, field
+from functools import partial
+from typing import Any
+
+from fretc.audit.constancy import never_changed
+from fretc.audit.measurements.tallies import NOTHING, Tally, tally
+from fretc.audit.one_log import examined, signals_of
+from fretc.audit.phases.advice import Runs, proposal
+from fretc.audit.phases.by_shift import Phases, phases
+from fretc.audit.plan import Plan, watched
+from fretc.audit.pool import Killed, each, was_killed
+from fretc.logs.reader import read
+from fretc.logs.signals.samples import Recording
+from fretc.logs.signals.traces import trace
+from fretish.bindings.declarations import Declarations, Signal
+from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.diagnostics.rendering import as_json, visible
+
+
+@dataclass(frozen=True, slots=True)
+class Seen:
+    """One log: its ticks, and the tally of each proposition (None: it could not be read)."""
+
+    run: str
+    ticks: int
+    tallies: Mapping[str, Tally] | None
+    findings: tuple[Diagnostic, ...]
+    phases: Mapping[str, Phases] = field(default_factory=dict)
+    """Of each requirement the verdict at each phase of the ticks; empty where there are none."""
+
+
+@dataclass(frozen=True, slots=True)
+class Coverage:
+    """What each proposition was in each log."""
+
+    declarations: Declarations
+    logs: tuple[Seen, ...]
+
+    @property
+    def diagnostics(self) -> tuple[Diagnostic, ...]:
+        """What there is to say: of each log, and then of all of them."""
+        return (*self._told, *self._of_all)
+
+    @property
+    def _of_all(self) -> tuple[Diagnostic, ...]:
+        proposed = proposal(self._phased, self.declarations)
+        return (*self._constant, *([proposed] if proposed else []))
+
+    @property
+    def _phased(self) -> Runs:
+        return [(log.run, log.phases) for log in self.logs if log.phases]
+
+    @property
+    def _told(self) -> tuple[Diagnostic, ...]:
+        return tuple(finding for log in self.logs for finding in log.findings)
+
+    @property
+    def _constant(self) -> tuple[Diagnostic, ...]:
+        return tuple(never_changed(self._tallies, self.declarations, self._told))
+
+    @property
+    def shown(self) -> bool:
+        """Whether every proposition took both values in some log."""
+        return all(map(self._took_both, self.declarations.propositions))
+
+    @property
+    def as_json(self) -> str:
+        """One JSON object: of each proposition what it was bound to, and what it was."""
+        return f"{json.dumps(self._record(), indent=2, allow_nan=False)}\n"
+
+    @property
+    def text(self) -> tuple[tuple[str, str | None], ...]:
+        """Lines for a person, each with its colour."""
+        names = self.declarations.propositions
+        lines = [line for name in names for line in self._lines(name)]
+        return tuple((visible(line), colour) for line, colour in (*lines, *self._phase_lines()))
+
+    @property
+    def _tallies(self) -> dict[str, list[Tally]]:
+        read = [log.tallies for log in self.logs if log.tallies is not None]
+        return {name: [log[name] for log in read] for name in self.declarations.propositions}
+
+    def _took_both(self, name: str) -> bool:
+        return any(counted.true and counted.false for counted in self._tallies[name])
+
+    def _lines(self, name: str) -> Iterator[tuple[str, str | None]]:
+        took_both = self._took_both(name)
+        glyph, colour = ("✔", "green") if took_both else ("?", "magenta")
+        yield f"{glyph} {name}: {_expression(self.declarations, name)}", colour
+        for signal in self.declarations.propositions[name].signals:
+            yield f"    {_bound(self.declarations.signals[signal])}", None
+        width = max((len(log.run) for log in self.logs), default=0)
+        for log in self.logs:
+            counted = "cannot be read" if log.tallies is None else _counted(log.tallies[name])
+            yield f"  {log.run:<{width}}  {counted}", None
+        if len(self.logs) > 1:
+            yield f"  {'all logs':<{width}}  {_counted(sum(self._tallies[name], NOTHING))}", None
+
+    def _phase_lines(self) -> Iterator[tuple[str, str | None]]:
+        told = [
+            f"  {run}  {id} {phases.verdict}, {phases.text}"
+            for run, found in self._phased
+            for id, phases in found.items()
+            if phases.text
+        ]
+        if told:
+            yield "? phase of the ticks: verdicts depend on it", "magenta"
+            yield from ((line, None) for line in told)
+        elif self._phased:
+            yield "✔ phase of the ticks: no verdict depends on it", "green"
+
+    def _record(self) -> dict[str, Any]:
+        return {
+            "bindings": self.declarations.source.name,
+            "logs": [
+                {
+                    "run": log.run,
+                    "read": log.tallies is not None,
+                    "ticks": log.ticks,
+                    "findings": [as_json(finding) for finding in log.findings],
+                    "phases": {id: phases.as_record for id, phases in log.phases.items()},
+                }
+                for log in self.logs
+            ],
+            "propositions": [self._proposition(name) for name in self.declarations.propositions],
+            "findings": [as_json(finding) for finding in self._of_all],
+        }
+
+    def _proposition(self, name: str) -> dict[str, Any]:
+        signals = self.declarations.signals
+        return {
+            "name": name,
+            "expression": _expression(self.declarations, name),
+            "signals": {
+                signal: str(signals[signal].path)
+                for signal in self.declarations.propositions[name].signals
+            },
+            "took_both_values": self._took_both(name),
+            "all": asdict(sum(self._tallies[name], NOTHING)),
+            "logs": {log.run: asdict(log.tallies[name]) for log in self.logs if log.tallies},
+        }
+
+
+def _expression(declarations: Declarations, name: str) -> str:
+    """As it is written."""
+    data: Mapping[str, Any] = tomllib.loads(declarations.source.text)
+    return str(data["proposition"][name]["expr"])
+
+
+def _bound(signal: Signal) -> str:
+    reduced = f"{signal.reduce} of " if signal.reduce else ""
+    return f"{signal.name} = {reduced}{signal.path} {signal.unit_name}".rstrip()
+
+
+def _counted(counted: Tally) -> str:
+    ticks = counted.true + counted.false + counted.unknown
+    times = f"{counted.changes} time{'' if counted.changes == 1 else 's'}"
+    return (
+        f"true {counted.true}, false {counted.false}, unknown {counted.unknown} "
+        f"of {ticks} ticks; changed {times}"
+    )
+
+
+def coverage(
+    declarations: Declarations, logs: Sequence[str], jobs: int, plan: Plan | None = None
+) -> Coverage | Diagnostic:
+    """Look at every proposition in every log.
+
+    Args:
+        declarations: clock, signals and propositions.
+        logs: paths.
+        jobs: how many processes share the logs.
+        plan: of the requirements; None where they cannot be audited.
+    """
+    if not declarations.clock.declared or not declarations.propositions:
+        what = "clock" if not declarations.clock.declared else "proposition"
+        mend = "[clock]" if what == "clock" else "[proposition.NAME]"
+        return Diagnostic(
+            Code.NOTHING_TO_DO,
+            f"`{declarations.source.name}` declares no {what}",
+            declarations.source.span(0, 0),
+            help=f"add `{mend}`; `fretc bind --from LOG` drafts it",
+        )
+    look = partial(_seen, declarations=declarations, plan=plan)
+    logs = tuple(dict.fromkeys(logs))
+    seen = {
+        place: Seen(logs[place], 0, None, (was_killed(logs[place], str(found)),))
+        if isinstance(found, Killed)
+        else found
+        for place, found in each(look, logs, jobs)
+    }
+    return Coverage(declarations, tuple(seen[place] for place in range(len(logs))))
+
+
+def _seen(log: str, declarations: Declarations, plan: Plan | None) -> Seen:
+    names = tuple(declarations.propositions)
+    recording = read(log, declarations, signals_of(declarations, names))
+    if isinstance(recording, Diagnostic):
+        return Seen(log, 0, None, (recording,))
+    recording = examined(recording, declarations, names)
+    seen = trace(declarations, recording, names)
+    ticks = len(seen.timeline.times)
+    tallies = {name: tally(column, ticks) for name, column in seen.columns.items()}
+    found = _phases(log, declarations, recording, plan) if plan is not None else {}
+    return Seen(log, ticks, tallies, recording.findings, found)
+
+
+def _phases(
+    log: str, declarations: Declarations, recording: Recording, plan: Plan
+) -> Mapping[str, Phases]:
+    """By the ticks of an audit: they begin with the messages that the requirements read."""
+    monitors = [w.monitor for w in watched(plan)]
+    if _topics(plan.declarations) != _topics(declarations):
+        names = tuple(plan.declarations.signals)
+        again = read(log, plan.declarations, names)
+        if isinstance(again, Diagnostic):
+            return {}
+        recording = again
+    return phases(plan.declarations, recording, monitors)
+
+
+def _topics(declarations: Declarations) -> set[str]:
+    return {signal.path.topic for signal in declarations.signals.values()}

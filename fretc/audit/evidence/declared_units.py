@@ -1,0 +1,75 @@
+"""Evidence in the units that the bindings declare, for whatever is shown of it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from fractions import Fraction
+from math import isinf
+
+from fretc.audit.evidence.reader import Evidence, Result, Threshold, Violation
+from fretc.audit.evidence.samples import Samples
+from fretish.bindings.amounts import declared_unit, scaled, shared_unit
+from fretish.bindings.declarations import Declarations, Signal
+
+
+def in_declared_units(evidence: Evidence, declared: Declarations | None) -> Evidence:
+    """The same evidence with every number in the unit that the bindings declare for its signal.
+
+    A signal that the bindings do not declare, or now in units of another dimension, stays in its
+    base unit.
+    """
+    if declared is None:
+        return evidence
+    results = tuple(_result(result, declared.signals) for result in evidence.results)
+    return replace(evidence, results=results)
+
+
+def _result(result: Result, declared: Mapping[str, Signal]) -> Result:
+    units = {name: declared_unit(name, base, declared) for name, base in result.units.items()}
+    return replace(
+        result,
+        units={name: unit for name, (unit, _) in units.items()},
+        violations=tuple(_violation(each, units) for each in result.violations),
+        thresholds=tuple(_threshold(each, declared) for each in result.thresholds),
+    )
+
+
+_Units = Mapping[str, tuple[str, Fraction]]
+_ONE = ("", Fraction(1))
+
+
+def _violation(violation: Violation, units: _Units) -> Violation:
+    def own(name: str) -> Fraction:
+        return units.get(name, _ONE)[1]
+
+    window = violation.window
+    return replace(
+        violation,
+        values={name: scaled(number, own(name)) for name, number in violation.values.items()},
+        window=window
+        and replace(
+            window, samples={name: _samples(s, own(name)) for name, s in window.samples.items()}
+        ),
+    )
+
+
+def _samples(samples: Samples, factor: Fraction) -> Samples:
+    if factor == 1:
+        return samples
+    return replace(samples, values=tuple(scaled(number, factor) for number in samples.values))
+
+
+def _threshold(threshold: Threshold, declared: Mapping[str, Signal]) -> Threshold:
+    unit, factor = shared_unit(threshold.signal, threshold.unit, declared)
+    bound = scaled(threshold.bound, factor)
+    if isinf(bound):
+        return threshold
+    return replace(
+        threshold,
+        unit=unit,
+        bound=bound,
+        least=scaled(threshold.least, factor),
+        greatest=scaled(threshold.greatest, factor),
+        margin=scaled(threshold.margin, factor),
+    )

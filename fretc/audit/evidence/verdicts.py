@@ -1,0 +1,98 @@
+"""Every verdict: its sign, its colour and what other tools take it for, the worst first.
+
+A verdict is what the evidence shows. Whether it is about the requirement as it is now is another
+fact, its currency: a verdict is suspect where something that it rests on has changed. A suspect
+verdict never counts as shown, and one that tells of a violation stays one.
+
+Sources: the JUnit schema of the Jenkins xUnit plugin; OASIS, SARIF Version 2.1.0, `level`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from enum import StrEnum
+
+from fretc.audit.measurements.confidence_intervals import REFUTED, SUPPORTED
+from monitors import kernel
+
+UNFORMALIZED = "unformalized"
+NOT_EXERCISED = "not exercised"
+RETIRED = "retired"
+WAIVED = "waived"
+SUSPECT, CURRENT = "suspect", "current"
+"""The two currencies of a verdict."""
+
+
+class Level(StrEnum):
+    """How bad it is for who reads results as messages."""
+
+    ERROR = "error"
+    WARNING = "warning"
+    NONE = "none"
+
+
+@dataclass(frozen=True, slots=True)
+class Verdict:
+    """A verdict as it is shown and counted; `kind` is its class in the report's style sheet."""
+
+    word: str
+    glyph: str
+    kind: str
+    colour: str
+    """In a terminal."""
+    level: Level
+    junit: str
+    """The element of JUnit for it; empty: the case passes."""
+
+
+_ERROR, _WARNING, _NONE = Level.ERROR, Level.WARNING, Level.NONE
+VERDICTS: Mapping[str, Verdict] = {
+    each.word: each
+    for each in (
+        Verdict(kernel.VIOLATED, "✘", "violated", "red", _ERROR, "failure"),
+        Verdict(REFUTED, "✘", "violated", "red", _ERROR, "failure"),
+        Verdict(UNFORMALIZED, "!", "unformalized", "red", _ERROR, "error"),
+        Verdict(kernel.NO_DATA, "?", "no-data", "magenta", _WARNING, "error"),
+        Verdict(kernel.INCONCLUSIVE, "◔", "inconclusive", "yellow", _WARNING, "skipped"),
+        Verdict(kernel.VACUOUS, "∅", "vacuous", "bright_black", _WARNING, "skipped"),
+        Verdict(NOT_EXERCISED, "○", "not-exercised", "bright_black", _WARNING, "skipped"),
+        Verdict(WAIVED, "w", "waived", "blue", _WARNING, "skipped"),
+        Verdict(SUPPORTED, "✔", "satisfied", "green", _NONE, ""),
+        Verdict(kernel.SATISFIED, "✔", "satisfied", "green", _NONE, ""),
+        Verdict(RETIRED, "\N{EN DASH}", "retired", "bright_black", _NONE, "skipped"),
+    )
+}
+"""That of several runs is the worst of theirs."""
+BROKEN = (kernel.VIOLATED, REFUTED)
+"""The verdicts that tell of a violation."""
+SHOWN = (kernel.SATISFIED, SUPPORTED)
+"""The verdicts that show a requirement, unless they are suspect."""
+_RANK = {word: rank for rank, word in enumerate(VERDICTS)}
+
+
+def shows(word: str, *, suspect: bool) -> bool:
+    """Whether a verdict shows its requirement."""
+    return word in SHOWN and not suspect
+
+
+def severity(word: str, *, suspect: bool = False) -> tuple[int, bool]:
+    """By which verdicts are sorted, the worst first.
+
+    A suspect one follows the current one of its word; one that would show its requirement comes
+    after all that do not.
+    """
+    rank = _RANK[WAIVED] if suspect and word in SHOWN else _RANK[word]
+    return rank, suspect
+
+
+def level(word: str, *, suspect: bool = False) -> Level:
+    """How bad it is: a suspect verdict is a warning at least."""
+    found = VERDICTS[word].level
+    return Level.WARNING if suspect and found is Level.NONE else found
+
+
+def junit(word: str, *, suspect: bool = False) -> str:
+    """The element of JUnit: a suspect verdict is a failure at least."""
+    found = VERDICTS[word].junit
+    return "failure" if suspect and found in ("", "skipped") else found

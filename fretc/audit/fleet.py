@@ -1,0 +1,294 @@
+"""Audit on many machines, by Dask: each log is a task, none is lost and none is counted twice.
+
+The only module that imports dask. The workers need the fretc that asks them, to the letter, and
+must find the logs under the same names.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import logging
+import os
+import secrets
+import signal
+import threading
+from collections.abc import Generator, Iterator, Sequence
+from functools import lru_cache, partial
+from importlib.util import find_spec
+from typing import TYPE_CHECKING, Any
+from urllib.parse import urlsplit
+
+from compiler.files.edition import edition
+from compiler.files.processes import shield
+from fretc.audit.many_logs import EVALUATIONS, Audited, Engine, Found, audited, given_up
+from fretc.audit.plan import Plan, packed, unpacked
+from fretish.diagnostics.diagnostic import Code, Diagnostic
+
+if TYPE_CHECKING:
+    from distributed import Client, Future, WorkerPlugin
+
+SCHEME = "dask"
+PATIENCE = 10
+"""Seconds after which a scheduler, or a worker, that is not there is not waited for."""
+
+
+def engine(name: str, jobs: int) -> Engine | Diagnostic:
+    """The engine of a name.
+
+    Args:
+        name: `dask`: a cluster of this machine; `dask://HOST:PORT`: that of the scheduler there.
+        jobs: how many processes of this machine.
+    """
+    place = urlsplit(name)
+    if name != SCHEME and not (place.scheme == SCHEME and _is_address(place.netloc)):
+        return _bad_engine(name)
+    if find_spec("distributed") is None:
+        return _missing("distributed")
+    if name == SCHEME and find_spec("cryptography") is None:
+        return _missing("cryptography")
+    if name == SCHEME:
+        return partial(_audit, lambda: _own_cluster(jobs))
+    return partial(_audit, lambda: _cluster_at(f"tcp://{place.netloc}"))
+
+
+def _is_address(netloc: str) -> bool:
+    host, colon, port = netloc.rpartition(":")
+    return bool(host and colon) and "@" not in host and port.isdecimal() and int(port) < 2**16
+
+
+def _audit(connected: Any, plan: Plan, logs: Sequence[str]) -> Found:
+    """An engine, but for its first parameter: gives a context with a client."""
+    if not logs:
+        return
+    try:
+        with connected() as client:
+            yield from _tasks(client, plan, logs)
+    except _FleetError as error:
+        yield error.diagnostic
+
+
+class _FleetError(Exception):
+    """The fleet cannot do it."""
+
+    def __init__(self, diagnostic: Diagnostic) -> None:
+        super().__init__(diagnostic.message)
+        self.diagnostic = diagnostic
+
+
+# Clusters -------------------------------------------------------------------------------------
+
+
+@contextlib.contextmanager
+def _own_cluster(jobs: int) -> Iterator[Client]:
+    """A cluster of processes of this machine, as long as the context lasts.
+
+    Whoever can send tasks to a worker executes code as its user, and sockets are open to all users
+    of a machine: each end has to show the key of a certificate that is made for this audit and is
+    never written. Of HTTP pages there are none.
+    """
+    from dask import config
+    from distributed import Client, LocalCluster, Security
+
+    shield()
+    _be_quiet()
+    with contextlib.ExitStack() as stack:
+        # One death may be chance; what has died twice is tried once more, alone.
+        stack.enter_context(config.set({"distributed.scheduler.allowed-failures": 1, **_NO_PAGES}))
+        with _deaf():
+            cluster = LocalCluster(
+                n_workers=jobs,
+                threads_per_worker=1,
+                memory_limit=0,  # the machine decides, as it does without Dask
+                dashboard_address="127.0.0.1:0",
+                silence_logs=logging.CRITICAL,
+                security=Security.temporary(),
+            )
+        stack.enter_context(cluster)
+        client = stack.enter_context(Client(cluster))
+        client.register_plugin(_deaf_worker())
+        yield client
+
+
+_NO_PAGES: dict[str, list[str]] = {
+    "distributed.scheduler.http.routes": [],
+    "distributed.worker.http.routes": [],
+}
+
+
+@contextlib.contextmanager
+def _cluster_at(address: str) -> Iterator[Client]:
+    """The cluster of a scheduler that is there already, with one worker at least."""
+    from distributed import Client
+
+    _be_quiet()
+    try:
+        client = Client(address, timeout=PATIENCE)
+    except (OSError, ValueError) as error:
+        raise _FleetError(_unreachable(address, "no scheduler of Dask answers")) from error
+    with client:
+        try:
+            client.wait_for_workers(1, timeout=PATIENCE)
+        except TimeoutError as error:
+            raise _FleetError(_unreachable(address, "the scheduler has no worker")) from error
+        yield client
+
+
+def _be_quiet() -> None:
+    """What Dask logs on its own behalf (a worker has died, a connection is closed) we tell."""
+    for name in ("distributed", "tornado", *logging.root.manager.loggerDict):
+        if name.partition(".")[0] in ("distributed", "tornado"):
+            logging.getLogger(name).setLevel(logging.CRITICAL + 1)
+
+
+@contextlib.contextmanager
+def _deaf() -> Iterator[None]:
+    """Processes that begin in here hear no Ctrl-C: it goes to all, and the first one decides."""
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    before = signal.signal(signal.SIGINT, signal.SIG_IGN)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, before)
+
+
+def _deaf_worker() -> WorkerPlugin:
+    """The same for workers that begin later, in place of one that died."""
+    from distributed import WorkerPlugin
+
+    class Deaf(WorkerPlugin):  # type: ignore[misc]
+        def setup(self, worker: object) -> None:
+            signal.signal(signal.SIGINT, signal.SIG_IGN)
+
+    return Deaf()
+
+
+# Tasks ----------------------------------------------------------------------------------------
+
+
+def _tasks(client: Client, plan: Plan, logs: Sequence[str]) -> Found:
+    """Each log as a task; one whose workers died runs once more when nothing else does."""
+    # A task, not scattered data: Dask makes it anew when all who have it are dead.
+    sent = client.submit(bytes, packed(plan), key=f"fretc-plan-{secrets.token_hex(8)}")
+    again: list[str] = []
+    with contextlib.closing(_results(client, sent, logs)) as done:
+        for log, found in done:
+            if found is None:
+                again.append(log)
+            else:
+                yield log, found
+    for log in again:
+        with contextlib.closing(_results(client, sent, [log])) as done:
+            for _, found in done:
+                yield log, found or given_up(plan, log, "all workers of Dask that tried it died")
+
+
+def _results(
+    client: Client, plan: Future, logs: Sequence[str]
+) -> Generator[tuple[str, Audited | None], None, None]:
+    """Logs as they are done; None for one whose workers died.
+
+    Raises:
+        _FleetError: the fleet is not able to.
+    """
+    from distributed import as_completed
+
+    batch = f"fretc-audit-{secrets.token_hex(8)}"  # results of another audit are not for us
+    waiting = {
+        client.submit(_work, plan, log, os.getcwd(), edition(), key=f"{batch}-{number}"): log
+        for number, log in enumerate(logs)
+    }
+    try:
+        for future in as_completed(list(waiting)):
+            yield waiting.pop(future), _result(future)
+    finally:
+        with contextlib.suppress(Exception):
+            client.cancel(list(waiting), force=True)
+
+
+def _result(future: Future) -> Audited | None:
+    from distributed import KilledWorker
+
+    if future.status == "finished":
+        result = future.result()
+        if isinstance(result, Audited):
+            return result
+        raise _FleetError(_other_edition(f"the worker {result} has another fretc than this one"))
+    if future.status != "error":
+        raise _FleetError(_unreachable(future.client.scheduler_info()["address"], "it has gone"))
+    error = future.exception()
+    if isinstance(error, KilledWorker):
+        return None
+    if isinstance(error, ImportError | AttributeError):
+        raise _FleetError(_other_edition(f"a worker has no fretc, or another one: {error}"))
+    assert error is not None
+    raise error
+
+
+_ALONE = threading.Lock()
+"""A worker may have many threads; a monitor has a state, and the present folder is of all."""
+
+
+def _work(plan: bytes, log: str, folder: str, wanted: str) -> Audited | str:
+    """Audit a log, in a worker; the worker's address, where its edition is another one."""
+    from distributed import get_worker
+
+    if edition() != wanted:
+        return str(get_worker().address)
+    with _ALONE, _in(folder):
+        return audited(_plan(plan), log)
+
+
+@lru_cache(maxsize=4)
+def _plan(data: bytes) -> Plan:
+    return unpacked(data)
+
+
+@contextlib.contextmanager
+def _in(folder: str) -> Iterator[None]:
+    """In the folder of the one who asks, where there is one of that name: logs keep their names."""
+    with contextlib.ExitStack() as stack:
+        with contextlib.suppress(OSError):
+            stack.enter_context(contextlib.chdir(folder))
+        yield
+
+
+# Diagnostics ----------------------------------------------------------------------------------
+
+
+def _bad_engine(name: str) -> Diagnostic:
+    return Diagnostic(
+        Code.BAD_USAGE,
+        f"`{name}` is no engine",
+        help=f"write `--evaluation {name}`"
+        if name in EVALUATIONS
+        else "it is `local`, `dask`, or `dask://HOST:PORT`",
+    )
+
+
+def _missing(what: str) -> Diagnostic:
+    return Diagnostic(
+        Code.MISSING_EXTRA,
+        f"a fleet needs `{what}`",
+        help="install the extra: pip install 'fretc[fleet]' "
+        "(in a checkout: .venv/bin/pip install '.[fleet]')",
+    )
+
+
+def _unreachable(address: str, why: str) -> Diagnostic:
+    return Diagnostic(
+        Code.NO_FLEET,
+        f"the fleet at `{address.replace('tcp', SCHEME, 1)}` cannot be reached: {why}",
+        help="start `dask scheduler` there, and `dask worker HOST:PORT --nthreads 1` on each "
+        "machine; `--engine dask` needs neither",
+    )
+
+
+def _other_edition(what: str) -> Diagnostic:
+    return Diagnostic(
+        Code.OTHER_EDITION,
+        what,
+        help="install the same fretc, Python and libraries on all machines: "
+        "verdicts of another one are not mixed in",
+    )

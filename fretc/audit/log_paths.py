@@ -1,0 +1,164 @@
+"""Which logs are meant: files, folders of them, patterns, standard input, URLs."""
+
+from __future__ import annotations
+
+import glob
+import os
+from collections.abc import Iterable, Iterator, Sequence
+from pathlib import Path
+
+from compiler.files.text_files import unreadable
+from fretc.logs.storage.folders import METADATA, Folder, folder, is_folder
+from fretc.logs.storage.inputs import STDIN, is_url
+from fretc.logs.storage.splits import ACTIVE, is_backup, named, split
+from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.diagnostics.source import Source
+
+_LOGS = (".mcap", ".bag", ".db3", ACTIVE, ".bag.orig.active")
+"""How the names of logs end; below a folder, other files are passed by."""
+ANNOTATIONS = ".fretc.mcap"
+"""How the names of annotations end: below a folder of logs, they are no logs."""
+
+
+def logs(paths: Sequence[str]) -> list[str] | Diagnostic:
+    """The logs, with those below a folder in its place; each once, folders in order of names.
+
+    A folder of rosbag2 with several files is one log, and so are these files when all of them are
+    named. So are the files of `rosbag record --split`.
+
+    Args:
+        paths: as the user names them; what is no folder and no pattern is taken for a file.
+    """
+    found: dict[str, str] = {}
+    for path in paths:
+        try:
+            files = list(_named(path))
+        except OSError as error:
+            return unreadable(error.filename or path, error)
+        for file in files:
+            if isinstance(file, Diagnostic):
+                return file
+            found.setdefault(file if _elsewhere(file) else os.path.realpath(file), file)
+    try:
+        return _whole(found)
+    except OSError as error:
+        return unreadable(error.filename or METADATA, error)
+
+
+def files_of(logs: Iterable[str]) -> list[str]:
+    """All files that the logs are made of."""
+    files: list[str] = []
+    for log in logs:
+        run = None if _elsewhere(log) or os.path.lexists(log) else split(log)
+        if not _elsewhere(log) and os.path.isdir(log):
+            files += [entry.path for entry in os.scandir(log)]
+        elif run is not None:
+            files += [os.path.join(run.path, name) for name in run.files]
+        else:
+            files.append(log)
+    return files
+
+
+def _elsewhere(path: str) -> bool:
+    """Whether it is no path of a file."""
+    return path == STDIN or is_url(path)
+
+
+def _named(path: str) -> Iterator[str | Diagnostic]:
+    """What one path stands for."""
+    if not path or _elsewhere(path) or not (glob.has_magic(path) or os.path.isdir(path)):
+        yield path
+    elif os.path.isdir(path):
+        yield from list(_below(Path(path))) or [_empty(path)]
+    elif os.path.lexists(path):
+        yield path
+    else:
+        matches = sorted(glob.glob(path, recursive=True))
+        if not matches:
+            yield _no_match(path)
+        for match in matches:
+            if os.path.isdir(match):
+                yield from _below(Path(match))
+            elif os.path.basename(match) != METADATA:
+                yield match
+
+
+def _below(path: Path, seen: set[str] | None = None) -> Iterator[str | Diagnostic]:
+    """The logs in a folder; a link that leads to none is one that cannot be read, and never lost.
+
+    Args:
+        path: the folder.
+        seen: folders that were looked into already: links may lead in circles.
+    """
+    seen = set() if seen is None else seen
+    real = os.path.realpath(path)
+    if real in seen:
+        return
+    seen.add(real)
+    entries = sorted(path.iterdir())
+    logs = [entry for entry in entries if not entry.name.endswith(ANNOTATIONS)]
+    files = [
+        entry
+        for entry in logs
+        if entry.name.endswith(_LOGS) and not entry.is_dir() and not is_backup(str(entry))
+    ]
+    run = folder(str(path)) if is_folder(str(path)) else None
+    if isinstance(run, Diagnostic) and len(files) > 1:
+        yield run
+        return
+    if isinstance(run, Folder) and (len(run.files) > 1 or run.compressed):
+        yield str(path)
+        files = [file for file in files if file.name not in run.files]
+    for entry in entries:
+        if entry in files:
+            yield str(entry)
+        elif entry.is_dir():
+            yield from _below(entry, seen)
+
+
+def _whole(found: dict[str, str]) -> list[str]:
+    """The logs, with a folder of rosbag2 in place of its files where all of them are there."""
+    runs = {os.path.dirname(real): os.path.dirname(file) or "." for real, file in found.items()}
+    for real, path in runs.items():
+        about = folder(path) if is_folder(path) else None
+        if not isinstance(about, Folder) or len(about.files) < 2:
+            continue
+        parts = [os.path.realpath(os.path.join(real, name)) for name in about.files]
+        if all(part in found for part in parts):
+            found = {real if key == parts[0] else key: log for key, log in found.items()}
+            found[real] = path
+            found = {key: log for key, log in found.items() if key not in parts}
+    return list(_joined(found))
+
+
+def _joined(found: dict[str, str]) -> Iterator[str]:
+    """The logs, with the run in place of its bags where all of them are there."""
+    passed: set[str] = set()
+    for real, log in found.items():
+        if real in passed:
+            continue
+        run = split(log) if log.endswith((".bag", ACTIVE)) and not _elsewhere(log) else None
+        parts = run and {os.path.realpath(os.path.join(run.path, name)) for name in run.files}
+        if run and parts and parts <= found.keys():
+            passed |= parts
+            yield named(run)
+        else:
+            yield log
+
+
+def _empty(path: str) -> Diagnostic:
+    return Diagnostic(
+        Code.NO_SUCH_FILE,
+        f"no log (`*.mcap`, `*.bag`, `*.db3`) is in `{path}`",
+        Source(path, "").span(),
+        help="name the folder that your logs are in",
+    )
+
+
+def _no_match(path: str) -> Diagnostic:
+    return Diagnostic(
+        Code.NO_SUCH_FILE,
+        f"no file matches `{path}`",
+        Source(path, "").span(),
+        help="`*` stands for any part of one name, `**` for folders below each other",
+    )

@@ -1,0 +1,297 @@
+"""From a plan and logs to verdicts: read each log, run the monitors, gather the evidence."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
+from contextlib import closing
+from dataclasses import dataclass, replace
+from functools import partial
+from types import MappingProxyType
+from typing import Any
+
+from compiler.files.edition import __version__
+from compiler.files.templating import to_json
+from compiler.files.text_files import Stamp, file_sha256, stamp
+from fretc.audit.constancy import never_changed, tallies_of
+from fretc.audit.evidence.basis import BINDINGS, SENTENCE, of_all
+from fretc.audit.evidence.estimates import Estimated, estimates, warnings
+from fretc.audit.evidence.verdicts import VERDICTS
+from fretc.audit.evidence.writer import SCHEMA, as_record, unjudged, unread
+from fretc.audit.measurements.confidence_intervals import REFUTED, SUPPORTED
+from fretc.audit.measurements.judgement import Engine as Evaluation
+from fretc.audit.one_log import audit, examined, signals_of
+from fretc.audit.phases.advice import findings
+from fretc.audit.plan import Plan, watched
+from fretc.audit.pool import Killed, each, was_killed
+from fretc.logs.reader import read
+from fretc.logs.storage.inputs import STDIN
+from fretc.logs.storage.inputs import shown as called
+from fretish.diagnostics.diagnostic import Diagnostic
+from fretish.diagnostics.rendering import visible
+from monitors import kernel
+
+
+@dataclass(frozen=True, slots=True)
+class Audit:
+    """What an audit has shown: one result for each run and requirement, runs in their order."""
+
+    results: tuple[Mapping[str, Any], ...]
+    evidence: str
+    """The text of the evidence file."""
+    diagnostics: tuple[Diagnostic, ...]
+    read: int = 0
+    """How many of the logs could be read."""
+    estimates: tuple[Estimated, ...] = ()
+    """What all runs say of each requirement with a probability."""
+
+    @property
+    def violated(self) -> bool:
+        """Whether any requirement is violated in any run, or refuted by all of them."""
+        return any(one.answer == REFUTED for one in self.estimates) or any(
+            result["verdict"] == kernel.VIOLATED for result in self.results
+        )
+
+    @property
+    def shown(self) -> bool:
+        """Whether every requirement is satisfied in every run, or supported by all of them."""
+        together = {one.requirement for one in self.estimates}
+        return all(one.answer == SUPPORTED for one in self.estimates) and all(
+            result["verdict"] == kernel.SATISFIED
+            for result in self.results
+            if result["requirement"] not in together
+        )
+
+    @property
+    def as_json(self) -> str:
+        """One JSON array, an object per run and requirement; with probabilities, both by name."""
+        if not self.estimates:
+            return f"{to_json(list(self.results))}\n"
+        told = [one.as_record for one in self.estimates]
+        return f"{to_json({'results': list(self.results), 'probabilities': told})}\n"
+
+    @property
+    def text(self) -> tuple[tuple[str, str | None], ...]:
+        """Lines for a person, each with its colour."""
+        lines: list[tuple[str, str | None]] = []
+        width = max((len(result["requirement"]) for result in self.results), default=0)
+        run = None
+        for result in self.results:
+            if result["run"] != run:
+                run = result["run"]
+                lines.append((str(run), None))
+            verdict = VERDICTS[result["verdict"]]
+            name = f"{result['requirement']:<{width}}"
+            line = f"  {verdict.glyph} {name}  {verdict.word:<12}  {result['reason']}"
+            lines.append((line, verdict.colour))
+        for one in self.estimates:
+            lines.extend(_block(one))
+        return tuple((visible(line), colour) for line, colour in lines)
+
+
+def _block(one: Estimated) -> Iterator[tuple[str, str | None]]:
+    """What all runs say of one requirement, the answer in its colour."""
+    first, *rest = one.lines
+    verdict = VERDICTS[one.answer]
+    yield f"{one.requirement} over all runs, {one.text}", None
+    yield f"  {verdict.glyph} {first}", verdict.colour
+    yield from ((f"    {line}", None) for line in rest)
+
+
+EVALUATIONS: Mapping[str, Evaluation] = {"columns": kernel.evaluate, "online": kernel.stepped}
+"""How monitors are run: whole traces at once, or step by step."""
+
+
+@dataclass(frozen=True, slots=True)
+class Audited:
+    """What the audit of one log has shown."""
+
+    results: tuple[Mapping[str, Any], ...]
+    """The record of each claim, in their order."""
+    diagnostics: tuple[Diagnostic, ...]
+    read: bool
+    """Whether the log could be read."""
+    stamp: Stamp | None = None
+    """The file's before its audit; None where it is no file, or has changed since."""
+
+
+Found = Generator[tuple[str, Audited] | Diagnostic, None, None]
+"""Logs with what was shown of them, as they are done; a diagnostic where it gives up."""
+
+Engine = Callable[[Plan, Sequence[str]], Found]
+"""Where logs are audited. Closing what it gives ends all work at once."""
+
+
+def locally(jobs: int) -> Engine:
+    """On this machine, in some processes."""
+
+    def engine(plan: Plan, logs: Sequence[str]) -> Found:
+        watched(plan)  # before the processes are born: they inherit it
+        if STDIN in logs:  # another process does not have it
+            yield STDIN, audited(plan, STDIN)
+        files = [log for log in logs if log != STDIN]
+        with closing(each(partial(audited, plan), files, jobs)) as done:
+            for place, found in done:
+                log = files[place]
+                yield log, given_up(plan, log, str(found)) if isinstance(found, Killed) else found
+
+    return engine
+
+
+IN_TURN = locally(1)
+"""One after the other."""
+
+
+def audit_logs(
+    plan: Plan,
+    logs: Sequence[str],
+    engine: Engine = IN_TURN,
+    known: Mapping[str, Audited] = MappingProxyType({}),
+    tell: Callable[[str, Audited], None] = lambda log, audited: None,
+) -> Audit | Diagnostic:
+    """Audit every log against every claim.
+
+    Args:
+        plan: what the logs are judged by.
+        logs: files, folders of rosbag2, URLs, or `-` for standard input, each once.
+        engine: where; what is shown is the same.
+        known: logs that have been audited by this plan already.
+        tell: is called with each other log when it is done.
+
+    Returns:
+        The audit, which depends on neither the engine nor the order in which logs were done; or
+        why the engine gave up.
+    """
+    done = {log: known[log] for log in logs if log in known}
+    with closing(engine(plan, [log for log in logs if log not in done])) as finished:
+        for found in finished:
+            if isinstance(found, Diagnostic):
+                return found
+            log, shown = found
+            assert log not in done
+            done[log] = shown
+            tell(log, shown)
+    return gathered(plan, [done[log] for log in logs])
+
+
+def gathered(plan: Plan, found: Sequence[Audited]) -> Audit:
+    """What was shown of all logs, in their order, as one."""
+    results = [result for shown in found for result in shown.results]
+    told = _told(found)
+    together = estimates(plan.claims, results, plan.confidence)
+    constant = never_changed(tallies_of(results), plan.declarations, told)
+    return Audit(
+        tuple(results),
+        _evidence(plan, results, together),
+        (*told, *constant, *warnings(together)),
+        sum(shown.read for shown in found),
+        together,
+    )
+
+
+def _told(found: Sequence[Audited]) -> tuple[Diagnostic, ...]:
+    """What there is to say of the logs; what is true of many, at a place in the bindings, once."""
+    runs: dict[Diagnostic, list[str]] = {}
+    for shown in found:
+        for diagnostic in shown.diagnostics:
+            runs.setdefault(diagnostic, []).append(str(shown.results[0]["run"]))
+    return tuple(_of(diagnostic, of, len(found)) for diagnostic, of in runs.items())
+
+
+def _of(diagnostic: Diagnostic, runs: Sequence[str], count: int) -> Diagnostic:
+    """With the logs that it is about, where its place is none of them."""
+    if count == 1 or (diagnostic.span and diagnostic.span.source.name == runs[0]):
+        return diagnostic
+    which = f"in {len(runs)} of {count} logs, first in `{runs[0]}`"
+    return replace(diagnostic, message=f"{diagnostic.message} ({which})")
+
+
+def audited(plan: Plan, log: str) -> Audited:
+    """Audit one log; all that is needed for it is in the plan."""
+    declarations, monitors = plan.declarations, watched(plan)
+    before = stamp(log)
+    names = tuple(dict.fromkeys(name for w in monitors for name in w.propositions))
+    recording = read(log, declarations, signals_of(declarations, names), plan.integrity)
+    if isinstance(recording, Diagnostic):
+        return _unread(plan, log, recording, before)
+    recording = examined(recording, declarations, names)
+    evidence = audit(recording, declarations, monitors, EVALUATIONS[plan.evaluation])
+    phased = {e.requirement: e.phases for e in evidence if e.phases is not None}
+    records = [as_record(e) for e in evidence]
+    return Audited(
+        (*records, *_left_out(plan, records[0])),
+        (*recording.findings, *findings(phased, declarations)),
+        read=True,
+        stamp=before if before == stamp(log) else None,
+    )
+
+
+def _left_out(plan: Plan, beside: Mapping[str, Any]) -> Iterator[Mapping[str, Any]]:
+    """What is shown of each refused requirement in a run: nothing, and why.
+
+    Args:
+        plan: which requirements it refuses.
+        beside: what is shown of another one in the run, whose log was read.
+    """
+    log = {name: sha for name, sha in beside["hashes"].items() if name.startswith("log")}
+    for refused in plan.refused:
+        yield unjudged(
+            beside["run"],
+            refused.id,
+            f"not judged: {'; '.join(f'{d.code.number} {d.message}' for d in refused.why)}",
+            {**log, **refused.basis},
+            beside["health"],
+        )
+
+
+def given_up(plan: Plan, log: str, how: str) -> Audited:
+    """What is shown of a log whose audit has killed its process twice: nothing.
+
+    Args:
+        plan: what it was to be judged by.
+        log: its path.
+        how: the process ended.
+    """
+    return _unread(plan, log, was_killed(log, how), None)
+
+
+def _unread(plan: Plan, log: str, why: Diagnostic, before: Stamp | None) -> Audited:
+    """What is shown of a log that cannot be read.
+
+    Args:
+        plan: what it was to be judged by.
+        log: its path.
+        why: what keeps it from being read.
+        before: its stamp before that was tried; None: it is not known.
+    """
+    hashes = _hash_of(log, before)
+    records = [unread(called(log), each.id, why, {**hashes, **each.basis}) for each in plan.named]
+    return Audited(tuple(records), (why,), read=False)
+
+
+def _hash_of(log: str, before: Stamp | None) -> dict[str, str]:
+    """SHA-256 of a log that could not be read as one, where it is still what was tried."""
+    digest = file_sha256(log)
+    changed = before is not None and stamp(log) != before
+    return {} if digest is None or changed else {"log": digest}
+
+
+def _evidence(
+    plan: Plan, results: Sequence[Mapping[str, Any]], together: Sequence[Estimated]
+) -> str:
+    """The evidence file: the same inputs give the same bytes."""
+    content: dict[str, Any] = {
+        "schema": SCHEMA,
+        "fretc": __version__,
+        "bindings": {
+            "file": plan.declarations.source.name,
+            "sha256": of_all({each.id: each.basis[BINDINGS] for each in plan.named}),
+        },
+        "requirements": [
+            {"id": each.id, "sentence": each.sentence, "sha256": each.basis[SENTENCE]}
+            for each in plan.named
+        ],
+        "results": list(results),
+    }
+    if together:
+        content["probabilities"] = [one.as_record for one in together]
+    return f"{to_json(content)}\n"

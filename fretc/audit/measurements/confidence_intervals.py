@@ -1,0 +1,225 @@
+"""From the trials of many runs to what is known of a probability.
+
+The unit of chance is the run: triggers of one run may depend on each other in any way. What is
+bounded is the share of answered triggers that is to be expected of runs with these numbers of
+triggers, sum(E[answered]) / sum(triggers). Of the runs it is only asked that they are independent.
+
+Each bound is a test of every smaller share m by a bet that is fair if m is true (Waudby-Smith,
+Ramdas, Estimating means of bounded random variables by betting, Journal of the Royal Statistical
+Society B 86, 2024, section 4; with bets that are fixed beforehand). With at most B triggers in a
+run, a stake of 1 and a part u of what is at hand as the bet, the runs leave
+
+    K_u(m) = product over runs of (1 + u * (answered / m - triggers) / B),
+
+no factor of which is negative. If the share is at most m, the factors' expectations have a mean of
+at most 1, so their product is at most 1 (the geometric mean is not above the arithmetic one), and
+by Markov's inequality a mean of K_u(m) over several u reaches 1 / (1 - confidence) with a
+probability of at most 1 - confidence. That holds for any number of runs and any dependence within
+them, and K falls with m: the lower bound is the largest m at which it reaches that.
+
+What is open counts both ways: as failed for the lower bound, as answered for the upper one.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from math import ceil, log
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fretc.audit.measurements.trials import Trials
+from fretish.expressions import ComparisonOperator
+
+SUPPORTED, REFUTED, INCONCLUSIVE = "supported", "refuted", "inconclusive"
+ANSWERS = (SUPPORTED, REFUTED, INCONCLUSIVE)
+"""What runs say of a probability."""
+CONFIDENCE = 0.95
+_GRAIN = 10**9
+"""Bounds are rounded outwards to this part of 1: the same on every machine."""
+_BETS = np.array([1, 7 / 8, 3 / 4, *(2.0**-k for k in range(1, 17))])
+"""Parts of what is at hand. All of it is best where no trigger failed, as with Clopper-Pearson's
+bound of so many runs; small parts are best where runs differ little and there are many."""
+_STAKES = np.array([1 / 2, 1 / 8, 1 / 8, *(2.0 ** -min(k + 2, 17) for k in range(1, 17))])
+"""What each begins with: 1 in all."""
+_SLACK = 1e-9
+"""Of a logarithm: more than what rounding adds to it."""
+
+
+@dataclass(frozen=True, slots=True)
+class Bounds:
+    """With the stated confidence it is not below `low`; with the same, not above `high`."""
+
+    low: float
+    high: float
+
+
+NOTHING_KNOWN = Bounds(0.0, 1.0)
+
+
+@dataclass(frozen=True, slots=True)
+class Estimate:
+    """What trials say of the share that is answered."""
+
+    trials: Trials
+    """Of all runs together."""
+    runs: int
+    """Those with a trigger."""
+    confidence: float
+    bounds: Bounds
+    """By whole runs; they say nothing where there are fewer than two."""
+    counted: tuple[Trials, ...] = ()
+    """Those of each run with a trigger."""
+
+    @property
+    def share(self) -> float | None:
+        """Of those that are decided; None where there are none."""
+        decided = self.trials.answered + self.trials.failed
+        return self.trials.answered / decided if decided else None
+
+
+def estimated(runs: Iterable[Trials], confidence: float = CONFIDENCE) -> Estimate:
+    """The share of triggers that are answered, with its bounds.
+
+    Args:
+        runs: the trials of each run; their order does not matter.
+        confidence: of each bound, between 0.5 and 1.
+    """
+    counted = tuple(run for run in runs if run.count)
+    answered, failed, open_ = (
+        sum(getattr(run, name) for run in counted) for name in ("answered", "failed", "open")
+    )
+    return Estimate(
+        Trials(answered, failed, open_),
+        len(counted),
+        confidence,
+        bounds(counted, confidence),
+        counted,
+    )
+
+
+# Whole runs ------------------------------------------------------------------------------------
+
+
+def bounds(runs: Sequence[Trials], confidence: float) -> Bounds:
+    """Between which the share of answered triggers lies, each bound with the confidence.
+
+    One run does not show how runs differ, and bounds nothing.
+
+    Args:
+        runs: with a trigger each.
+        confidence: of each bound, between 0.5 and 1.
+    """
+    if len(runs) < 2:
+        return NOTHING_KNOWN
+    low = _least([(run.answered, run.count) for run in runs], confidence)
+    other = _least([(run.failed, run.count) for run in runs], confidence)
+    return Bounds(low, round(1 - other, 9))
+
+
+Tally = Sequence[tuple[int, int]]
+"""Of each run, the triggers that came to something, and all of its triggers."""
+Table = NDArray[np.float64]
+"""Shape (3, n): both, as parts of the most triggers of a run; and how many runs are alike."""
+
+
+def _table(runs: Tally) -> Table:
+    if not runs:
+        return np.empty((3, 0))
+    rows, times = np.unique(np.array(runs, np.int64), axis=0, return_counts=True)
+    return np.array([*(rows.T / rows[:, 1].max()), times])
+
+
+def _least(runs: Tally, confidence: float) -> float:
+    """The largest share that no fair bet leaves room for, rounded down."""
+    table, below, above = _table(runs), 0, _GRAIN
+    while above - below > 1:
+        middle = (below + above) // 2
+        enough = _reaches(_worths(table, middle / _GRAIN), confidence)
+        below, above = (middle, above) if enough else (below, middle)
+    return below / _GRAIN
+
+
+def _worths(table: Table, share: float) -> NDArray[np.float64]:
+    """The logarithm of what each bet against the share has become."""
+    good, count, times = table
+    with np.errstate(divide="ignore"):  # who bets everything may lose everything
+        return np.asarray(np.log1p(np.outer(_BETS, good / share - count)) @ times)
+
+
+def _reaches(worths: NDArray[np.float64], confidence: float) -> bool:
+    """Whether all bets together are worth more than a fair game gives but rarely."""
+    each = worths + np.log(_STAKES)
+    most = float(each.max())
+    return most + log(float(np.exp(each - most).sum())) >= _SLACK - log(1 - confidence)
+
+
+# Answers ---------------------------------------------------------------------------------------
+
+
+def answer(estimate: Estimate, op: ComparisonOperator, bound: Fraction) -> str:
+    """What the estimate says of `op bound`: supported, refuted or inconclusive.
+
+    That it is some number can only be refuted, that it is not can only be supported; both need
+    two bounds at once, so each has half of the doubt: `estimate` is then to be one of
+    `both_sides`. A single failure shows that it is not 1, and a single answer that it is not 0.
+    """
+    if not estimate.trials.count:
+        return INCONCLUSIVE
+    low, high = estimate.bounds.low, estimate.bounds.high
+    above = low > bound or (bound == 0 and estimate.trials.answered > 0)
+    below = high < bound or (bound == 1 and estimate.trials.failed > 0)
+    supported, refuted = {
+        ">=": (low >= bound, below),
+        ">": (above, high <= bound),
+        "<=": (high <= bound, above),
+        "<": (below, low >= bound),
+        "=": (False, above or below),
+        "!=": (above or below, False),
+    }[op]
+    return SUPPORTED if supported else REFUTED if refuted else INCONCLUSIVE
+
+
+def both_sides(op: ComparisonOperator, confidence: float) -> float:
+    """The confidence that each bound needs, so that an answer about `op` has the stated one."""
+    return (1 + confidence) / 2 if op in ("=", "!=") else confidence
+
+
+def needed(estimate: Estimate, op: ComparisonOperator, bound: Fraction) -> int | None:
+    """How many further runs, all as they should be, it takes to support `op bound`.
+
+    All triggers of each are answered for `>=` and `>`, none for `<=` and `<`, and each has as many
+    as the run with most. None: no number is enough, or none is needed.
+    """
+    down = op in ("<", "<=")
+    goal = ceil((1 - bound if down else bound) * _GRAIN) / _GRAIN
+    if op in ("=", "!=") or goal >= 1 or answer(estimate, op, bound) == SUPPORTED:
+        return None
+    if not goal:
+        return 1
+    runs = [(r.failed if down else r.answered, r.count) for r in estimate.counted]
+    before, gain = _worths(_table(runs), goal), np.log1p(_BETS * (1 / goal - 1))
+
+    def enough(more: int) -> bool:
+        return len(runs) + more > 1 and _reaches(before + more * gain, estimate.confidence)
+
+    upper = 1
+    while not enough(upper):
+        upper *= 2
+        if upper > _MOST:
+            return None
+    lower = upper // 2
+    while upper - lower > 1:
+        middle = (lower + upper) // 2
+        lower, upper = (lower, middle) if enough(middle) else (middle, upper)
+    return upper
+
+
+def fewest(op: ComparisonOperator, bound: Fraction, confidence: float) -> int:
+    """With fewer runs `op bound` is never supported, whatever their triggers come to."""
+    return needed(estimated((), both_sides(op, confidence)), op, bound) or 2
+
+
+_MOST = 1 << 40

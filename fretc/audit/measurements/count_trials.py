@@ -1,0 +1,96 @@
+"""What each trigger came to, for a requirement with a probability.
+
+FRET's PCTL* puts the probability around what is demanded at each trigger; the trials are the
+triggers of the runs, and each is met or not by that very formula, read at the tick of the trigger
+(`compiler.formalization.future.demanded_at`). Triggers are those of the monitor
+(`compiler.formalization.past.staged`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+from compiler.formalization import predicates
+from compiler.formalization.future import demanded_at, end_marker
+from compiler.formalization.obligation import Demand, Kind, Obligation, obligation
+from compiler.formalization.past import staged
+from compiler.formalization.rule import Rule
+from compiler.logic.evaluation import evaluate_unknown
+from compiler.logic.formula import FALSE, Formula
+from fretc.audit.measurements.trials import Trials
+from fretish.expressions import ComparisonOperator
+from fretish.reading.recursion import deep
+from monitors.kernel import Column
+
+
+@dataclass(frozen=True, slots=True)
+class Chance:
+    """With which probability each demand is to be met, and what that demand is."""
+
+    op: ComparisonOperator
+    bound: str
+    """As it is written: `0.99`."""
+    obligation: Obligation
+
+    @property
+    def text(self) -> str:
+        """`>= 0.99`."""
+        return f"{self.op} {self.bound}"
+
+
+@deep
+def chance(rule: Rule) -> Chance | None:
+    """None where the sentence gives no probability."""
+    odds = rule.sentence.probability
+    if odds is None:
+        return None
+    told = obligation(rule.sentence, rule.ticks or 0, predicates.Past())
+    return Chance(odds.op, odds.digits, told)
+
+
+_LASTING = (Kind.ALWAYS, Kind.UNTIL, Kind.BEFORE)
+"""They only forbid: they are met when the log ends, if nothing has broken them."""
+
+
+@deep
+def trials(told: Obligation, columns: Mapping[str, Column], ticks: int) -> Trials:
+    """What each trigger of one run came to.
+
+    What follows the log is unknown, for more ticks than any deadline lies ahead.
+
+    Args:
+        told: what is demanded.
+        columns: one for each proposition of the obligation.
+        ticks: the length of the run.
+    """
+    if not ticks:
+        return Trials(0, 0, 0)
+    triggers = evaluate_unknown(staged(told).trigger, columns, ticks)
+    # A deadline that no trigger of the run can reach is as far as any other one.
+    demand = replace(told.demand, ticks=min(told.demand.ticks, ticks))
+    met = _met(demand, end_marker(told.scope, told.mode))
+    longer = ticks + demand.ticks + _BEYOND
+    ahead = (1 << longer) - (1 << ticks)
+    unending = {name: Column(c.true, c.unknown | ahead) for name, c in columns.items()}
+    shown = evaluate_unknown(met, unending, longer)
+    at_end = evaluate_unknown(met, columns, ticks).true if demand.kind in _LASTING else 0
+    answered = triggers.true & (shown.true | at_end)
+    failed = triggers.true & ~(shown.true | shown.unknown)
+    return Trials(
+        answered=answered.bit_count(),
+        failed=failed.bit_count(),
+        open=((triggers.true | triggers.unknown) & ~(answered | failed)).bit_count(),
+        kept=(answered & ~shown.true).bit_count(),
+    )
+
+
+def _met(demand: Demand, end: Formula) -> Formula:
+    """The formula at a trigger; where the end of its interval is unknown, it still comes."""
+    if demand.kind is Kind.FINALLY and demand.response == FALSE:
+        return FALSE
+    return demanded_at(demand, end)
+
+
+_BEYOND = 3
+"""Ticks after the latest deadline: the last tick of all must not lie before any."""

@@ -1,0 +1,111 @@
+"""How near a run came to the thresholds of a requirement.
+
+Times are nanoseconds, numbers are in base units.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+import numpy as np
+
+from fretc.logs.signals.measures import Measure, term, together
+from fretc.logs.signals.propositions import TRUE, UNKNOWN, History, history_of, truth
+from fretc.logs.signals.samples import Recording, Times
+from fretc.logs.signals.thresholds import Threshold, thresholds
+from fretish.bindings.declarations import Declarations, Proposition
+
+CROSSED = "crossed"
+
+
+@dataclass(frozen=True, slots=True)
+class Margin:
+    """One threshold over the audited time of one run; what is unknown does not count.
+
+    `least` and `greatest` are None where nothing is known, and may be infinite: nothing in range,
+    or too near to measure.
+    """
+
+    threshold: Threshold
+    comparison: bool | str | None
+    """The truth value that the comparison kept, or `CROSSED`; None: never known."""
+    least: float | None
+    greatest: float | None
+    distance: float | None
+    """The least distance to the bound, where the comparison kept one truth value."""
+    nearest_ns: int | None
+    """When it came that near first; of one that was crossed, when it changed first."""
+
+    @property
+    def share(self) -> float | None:
+        """The margin as a part of the bound, so that those of different units compare."""
+        if self.distance is None:
+            return None
+        assert self.least is not None
+        assert self.greatest is not None
+        reached = [abs(end) for end in (self.least, self.greatest) if np.isfinite(end)]
+        scale = abs(self.threshold.bound) or max(reached)
+        return self.distance / scale if scale else 0.0
+
+
+def margins(
+    proposition: Proposition, declarations: Declarations, recording: Recording, ticks: Times
+) -> tuple[Margin, ...]:
+    """The margin of each threshold of the proposition.
+
+    All samples from the start of the first tick to the last tick count, also those of which `agg`
+    sees one in a tick; too old ones, and those of a gap, do not.
+
+    Args:
+        proposition: over declared signals.
+        declarations: signals and clock.
+        recording: with the samples of all signals that the proposition names.
+        ticks: when the whole ticks are.
+    """
+    wanted = thresholds(proposition, declarations.signals)
+    if not wanted:
+        return ()
+    signals = {name: declarations.signals[name] for name in proposition.signals}
+    history = history_of(signals, recording)
+    begin = recording.start_ns if declarations.clock.period is not None else None
+    audited = _audited(history.times, ticks, begin)
+    return tuple(_margin(threshold, history, audited) for threshold in wanted)
+
+
+def worst(found: Iterable[Margin]) -> Margin | None:
+    """The one that is least as a part of its bound; None where every threshold was crossed."""
+    kept = [margin for margin in found if margin.share is not None]
+    return min(kept, key=lambda margin: margin.share or 0.0, default=None)
+
+
+def _audited(times: Times, ticks: Times, begin: int | None) -> slice:
+    """The events that the ticks see: those of the audited time, and the one in force before."""
+    if not len(ticks):
+        return slice(0, 0)
+    start = int(ticks[0]) if begin is None else begin
+    first = int(np.searchsorted(times, start, "left"))
+    in_force = first if first < len(times) and times[first] == start else first - 1
+    return slice(max(0, in_force), int(np.searchsorted(times, ticks[-1], "right")))
+
+
+def _margin(threshold: Threshold, history: History, audited: slice) -> Margin:
+    scope = history.scope()
+    states = truth(threshold.comparison, scope)[audited]
+    known = states != UNKNOWN
+    held, times = states[known] == TRUE, history.times[audited][known]
+    if not len(times):
+        return Margin(threshold, None, None, None, None, None)
+    measured, bound, scale = together(term(threshold.term, scope), term(threshold.limit, scope))
+    measured = measured[audited][known]
+    values = Measure(measured, scale).base
+    least, greatest = float(values.min()), float(values.max())
+    if held.any() and not held.all():
+        changed = int(times[np.argmax(held != held[0])])
+        return Margin(threshold, CROSSED, least, greatest, None, changed)
+    apart = Measure(np.abs(measured - bound), scale).base
+    at = int(np.argmin(apart))
+    if not np.isfinite(apart[at]):  # it never came out of infinity
+        return Margin(threshold, bool(held[0]), least, greatest, None, None)
+    nearest, distance = int(times[at]), float(apart[at])
+    return Margin(threshold, bool(held[0]), least, greatest, distance, nearest)

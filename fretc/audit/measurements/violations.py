@@ -1,0 +1,185 @@
+"""A violation with what surrounds it: trigger, deadline, missing response, and the signals.
+
+Times are nanoseconds, numbers are in base units.
+"""
+
+from __future__ import annotations
+
+from bisect import bisect_right
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fretc.logs.signals.samples import Recording, Samples, Values, scaled
+from monitors.kernel import Outcome
+
+SURROUNDINGS = 10**9
+"""Nanoseconds before the trigger and after the deadline that are shown with a violation."""
+MOST_SAMPLES = 50
+"""Of one signal around one violation."""
+EVEN_SAMPLES = MOST_SAMPLES - 3
+"""Of more than that the ones that are kept at even distances."""
+MOST_WINDOWS = 100
+"""Violations of one run and requirement that are told with their samples."""
+
+
+@dataclass(frozen=True, slots=True)
+class Moment:
+    """A tick with its time; `ns` is the log's clock, `seconds` counts from the first tick."""
+
+    tick: int
+    ns: int
+    seconds: float
+
+
+@dataclass(frozen=True, slots=True)
+class Demand:
+    """What a requirement demands at each trigger, in words, and by when."""
+
+    response: str = ""
+    """What must be true, as the sentence writes it."""
+    horizon: int | None = None
+    """Ticks from a trigger to the latest response; None: it has no deadline."""
+
+
+@dataclass(frozen=True, slots=True)
+class Window:
+    """The samples around a violation, from `start_ns` to `end_ns`, both included."""
+
+    start_ns: int
+    end_ns: int
+    samples: Mapping[str, Samples]
+    """Of each signal at most `MOST_SAMPLES`, with the least and the greatest of them."""
+
+
+@dataclass(frozen=True, slots=True)
+class Violation:
+    """A stretch of ticks at which a demand was broken, with what the signals said."""
+
+    first: Moment
+    last: Moment
+    trigger: Moment | None
+    """The oldest trigger whose demand was broken; None where it needs none."""
+    deadline: Moment | None
+    """By when the response had to come; None where nothing says so, or after the last tick."""
+    missing: str
+    """The response that did not come."""
+    values: Mapping[str, float | None]
+    """Each signal of the sentence at the first tick, in base units; None: unknown."""
+    window: Window | None
+    """None for violations after the first `MOST_WINDOWS`."""
+
+
+def violations(
+    outcome: Outcome,
+    demand: Demand,
+    horizon: int | None,
+    at: Callable[[int], Moment],
+    recording: Recording,
+    signals: Sequence[str],
+) -> tuple[Violation, ...]:
+    """Each stretch of ticks at which the requirement was violated, in their order.
+
+    Args:
+        outcome: what the monitor has shown.
+        demand: what it was that did not come.
+        horizon: ticks after which a trigger demands nothing any more; None: there is no such end.
+        at: the moment of a tick.
+        recording: with the samples of the signals.
+        signals: those that the sentence reads.
+    """
+    answered = dict(outcome.answers)
+    found = []
+    for place, (first, last) in enumerate(outcome.violations):
+        trigger = _cause(outcome, answered, horizon, first)
+        deadline = None if trigger is None or demand.horizon is None else trigger + demand.horizon
+        due = at(deadline) if deadline is not None and deadline < outcome.ticks else None
+        begin, broken = None if trigger is None else at(trigger), at(first)
+        window = (
+            _window(begin or broken, due or broken, broken, recording, signals)
+            if place < MOST_WINDOWS
+            else None
+        )
+        values = {name: value_at(recording, name, broken.ns) for name in signals}
+        found.append(Violation(broken, at(last), begin, due, demand.response, values, window))
+    return tuple(found)
+
+
+def _cause(
+    outcome: Outcome, answered: Mapping[int, int], horizon: int | None, first: int
+) -> int | None:
+    """The oldest trigger whose demand can be the one that is broken at tick `first`.
+
+    That is one within the horizon which had no answer up to then; where there is no horizon, and
+    the demand is not open at the end either, the last trigger.
+    """
+    triggers = outcome.triggers
+    upto = bisect_right(triggers, first)
+    if horizon is not None:
+        oldest = bisect_right(triggers, first - horizon - 1)
+        for trigger in triggers[oldest:upto]:
+            if answered.get(trigger, first + 1) > first:
+                return trigger
+    if outcome.open and first == outcome.ticks - 1 and outcome.open[0][0] <= first:
+        return outcome.open[0][0]
+    return triggers[upto - 1] if upto else None
+
+
+# Signals
+
+
+def value_at(recording: Recording, signal: str, ns: int) -> float | None:
+    """The last sample of a signal at or before a time; None where there is none or it is unknown.
+
+    Infinite values (nothing in range) are None too: JSON has no word for them.
+    """
+    samples = recording.samples.get(signal)
+    if samples is None:
+        return None
+    i = int(np.searchsorted(samples.times, ns, "right")) - 1
+    value = scaled(float(samples.values[i]), samples.scale) if i >= 0 else float("nan")
+    return value if np.isfinite(value) else None
+
+
+def _window(
+    trigger: Moment, due: Moment, broken: Moment, recording: Recording, signals: Sequence[str]
+) -> Window:
+    start = min(trigger.ns, broken.ns) - SURROUNDINGS
+    end = max(due.ns, broken.ns) + SURROUNDINGS
+    samples = {
+        name: _around(recording.samples[name], start, end, broken.ns)
+        for name in signals
+        if name in recording.samples
+    }
+    return Window(start, end, samples)
+
+
+def _around(samples: Samples, start: int, end: int, broken: int) -> Samples:
+    """The samples of a stretch of time, and the one in force at its start; not too many.
+
+    The one that is the last at the time `broken` is always among them: its age is told.
+    """
+    first = max(0, int(np.searchsorted(samples.times, start, "right")) - 1)
+    upto = int(np.searchsorted(samples.times, end, "right"))
+    times, values = samples.times[first:upto], samples.values[first:upto]
+    kept = _thinned(values, max(0, int(np.searchsorted(times, broken, "right")) - 1))
+    return Samples(times[kept], values[kept], samples.scale)
+
+
+def _thinned(values: Values, wanted: int) -> NDArray[np.intp]:
+    """The places of at most `MOST_SAMPLES` values: evenly, with the least and the greatest.
+
+    Args:
+        values: of one signal.
+        wanted: the place of one that is kept.
+    """
+    count = len(values)
+    if count <= MOST_SAMPLES:
+        return np.arange(count)
+    even = np.linspace(0, count - 1, EVEN_SAMPLES).round().astype(np.intp)
+    chosen = [wanted]
+    if not np.isnan(values).all():
+        chosen += [int(np.nanargmin(values)), int(np.nanargmax(values))]
+    return np.unique(np.concatenate([even, np.array(chosen, np.intp)]))

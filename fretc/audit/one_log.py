@@ -1,0 +1,280 @@
+"""Run generated monitors over one recorded log and say what was shown."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from functools import partial
+from statistics import median
+
+from fretc.audit.evidence.writer import Evidence, health
+from fretc.audit.measurements.judgement import SHOWN, Engine, judged
+from fretc.audit.measurements.margins import Margin, margins, worst
+from fretc.audit.measurements.states import states
+from fretc.audit.measurements.tallies import tally
+from fretc.audit.measurements.trials import Count, Trials
+from fretc.audit.measurements.violations import Demand, Moment, violations
+from fretc.audit.phases.by_shift import Phases, phases
+from fretc.logs.likeness import fingerprint
+from fretc.logs.signals.rates import slow_topics
+from fretc.logs.signals.samples import Recording
+from fretc.logs.signals.signals import blind_zones
+from fretc.logs.signals.traces import Timeline, Trace, trace
+from fretish.bindings.amounts import scaled, shared_unit, value
+from fretish.bindings.declarations import Declarations, Signal
+from fretish.printer import expression
+from fretish.units import base_name
+from monitors import kernel
+from monitors.kernel import Column, Monitor
+
+
+@dataclass(frozen=True, slots=True)
+class Watched:
+    """A requirement's monitor, with the hashes of what it was made from."""
+
+    monitor: Monitor
+    hashes: Mapping[str, str]
+    demand: Demand = field(default_factory=Demand)
+    count: Count | None = None
+    """Of a requirement with a probability: what its triggers came to."""
+    counted: tuple[str, ...] = ()
+    """The propositions that `count` needs; the monitor may do without some of them."""
+
+    @property
+    def propositions(self) -> tuple[str, ...]:
+        """All that are needed, each once."""
+        return tuple(dict.fromkeys((*self.monitor.PROPOSITIONS, *self.counted)))
+
+
+def signals_of(declarations: Declarations, propositions: Sequence[str]) -> tuple[str, ...]:
+    """The names of the signals that the propositions read, in the order of their first use."""
+    return tuple(
+        dict.fromkeys(
+            name
+            for proposition in propositions
+            for name in declarations.propositions[proposition].signals
+        )
+    )
+
+
+def examined(
+    recording: Recording, declarations: Declarations, propositions: Sequence[str]
+) -> Recording:
+    """The recording, with what its sensors cannot see and which of its topics are too slow."""
+    slow = slow_topics(declarations, recording, signals_of(declarations, propositions))
+    blind = (
+        finding
+        for name in propositions
+        for finding in blind_zones(declarations.propositions[name], declarations, recording.nearest)
+    )
+    return replace(recording, findings=(*recording.findings, *blind, *slow))
+
+
+def audit(
+    recording: Recording,
+    declarations: Declarations,
+    watched: Sequence[Watched],
+    engine: Engine = kernel.evaluate,
+) -> tuple[Evidence, ...]:
+    """The evidence of one run for each monitor, in their order.
+
+    Args:
+        recording: read with all signals of all the monitors' propositions.
+        declarations: every proposition of the monitors is declared.
+        watched: the monitors, each of one requirement.
+        engine: how the monitors are run; what they show is the same.
+    """
+    names = dict.fromkeys(name for w in watched for name in w.propositions)
+    seen = trace(declarations, recording, tuple(names))
+    found = {
+        name: margins(declarations.propositions[name], declarations, recording, seen.timeline.times)
+        for name in names
+    }
+    shifted = phases(declarations, recording, [w.monitor for w in watched])
+    evidence = [_evidence(recording, declarations, seen, found, w, engine) for w in watched]
+    return tuple(_phased(each, shifted.get(each.requirement)) for each in evidence)
+
+
+def _phased(evidence: Evidence, found: Phases | None) -> Evidence:
+    """The evidence, with what other phases of the ticks make of the run."""
+    if found is None:
+        return evidence
+    alone = evidence.trials is not None
+    assert alone or found.verdict == evidence.verdict, "two verdicts at one phase"
+    told = f"; {'this run alone ' if alone else ''}{found.text}" if found.text else ""
+    return replace(evidence, phases=found, reason=f"{evidence.reason}{told}")
+
+
+def _evidence(
+    recording: Recording,
+    declarations: Declarations,
+    seen: Trace,
+    found: Mapping[str, tuple[Margin, ...]],
+    watched: Watched,
+    engine: Engine,
+) -> Evidence:
+    monitor = watched.monitor
+    columns = {name: seen.columns[name] for name in watched.propositions}
+    ticks = len(seen.timeline.times)
+    judgement = judged(
+        monitor,
+        columns,
+        seen.cut,
+        ticks,
+        intact=recording.intact,
+        end=str(declarations.clock.end),
+        engine=engine,
+    )
+    outcome = judgement.outcome
+    at = partial(_moment, seen.timeline)
+    signals = signals_of(declarations, watched.propositions)
+    latencies = tuple(at(k).seconds - at(t).seconds for t, k in outcome.answers)
+    evidence = Evidence(
+        run=recording.name,
+        requirement=monitor.REQUIREMENTS[0].id,
+        verdict=judgement.verdict,
+        reason="",
+        outcome=outcome,
+        start_ns=recording.start_ns,
+        end_ns=recording.end_ns,
+        first_ns=int(seen.timeline.times[0]) if ticks else recording.start_ns,
+        clock=f"{declarations.clock}, by {declarations.clock.time}",
+        answers=tuple((at(t), at(k)) for t, k in outcome.answers),
+        states=tuple((at(tick), state) for tick, state in states(outcome)),
+        triggers=tuple(at(t) for t in outcome.triggers),
+        violations=violations(
+            outcome, watched.demand, monitor.REQUIREMENTS[0].horizon, at, recording, signals
+        ),
+        open=tuple(at(t) for t, _ in outcome.open),
+        latencies=tuple(round(latency, 9) for latency in latencies),
+        propositions={name: tally(column, ticks) for name, column in columns.items()},
+        margins=tuple(margin for name in columns for margin in found[name]),
+        units={name: base_name(declarations.signals[name].unit.dimension) for name in signals},
+        hashes={_hashed(recording): recording.sha256, **watched.hashes},
+        health=health(recording),
+        assumptions=declarations.reading(watched.propositions).assumptions,
+    )
+    evidence = replace(evidence, reason=_reason(evidence, recording, declarations))
+    if watched.count is None:
+        return evidence
+    alike = fingerprint(recording)
+    if alike is not None:
+        evidence = replace(evidence, hashes={**evidence.hashes, "messages": alike})
+    return _counted(evidence, _trials(watched.count, columns, seen))
+
+
+def _counted(evidence: Evidence, trials: Trials) -> Evidence:
+    """The evidence, where one run decides nothing: what was shown of it is counted.
+
+    A trigger may have failed where the monitor still waits: `finally` asks nothing of an endless
+    run, so its monitor gives up at the end only, even what no end can meet.
+    """
+    if evidence.verdict == kernel.VACUOUS:
+        return replace(evidence, trials=trials)
+    if evidence.verdict == kernel.NO_DATA:
+        return replace(evidence, trials=trials, reason=f"{evidence.reason}; {trials}")
+    reason = f"{trials}: judged over all runs"
+    return replace(evidence, trials=trials, verdict=kernel.INCONCLUSIVE, reason=reason)
+
+
+def _trials(count: Count, columns: Mapping[str, Column], seen: Trace) -> Trials:
+    ticks = len(seen.timeline.times)
+    whole = count(columns, ticks)
+    if seen.cut is None or not ticks:
+        return whole
+    longer = {name: column.followed(seen.cut[name], ticks) for name, column in columns.items()}
+    return whole.before(count(longer, ticks + 1))
+
+
+def _hashed(recording: Recording) -> str:
+    """What the SHA-256 is of."""
+    return "log" if recording.checked.hashed else "log_summary"
+
+
+def _moment(timeline: Timeline, tick: int) -> Moment:
+    ns = int(timeline.times[tick])
+    return Moment(tick, ns, round((ns - int(timeline.times[0])) / 1e9, 9))
+
+
+def _reason(evidence: Evidence, recording: Recording, declarations: Declarations) -> str:
+    """Why the verdict is what it is, in one sentence."""
+    outcome = evidence.outcome
+    match evidence.verdict:
+        case kernel.VIOLATED:
+            return _broken(evidence)
+        case kernel.NO_DATA:
+            return _unknown(evidence, recording)
+        case kernel.INCONCLUSIVE if evidence.outcome.verdict in SHOWN:
+            return "what came after the last whole tick leaves it open"
+        case kernel.INCONCLUSIVE:
+            last = evidence.open[-1] if evidence.open else None
+            since = f" since {last.seconds:.1f} s" if last else ""
+            return f"{_times(len(evidence.open), 'demand')} open at the end of the log{since}"
+        case kernel.VACUOUS:
+            return f"never triggered in {outcome.ticks} ticks"
+        case _:
+            return (
+                f"held, {_times(len(evidence.triggers), 'trigger')}{_latency(evidence)}"
+                f"{_margin(evidence, declarations.signals)}"
+            )
+
+
+def _broken(evidence: Evidence) -> str:
+    first = evidence.violations[0]
+    trigger = f", triggered at {first.trigger.seconds:.1f} s" if first.trigger else ""
+    return (
+        f"broken from {first.first.seconds:.1f} s to {first.last.seconds:.1f} s{trigger}"
+        f"{_more(len(evidence.violations))}"
+    )
+
+
+def _more(count: int) -> str:
+    return f", and {_times(count - 1, 'more stretch', 'more stretches')}" if count > 1 else ""
+
+
+def _unknown(evidence: Evidence, recording: Recording) -> str:
+    errors = [finding.message for finding in recording.findings if finding.is_error]
+    if errors:
+        return errors[0]
+    if not recording.intact:
+        return "the log is damaged: what is lost could hold a violation"
+    runs = evidence.outcome.unknown
+    ticks = sum(last - first + 1 for first, last in runs)
+    if not evidence.outcome.ticks:
+        return "no whole tick of the clock lies within the log"
+    if not runs:
+        return f"unknown where it matters{_of_whom(evidence)}"
+    return f"unknown at {_times(ticks, 'tick')}, first at tick {runs[0][0]}"
+
+
+def _of_whom(evidence: Evidence) -> str:
+    """The propositions that were unknown at all."""
+    parts = [
+        f"`{name}` at {_times(tally.unknown, 'tick')}"
+        for name, tally in evidence.propositions.items()
+        if tally.unknown
+    ]
+    return f": {', '.join(parts)}" if parts else ""
+
+
+def _latency(evidence: Evidence) -> str:
+    if not evidence.latencies:
+        return ""
+    return (
+        f", answered after {median(evidence.latencies):.2f} s (median), "
+        f"{max(evidence.latencies):.2f} s (longest)"
+    )
+
+
+def _margin(evidence: Evidence, signals: Mapping[str, Signal]) -> str:
+    """The threshold that was nearest, as a part of its bound; those that were crossed have none."""
+    least = worst(evidence.margins)
+    if least is None:
+        return ""
+    unit, factor = shared_unit(least.threshold.text, least.threshold.unit, signals)
+    margin = value(scaled(least.distance, factor), unit, [0.0])
+    return f", least margin {margin} ({expression(least.threshold.comparison)})"
+
+
+def _times(count: int, one: str, many: str = "") -> str:
+    return f"{count} {one if count == 1 else many or one + 's'}"

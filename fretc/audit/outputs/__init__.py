@@ -1,0 +1,1 @@
+"""Audit results for other tools: JUnit, SARIF, tables, Foxglove."""

@@ -1,0 +1,203 @@
+"""What an audit has shown, as a log of its own that Foxglove plays beside the audited one.
+
+`/fretc/verdicts` tells each trigger, answer and violation, and the verdict at the end;
+`/fretc/<id>` tells the state of a requirement whenever it changes. Times are nanoseconds of the
+clock by which the run was judged.
+
+Source: https://docs.foxglove.dev, schema foxglove.Log; MCAP format registry, encoding `json`.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+from collections import Counter
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from io import BytesIO
+from itertools import chain, count, takewhile
+from pathlib import Path
+from typing import Any
+
+from mcap.well_known import MessageEncoding, SchemaEncoding
+from mcap.writer import Writer
+
+from compiler.files.edition import __version__
+from compiler.formalization.record import wording
+from compiler.formalization.rule import Rule
+from fretc.audit.evidence.basis import BINDINGS, CLOCK, MONITOR, PARAMS, SENTENCE, TOPICS
+from fretc.audit.log_paths import ANNOTATIONS
+from monitors import kernel
+
+VERDICTS = "/fretc/verdicts"
+_INFO, _WARNING, _ERROR = 2, 3, 4
+_LEVELS = {kernel.SATISFIED: _INFO, kernel.VIOLATED: _ERROR}
+"""Of the verdicts; a warning for what is not shown."""
+_SECOND = 10**9
+_LOGS = (".mcap", ".bag", ".db3")
+
+_TEXT = {"type": "string"}
+_WHOLE = {"type": "integer", "minimum": 0}
+_TIME = {
+    "type": "object",
+    "title": "time",
+    "properties": {"sec": _WHOLE, "nsec": {**_WHOLE, "maximum": _SECOND - 1}},
+}
+
+
+def _schema(title: str, **fields: Mapping[str, Any]) -> str:
+    properties = {"timestamp": _TIME, **fields}
+    return json.dumps(
+        {"title": title, "type": "object", "properties": properties, "required": [*properties]}
+    )
+
+
+_LOG = _schema("foxglove.Log", level=_WHOLE, message=_TEXT, name=_TEXT, file=_TEXT, line=_WHOLE)
+_STATE = _schema("fretc.State", requirement=_TEXT, state=_TEXT)
+
+
+@dataclass(frozen=True, slots=True)
+class _Event:
+    """What happened at one time, for one requirement."""
+
+    ns: int
+    topic: str
+    content: Mapping[str, Any]
+
+
+def sidecars(
+    results: Sequence[Mapping[str, Any]], rules: Sequence[Rule], folder: Path
+) -> dict[Path, bytes]:
+    """A file for each run that could be read; the same results give the same bytes.
+
+    Args:
+        results: each of a run and a requirement, as in the evidence.
+        rules: all requirements of the results.
+        folder: where the files go.
+    """
+    runs: dict[str, list[Mapping[str, Any]]] = {}
+    for result in results:
+        if result["start_ns"] is not None:
+            runs.setdefault(result["run"], []).append(result)
+    names = _names(list(runs))
+    return {folder / names[run]: sidecar(found, rules) for run, found in runs.items()}
+
+
+def sidecar(results: Sequence[Mapping[str, Any]], rules: Sequence[Rule]) -> bytes:
+    """The log of one run: what happened, in order of time.
+
+    Args:
+        results: of that run, one for each requirement.
+        rules: all requirements of the results.
+    """
+    by_id = {rule.id: rule for rule in rules}
+    data = BytesIO()
+    writer = Writer(data)
+    writer.start(library=f"fretc {__version__}")
+    log = writer.register_schema("foxglove.Log", SchemaEncoding.JSONSchema, _LOG.encode())
+    state = writer.register_schema("fretc.State", SchemaEncoding.JSONSchema, _STATE.encode())
+    channels = {VERDICTS: writer.register_channel(VERDICTS, MessageEncoding.JSON, log)}
+    for result in results:
+        topic, rule = state_topic(result["requirement"]), by_id[result["requirement"]]
+        about = {"sentence": wording(rule.requirement)}
+        channels[topic] = writer.register_channel(topic, MessageEncoding.JSON, state, about)
+    events = [event for result in results for event in _events(result, by_id)]
+    counts: Counter[str] = Counter()
+    for event in sorted(events, key=lambda event: event.ns):
+        content = json.dumps({"timestamp": _time(event.ns), **event.content}).encode()
+        writer.add_message(channels[event.topic], event.ns, content, event.ns, counts[event.topic])
+        counts[event.topic] += 1
+    writer.add_metadata("fretc", _metadata(results))
+    writer.finish()  # type: ignore[no-untyped-call]
+    return data.getvalue()
+
+
+def state_topic(id: str) -> str:
+    """Where the states of a requirement are told."""
+    topic = f"/fretc/{id}"
+    return f"{topic}/state" if topic == VERDICTS else topic
+
+
+def _events(result: Mapping[str, Any], rules: Mapping[str, Rule]) -> Iterator[_Event]:
+    """Of one requirement; of those at the same time, what comes first is told first."""
+    id = result["requirement"]
+    place = rules[id].requirement.wording
+
+    def told(ns: int, level: int, message: str) -> _Event:
+        where = {"name": id, "file": place.source.name, "line": place.line}
+        return _Event(max(0, ns), VERDICTS, {"level": level, "message": message, **where})
+
+    for state in result.get("states", ()):
+        content = {"requirement": id, "state": state["state"]}
+        yield _Event(max(0, state["ns"]), state_topic(id), content)
+    triggers = {moment["tick"]: moment for moment in result["triggers"]}
+    for trigger in triggers.values():
+        yield told(trigger["ns"], _INFO, f"{id}: triggered")
+    for answer in result.get("answers", ()):
+        waited = _seconds(answer["ns"] - triggers[answer["trigger"]]["ns"])
+        yield told(answer["ns"], _INFO, f"{id}: answered after {waited}")
+    for violation in result["violations"]:
+        trigger = violation["trigger"]
+        since = f", triggered at {trigger['seconds']:.3f} s" if trigger else ""
+        yield told(violation["start_ns"], _ERROR, f"{id}: violated from here on{since}")
+        yield told(violation["end_ns"], _ERROR, f"{id}: violated up to here")
+    verdict = f"{id}: {result['verdict']}: {result['reason']}"
+    yield told(result["end_ns"], _LEVELS.get(result["verdict"], _WARNING), verdict)
+
+
+def _metadata(results: Sequence[Mapping[str, Any]]) -> dict[str, str]:
+    """What was judged, by what, and how it came out."""
+    first = results[0]
+    found = {"fretc": __version__, "run": first["run"], "clock": first["clock"]}
+    names = ("log", "log_summary", CLOCK, TOPICS)
+    found |= {f"sha256.{n}": first["hashes"][n] for n in names if n in first["hashes"]}
+    for result in results:
+        id, hashes = result["requirement"], result["hashes"]
+        found |= {f"{id}.verdict": result["verdict"], f"{id}.reason": result["reason"]}
+        parts = [name for name in (SENTENCE, PARAMS, BINDINGS, MONITOR) if name in hashes]
+        found |= {f"{id}.sha256.{name}": hashes[name] for name in parts}
+    return found
+
+
+def _names(runs: Sequence[str]) -> dict[str, Path]:
+    """A file name for each run; those of the same name keep the folders in which they differ."""
+    alike: dict[str, list[str]] = {}
+    for run in runs:
+        alike.setdefault(_safe(_stem(run)), []).append(run)
+    names: dict[str, Path] = {}
+    taken: set[Path] = set()
+    for stem, same in alike.items():
+        folders = [Path(run).parent.parts for run in same]
+        shared = min(_shared(folders[0], parts) for parts in folders)
+        for run, parts in zip(same, folders, strict=True):
+            folder = Path(*map(_safe, parts[shared:]))
+            numbered = (f"{stem}-{number}" for number in count(2))
+            free = (folder / f"{name}{ANNOTATIONS}" for name in chain([stem], numbered))
+            names[run] = next(name for name in free if name not in taken)
+            taken.add(names[run])
+    return names
+
+
+def _shared(one: Sequence[str], other: Sequence[str]) -> int:
+    """How many folders they begin with in common."""
+    pairs = takewhile(lambda pair: pair[0] == pair[1], zip(one, other, strict=False))
+    return sum(1 for _ in pairs)
+
+
+def _stem(run: str) -> str:
+    name = Path(run).name
+    return next((name[: -len(end)] for end in _LOGS if name.endswith(end)), name)
+
+
+def _safe(text: str) -> str:
+    """A name for a file or a folder, and never one that leads elsewhere."""
+    return re.sub(r"[^\w.-]|^\.+", "_", text)
+
+
+def _seconds(ns: int) -> str:
+    return f"{ns / _SECOND:.3f} s"
+
+
+def _time(ns: int) -> dict[str, int]:
+    seconds, nanoseconds = divmod(ns, _SECOND)
+    return {"sec": seconds, "nsec": nanoseconds}

@@ -1,0 +1,155 @@
+"""Results of an audit in the forms of other tools: JUnit XML, and annotations of GitHub Actions.
+
+Sources: the JUnit schema of the Jenkins xUnit plugin, https://github.com/jenkinsci/xunit-plugin;
+GitHub, Workflow commands for GitHub Actions.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from fractions import Fraction
+from itertools import groupby
+from types import MappingProxyType
+from typing import Any
+from xml.etree import ElementTree
+
+from fretc.audit.evidence import verdicts
+from fretc.audit.evidence.estimates import AVERAGE, Estimated
+from fretc.audit.evidence.verdicts import Level
+from fretish.bindings.amounts import declared_unit, scaled, value
+from fretish.bindings.declarations import Signal
+from fretish.diagnostics.rendering import visible
+from fretish.diagnostics.source import Span
+from fretish.documents import Requirement
+
+_NOT_XML = re.compile("[^\t\n\r\u0020-~\u00a0-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
+_GITHUB = {Level.ERROR: "error", Level.WARNING: "warning", Level.NONE: "notice"}
+
+
+def junit(
+    results: Sequence[Mapping[str, Any]],
+    together: Sequence[Estimated] = (),
+    signals: Mapping[str, Signal] = MappingProxyType({}),
+) -> str:
+    """One test suite for each run, one test case for each requirement.
+
+    Args:
+        results: each of a run and a requirement, as in the evidence.
+        together: those that are judged over all runs, which is a suite of its own.
+        signals: those of the bindings, in whose units numbers are shown.
+    """
+    root = ElementTree.Element("testsuites", name="fretc audit")
+    for run, found in groupby(results, key=lambda result: str(result["run"])):
+        cases = list(found)
+        counts = counted([verdicts.junit(case["verdict"]) for case in cases])
+        suite = ElementTree.SubElement(root, "testsuite", {"name": valid(run), **counts})
+        for case in cases:
+            _case(suite, run, case, signals)
+    if together:
+        _suite_of_all(root, together)
+    return as_text(root)
+
+
+def as_text(root: ElementTree.Element) -> str:
+    """The whole file, indented."""
+    ElementTree.indent(root)
+    text = ElementTree.tostring(root, encoding="unicode")
+    return f'<?xml version="1.0" encoding="UTF-8"?>\n{text}\n'
+
+
+def counted(kinds: Sequence[str]) -> dict[str, str]:
+    """The attributes of a test suite with cases of these kinds; an empty one: passed."""
+    names = {"failures": "failure", "errors": "error", "skipped": "skipped"}
+    return {"tests": str(len(kinds))} | {n: str(kinds.count(k)) for n, k in names.items()}
+
+
+def _suite_of_all(root: ElementTree.Element, together: Sequence[Estimated]) -> None:
+    counts = counted([verdicts.junit(one.answer) for one in together])
+    suite = ElementTree.SubElement(root, "testsuite", {"name": "all runs", **counts})
+    for one in together:
+        names = {"name": valid(one.requirement), "classname": "all runs", "time": "0.000"}
+        node = ElementTree.SubElement(suite, "testcase", names)
+        kind = verdicts.junit(one.answer)
+        if kind:
+            message = valid(f"{one.answer}: {one.reason}")
+            told = ElementTree.SubElement(node, kind, message=message)
+            told.text = valid("\n".join(one.lines))
+
+
+def _case(
+    suite: ElementTree.Element, run: str, case: Mapping[str, Any], signals: Mapping[str, Signal]
+) -> None:
+    length = (case["end_ns"] or 0) - (case["start_ns"] or 0)
+    node = ElementTree.SubElement(
+        suite,
+        "testcase",
+        name=valid(case["requirement"]),
+        classname=valid(run),
+        time=f"{length / 1e9:.3f}",
+    )
+    kind = verdicts.junit(case["verdict"])
+    if kind:
+        message = valid(f"{case['verdict']}: {case['reason']}")
+        told = ElementTree.SubElement(node, kind, message=message)
+        told.text = valid("\n".join(_lines(case, signals)))
+
+
+def _lines(case: Mapping[str, Any], signals: Mapping[str, Signal]) -> Iterator[str]:
+    """Each stretch at which the requirement was violated, with what the signals said."""
+    units = {n: declared_unit(n, base, signals) for n, base in case["units"].items()}
+    bounds = {name: _bounds(case, name, factor) for name, (_, factor) in units.items()}
+    for broken in case["violations"]:
+        values = ", ".join(
+            f"{name} = {value(scaled(number, units[name][1]), units[name][0], bounds[name])}"
+            for name, number in broken["values"].items()
+        )
+        stretch = f"{broken['start_s']:.3f} s to {broken['end_s']:.3f} s"
+        yield f"{stretch}: {values}" if values else stretch
+
+
+def _bounds(case: Mapping[str, Any], signal: str, factor: Fraction) -> list[float]:
+    """What a signal, or its absolute value, is compared with."""
+    found = (t for t in case["thresholds"] if t["signal"] in (signal, f"abs({signal})"))
+    return [sign * scaled(each["bound"], factor) for each in found for sign in (1, -1)]
+
+
+def valid(text: str) -> str:
+    """The text without what XML cannot hold, or a terminal obeys."""
+    return _NOT_XML.sub("\ufffd", text)
+
+
+def github(
+    results: Sequence[Mapping[str, Any]],
+    requirements: Sequence[Requirement],
+    together: Sequence[Estimated] = (),
+) -> str:
+    """A line for each result, shown at the sentence of its requirement.
+
+    Of a run that only counts (`trials`) it is a notice: what all runs say follows.
+    """
+    places = {requirement.id: requirement.wording for requirement in requirements}
+    lines = []
+    for result in results:
+        level = "notice" if "trials" in result else _GITHUB[verdicts.level(result["verdict"])]
+        title = f"{result['requirement']} {result['verdict']}"
+        said = f"{result['run']}: {result['reason']}"
+        lines.append(_annotation(level, places[result["requirement"]], title, said))
+    for one in together:
+        level, title = _GITHUB[verdicts.level(one.answer)], f"{one.requirement} {one.answer}"
+        said = f"all runs: {one.reason}; {one.lines[1]}; {AVERAGE}"
+        lines.append(_annotation(level, places[one.requirement], title, said))
+    return "".join(lines)
+
+
+def _annotation(level: str, place: Span, title: str, said: str) -> str:
+    where = f"file={_property(place.source.name)},line={place.line},title={_property(title)}"
+    return f"::{level} {where}::{_data(said)}\n"
+
+
+def _data(text: str) -> str:
+    return visible(text).replace("%", "%25")
+
+
+def _property(text: str) -> str:
+    return _data(text).replace(":", "%3A").replace(",", "%2C")

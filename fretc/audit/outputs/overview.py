@@ -1,0 +1,100 @@
+"""What is in a log, and whether it can be trusted: for a person, and as an object for programs."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from datetime import UTC, datetime
+from typing import Any
+
+from fretc.audit.evidence.writer import health
+from fretc.logs.reader import Overview
+from fretc.logs.signals.samples import Recording, Topic
+from fretish.diagnostics.rendering import visible
+
+_MOST = 8
+"""Fields of a topic that a person is shown."""
+_WIDEST = 60
+"""Characters of a topic's name that the others stand clear of."""
+
+
+def as_record(overview: Overview) -> dict[str, Any]:
+    """Plain values, in a fixed order of keys."""
+    recording = overview.recording
+    told = health(recording)
+    for name, topic in told["topics"].items():
+        numbers = overview.numbers.get(name)
+        topic["rate_hz"] = _rate(recording.topics[name])
+        topic["signals"] = None if numbers is None else [f"{name}.{path}" for path in numbers]
+    return {
+        "run": recording.name,
+        "sha256": recording.sha256,
+        "start_ns": recording.start_ns,
+        "end_ns": recording.end_ns,
+        **told,
+    }
+
+
+def text(overview: Overview, *, whole: bool) -> str:
+    """Some lines; with `whole`, every field that a signal can read."""
+    lines = [*_head(overview.recording), *_topics(overview, whole=whole)]
+    return "".join(f"{visible(line)}\n" for line in lines)
+
+
+def _head(recording: Recording) -> Iterator[str]:
+    length = (recording.end_ns - recording.start_ns) / 1e9
+    state = "no damage found" if recording.intact else "damaged"
+    yield f"{recording.name}  {recording.size:,} bytes, {length:.3f} s, {state}"
+    yield f"  from     {_moment(recording.start_ns)}"
+    yield f"  SHA-256  {recording.sha256}"
+
+
+def _moment(ns: int) -> str:
+    """A time of the log; as a date where it can be one."""
+    seconds = ns // 10**9
+    if not 10**8 < seconds < 10**10:  # a simulated clock begins near 0
+        return f"{ns / 1e9:.3f} s"
+    return f"{datetime.fromtimestamp(seconds, UTC):%Y-%m-%d %H:%M:%S} UTC ({ns} ns)"
+
+
+def _topics(overview: Overview, *, whole: bool) -> Iterator[str]:
+    topics = overview.recording.topics
+    width = min(_WIDEST, max((len(name) for name in topics), default=0))
+    for name, topic in topics.items():
+        odd = "".join(_oddities(topic))
+        yield f"  {name:<{width}}  {topic.type or '?'}, {_count(topic)}{odd}"
+        yield from (f"  {'':<{width}}    {line}" for line in _fields(overview, name, whole=whole))
+
+
+def _count(topic: Topic) -> str:
+    rate = _rate(topic)
+    longest = (topic.longest_gap_ns or 0) / 1e9
+    every = f", {rate:.4g} Hz, longest gap {longest:.3f} s" if rate else ""
+    return f"{topic.count} message{'' if topic.count == 1 else 's'}{every}"
+
+
+def _rate(topic: Topic) -> float | None:
+    """Messages per second, from the first to the last one."""
+    if topic.first_ns is None or topic.last_ns is None or topic.last_ns == topic.first_ns:
+        return None
+    return round((topic.count - 1) / (topic.last_ns - topic.first_ns) * 1e9, 6)
+
+
+def _oddities(topic: Topic) -> Iterator[str]:
+    if topic.out_of_order:
+        yield f", {topic.out_of_order} out of order"
+    if topic.equal_stamps:
+        yield f", {topic.equal_stamps} with the time of another"
+    if topic.zero_stamps:
+        yield f", {topic.zero_stamps} with a zero for a time"
+
+
+def _fields(overview: Overview, name: str, *, whole: bool) -> Iterator[str]:
+    """The fields that a signal can read."""
+    numbers = overview.numbers.get(name)
+    if numbers is None:
+        yield f"cannot be read: {overview.reasons[name]}"
+        return
+    shown = numbers if whole else numbers[:_MOST]
+    if shown:
+        more = f", and {len(numbers) - len(shown)} more" if len(numbers) > len(shown) else ""
+        yield f"{', '.join(f'.{path}' for path in shown)}{more}"

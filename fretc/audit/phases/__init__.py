@@ -1,0 +1,1 @@
+"""For which phases of the ticks a verdict holds."""

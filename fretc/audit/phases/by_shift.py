@@ -1,0 +1,244 @@
+"""For which phases of the ticks each verdict holds.
+
+A phase is where the grid of ticks begins: whole nanoseconds from where it would begin, less than a
+tick. The verdict at a phase is that of an audit whose clock declares it. It changes at finitely
+many phases: where a tick comes to see another state of a proposition.
+
+Ranges of phases are judged at once: what changes within a range is unknown there, so a verdict that
+is definite holds at each of its phases (Kleene: it holds whatever the unknown values are). A range
+that leaves it open is divided.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from heapq import heappop, heappush
+from itertools import pairwise
+from typing import Any
+
+from fretc.audit.measurements.judgement import Judgement, judged
+from fretc.audit.phases.sliding import Slide, Sliding, sliding
+from fretc.logs.signals.samples import Recording
+from fretish.bindings.declarations import Declarations
+from fretish.clock import in_words
+from monitors.kernel import Monitor
+
+MOST = 1 << 22
+"""Ticks that are judged for the phases of one requirement and log; what is left is not judged."""
+FEWEST = 64
+"""Judgements, however long the log is."""
+_OVERHEAD = 4096
+"""Ticks that a judgement costs beside its own."""
+
+
+@dataclass(frozen=True, slots=True)
+class Stretch:
+    """The phases `first..last`, in nanoseconds and both included; None was not judged."""
+
+    first: int
+    last: int
+    verdict: str | None
+
+    @property
+    def length(self) -> int:
+        """Nanoseconds."""
+        return self.last - self.first + 1
+
+
+@dataclass(frozen=True, slots=True)
+class Phases:
+    """The verdict at each phase: stretches that follow each other, from 0 to the whole tick."""
+
+    period: int
+    """Nanoseconds of a tick."""
+    declared: int
+    """The phase that is audited."""
+    stretches: tuple[Stretch, ...]
+
+    @property
+    def verdict(self) -> str:
+        """At the declared phase."""
+        (found,) = (s.verdict for s in self.stretches if s.first <= self.declared <= s.last)
+        assert found is not None, "the declared phase is judged first"
+        return found
+
+    @property
+    def verdicts(self) -> dict[str | None, int]:
+        """Each verdict with the nanoseconds of its phases; that of the declared phase is first."""
+        lengths: dict[str | None, int] = {self.verdict: 0}
+        for stretch in self.stretches:
+            lengths[stretch.verdict] = lengths.get(stretch.verdict, 0) + stretch.length
+        return lengths
+
+    @property
+    def exact(self) -> bool:
+        """Whether all phases were judged."""
+        return None not in self.verdicts
+
+    @property
+    def varies(self) -> bool:
+        """Whether there are two verdicts."""
+        return len(self.verdicts.keys() - {None}) > 1
+
+    @property
+    def nearest(self) -> int | None:
+        """Nanoseconds from the declared phase to one that has not its verdict; None: all have it.
+
+        Phases go round: the grid of the last one is that of phase -1 ns, but for its first tick.
+        """
+        apart = [
+            _apart(end, self.declared, self.period)
+            for stretch in self.stretches
+            if stretch.verdict != self.verdict
+            for end in (stretch.first, stretch.last)
+        ]
+        return min(apart, default=None)
+
+    @property
+    def text(self) -> str:
+        """What there is to say of it in a sentence; empty where all phases have one verdict."""
+        if self.nearest is None:
+            return ""
+        shares = [
+            f"{'not computed' if verdict is None else verdict} at {_share(length, self.period)}"
+            for verdict, length in self.verdicts.items()
+        ]
+        far = in_words(self.nearest)
+        near = f"the nearest change is {far} away" if self.exact else f"no change within {far}"
+        return f"by phase of the ticks {', '.join(shares)}, {near}"
+
+    @property
+    def as_record(self) -> dict[str, Any]:
+        """The JSON object."""
+        return {
+            "period_ns": self.period,
+            "declared_ns": self.declared,
+            "exact": self.exact,
+            "nearest_ns": self.nearest,
+            "stretches": [
+                {"first_ns": s.first, "last_ns": s.last, "verdict": s.verdict}
+                for s in self.stretches
+            ],
+        }
+
+
+def _apart(one: int, other: int, period: int) -> int:
+    return min((one - other) % period, (other - one) % period)
+
+
+def _share(part: int, whole: int) -> str:
+    """`18 %`: never 0 % of something, nor 100 % of less than all."""
+    percent = Fraction(100 * part, whole)
+    if percent < 1:
+        return "less than 1 %"
+    return f"{min(round(percent), 99) if part < whole else 100} %"
+
+
+def phases(
+    declarations: Declarations, recording: Recording, monitors: Sequence[Monitor]
+) -> dict[str, Phases]:
+    """The verdict of each requirement at each phase; none where the clock ticks by message.
+
+    Args:
+        declarations: clock, signals and propositions.
+        recording: with the samples of all signals of all the monitors' propositions.
+        monitors: each of one requirement.
+    """
+    names = dict.fromkeys(name for monitor in monitors for name in monitor.PROPOSITIONS)
+    slides, end = sliding(declarations, recording, names), str(declarations.clock.end)
+    if slides is None:
+        return {}
+    found = {}
+    for monitor in monitors:
+        search = _Search(slides, monitor, intact=recording.intact, end=end)
+        stretches = tuple(_merged(search.stretches()))
+        found[monitor.REQUIREMENTS[0].id] = Phases(slides.period, slides.declared, stretches)
+    return found
+
+
+class _Search:
+    """Divides the phases until each range has one verdict, the longest range first.
+
+    A class is a range of phases at which no tick sees anything else: `first..last` of them.
+    """
+
+    def __init__(self, slides: Sliding, monitor: Monitor, *, intact: bool, end: str) -> None:
+        self._slides, self._monitor = slides, monitor
+        self._columns = {name: slides.of[name] for name in monitor.PROPOSITIONS}
+        self._intact, self._end = intact, end
+        own: Sequence[Slide] = tuple(self._columns.values())
+        self._breaks = slides.breaks(own)
+        """Phases on whose two sides the end of the log is another one."""
+        self._starts = slides.starts(own, self._breaks)
+        self._left = max(FEWEST, MOST // (slides.most_ticks + _OVERHEAD))
+        self._waiting: list[tuple[int, int, int]] = []
+        self._found: list[Stretch] = []
+
+    def stretches(self) -> list[Stretch]:
+        """In their order, of classes or more."""
+        declared = self._class_of(self._slides.declared)
+        self._settle(declared, declared)
+        edges = [self._class_of(phase) for phase in self._breaks]
+        edges += [declared, declared + 1, len(self._starts)]
+        for first, after in pairwise(sorted({*edges})):
+            if first != declared:
+                self._wait(first, after - 1)
+        while self._waiting and self._left > 0:
+            _, first, last = heappop(self._waiting)
+            if not self._settle(first, last):
+                middle = (first + last) // 2
+                self._settle(middle, middle)
+                self._wait(first, middle - 1)
+                self._wait(middle + 1, last)
+        self._found += [self._stretch(first, last, None) for _, first, last in self._waiting]
+        return sorted(self._found, key=lambda stretch: stretch.first)
+
+    def _settle(self, first: int, last: int) -> bool:
+        """Judge the classes as one; whether that gives a verdict on all of them."""
+        judgement = self._judge(first, last)
+        if first != last and not judgement.certain:
+            return False
+        self._found.append(self._stretch(first, last, judgement.verdict))
+        return True
+
+    def _judge(self, first: int, last: int) -> Judgement:
+        self._left -= 1
+        low, high = self._starts[first], self._starts[last]
+        ticks = self._slides.ticks(low)
+        columns = {name: slide.column(low, high, ticks) for name, slide in self._columns.items()}
+        return judged(
+            self._monitor,
+            columns,
+            self._slides.cut(self._columns, low),
+            ticks,
+            intact=self._intact,
+            end=self._end,
+        )
+
+    def _class_of(self, phase: int) -> int:
+        return int(self._starts.searchsorted(phase, "right")) - 1
+
+    def _wait(self, first: int, last: int) -> None:
+        if first <= last:
+            stretch = self._stretch(first, last, None)
+            heappush(self._waiting, (-stretch.length, first, last))
+
+    def _stretch(self, first: int, last: int, verdict: str | None) -> Stretch:
+        whole = last + 1 == len(self._starts)
+        after = self._slides.period if whole else int(self._starts[last + 1])
+        return Stretch(int(self._starts[first]), after - 1, verdict)
+
+
+def _merged(stretches: Sequence[Stretch]) -> Iterator[Stretch]:
+    """Neighbours with one verdict as one."""
+    first = stretches[0]
+    for stretch in stretches[1:]:
+        assert stretch.first == first.last + 1
+        if stretch.verdict == first.verdict:
+            first = Stretch(first.first, stretch.last, first.verdict)
+        else:
+            yield first
+            first = stretch
+    yield first

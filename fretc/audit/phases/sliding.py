@@ -1,0 +1,188 @@
+"""What ticks see of the propositions at each phase of their grid.
+
+Times and phases are nanoseconds. Phase 0 is where the grid would begin; at phase s every tick is s
+later. A tick k sees another state only at finitely many phases, and each of them is known.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fretc.logs.signals.propositions import UNKNOWN, States, Steps, evaluate, truth_values
+from fretc.logs.signals.samples import Recording, Times
+from fretc.logs.signals.traces import combined, first_before, heard, origin, packed
+from fretish.bindings.declarations import Declarations, Proposition
+from monitors.kernel import Column
+
+
+@dataclass(frozen=True, slots=True)
+class Slide:
+    """One proposition.
+
+    `base` has shape (ticks at phase 0,): its states there. From `phases[i]` on, tick `ticks[i]`
+    sees `states[i]`; all three have shape (changes,), phases do not decrease. `cut_states[i]` is
+    what the cut tick sees from `cut_phases[i]` on; phases increase, and the first one is 0.
+    """
+
+    base: States
+    phases: Times
+    ticks: NDArray[np.int64]
+    states: States
+    cut_phases: Times
+    cut_states: States
+
+    def column(self, low: int, high: int, ticks: int) -> Column:
+        """What the first so many ticks see from phase `low` to `high`; unknown where it changes."""
+        done, more = np.searchsorted(self.phases, [low, high], "right").tolist()
+        states = self.base.copy()
+        states[self.ticks[:done]] = self.states[:done]  # of several changes the last one stays
+        states[self.ticks[done:more]] = UNKNOWN
+        return packed(states[:ticks])
+
+    def cut(self, phase: int) -> bool | None:
+        """What the cut tick sees."""
+        place = int(np.searchsorted(self.cut_phases, phase, "right")) - 1
+        return truth_values(self.cut_states[place : place + 1])[0]
+
+
+@dataclass(frozen=True, slots=True)
+class Sliding:
+    """All propositions of one log; `length` is the time from phase 0 of the grid to the end."""
+
+    period: int
+    declared: int
+    length: int
+    of: Mapping[str, Slide]
+
+    @property
+    def most_ticks(self) -> int:
+        """How many there are at phase 0."""
+        return self.ticks(0)
+
+    def ticks(self, phase: int) -> int:
+        """How many whole ticks there are."""
+        return int(self.length - phase) // self.period + 1
+
+    def cut(self, names: Iterable[str], phase: int) -> dict[str, bool | None] | None:
+        """What the cut tick sees of some propositions; None where there is no such tick."""
+        if not self.ticks(phase) or (self.length - phase) % self.period == 0:
+            return None
+        return {name: self.of[name].cut(phase) for name in names}
+
+    def breaks(self, slides: Sequence[Slide]) -> list[int]:
+        """The phases from which on the end is another one: its last tick, or what is cut short."""
+        end = self.length % self.period  # here the last tick is at the very end
+        found = {0, end, end + 1}
+        for slide in slides:
+            last = (self.length - slide.phases) // self.period
+            found |= {*slide.cut_phases.tolist(), *slide.phases[slide.ticks == last].tolist()}
+        return sorted(found - {self.period})
+
+    def starts(self, slides: Sequence[Slide], breaks: Sequence[int]) -> Times:
+        """Shape (classes,): each phase from which on anything is another one, in order."""
+        return np.unique(np.concatenate([np.array(breaks, np.int64), *(s.phases for s in slides)]))
+
+
+def sliding(
+    declarations: Declarations, recording: Recording, names: Iterable[str]
+) -> Sliding | None:
+    """The propositions at each phase; None where the clock ticks by message and has no phase.
+
+    Args:
+        declarations: clock, signals and propositions.
+        recording: with the samples of all signals that the propositions name.
+        names: of propositions that are declared.
+    """
+    period = declarations.clock.period
+    if period is None:
+        return None
+    start = origin(declarations, recording, period)
+    length = max(0, recording.end_ns - start)
+    slides = {
+        name: _slide(declarations.propositions[name], declarations, recording, start, length)
+        for name in names
+    }
+    return Sliding(period, declarations.clock.phase, length, slides)
+
+
+def _slide(
+    proposition: Proposition,
+    declarations: Declarations,
+    recording: Recording,
+    start: int,
+    length: int,
+) -> Slide:
+    period = declarations.clock.period
+    assert period is not None
+    steps = evaluate(proposition, declarations, recording)
+    begun = recording.start_ns, heard(proposition, recording)
+    first_times, first = _first(steps, proposition, begun, start, min(period - 1, length))
+    later_times, later = _later(steps, proposition, start, length, period)
+    grid = start + np.arange(1, length // period + 1, dtype=np.int64) * period
+    base = np.concatenate([first[:1], later[np.searchsorted(later_times, grid, "right") - 1]])
+    times, states = _changes(first_times, first, later_times, later)
+    ticks, phases = np.divmod(times - start, period)
+    order = np.argsort(phases, kind="stable")
+    order = order[phases[order] > 0]  # at phase 0 it is the base
+    cut_phases, cut_states = _cut(steps, proposition, start, length, period)
+    return Slide(base, phases[order], ticks[order], states[order], cut_phases, cut_states)
+
+
+def _first(
+    steps: Steps, proposition: Proposition, begun: tuple[int, int], start: int, more: int
+) -> tuple[Times, States]:
+    """What the first tick sees where it is at each of these times, and until the next of them."""
+    times = _within(steps.times, start, start + more)
+    upto = np.searchsorted(steps.times, times, "right")
+    return times, combined(steps, first_before(steps, begun, upto), upto, proposition)
+
+
+def _later(
+    steps: Steps, proposition: Proposition, start: int, length: int, period: int
+) -> tuple[Times, States]:
+    """What a later tick sees where it is at each of these times, and until the next of them.
+
+    It sees as much as a tick is long: that changes where a step comes, and where one goes.
+    """
+    moments = np.concatenate([steps.times, steps.times + period])
+    times = _within(moments, start + period, start + length)
+    before, upto = (np.searchsorted(steps.times, at, "right") for at in (times - period, times))
+    return times, combined(steps, before, upto, proposition)
+
+
+def _within(times: Times, first: int, last: int) -> Times:
+    """The first time, and those after it up to the last one; none where that is before it.
+
+    They are in order; equal ones are no harm, and to find them costs more than to keep them.
+    """
+    inside = times[(times > first) & (times <= last)]
+    return np.sort(np.append(inside, first), kind="stable") if first <= last else inside
+
+
+def _changes(
+    first_times: Times, first: States, later_times: Times, later: States
+) -> tuple[Times, States]:
+    """Where the state is another one than the nanosecond before, with that state."""
+    new_first = np.append(False, first[1:] != first[:-1])
+    new_later = np.append(False, later[1:] != later[:-1])[: len(later)]
+    times = np.concatenate([first_times[new_first], later_times[new_later]])
+    return times, np.concatenate([first[new_first], later[new_later]])
+
+
+def _cut(
+    steps: Steps, proposition: Proposition, start: int, length: int, period: int
+) -> tuple[Times, States]:
+    """The phases from which on the cut tick sees another state, with that state."""
+    end = start + length
+    lasts = _within(steps.times, end - period + 1, end)
+    whole = np.array([0, (length + 1) % period], np.int64)
+    phases = np.sort(np.append((lasts - start) % period, whole))
+    last = end - (length - phases) % period
+    before, upto = (np.searchsorted(steps.times, at, "right") for at in (last, end))
+    states = combined(steps, before, np.full(len(last), upto), proposition)
+    changed = np.append(True, states[1:] != states[:-1])
+    return phases[changed], states[changed]

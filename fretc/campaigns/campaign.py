@@ -1,0 +1,235 @@
+"""Many missions: each scenario with each seed is simulated, audited and counted."""
+
+from __future__ import annotations
+
+import tempfile
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import closing, contextmanager
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+
+from compiler.files.edition import __version__
+from compiler.project.interceptor_options import ticks
+from fretc.audit.many_logs import audited
+from fretc.audit.measurements.binomial import highest, lowest
+from fretc.audit.plan import watched
+from fretc.audit.pool import Killed, each
+from fretc.campaigns.experiment import interceptor, plan, safety_function
+from monitors import kernel
+from monitors.interceptor import Options
+from simulation.mission import Mission, record
+from simulation.nodes.safety import Interceptor as MakeInterceptor
+from simulation.world.scenario import Interceptor, Scenario
+
+CONFIDENCE = 0.95
+"""Of the intervals."""
+
+
+@dataclass(frozen=True, slots=True)
+class Run:
+    """What one mission was, and what its log has shown."""
+
+    scenario: str
+    seed: int
+    duration: float
+    complete: bool
+    stops: int
+    measured_clearance: float
+    """Metres."""
+    true_clearance: float
+    contacts: int
+    latencies: tuple[float, ...]
+    """Seconds from each request to the standstill."""
+    distances: tuple[float, ...]
+    """Metres that the robot moved meanwhile."""
+    verdicts: Mapping[str, str]
+    wrong: Mapping[str, str]
+    """Of the requirements whose verdict is not the stated one, what was stated."""
+
+
+@dataclass(frozen=True, slots=True)
+class Share:
+    """How many of some runs; `low` and `high` are its Clopper-Pearson interval."""
+
+    count: int
+    runs: int
+    low: float
+    high: float
+
+    def __str__(self) -> str:
+        """With the interval in percent."""
+        return f"{self.count}/{self.runs} ({self.low * 100:.0f}-{self.high * 100:.0f} %)"
+
+
+def share(count: int, runs: int) -> Share:
+    """The exact interval of a binomial proportion: both of its bounds."""
+    each = (1 + CONFIDENCE) / 2
+    return Share(count, runs, lowest(count, runs, each), highest(count, runs, each))
+
+
+def simulated(scenario: Scenario, seed: int, out: Path) -> Run:
+    """Record one mission with the compiled safety function, and audit its log."""
+    decision = safety_function(scenario.safety.threshold)
+    node = intercepted(scenario.interceptor)
+    mission = record(out, scenario, node, seed, decision, versions={"fretc": __version__})
+    shown = audited(plan(), str(out))
+    return _run(mission, {str(r["requirement"]): str(r["verdict"]) for r in shown.results})
+
+
+def intercepted(options: Interceptor) -> MakeInterceptor:
+    """The emitted interceptor with the options of a scenario."""
+    if not options.period:
+        return partial(
+            interceptor, Options(0, 0, 0, 0, event_driven=True, latching=options.latching)
+        )
+
+    def counted(seconds: float) -> int:
+        return ticks(round(seconds * 10**9), round(options.period * 10**9))
+
+    made = Options(
+        hold=counted(options.hold),
+        stop_timeout=counted(options.safety_timeout),
+        scan_timeout=0,
+        command_timeout=counted(options.command_timeout),
+        latching=options.latching,
+    )
+    return partial(interceptor, made)
+
+
+def _run(mission: Mission, verdicts: Mapping[str, str]) -> Run:
+    stated = mission.scenario.expect.verdicts
+    stood = [stop for stop in mission.stops if stop.latency is not None]
+    return Run(
+        scenario=mission.scenario.name,
+        seed=mission.seed,
+        duration=mission.duration,
+        complete=mission.goals_reached == mission.goals_total,
+        stops=len(mission.stops),
+        measured_clearance=mission.measured_clearance,
+        true_clearance=mission.true_clearance,
+        contacts=mission.contacts,
+        latencies=tuple(stop.latency for stop in stood if stop.latency is not None),
+        distances=tuple(stop.distance for stop in stood),
+        verdicts=verdicts,
+        wrong={id: verdict for id, verdict in stated.items() if verdicts.get(id) != verdict},
+    )
+
+
+def campaign(
+    scenarios: Sequence[Scenario],
+    seeds: Sequence[int],
+    jobs: int,
+    folder: Path | None = None,
+    tell: Callable[[int], None] = lambda done: None,
+) -> list[Run]:
+    """Every scenario with every seed, scenarios first.
+
+    Args:
+        scenarios: in any number.
+        seeds: for each of them the same.
+        jobs: processes.
+        folder: where the logs stay; None: they are removed.
+        tell: is called with the number of missions that are done.
+
+    Raises:
+        RuntimeError: the process of a mission was killed twice.
+    """
+    watched(plan())  # before the processes are born: they inherit it
+    things = [(scenario, seed) for scenario in scenarios for seed in seeds]
+    found: dict[int, Run] = {}
+    with _place(folder, things) as logs:
+        function = partial(_one, logs, folder is not None)
+        with closing(each(function, things, jobs)) as done:
+            for place, run in done:
+                if isinstance(run, Killed):
+                    raise RuntimeError(f"the process of a mission was killed: {run}")
+                found[place] = run
+                tell(len(found))
+    return [found[place] for place in sorted(found)]
+
+
+@contextmanager
+def _place(folder: Path | None, things: Sequence[tuple[Scenario, int]]) -> Iterator[Path]:
+    """Where the logs go. What a process was writing when it was killed does not stay."""
+    if folder is None:
+        with tempfile.TemporaryDirectory() as temporary:
+            yield Path(temporary)
+        return
+    try:
+        yield folder
+    finally:
+        for scenario, seed in things:
+            for partly in folder.glob(f".{_name(scenario, seed)}.*.partial"):
+                partly.unlink(missing_ok=True)
+
+
+def _one(folder: Path, keep: bool, thing: tuple[Scenario, int]) -> Run:
+    scenario, seed = thing
+    out = folder / _name(scenario, seed)
+    run = simulated(scenario, seed, out)
+    if not keep:
+        out.unlink()
+    return run
+
+
+def _name(scenario: Scenario, seed: int) -> str:
+    return f"{scenario.name}-{seed}.mcap"
+
+
+def table(runs: Sequence[Run]) -> str:
+    """One line for each scenario, then the violations of each requirement in it."""
+    groups: dict[str, list[Run]] = {}
+    for run in runs:
+        groups.setdefault(run.scenario, []).append(run)
+    rows = [_HEAD, *(_row(name, group) for name, group in groups.items())]
+    widths = [max(len(row[i]) for row in rows) for i in range(len(_HEAD))]
+    lines = ["  ".join(c.ljust(w) for c, w in zip(r, widths, strict=True)).rstrip() for r in rows]
+    return "\n".join([*lines, "", *_violations(groups)]) + "\n"
+
+
+_HEAD = (
+    "scenario",
+    "as stated",
+    "complete",
+    "contact in",
+    "stops",
+    "seen cm",
+    "true cm",
+    "stop s",
+    "stop cm",
+)
+
+
+def _row(name: str, runs: Sequence[Run]) -> tuple[str, ...]:
+    latencies = [latency for run in runs for latency in run.latencies]
+    distances = [distance for run in runs for distance in run.distances]
+    return (
+        name,
+        f"{sum(not run.wrong for run in runs)}/{len(runs)}",
+        f"{sum(run.complete for run in runs)}/{len(runs)}",
+        str(share(sum(run.contacts > 0 for run in runs), len(runs))),
+        _range([run.stops for run in runs]),
+        f"{min(run.measured_clearance for run in runs) * 100:.1f}",
+        f"{min(run.true_clearance for run in runs) * 100:.1f}",
+        f"{max(latencies):.2f}" if latencies else "-",
+        f"{max(distances) * 100:.1f}" if distances else "-",
+    )
+
+
+def _range(values: Sequence[int]) -> str:
+    low, high = min(values), max(values)
+    return str(low) if low == high else f"{low}-{high}"
+
+
+def _violations(groups: Mapping[str, Sequence[Run]]) -> Iterator[str]:
+    yield f"violated in, with {CONFIDENCE * 100:.0f} % intervals (Clopper-Pearson):"
+    for name, runs in groups.items():
+        counts = {
+            id: sum(run.verdicts[id] == kernel.VIOLATED for run in runs) for id in runs[0].verdicts
+        }
+        told = [f"{id} {share(count, len(runs))}" for id, count in counts.items() if count]
+        yield f"  {name}: {', '.join(told) or 'none'}"
+    for run in (run for runs in groups.values() for run in runs if run.wrong):
+        wrong = ", ".join(f"{i} is {run.verdicts.get(i)}, not {v}" for i, v in run.wrong.items())
+        yield f"not as stated: {run.scenario}, seed {run.seed}: {wrong}"

@@ -1,0 +1,205 @@
+"""The simulated experiment's requirements, with the safety function and the interceptor of them."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable, Sequence
+from dataclasses import asdict
+from functools import lru_cache
+from importlib.resources import files
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from compiler.project.folder import Project, load, requirement_files
+from compiler.targets.python import interceptor as interceptors
+from compiler.targets.python import monitor as monitors
+from compiler.targets.target import Options as TargetOptions
+from fretc.audit.plan import Plan, planned
+from fretc.logs.signals.propositions import TRUE, evaluate
+from fretc.logs.signals.samples import Recording, Samples
+from fretc.logs.signals.signals import sample
+from fretish.bindings.declarations import Aggregate, Declarations, Proposition
+from fretish.bindings.reader import read_bindings
+from fretish.diagnostics.diagnostic import Diagnostic, has_errors
+from fretish.diagnostics.source import Source
+from monitors.interceptor import Options
+from monitors.loading import executed
+from monitors.loading import load as loaded
+
+SAFETY_REQUIREMENT = "R1"
+"""Its monitor is the Safety Instrumented Function."""
+
+_THRESHOLD = "clearance < 5 cm"
+"""What the safety function compares; a scenario may put another number in."""
+
+_WINDOW = 600_000_000
+"""Nanoseconds that are remembered: more than any `max_age` and any `for` of the propositions."""
+
+
+def folder() -> Path:
+    """`compiler/requirements` in an installed wheel, `requirements` beside us in a checkout."""
+    package = Path(str(files("compiler")))
+    installed = package / "requirements"
+    root = installed if installed.is_dir() else package.parent / "requirements"
+    return root / "mission"
+
+
+@lru_cache(maxsize=1)
+def project() -> Project:
+    """The requirements of a whole mission with their bindings and hazards."""
+    found = requirement_files(str(folder()))
+    assert not isinstance(found, Diagnostic), found
+    read = load(found, str(folder() / "bindings.toml"), str(folder() / "hazards.toml"))
+    assert not has_errors(read.diagnostics), read.diagnostics
+    return read
+
+
+@lru_cache(maxsize=1)
+def plan() -> Plan:
+    """What the logs of missions are audited by."""
+    made = planned(project())
+    assert isinstance(made, Plan), made
+    return made
+
+
+def safety_function(threshold: float = 0.05) -> SafetyFunction:
+    """The safety function, before its first message.
+
+    Args:
+        threshold: metres, in place of the 5 cm of the bindings.
+    """
+    return SafetyFunction(_text(), _declarations(threshold))
+
+
+def interceptor(options: Options, publish: Callable[[Sequence[float]], None]) -> Any:
+    """The `Gate` of the emitted interceptor, before its first message.
+
+    Args:
+        options: in place of those of the bindings.
+        publish: takes what is said to the wheels: m/s along x, y, z, and rad/s around them.
+    """
+    text, source = _interceptor()
+    module = executed(text, source)
+    module.OPTIONS = module.Options(**asdict(options))
+    return module.Gate(publish)
+
+
+@lru_cache(maxsize=1)
+def _interceptor() -> tuple[str, str]:
+    """What `--emit interceptor` writes for the mission, and its name."""
+    declared = project().declarations
+    (file,) = interceptors.emit((), TargetOptions(declarations=declared))
+    return file.text, str(file.path)
+
+
+@lru_cache(maxsize=1)
+def _text() -> str:
+    """The generated monitor."""
+    (rule,) = (rule for rule in project().rules if rule.id == SAFETY_REQUIREMENT)
+    return monitors.text(rule)
+
+
+@lru_cache(maxsize=8)
+def _declarations(threshold: float) -> Declarations:
+    declared = project().declarations
+    assert declared is not None
+    text = declared.source.text
+    assert _THRESHOLD in text
+    changed = text.replace(_THRESHOLD, f"clearance < {threshold * 100:g} cm")
+    found, wrong = read_bindings(Source(declared.source.name, changed))
+    assert found is not None, wrong
+    assert not has_errors(wrong), wrong
+    return found
+
+
+class SafetyFunction:
+    """Demands a stop while the monitor of R1 has an open demand, or is given a new one.
+
+    Numbers and truth values are made of messages by the code that audits logs. Where it is not
+    known how near things are, they count as too close; where it is not known whether the robot
+    stands, it counts as moving.
+    """
+
+    def __init__(self, text: str, declarations: Declarations) -> None:
+        self._monitor: Any = loaded("safety_function", text)
+        names = tuple(self._monitor.PROPOSITIONS)
+        used = [declarations.propositions[name] for name in names]
+        self._inputs = [one for one in used if one.role == "input"]
+        self._outputs = [one for one in used if one.role != "input"]
+        self._declarations = declarations
+        self._demanded = False
+        read = dict.fromkeys(name for one in used for name in one.signals)
+        self._signals = [declarations.signals[name] for name in read]
+        self._times: dict[str, deque[int]] = {name: deque() for name in read}
+        self._values: dict[str, deque[float]] = {name: deque() for name in read}
+        self._last = -1
+
+    def hear(self, topic: str, message: Any, time: int) -> None:
+        """A message has arrived; `time` in nanoseconds, not before the last one."""
+        for signal in self._signals:
+            if signal.path.topic == topic:
+                times, values = self._times[signal.name], self._values[signal.name]
+                times.append(time)
+                values.append(sample(signal, message))
+                while times[0] < time - _WINDOW:
+                    times.popleft()
+                    values.popleft()
+
+    def step(self, time: int) -> bool:
+        """Whether the robot must stop now; `time` in nanoseconds."""
+        recording = self._recording(time)
+        truths = {one.name: self._truth(one, recording, time, unknown=True) for one in self._inputs}
+        asked = self._demanded or any(truths.values())  # else no answer is waited for
+        for one in self._outputs:
+            stands = asked and self._truth(one, recording, time, unknown=False)
+            truths[one.name] = stands
+        self._last = time
+        self._monitor.step(**{self._monitor.PROPOSITIONS[name]: t for name, t in truths.items()})
+        (told,) = self._monitor.must.signals()
+        self._demanded = bool(told.trigger or told.owed)
+        return self._demanded
+
+    def _recording(self, time: int) -> Recording:
+        """What is remembered, in the form of a log."""
+        samples = {
+            name: Samples(
+                np.array(times, np.int64),
+                np.array(self._values[name], np.float64),
+                self._declarations.signals[name].scale,
+            )
+            for name, times in self._times.items()
+        }
+        return Recording(
+            name="",
+            sha256="",
+            size=0,
+            start_ns=max(0, time - _WINDOW),
+            end_ns=time,
+            samples=samples,
+            ticks=np.zeros(0, np.int64),
+            gaps=(),
+            topics={},
+            nearest={},
+            findings=(),
+            intact=True,
+        )
+
+    def _truth(
+        self, proposition: Proposition, recording: Recording, time: int, *, unknown: bool
+    ) -> bool:
+        """What it was since the last step; `unknown` is what counts where that is not known."""
+        steps = evaluate(proposition, self._declarations, recording)
+        new = [
+            unknown if value is None else value
+            for at, value in zip(steps.times.tolist(), steps.values, strict=True)
+            if 0 <= self._last < at <= time
+        ] or [unknown if steps.values[-1] is None else steps.states[-1] == TRUE]
+        match proposition.aggregate:
+            case Aggregate.ANY:
+                return any(new)
+            case Aggregate.ALL:
+                return all(new)
+            case _:
+                return bool(new[-1])

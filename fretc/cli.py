@@ -1,0 +1,175 @@
+"""The command: read, call, print, exit. Nothing heavy is imported before a command needs it.
+
+Exit status: 0 all shown, 1 a violation, 2 bad use or bad input, 3 nothing violated but something
+not shown; 130 stopped by Ctrl-C.
+"""
+
+from __future__ import annotations
+
+import os
+import signal
+import sys
+import threading
+from pathlib import Path
+
+import click
+
+from compiler.files.edition import __version__
+from compiler.files.processes import shield
+from fretc.commands.audit import audit, info
+from fretc.commands.bind import bind
+from fretc.commands.check import check
+from fretc.commands.explain import explain
+from fretc.commands.formalize import compile_, fmt, import_
+from fretc.commands.report import report
+from fretc.commands.review import diff, lock
+from fretc.commands.sbom import sbom
+from fretc.commands.sign import sign
+from fretc.commands.simulate import simulate
+from fretc.commands.verify import verify
+from fretc.commands.verify_evidence import verify_evidence
+from fretc.terminal.group import DEFAULT, Commands
+from fretc.terminal.output import BAD, INTERRUPTED, SHOWN, not_written, say, say_line
+from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.reading.limits import ExceededError, exceeded
+
+
+@click.group(
+    cls=Commands, no_args_is_help=True, context_settings={"help_option_names": ["-h", "--help"]}
+)
+@click.version_option(__version__, prog_name="fretc", message="%(prog)s %(version)s")
+@click.option(
+    "--parents",
+    "folders",
+    multiple=True,
+    metavar="FOLDER",
+    help="Parents of requirements may be in this folder, too, outside of the project.",
+)
+def cli(folders: tuple[str, ...]) -> None:
+    """From FRETish requirements to monitors, audited logs and a traceability report.
+
+    `fretc FILE...` parses and formalizes requirements; with `--emit` it makes files of them:
+    ltl, monitor, ajpf, smv, hoa, dot, prism, json, fret-json. `fretc FILE --help` says more.
+    """
+    if folders:
+        from compiler.files.settings import OUTSIDE
+
+        before = OUTSIDE.set(folders)
+        click.get_current_context().call_on_close(lambda: OUTSIDE.reset(before))
+
+
+for _command in (
+    compile_,
+    fmt,
+    import_,
+    explain,
+    info,
+    bind,
+    check,
+    audit,
+    report,
+    lock,
+    diff,
+    verify,
+    verify_evidence,
+    sign,
+    simulate,
+    sbom,
+):
+    cli.add_command(_command)
+
+
+def main() -> None:
+    """What the `fretc` command runs: no traceback ever reaches a user."""
+    _prepare()
+    try:
+        _run()
+        sys.stdout.flush()
+        raise SystemExit(SHOWN)
+    except click.exceptions.Exit as exit_:
+        raise SystemExit(exit_.exit_code) from None
+    except click.exceptions.NoArgsIsHelpError as error:
+        click.echo(error.format_message())
+        raise SystemExit(SHOWN) from None
+    except click.ClickException as error:
+        say([_bad_usage(error)])
+        raise SystemExit(BAD) from None
+    except (click.Abort, KeyboardInterrupt):
+        say_line("stopped")
+        raise SystemExit(INTERRUPTED) from None
+    except ExceededError as error:
+        say([exceeded(error)])
+        raise SystemExit(BAD) from None
+    except RecursionError:
+        say([_too_deep()])
+        raise SystemExit(BAD) from None
+    except OSError as error:
+        _no_output(error)
+        raise SystemExit(BAD) from None
+    except Exception as error:
+        if "FRETC_TRACEBACK" in os.environ:
+            raise
+        say([_internal(error)])
+        raise SystemExit(BAD) from None
+
+
+def _prepare() -> None:
+    """Closed or narrow streams and a termination must cost neither the exit status nor files.
+
+    Nor is anything executed that happens to lie in the present folder.
+    """
+    shield()
+    for name in ("stdout", "stderr"):
+        stream = getattr(sys, name)
+        if stream is None:
+            setattr(sys, name, open(os.devnull, "w", encoding="utf-8"))  # noqa: SIM115
+        elif hasattr(stream, "reconfigure"):
+            stream.reconfigure(errors="backslashreplace")
+    if threading.current_thread() is threading.main_thread():
+        signal.signal(signal.SIGTERM, signal.default_int_handler)
+
+
+def _run() -> None:
+    """Not click's own `main`: that takes a closed pipe for exit status 1, a violation."""
+    with cli.make_context("fretc", sys.argv[1:]) as context:
+        cli.invoke(context)
+
+
+def _no_output(error: OSError) -> None:
+    """Whoever read standard output has gone, or it cannot be written."""
+    if not isinstance(error, BrokenPipeError):
+        say([not_written("standard output", error.strerror or str(error))])
+    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+
+
+def _too_deep() -> Diagnostic:
+    return Diagnostic(
+        Code.TOO_DEEP,
+        "an expression has too many operators within each other",
+        help="give parts of it names of their own",
+    )
+
+
+def _bad_usage(error: click.ClickException) -> Diagnostic:
+    message = error.format_message()
+    command = error.ctx.command_path if isinstance(error, click.UsageError) and error.ctx else ""
+    command = command.removesuffix(f" {DEFAULT}") or "fretc"
+    return Diagnostic(
+        Code.BAD_USAGE,
+        f"{message[:1].lower()}{message[1:].rstrip('.')}",
+        help=f"see `{command} --help`",
+    )
+
+
+def _internal(error: Exception) -> Diagnostic:
+    where = ""
+    if error.__traceback__ is not None:
+        last = error.__traceback__
+        while last.tb_next is not None:
+            last = last.tb_next
+        where = f" in {Path(last.tb_frame.f_code.co_filename).name}:{last.tb_lineno}"
+    return Diagnostic(
+        Code.INTERNAL,
+        f"fretc itself is at fault: {type(error).__name__}{where}: {error}",
+        help="please report it with the input; FRETC_TRACEBACK=1 shows where it comes from",
+    )

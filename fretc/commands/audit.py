@@ -1,0 +1,309 @@
+"""The commands about runs: audit, info."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from fretc.commands.audit_progress import audit_all
+from fretc.commands.summary import summarize
+from fretc.terminal.group import Grouped
+from fretc.terminal.output import (
+    BAD,
+    NOT_SHOWN,
+    SHOWN,
+    VIOLATION,
+    coloured,
+    deliver,
+    not_written,
+    protect,
+    say,
+    say_also,
+    stop,
+)
+from fretish.diagnostics.diagnostic import Code, Diagnostic, has_errors
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from compiler.project.folder import Project
+    from fretc.audit.journal import Journal
+    from fretc.audit.many_logs import Audit, Engine
+    from fretc.audit.plan import Plan
+
+
+_AUDIT = {
+    "Judged by": ("requirements", "bindings", "integrity", "evaluation", "confidence"),
+    "Printed and written": ("form", "evidence", "parquet", "annotate", "annotations"),
+    "Many logs": ("jobs", "resume", "engine"),
+    "Questions to tables and evidence: LOG is one of them, nothing is audited": (
+        "summary",
+        "query",
+    ),
+}
+
+
+@click.command(
+    cls=Grouped, headings=_AUDIT, short_help="Audit recorded runs against all requirements."
+)
+@click.argument("paths", nargs=-1, required=True, metavar="LOG...")
+@click.option(
+    "--requirements", default="requirements", show_default=True, help="Folder, or one file."
+)
+@click.option("--bindings", help="bindings.toml; the one in the requirements' folder if not given.")
+@click.option(
+    "--evidence",
+    default="build/evidence.json",
+    show_default=True,
+    help="Where evidence goes; - prints it.",
+)
+@click.option("--annotate", is_flag=True, help="Also write its verdicts as a log, for Foxglove.")
+@click.option(
+    "--annotations",
+    metavar="FOLDER",
+    help="Where these go: build/annotations, if not given. Implies --annotate.",
+)
+@click.option(
+    "--format",
+    "form",
+    type=click.Choice(("text", "json", "junit", "github", "sarif")),
+    default="text",
+    show_default=True,
+    help="What is printed: for a person, as JSON, as JUnit XML, as annotations of GitHub Actions, "
+    "as SARIF.",
+)
+@click.option(
+    "--evaluation",
+    type=click.Choice(("columns", "online")),
+    default="columns",
+    show_default=True,
+    help="Run the monitors over whole logs at once, or step by step; what they show is the same.",
+)
+@click.option(
+    "--integrity",
+    type=click.Choice(("index", "hash", "full")),
+    default="hash",
+    show_default=True,
+    help="How much of a log is read: what is bound (index); that, and all bytes are hashed (hash); "
+    "every record, CRC and count (full).",
+)
+@click.option(
+    "--confidence",
+    type=click.FloatRange(min=0.5, max=0.999, min_open=True),
+    default=0.95,
+    show_default=True,
+    help="Of what all logs together say of a requirement with a probability.",
+)
+@click.option(
+    "--jobs",
+    type=click.IntRange(min=1),
+    default=os.cpu_count() or 1,
+    help="Processes that share the logs; as many as there are cores, if not given.",
+)
+@click.option(
+    "--engine",
+    default="local",
+    show_default=True,
+    help="Where logs are audited: local, dask (a cluster of this machine), dask://HOST:PORT.",
+)
+@click.option("--resume", is_flag=True, help="Go on with an audit that was stopped.")
+@click.option("--parquet", help="Where a table goes, too: a row for each run and requirement.")
+@click.option(
+    "--summary", is_flag=True, help="How many of which verdict, worst runs, slowest answers."
+)
+@click.option("--query", metavar="SQL", help="The answer to SQL of DuckDB; the table is `results`.")
+def audit(
+    paths: tuple[str, ...],
+    requirements: str,
+    bindings: str | None,
+    evidence: str,
+    annotate: bool,
+    annotations: str | None,
+    form: str,
+    evaluation: str,
+    integrity: str,
+    confidence: float,
+    jobs: int,
+    engine: str,
+    resume: bool,
+    parquet: str | None,
+    summary: bool,
+    query: str | None,
+) -> None:
+    """Audit recorded runs against all requirements.
+
+    LOG is an MCAP file, a bag (.bag, .db3), a folder (all logs below it), a quoted pattern
+    ('runs/**/*.mcap'), a URL, or - for standard input. A folder of rosbag2 with several files is
+    one log.
+
+    Each run and requirement gets a verdict: satisfied, violated, inconclusive, vacuous or no data.
+    A requirement with a probability is judged over all runs: supported, refuted or inconclusive.
+    Exit status: 0 all satisfied, 1 a violation, 2 bad use or bad input, 3 something is not shown.
+    """
+    if summary or query is not None:
+        summarize(paths, query, form)
+    _check_outputs(evidence, parquet, resume=resume)
+    from compiler.project.folder import beside, companions, load, requirement_files
+    from fretc.audit.log_paths import files_of
+    from fretc.audit.log_paths import logs as logs_of
+    from fretc.audit.plan import Plan, planned
+    from fretc.logs.signals.integrity import Integrity
+
+    logs = logs_of(paths)
+    if isinstance(logs, Diagnostic):
+        stop(logs)
+    files = requirement_files(requirements)
+    if isinstance(files, Diagnostic):
+        stop(files)
+    outputs = [Path(path) for path in (evidence, f"{evidence}.journal", parquet) if path]
+    inputs = (*files_of(logs), *files, *companions(files), *([bindings] if bindings else []))
+    protect(outputs, inputs)
+    project = load(files, bindings or beside(requirements, "bindings.toml"))
+    say(project.diagnostics)
+    if has_errors(project.general):
+        raise SystemExit(BAD)
+    plan = planned(project, evaluation, Integrity(integrity), confidence)
+    if not isinstance(plan, Plan):
+        stop(*(reason for reason in plan if reason not in project.diagnostics))
+    journal = _journal(evidence, plan) if evidence != "-" and len(logs) > 1 else None
+    refused = [reason for reason in plan.refusals if reason not in project.diagnostics]
+    say_also(refused, project.diagnostics)
+    result = audit_all(plan, logs, _engine(engine, jobs), journal, resume=resume)
+    say_also(result.diagnostics, (*project.diagnostics, *refused))
+    if result.read:  # a mistyped name must not cost the evidence of the last audit
+        marked = _marked(result, project, annotations) if annotate or annotations else {}
+        forms: dict[Path, str | bytes] = {Path(evidence): result.evidence}
+        if parquet is not None:
+            forms[Path(parquet)] = _table(result)
+        if {*map(os.path.realpath, forms)} & {*map(os.path.realpath, marked)}:
+            stop(not_written(evidence, "two outputs would go there"))
+        deliver({**forms, **marked}, inputs)
+        if journal is not None:
+            journal.remove()
+    click.echo(_printed(result, project, refused, form), nl=False)
+    if plan.refused or has_errors((*project.diagnostics, *result.diagnostics)):
+        raise SystemExit(BAD)
+    raise SystemExit(VIOLATION if result.violated else SHOWN if result.shown else NOT_SHOWN)
+
+
+def _journal(evidence: str, plan: Plan) -> Journal | None:
+    """None where there is no key of the user: then nothing is kept for `--resume`."""
+    from compiler.files.user_key import user_key
+    from fretc.audit.journal import Journal
+
+    key = user_key()
+    if isinstance(key, Diagnostic):
+        say([key])
+        return None
+    return Journal(Path(evidence), plan, key)
+
+
+def _marked(result: Audit, project: Project, folder: str | None) -> dict[Path, bytes]:
+    from fretc.audit.outputs.annotations import sidecars
+
+    return sidecars(result.results, project.rules, Path(folder or "build/annotations"))
+
+
+def _printed(result: Audit, project: Project, refused: Sequence[Diagnostic], form: str) -> str:
+    from fretc.audit.outputs.junit import github, junit
+    from fretc.audit.outputs.sarif import AllRuns, sarif
+
+    signals = project.declarations.signals if project.declarations else {}
+    match form:
+        case "json":
+            return result.as_json
+        case "junit":
+            return junit(result.results, result.estimates, signals)
+        case "github":
+            return github(result.results, project.requirements, result.estimates)
+        case "sarif":
+            said = (*project.diagnostics, *refused, *result.diagnostics)
+            left = project.without_rule
+            together = [AllRuns.of(one) for one in result.estimates]
+            return sarif(result.results, project.rules, said, together, left)
+        case _:
+            return coloured(result.text)
+
+
+def _engine(name: str, jobs: int) -> Engine:
+    if name == "local":
+        from fretc.audit.many_logs import locally
+
+        return locally(jobs)
+    from fretc.audit import fleet
+
+    engine = fleet.engine(name, jobs)
+    if isinstance(engine, Diagnostic):
+        stop(engine)
+    return engine
+
+
+def _check_outputs(evidence: str, parquet: str | None, *, resume: bool) -> None:
+    """Stop where they cannot be written, before hours of audit have gone by."""
+    if resume and evidence == "-":
+        stop(_nothing_kept())
+    if parquet == "-":
+        stop(not_written(parquet, "a table is a file"))
+    for path in (evidence, parquet):
+        if path not in ("-", None) and os.path.exists(path) and not os.path.isfile(path):
+            stop(not_written(path, "it is no regular file"))
+    if parquet is not None:
+        from fretc.audit.outputs.table import missing
+
+        absent = missing()
+        if absent is not None:
+            stop(absent)
+        if os.path.realpath(parquet) == os.path.realpath(evidence):
+            stop(not_written(parquet, "two outputs would go there"))
+
+
+def _table(result: Audit) -> bytes:
+    from compiler.files.edition import __version__
+    from fretc.audit.outputs.table import parquet
+
+    return parquet(result.results, __version__)
+
+
+def _nothing_kept() -> Diagnostic:
+    return Diagnostic(
+        Code.BAD_USAGE,
+        "`--resume` goes on with evidence in a file, and this is printed",
+        help="name a file with `--evidence`",
+    )
+
+
+@click.command(short_help="Say what is in recorded runs, and how healthy they are.")
+@click.argument("paths", nargs=-1, required=True, metavar="LOG...")
+@click.option("--all", "whole", is_flag=True, help="Name every field that a signal can read.")
+@click.option(
+    "--format", "form", type=click.Choice(("text", "json")), default="text", show_default=True
+)
+def info(paths: tuple[str, ...], whole: bool, form: str) -> None:
+    """Say what is in recorded runs, and how healthy they are.
+
+    LOG is an MCAP file, a bag (.bag, .db3), a folder (all logs below it), a quoted pattern
+    ('runs/**/*.mcap'), a URL, or - for standard input. Of each topic its type, count, rate and
+    longest gap, and the fields that a signal of `bindings.toml` can read. Exit status: 0 read, 3
+    something is damaged, 2 a log cannot be read.
+    """
+    from compiler.files.templating import to_json
+    from fretc.audit.log_paths import logs as logs_of
+    from fretc.audit.outputs.overview import as_record, text
+    from fretc.logs.reader import look
+
+    logs = logs_of(paths)
+    if isinstance(logs, Diagnostic):
+        stop(logs)
+    found = [look(log) for log in logs]
+    wrong = [one for one in found if isinstance(one, Diagnostic)]
+    read = [one for one in found if not isinstance(one, Diagnostic)]
+    say([*wrong, *(finding for one in read for finding in one.recording.findings)])
+    if form == "json":
+        click.echo(to_json([as_record(one) for one in read]))
+    else:
+        click.echo("\n".join(text(one, whole=whole) for one in read), nl=False)
+    intact = all(one.recording.intact for one in read)
+    raise SystemExit(BAD if wrong else SHOWN if intact else NOT_SHOWN)

@@ -1,0 +1,99 @@
+"""An audit while it goes on: how far it is, what of it is kept, and that Ctrl-C ends it."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from typing import TYPE_CHECKING
+
+from fretc.terminal.output import BAD, INTERRUPTED, say, say_line, stop
+from fretc.terminal.progress import progress
+from fretish.diagnostics.diagnostic import Diagnostic
+
+if TYPE_CHECKING:
+    from fretc.audit.journal import Journal
+    from fretc.audit.many_logs import Audit, Audited, Engine
+    from fretc.audit.plan import Plan
+
+
+def audit_all(
+    plan: Plan, logs: Sequence[str], engine: Engine, journal: Journal | None, *, resume: bool
+) -> Audit:
+    """Audit the logs; whatever ends that early, what is finished is in the journal.
+
+    Args:
+        plan: what the logs are judged by.
+        logs: paths, each once.
+        engine: where they are audited.
+        journal: None: nothing is kept.
+        resume: begin with what the journal has.
+    """
+    from fretc.audit.many_logs import audit_logs
+
+    known = journal.finished(logs) if journal is not None and resume else {}
+    if isinstance(known, Diagnostic):
+        stop(known)
+    if resume:
+        stale = journal is not None and journal.stale
+        say_line(_resumed(len(known), len(logs), stale=stale))
+        if journal is not None and journal.foreign:
+            say_line(f"`{journal.path}` was not kept by you in this place: that is not used")
+    kept = len(known)
+
+    def keep(log: str, audited: Audited) -> None:
+        nonlocal kept
+        added = journal.keep(log, audited) if journal is not None else False
+        if isinstance(added, Diagnostic):
+            stop(added)
+        kept += added
+        show(log)
+
+    try:
+        with _shown([log for log in logs if log not in known]) as show:
+            result = audit_logs(plan, logs, engine, known, keep)
+    except KeyboardInterrupt:
+        say_line(f"stopped{_kept(kept, len(logs))}")
+        raise SystemExit(INTERRUPTED) from None
+    if isinstance(result, Diagnostic):
+        say([result])
+        if kept:
+            say_line(f"not finished{_kept(kept, len(logs))}")
+        raise SystemExit(BAD)
+    return result
+
+
+def _resumed(known: int, count: int, *, stale: bool) -> str:
+    if not known and not stale:
+        return "no stopped audit was found: all logs are audited"
+    why = ": requirements, bindings or fretc have changed since then" if stale else ""
+    return f"{known} of {count} logs are audited already{why}"
+
+
+def _kept(kept: int, count: int) -> str:
+    """What is not lost, and how to go on; nothing where nothing is kept."""
+    return f": {kept} of {count} logs are kept, `--resume` goes on from there" if kept else ""
+
+
+@contextmanager
+def _shown(logs: Sequence[str]) -> Iterator[Callable[[str], None]]:
+    """Show how many bytes of these logs are done; gives what is to be called with each of them."""
+    sizes = {log: _size(log) for log in logs}
+    done: list[int] = []
+    total = sum(sizes.values())
+    with progress(total if len(logs) > 1 else 0, "auditing") as show:
+
+        def tell(log: str) -> None:
+            done.append(sizes[log])
+            words = f"{len(done)}/{len(logs)} logs, {sum(done) / 1e6:.0f}/{total / 1e6:.0f} MB"
+            show(sum(done), words)
+
+        yield tell
+
+
+def _size(log: str) -> int:
+    """In bytes; something even where it cannot be told, so that the log counts."""
+    try:
+        return max(1, os.path.getsize(log))
+    except OSError:
+        return 1

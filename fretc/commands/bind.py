@@ -1,0 +1,182 @@
+"""The command about bindings: draft them from a log, and check what they see in logs."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from fretc.terminal.output import BAD, NOT_SHOWN, SHOWN, coloured, deliver, say, stop
+from fretish.diagnostics.diagnostic import Code, Diagnostic, has_errors
+
+if TYPE_CHECKING:
+    from compiler.project.folder import Project
+
+_FOLDER = "requirements"
+
+
+@click.command(short_help="Draft bindings from a log, or check what they see in logs.")
+@click.argument("paths", nargs=-1, metavar="[LOG...]")
+@click.option("--from", "source", metavar="LOG", help="Draft bindings of what is in this log.")
+@click.option("--check", is_flag=True, help="Tell what each proposition was in each LOG.")
+@click.option("--requirements", default=_FOLDER, show_default=True, help="Folder, or one file.")
+@click.option("--bindings", help="bindings.toml; the one in the requirements' folder if not given.")
+@click.option("-o", "--output", default="-", show_default=True, help="Where a draft goes.")
+@click.option("--force", is_flag=True, help="Write over a file that is there.")
+@click.option(
+    "--format",
+    "form",
+    type=click.Choice(("text", "json")),
+    default="text",
+    show_default=True,
+    help="How a check is printed.",
+)
+@click.option(
+    "--jobs",
+    type=click.IntRange(min=1),
+    default=os.cpu_count() or 1,
+    help="Processes that share the logs of a check; as many as there are cores, if not given.",
+)
+def bind(
+    paths: tuple[str, ...],
+    source: str | None,
+    check: bool,
+    requirements: str,
+    bindings: str | None,
+    output: str,
+    force: bool,
+    form: str,
+    jobs: int,
+) -> None:
+    """Draft bindings from a log, or check what they see in logs.
+
+    `--from LOG` prints a bindings.toml: the clock, a signal for each field whose meaning is known,
+    all other numbers as comments, and each proposition that the requirements name and no bindings
+    define, to be filled in. `--check LOG...` tells in how many ticks each proposition was true,
+    false and unknown, and how often it changed. Exit status of a check: 0 each proposition took
+    both values in some log, 3 one did not, 2 bad input.
+    """
+    if (source is None) == (not check):
+        stop(_one_of_both())
+    given = _is_given("requirements")
+    if source is not None:
+        if paths:
+            stop(_one_log(paths[0]))
+        project = _project(requirements, bindings, given=given, unread=output)
+        _draft(source, project, output, force=force)
+    elif not paths:
+        stop(Diagnostic(Code.NOTHING_TO_DO, "no log was given to check", help="name the logs"))
+    else:
+        _check(paths, _project(requirements, bindings, given=given), form, jobs)
+
+
+def _is_given(name: str) -> bool:
+    found = click.get_current_context().get_parameter_source(name)
+    return found is not click.core.ParameterSource.DEFAULT
+
+
+def _project(requirements: str, bindings: str | None, *, given: bool, unread: str = "-") -> Project:
+    """The requirements and their bindings; no requirements, where none are asked for or there.
+
+    What is wrong with the bindings does not matter where they are the file that is to be replaced.
+    """
+    from compiler.project.folder import beside, load, requirement_files
+
+    files = requirement_files(requirements)
+    if isinstance(files, Diagnostic):
+        if given:
+            stop(files)
+        files = []
+    project = load(files, bindings or beside(requirements, "bindings.toml"))
+    wrong = [
+        diagnostic
+        for diagnostic in project.diagnostics
+        if diagnostic.span is None
+        or os.path.realpath(diagnostic.span.source.name) != os.path.realpath(unread)
+    ]
+    if has_errors(wrong):
+        stop(*wrong)
+    return project
+
+
+# Drafts
+
+
+def _draft(log: str, project: Project, output: str, *, force: bool) -> None:
+    from fretc.audit.bindings.draft import draft, wanted
+    from fretc.logs.reader import look
+
+    if output != "-" and not force and os.path.lexists(output):
+        stop(_exists(output))
+    found = look(log)
+    if isinstance(found, Diagnostic):
+        stop(found)
+    say(found.recording.findings)
+    deliver({Path(output): draft(found, wanted(project))}, (log,))
+    raise SystemExit(SHOWN)
+
+
+def _exists(path: str) -> Diagnostic:
+    return Diagnostic(
+        Code.NOT_WRITTEN,
+        f"`{path}` is there already",
+        help="name another file with `-o`, or write over it with `--force`",
+    )
+
+
+def _one_of_both() -> Diagnostic:
+    return Diagnostic(
+        Code.BAD_USAGE,
+        "either draft bindings with `--from LOG`, or check them with `--check LOG...`",
+        help="see `fretc bind --help`",
+    )
+
+
+def _one_log(path: str) -> Diagnostic:
+    return Diagnostic(
+        Code.BAD_USAGE,
+        f"a draft is made from one log, and `{path}` is one more",
+        help="name one log after `--from`",
+    )
+
+
+# Checks
+
+
+def _check(paths: tuple[str, ...], project: Project, form: str, jobs: int) -> None:
+    from fretc.audit.bindings.coverage import coverage
+    from fretc.audit.log_paths import logs as logs_of
+    from fretc.audit.plan import Plan, planned
+
+    logs = logs_of(paths)
+    if isinstance(logs, Diagnostic):
+        stop(logs)
+    if project.declarations is None:
+        stop(_no_bindings())
+    plan = planned(project)
+    found = coverage(project.declarations, logs, jobs, plan if isinstance(plan, Plan) else None)
+    if isinstance(found, Diagnostic):
+        stop(found)
+    said = [*_unbound(project), *project.diagnostics, *found.diagnostics]
+    say(said)
+    click.echo(found.as_json if form == "json" else coloured(found.text), nl=False)
+    raise SystemExit(BAD if has_errors(said) else SHOWN if found.shown else NOT_SHOWN)
+
+
+def _unbound(project: Project) -> list[Diagnostic]:
+    """What the requirements name and the bindings do not have."""
+    from compiler.formalization.formalize import unbound
+
+    assert project.declarations is not None
+    rules = [rule for rule in project.rules if rule.requirement.status != "retired"]
+    return [missing for rule in rules for missing in unbound(rule, project.declarations)]
+
+
+def _no_bindings() -> Diagnostic:
+    return Diagnostic(
+        Code.NOTHING_TO_DO,
+        "there are no bindings to check",
+        help="name them with `--bindings`, or draft some: `fretc bind --from LOG`",
+    )

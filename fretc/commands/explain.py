@@ -1,0 +1,179 @@
+"""The command that explains: a requirement by its id or file, or the code of a diagnostic."""
+
+from __future__ import annotations
+
+import os
+import re
+from pathlib import Path
+from shlex import quote
+from typing import TYPE_CHECKING
+
+import click
+
+from fretc.terminal.output import BAD, NOT_SHOWN, deliver, say, stop
+from fretish.diagnostics.diagnostic import Code, Diagnostic, has_errors, suggestion
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from compiler.formalization.rule import Rule
+    from compiler.project.folder import Project
+    from fretish.documents import Requirement
+
+
+@click.command(short_help="Explain a requirement with traces and a picture, or a code.")
+@click.argument("what", metavar="WHAT")
+@click.option(
+    "--requirements",
+    "folder",
+    default="requirements",
+    show_default=True,
+    help="Folder of the requirements.",
+)
+@click.option("--bindings", help="bindings.toml; the one beside the requirements if not given.")
+@click.option(
+    "--format", "form", type=click.Choice(("text", "json")), default="text", show_default=True
+)
+@click.option("--svg", "picture", help="Write the picture of the meaning to this file; `-` prints.")
+def explain(what: str, folder: str, bindings: str | None, form: str, picture: str | None) -> None:
+    """Explain a requirement, or what a diagnostic means.
+
+    WHAT is the id of a requirement, a `.fret` file or folder, or the code of a diagnostic
+    (`F203`). Of a requirement: its meaning, its formulas, a picture of when its response matters,
+    and short traces that satisfy and violate it, each with the reason and the tick that decides.
+    """
+    is_file = what == "-" or what.endswith(".fret") or _is_path(what)
+    code = None if is_file else _code(what)
+    if code is not None:
+        if picture is not None:
+            stop(Diagnostic(Code.BAD_USAGE, "a code has no picture", help="leave `--svg` out"))
+        _explain_code(code, form)
+        return
+    rules = _rules(what, folder, bindings, is_file=is_file)
+    if picture is not None and len(rules) > 1:
+        mend = f"name one of them: `fretc explain {quote(rules[0].id)}`"
+        stop(Diagnostic(Code.BAD_USAGE, f"`{what}` holds several requirements", help=mend))
+    _explain_rules(rules, form, picture)
+
+
+def _is_path(what: str) -> bool:
+    """A folder is one only where it is written like a path: an id may be the name of a folder."""
+    return Path(what).is_file() or (os.sep in what and Path(what).is_dir())
+
+
+def _code(what: str) -> Code | None:
+    return next((code for code in Code if code.number == what.upper()), None)
+
+
+def _explain_code(code: Code, form: str) -> None:
+    from compiler.files.templating import to_json
+    from fretish.diagnostics import explanations
+
+    if form == "json":
+        click.echo(to_json(explanations.as_record(code)))
+    else:
+        click.echo(explanations.text(code), nl=False)
+
+
+_MOST_TICKS = 100_000
+"""Of a duration: a picture has a column for each of them."""
+
+
+def _too_long(rule: Rule) -> Diagnostic:
+    return Diagnostic(
+        Code.TOO_LARGE,
+        f"the picture of {rule.id} would have more than {_MOST_TICKS} ticks",
+        rule.requirement.wording,
+        help="state a shorter duration, or use a clock with longer ticks",
+    )
+
+
+def _explain_rules(rules: Sequence[Rule], form: str, picture: str | None) -> None:
+    from compiler.explanation import explain as explanation
+    from compiler.explanation.drawing import svg
+    from compiler.files.templating import to_json
+
+    for rule in rules:
+        if (rule.ticks or 0) > _MOST_TICKS:
+            stop(_too_long(rule))
+    explained = [explanation.explanation(rule) for rule in rules]
+    if picture != "-":
+        if form == "json":
+            click.echo(to_json([explanation.as_record(each) for each in explained]))
+        else:
+            click.echo("\n".join(map(explanation.text, explained)), nl=False)
+    if picture is not None:
+        sources = [rule.requirement.wording.source.name for rule in rules]
+        deliver({Path(picture): svg(explained[0].picture)}, protected=sources)
+
+
+def _rules(what: str, folder: str, bindings: str | None, *, is_file: bool) -> list[Rule]:
+    """The rules asked for; exits where there is none."""
+    from compiler.project.folder import listed, load
+
+    paths = listed([what if is_file else folder])
+    if isinstance(paths, Diagnostic):
+        stop(paths)
+    project = load(paths, bindings)
+    ids = [requirement.id for requirement in project.requirements]
+    wanted = ids if is_file else [id for id in ids if id.casefold() == what.casefold()]
+    if not wanted:
+        _said(project, ())
+        stop(_unknown(what, ids, folder, is_file=is_file))
+    chosen = [r for r in project.requirements if r.id in wanted]
+    _said(project, chosen)
+    rules = [rule for rule in project.rules if rule.id in wanted]
+    if not rules:
+        raise SystemExit(NOT_SHOWN)  # free text
+    return rules
+
+
+def _said(project: Project, chosen: Sequence[Requirement]) -> None:
+    """What there is to say of the chosen requirements and of the bindings; exits at an error."""
+    others = {
+        diagnostic
+        for requirement in project.requirements
+        if requirement not in chosen
+        for diagnostic in project.diagnostics
+        if diagnostic.span is not None
+        and diagnostic.span.source == requirement.wording.source
+        and _nearest(project, diagnostic) is requirement
+    }
+    kept = [diagnostic for diagnostic in project.diagnostics if diagnostic not in others]
+    say(kept)
+    if has_errors(kept):
+        raise SystemExit(BAD)
+
+
+def _nearest(project: Project, diagnostic: Diagnostic) -> Requirement | None:
+    """The requirement that a place in its file belongs to: the first that does not end before."""
+    assert diagnostic.span is not None
+    for requirement in project.requirements:
+        wording = requirement.wording
+        if wording.source == diagnostic.span.source and diagnostic.span.start <= wording.end:
+            return requirement
+    return None
+
+
+def _unknown(what: str, ids: Sequence[str], folder: str, *, is_file: bool) -> Diagnostic:
+    """F515; a word that looks like a code is taken for one."""
+    if is_file:
+        return Diagnostic(
+            Code.NO_SUCH_REQUIREMENT,
+            f"`{what}` holds no requirement",
+            help="write one: `whenever p the robot shall within 3 ticks satisfy q`",
+        )
+    if re.fullmatch(r"[Ff]\d+", what):
+        area = [code.number for code in Code if code.number[1] == what[1]]
+        return Diagnostic(
+            Code.NO_SUCH_REQUIREMENT,
+            f"no diagnostic has the code `{what.upper()}`, and no requirement that id",
+            help=f"there are {', '.join(sorted(area))}" if area else "codes begin with F1 to F9",
+        )
+    near = suggestion(what, ids)
+    known = f"there are {', '.join(ids[:8])}{', ...' if len(ids) > 8 else ''}"
+    return Diagnostic(
+        Code.NO_SUCH_REQUIREMENT,
+        f"no requirement in `{folder}` has the id `{what}`",
+        help=f"did you mean `{near}`?" if near else known if ids else "name a `.fret` file",
+    )

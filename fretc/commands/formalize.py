@@ -1,0 +1,258 @@
+"""The commands about requirements: formalize and emit, format, import."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from fretc.terminal.group import DEFAULT, Compile
+from fretc.terminal.output import BAD, SHOWN, VIOLATION, deliver, say, say_line, stop
+from fretish.diagnostics.diagnostic import Code, Diagnostic, has_errors
+
+if TYPE_CHECKING:
+    from compiler.formalization.rule import Rule
+    from compiler.project.folder import Project
+    from compiler.targets.target import Options, Target
+
+_EMITS = (
+    "ltl", "monitor", "ajpf", "ajpf-bundle", "interceptor", "dafny", "smv", "hoa", "dot", "prism",
+    "json", "fret-json",
+)  # fmt: skip
+_NOTATIONS = ("plain", "fret", "spot", "nusmv", "latex")
+
+
+@click.command(DEFAULT, cls=Compile, hidden=True)
+@click.argument("files", nargs=-1, required=True, metavar="FILE...")
+@click.option(
+    "--emit",
+    "kinds",
+    multiple=True,
+    type=click.Choice(_EMITS),
+    help="Make this kind of file; may be given several times.",
+)
+@click.option("-o", "--output", default="build", show_default=True, help="Folder; `-` prints.")
+@click.option("--bindings", help="bindings.toml; the one beside the first FILE if not given.")
+@click.option(
+    "--format",
+    "form",
+    type=click.Choice(("text", "json")),
+    default="text",
+    show_default=True,
+    help="Form of the formulas.",
+)
+@click.option(
+    "--notation",
+    type=click.Choice(_NOTATIONS),
+    default="plain",
+    show_default=True,
+    help="Spelling of the formulas.",
+)
+@click.option("--simplify", is_flag=True, help="Show a simplified formula beside the exact one.")
+@click.option("--one-file", is_flag=True, help="Put the monitors of all requirements in one file.")
+@click.option(
+    "--weaken", is_flag=True, help="Let AJPF's files say `eventually` for `within`, and say so."
+)
+def compile_(
+    files: tuple[str, ...],
+    kinds: tuple[str, ...],
+    output: str,
+    bindings: str | None,
+    form: str,
+    notation: str,
+    simplify: bool,
+    one_file: bool,
+    weaken: bool,
+) -> None:
+    """Parse and formalize requirements; make files of them.
+
+    FILE holds one or more requirements, or is a folder of such files; `-` is standard input.
+    """
+    from compiler.project.folder import listed, load
+
+    if one_file and "monitor" not in kinds:
+        stop(Diagnostic(Code.BAD_USAGE, "`--one-file` is for `--emit monitor`", help="add it"))
+    if weaken:
+        _check_weaken(kinds)
+    paths = listed(files)
+    if isinstance(paths, Diagnostic):
+        stop(paths)
+    project = load(paths, bindings)
+    say(project.diagnostics)
+    as_json = form == "json" and set(kinds) <= {"ltl"}
+    if as_json and _only_failed(project):
+        _deliver_formulas(project, output if kinds else "-")
+        raise SystemExit(BAD if has_errors(project.diagnostics) else SHOWN)
+    if has_errors(project.diagnostics):
+        raise SystemExit(BAD)
+    from compiler.targets.target import Options
+
+    free_texts = tuple(f.requirement for f in project.failed)
+    options = Options(notation, simplify, one_file, free_texts, weaken, project.declarations)
+    if kinds:
+        _emit(project, dict.fromkeys(kinds), output, options)
+    else:
+        _print_formulas(project, options)
+
+
+def _check_weaken(kinds: Sequence[str]) -> None:
+    """F907 where no kind of file that is asked for has a weaker form."""
+    from compiler.emit import TARGETS
+
+    weak = [f"`--emit {name}`" for name, target in TARGETS.items() if target.weak is not None]
+    if not any(TARGETS[kind].weak for kind in kinds):
+        told = f"`--weaken` is for {' and '.join(weak)}"
+        stop(
+            Diagnostic(Code.BAD_USAGE, told, help="nothing else may say less than its requirement")
+        )
+
+
+def _only_failed(project: Project) -> bool:
+    """Whether every error is that of a sentence: the list of formulas then carries it."""
+    told = [failed.diagnostic for failed in project.failed]
+    return all(d in told for d in project.diagnostics if d.is_error)
+
+
+def _deliver_formulas(project: Project, output: str) -> None:
+    """The array of `--emit ltl --format json`, in the order of the files."""
+    from compiler.files.templating import to_json
+    from compiler.formalization.record import failed, formulas
+
+    found = {id(rule.requirement): formulas(rule) for rule in project.rules}
+    found |= {id(f.requirement): failed(f.requirement, f.diagnostic) for f in project.failed}
+    text = to_json([found[id(r)] for r in project.requirements])
+    deliver({Path(output) / "ltl.json" if output != "-" else Path("-"): f"{text}\n"})
+
+
+def _print_formulas(project: Project, options: Options) -> None:
+    from compiler.targets.ltl import text
+
+    click.echo("\n".join(text(rule, options) for rule in project.rules), nl=False)
+
+
+def _emit(project: Project, kinds: dict[str, None], output: str, options: Options) -> None:
+    """Write whatever can be; what a target refuses is told and keeps nothing else from it."""
+    from compiler.emit import TARGETS
+
+    named = [TARGETS[kind] for kind in kinds]
+    targets = [(options.weaken and target.weak) or target for target in named]
+    made = [(target, *_emitted(target, project.rules, options)) for target in targets]
+    refused = [diagnostic for _, _, wrong in made for diagnostic in wrong]
+    kept = [(target, rules) for target, rules, _ in made if rules is not None]
+    say(refused)
+    say([d for target, rules in kept for rule in rules if (d := target.remark(rule))])
+    say([diagnostic for target, _ in kept for diagnostic in target.remarks(options)])
+    files = [artifact for target, rules in kept for artifact in target.emit(rules, options)]
+    _deliver_all({str(artifact.path): artifact.text for artifact in files}, output)
+    if refused:
+        raise SystemExit(BAD)
+
+
+def _emitted(
+    target: Target, rules: Sequence[Rule], options: Options
+) -> tuple[list[Rule] | None, list[Diagnostic]]:
+    """The rules that the target can make files of, None: no file at all; and what it refuses.
+
+    A file of all rules is made of all of them or not at all.
+    """
+    from compiler.formalization.formalize import clashes
+
+    found = [(rule, target.refuse(rule)) for rule in rules]
+    wrong = [diagnostic for _, diagnostic in found if diagnostic is not None]
+    whole = [diagnostic] if (diagnostic := target.refuse_project(options)) else []
+    one_file = options.one_file and target.name == "monitor"
+    if one_file:
+        whole += clashes(rules)
+    if whole or (wrong and (one_file or not target.per_rule)):
+        return None, [*wrong, *whole]
+    kept = [rule for rule, diagnostic in found if diagnostic is None]
+    return (kept or None) if wrong else kept, wrong
+
+
+@click.command(short_help="Put sentences into their canonical wording.")
+@click.argument("files", nargs=-1, required=True, metavar="FILE...")
+@click.option("--check", is_flag=True, help="Write nothing; exit with 1 if a file would change.")
+@click.option("-o", "--output", type=click.Choice(("-",)), help="`-` prints in place of writing.")
+def fmt(files: tuple[str, ...], check: bool, output: str | None) -> None:
+    """Put the sentences of requirement files into their canonical wording."""
+    from compiler.project.folder import listed
+    from compiler.project.formatting import formatted
+
+    paths = listed(files)
+    if isinstance(paths, Diagnostic):
+        stop(paths)
+    done, wrong = formatted(paths)
+    if wrong:
+        stop(*wrong)
+    changed = [file for file in done if file.before != file.after]
+    if output == "-" or files == ("-",):
+        click.echo("".join(file.after for file in done), nl=False)
+    elif check:
+        for file in changed:
+            say_line(f"would change {file.path}")
+        raise SystemExit(VIOLATION if changed else SHOWN)
+    else:
+        for file in changed:
+            path = Path(file.path)
+            deliver({path: file.after})
+
+
+@click.command("import", short_help="Read requirements that FRET exported.")
+@click.argument("file", metavar="FILE")
+@click.option(
+    "-o", "--output", default="requirements", show_default=True, help="Folder; `-` prints."
+)
+@click.option("--id-column", help="CSV: the column of the ids.")
+@click.option("--text-column", help="CSV: the column of the sentences or texts.")
+@click.option("--project-column", help="CSV: the column of the projects.")
+@click.option("--force", is_flag=True, help="Write over files that are there.")
+def import_(
+    file: str,
+    output: str,
+    id_column: str | None,
+    text_column: str | None,
+    project_column: str | None,
+    force: bool,
+) -> None:
+    """Read requirements that FRET exported: JSON, or a CSV.
+
+    A comma, a semicolon or a tab parts the columns of a CSV: what parts its header into the most.
+    Writes a `.fret` file for each project, and `bindings.toml` with FRET's variables. Formulas are
+    not taken over: they are made from the sentences.
+    """
+    from compiler.files.text_files import read
+    from compiler.project.fret_import import read_export
+
+    source = read(file)
+    if isinstance(source, Diagnostic):
+        stop(source)
+    asked = {"id": id_column, "text": text_column, "project": project_column}
+    result = read_export(source, {part: name for part, name in asked.items() if name})
+    say(result.diagnostics)
+    if has_errors(result.diagnostics):
+        raise SystemExit(BAD)
+    files = {str(artifact.path): artifact.text for artifact in result.artifacts}
+    there = [path for path in files if (Path(output) / path).exists()]
+    if there and output != "-" and not force:
+        stop(_exists(str(Path(output) / there[0])))
+    _deliver_all(files, output)
+    counts = f"{result.requirements} requirements, {result.variables} variables"
+    say_line(f"imported {counts}")
+
+
+def _deliver_all(files: Mapping[str, str], output: str) -> None:
+    """Below the folder; or one after the other on standard output, for `-`."""
+    if output == "-":
+        deliver({Path("-"): "".join(files.values())})
+    else:
+        deliver({Path(output) / path: text for path, text in files.items()})
+
+
+def _exists(path: str) -> Diagnostic:
+    return Diagnostic(
+        Code.NOT_WRITTEN,
+        f"`{path}` is there already",
+        help="name another folder with `-o`, or write over it with `--force`",
+    )

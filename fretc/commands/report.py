@@ -1,0 +1,205 @@
+"""The command about everything: the traceability report, in each of its forms."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from fretc.terminal.group import Grouped
+from fretc.terminal.output import BAD, NOT_SHOWN, SHOWN, VIOLATION, deliver, say, stop
+from fretish.diagnostics.diagnostic import Diagnostic, has_errors
+
+if TYPE_CHECKING:
+    from compiler.project.folder import Project
+    from fretc.report.make import Made
+    from fretc.report.model.views import Report
+
+_HEADINGS = {
+    "Made from": (
+        "requirements",
+        "bindings",
+        "hazards",
+        "evidence",
+        "verification",
+        "lock",
+        "waivers",
+        "signers",
+    ),
+    "Forms": ("html", "json_", "csv", "junit", "sarif", "markdown", "reqif", "gsn"),
+}
+
+
+@click.command(
+    cls=Grouped, headings=_HEADINGS, short_help="Trace hazard to verdict in one HTML file."
+)
+@click.option("--html", default="build/report.html", show_default=True, help="One file, offline.")
+@click.option("--json", "json_", help="What the report says, for programs.")
+@click.option("--csv", help="A row for each requirement and run, for a spreadsheet.")
+@click.option("--junit", help="A test case for each requirement, for a CI server.")
+@click.option("--sarif", help="What the runs show, for code scanning.")
+@click.option("--markdown", help="A comment for a pull request.")
+@click.option("--gsn", help="The assurance argument, as YAML that gsn2x reads.")
+@click.option("--reqif", help="Requirements and verdicts, for a requirements tool.")
+@click.option(
+    "--requirements", default="requirements", show_default=True, help="Folder, or one file."
+)
+@click.option("--bindings", help="bindings.toml; the one in the requirements' folder if not given.")
+@click.option("--hazards", help="hazards.toml; the one in the requirements' folder if not given.")
+@click.option("--evidence", default="build/evidence.json", show_default=True)
+@click.option(
+    "--verification",
+    help="What `fretc verify` found; build/verification.json, if it is there and none is given.",
+)
+@click.option(
+    "--ajpf",
+    multiple=True,
+    help="A result of AJPF; each build/*_ajpf/result.json if none is given.",
+)
+@click.option("--lock", help="fretc.lock; the one in the requirements' folder if not given.")
+@click.option("--waivers", help="waivers.toml; the one in the requirements' folder if not given.")
+@click.option(
+    "--signers", help="Whose keys count; allowed_signers in the requirements' folder if not given."
+)
+@click.option(
+    "--strict",
+    is_flag=True,
+    help="Exit as the report says: 1 violated or suspect, 3 something is not shown.",
+)
+def report(
+    html: str,
+    requirements: str,
+    bindings: str | None,
+    hazards: str | None,
+    evidence: str,
+    verification: str | None,
+    ajpf: tuple[str, ...],
+    lock: str | None,
+    waivers: str | None,
+    signers: str | None,
+    strict: bool,
+    **forms: str | None,
+) -> None:
+    """Trace hazard, requirement, formula, artefact, run and verdict in one HTML file.
+
+    All forms say the same. The same inputs give the same bytes; waivers count by the day of
+    SOURCE_DATE_EPOCH, where that is set.
+    """
+    from compiler.project.folder import beside, companions, requirement_files, whole
+    from fretc.attestation.signatures import SIGNERS
+    from fretc.report.forms.extras import missing_reqif
+    from fretc.report.make import make
+    from fretc.verification.ajpf_results import written as results
+    from fretc.verification.reader import written
+
+    absent = missing_reqif() if forms["reqif"] is not None else None
+    if absent is not None:
+        stop(absent)
+    files = requirement_files(requirements)
+    if isinstance(files, Diagnostic):
+        stop(files)
+    project = whole(requirements, bindings, hazards)
+    if isinstance(project, Diagnostic):
+        stop(project)
+    lock = lock or beside(requirements, "fretc.lock")
+    waivers = waivers or beside(requirements, "waivers.toml")
+    signers = signers or beside(requirements, SIGNERS)
+    verification = verification or written()
+    said = ajpf or results()
+    made = make(
+        project,
+        evidence,
+        lock=lock,
+        waivers=waivers,
+        verification=verification,
+        ajpf=said,
+        signers=signers,
+    )
+    say([*project.diagnostics, *made.diagnostics])
+    if made.report is None:
+        raise SystemExit(BAD)
+    wanted = {"html": html, **{name: path for name, path in forms.items() if path is not None}}
+    texts = _texts(made, project, evidence)
+    read = filter(None, (bindings, hazards, verification, lock, waivers, signers, *said))
+    logs = [str(result["run"]) for result in _audited(evidence, made.report)]
+    _deliver(wanted, texts, [evidence, *files, *companions(files), *read, *dict.fromkeys(logs)])
+    if has_errors([*project.diagnostics, *made.diagnostics]):
+        raise SystemExit(BAD)
+    raise SystemExit(_status(made.report) if strict else SHOWN)
+
+
+def _deliver(
+    wanted: Mapping[str, str], texts: Mapping[str, Callable[[], str]], read: Sequence[str]
+) -> None:
+    """Each form to its own place."""
+    from fretc.terminal.output import not_written
+
+    paths: dict[Path, str] = {}
+    for form, path in wanted.items():
+        if Path(path) in paths:
+            stop(not_written(path, "two outputs would go there"))
+        paths[Path(path)] = texts[form]()
+    deliver(paths, read)
+
+
+def _texts(made: Made, project: Project, evidence: str) -> dict[str, Callable[[], str]]:
+    """How each form is made; none before it is wanted."""
+    from fretc.report.forms.csv_rows import csv_text
+    from fretc.report.forms.gsn import gsn
+    from fretc.report.forms.junit import junit
+    from fretc.report.forms.markdown import markdown
+    from fretc.report.forms.sarif import sarif
+
+    whole = made.report
+    assert whole is not None
+    said = [*project.diagnostics, *made.diagnostics]
+    return {
+        "html": lambda: made.html or "",
+        "json_": lambda: made.json or "",
+        "csv": lambda: csv_text(whole),
+        "junit": lambda: junit(whole),
+        "sarif": lambda: sarif(
+            whole, _audited(evidence, whole), project.rules, said, project.without_rule
+        ),
+        "markdown": lambda: markdown(whole),
+        "gsn": lambda: gsn(whole),
+        "reqif": lambda: _reqif(whole),
+    }
+
+
+def _reqif(whole: Report) -> str:
+    """Imported only here: it needs what an extra installs."""
+    from fretc.report.forms.reqif import reqif
+
+    return reqif(whole)
+
+
+def _audited(evidence: str, whole: Report) -> Sequence[Mapping[str, Any]]:
+    """The results as the evidence has them: `make` has read it, so it is in shape."""
+    if not whole.evidence:
+        return ()
+    from fretc.audit.evidence.reader import document
+
+    found = document(evidence)
+    if isinstance(found, Diagnostic):  # it has changed since
+        stop(found)
+    results: Sequence[Mapping[str, Any]] = found["results"]
+    return results
+
+
+def _status(whole: Report) -> int:
+    from fretc.audit.evidence.verdicts import BROKEN, RETIRED, WAIVED
+    from fretc.report.sections.proofs import is_refuted
+
+    marks = {view.mark for view in whole.requirements}
+    if any(mark.word in BROKEN or mark.suspect for mark in marks) or any(
+        map(is_refuted, whole.requirements)
+    ):
+        return VIOLATION
+    if whole.withdrawn:
+        return VIOLATION
+    claimed = [mark for mark in marks if mark.word != RETIRED]
+    shown = all(mark.shows or mark.word == WAIVED for mark in claimed)
+    return SHOWN if claimed and shown else NOT_SHOWN

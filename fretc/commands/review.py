@@ -1,0 +1,215 @@
+"""The commands about reviews: accept the present state, and say what has changed since."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from fretc.terminal.output import BAD, NOT_SHOWN, SHOWN, deliver, say, say_line, stop
+from fretish.diagnostics.diagnostic import (
+    Code,
+    Diagnostic,
+    Severity,
+    has_errors,
+    suggestion,
+)
+from fretish.diagnostics.rendering import visible
+from fretish.reading.natural_order import natural
+
+if TYPE_CHECKING:
+    from collections.abc import Collection, Mapping, Sequence
+
+    from compiler.project.folder import Project
+    from fretc.report.traceability.chain import Chain
+    from fretc.report.traceability.lock import Lock, Review
+
+_REQUIREMENTS = click.option(
+    "--requirements", default="requirements", show_default=True, help="Folder, or one file."
+)
+_EVIDENCE = click.option("--evidence", default="build/evidence.json", show_default=True)
+_VERIFICATION = click.option(
+    "--verification",
+    help="What `fretc verify` found; build/verification.json, if it is there and none is given.",
+)
+
+
+@click.command(short_help="Accept the present state of requirements, as their reviewer.")
+@click.argument("ids", nargs=-1, metavar="[ID]...")
+@click.option("--reviewer", required=True, help="Who has reviewed.")
+@click.option("--role", required=True, help="As what: `safety engineer`.")
+@click.option("--comment", required=True, help="What was looked at, and why it is accepted.")
+@click.option("--date", "day", help="As 2026-11-22; today, or the day of SOURCE_DATE_EPOCH.")
+@_REQUIREMENTS
+@_EVIDENCE
+@_VERIFICATION
+@click.option("--lock", "path", help="The lock; `fretc.lock` in the requirements' folder.")
+@click.option("--key", help="Your private key, to sign the reviews with: ~/.ssh/id_ed25519.")
+@click.option("--accept-violations", is_flag=True, help="Also where a run violates a requirement.")
+def lock(
+    ids: tuple[str, ...],
+    reviewer: str,
+    role: str,
+    comment: str,
+    day: str | None,
+    requirements: str,
+    evidence: str,
+    verification: str | None,
+    path: str | None,
+    key: str | None,
+    accept_violations: bool,
+) -> None:
+    """Accept the present state of requirements, as their reviewer.
+
+    Fingerprints of the sentence, its parents, parameters, bindings and artefacts, and of each
+    audited run with its verdict, go into `fretc.lock`. Any later change makes the links downstream
+    of it suspect. Without an ID all requirements are accepted; of the others the reviews stay.
+    What the runs say of each is named; a violation is accepted only with `--accept-violations`.
+    Evidence of something else than what is here now is not accepted. A review of a requirement
+    that is not there any more stays until its ID is given, or none.
+    """
+    from compiler.files.dates import is_date, is_to_come, today
+    from fretc.audit.evidence.reader import refuted
+    from fretc.report.traceability.lock import (
+        Lock,
+        accepted,
+        outdated_results,
+        text,
+        unnamed_violations,
+        verdicts_of,
+    )
+
+    for name, said in (("--reviewer", reviewer), ("--role", role), ("--comment", comment)):
+        if not said.strip():
+            stop(Diagnostic(Code.BAD_USAGE, f"`{name}` says nothing", help="fill it in"))
+    day = day or today()
+    if not is_date(day):
+        stop(Diagnostic(Code.BAD_USAGE, f"`{day}` is no date", help="write it as `2026-11-22`"))
+    if is_to_come(day):
+        told = f"`{day}` is still to come, and nobody can have reviewed then"
+        stop(Diagnostic(Code.BAD_USAGE, told, help="leave `--date` out: then it is today"))
+    project, chains = _chains(requirements, evidence, verification)
+    if has_errors(project.diagnostics):
+        raise SystemExit(BAD)
+    where = path or _beside(requirements)
+    before = _read(where, must=False)
+    kept = before.reviews if before is not None else {}
+    gone = kept.keys() - {chain.requirement for chain in chains}
+    chosen = _chosen(chains, ids, gone)
+    violations = () if accept_violations else unnamed_violations(chosen, refuted(evidence))
+    refused = (*outdated_results(chosen), *violations)
+    if refused:
+        stop(*refused)
+    left = {id for id in gone if not ids or id in ids}
+    reviews = {id: review for id, review in kept.items() if id not in left}
+    reviews |= {c.requirement: accepted(c, reviewer, role, day, comment) for c in chosen}
+    signatures = _signatures(where, reviews, chosen, key) if key is not None else {}
+    deliver({Path(where): text(Lock(reviews)), **signatures})
+    for chain in chosen:
+        say_line(visible(f"accepted {chain.requirement}: {verdicts_of(chain)}"))
+    for id in sorted(left, key=natural):
+        say_line(f"left out {id}: it is not among the requirements")
+
+
+def _signatures(
+    path: str, reviews: Mapping[str, Review], chosen: Sequence[Chain], key: str
+) -> dict[Path, str]:
+    """The signatures beside the lock, with one of the reviews that are accepted now."""
+    from fretc.commands.sign import of_reviews, private, signed
+
+    mine = private(key)
+    accepted = [reviews[chain.requirement] for chain in chosen]
+    return signed(of_reviews(path, accepted, reviews.values()), mine)
+
+
+@click.command(short_help="Say what has changed since a review, verdicts included.")
+@click.argument("baseline", required=False, metavar="[BASELINE]")
+@_REQUIREMENTS
+@_EVIDENCE
+@_VERIFICATION
+@click.option(
+    "--format", "form", type=click.Choice(("text", "json")), default="text", show_default=True
+)
+def diff(
+    baseline: str | None, requirements: str, evidence: str, verification: str | None, form: str
+) -> None:
+    """Say what has changed since a review, verdicts included.
+
+    BASELINE is a lock; `fretc.lock` in the requirements' folder if not given. Exit status: 0
+    nothing has changed, 3 something has.
+    """
+    from compiler.files.templating import to_json
+    from fretc.report.traceability.comparison import as_record, differences, text
+    from fretc.report.traceability.lock import standings
+
+    project, chains = _chains(requirements, evidence, verification)
+    if has_errors(project.diagnostics):
+        raise SystemExit(BAD)
+    known = _read(baseline or _beside(requirements), must=True)
+    assert known is not None
+    found = differences(standings(chains, known), known)
+    if form == "json":
+        click.echo(to_json([as_record(difference) for difference in found]))
+    else:
+        for difference in found:
+            for line in text(difference):
+                click.echo(visible(line))
+    raise SystemExit(SHOWN if all(d.state == "same" for d in found) else NOT_SHOWN)
+
+
+def _chains(
+    requirements: str, evidence: str, verification: str | None
+) -> tuple[Project, Sequence[Chain]]:
+    from compiler.project.folder import whole
+    from fretc.audit.evidence.reader import read
+    from fretc.report.traceability.chain import chains
+    from fretc.verification.reader import known
+
+    project = whole(requirements)
+    if isinstance(project, Diagnostic):
+        stop(project)
+    proofs = known(verification)
+    if isinstance(proofs, Diagnostic):
+        stop(proofs)
+    audited = read(evidence)
+    if isinstance(audited, Diagnostic):
+        say([*project.diagnostics, audited])
+        if audited.is_error:
+            raise SystemExit(BAD)
+        return project, chains(project, None, proofs=proofs)
+    say(project.diagnostics)
+    return project, chains(project, audited, proofs=proofs)
+
+
+def _chosen(
+    chains: Sequence[Chain], ids: tuple[str, ...], gone: Collection[str]
+) -> Sequence[Chain]:
+    """The requirements that are named, or all; one that is gone may be named, to let it go."""
+    known = [*(chain.requirement for chain in chains), *gone]
+    for id in ids:
+        if id not in known:
+            near = suggestion(id, known)
+            mend = f"did you mean `{near}`?" if near else f"there are {', '.join(known)}"
+            stop(Diagnostic(Code.BAD_USAGE, f"there is no requirement `{id}`", help=mend))
+    return [chain for chain in chains if not ids or chain.requirement in ids]
+
+
+def _beside(requirements: str) -> str:
+    from fretc.report.traceability.lock import NAME
+
+    folder = Path(requirements)
+    return str((folder.parent if folder.is_file() else folder) / NAME)
+
+
+def _read(path: str, *, must: bool) -> Lock | None:
+    """The lock; where there is none yet, None, unless there must be one."""
+    from fretc.report.traceability.lock import read
+
+    found = read(path)
+    if not isinstance(found, Diagnostic):
+        return found
+    if must or found.is_error:
+        stop(replace(found, severity=Severity.ERROR))
+    return None

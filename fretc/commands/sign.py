@@ -1,0 +1,429 @@
+"""The command that signs, and what others need of it: keys, and signatures that are demanded."""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections import Counter
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from fretc.terminal.output import VIOLATION, deliver, say, say_line, stop
+from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
+from fretish.diagnostics.rendering import visible
+from fretish.diagnostics.source import Source
+from fretish.reading.natural_order import natural
+
+if TYPE_CHECKING:
+    from fretc.attestation.keys import PrivateKey
+    from fretc.attestation.statement import Statement, Subject
+    from fretc.audit.evidence.reader import Evidence
+    from fretc.report.traceability.lock import Review
+    from fretc.report.traceability.waivers import Waiver
+    from fretc.verification.reader import Proofs
+
+PASSPHRASE = "FRETC_PASSPHRASE"
+"""The environment variable with the passphrase of a key, where nobody can be asked."""
+
+
+@dataclass(frozen=True, slots=True)
+class Signable:
+    """A file that can be signed: what a statement says of it, and that in words."""
+
+    path: str
+    statement: Statement
+    current: frozenset[Subject]
+    """Everything in the file that anybody can sign."""
+    lines: tuple[str, ...]
+
+
+@click.command(short_help="Sign evidence, proofs, reviews, waivers or a report with your key.")
+@click.argument("files", nargs=-1, required=True, metavar="FILE...")
+@click.option("--key", required=True, metavar="FILE", help="Your private key: ~/.ssh/id_ed25519.")
+@click.option(
+    "--reviewer",
+    help="Whose reviews or waivers to sign; if not given, those that `allowed_signers` beside FILE "
+    "says are yours, or those of the only person who is named.",
+)
+@click.option(
+    "--verification",
+    help="What `fretc verify` found, signed with evidence; build/verification.json, if it is there "
+    "and none is given.",
+)
+def sign(files: tuple[str, ...], key: str, reviewer: str | None, verification: str | None) -> None:
+    """Sign evidence, proofs, reviews, waivers or a report with your key.
+
+    FILE is `build/evidence.json`, `build/verification.json`, `fretc.lock`, `waivers.toml` or a
+    report. What is signed is told before your passphrase is asked for (or taken from
+    FRETC_PASSPHRASE). The signature is a line of `FILE.intoto.jsonl`: an envelope (DSSE) with a
+    statement (in-toto). Signatures of others stay.
+    """
+    _installed()
+    found = [_signable(path, key, reviewer, verification) for path in dict.fromkeys(files)]
+    for each in found:
+        for line in each.lines:
+            say_line(visible(line))
+    mine = private(key)
+    deliver(_merged(signed(each, mine) for each in found), [*files, key])
+    say_line(f"signed with {mine.public.text}")
+
+
+def _merged(parts: Iterable[Mapping[Path, str]]) -> dict[Path, str]:
+    return {path: text for part in parts for path, text in part.items()}
+
+
+def _installed() -> None:
+    from fretc.attestation.signatures import missing
+
+    absent = missing()
+    if absent is not None:
+        stop(absent)
+
+
+def private(path: str) -> PrivateKey:
+    """The private key of a file; its passphrase is asked for where it has one."""
+    from compiler.files.text_files import unreadable
+    from fretc.attestation.keys import UnusableKeyError, private_key
+    from fretc.attestation.signers import bad_key
+
+    _installed()
+    try:
+        return private_key(Path(path).read_bytes(), lambda: _passphrase(path))
+    except OSError as error:
+        stop(unreadable(path, error))
+    except UnusableKeyError as error:
+        stop(bad_key(path, error))
+
+
+def _passphrase(path: str) -> str:
+    known = os.environ.get(PASSPHRASE)
+    if known is not None:
+        return known
+    if not sys.stdin.isatty():
+        stop(
+            Diagnostic(
+                Code.BAD_KEY,
+                f"the key in `{path}` has a passphrase, and nobody can be asked for it here",
+                Source(path, "").span(),
+                help=f"put it into the environment variable {PASSPHRASE}",
+            )
+        )
+    asked: str = click.prompt(f"passphrase of {visible(path)}", hide_input=True, err=True)
+    return asked
+
+
+def signed(what: Signable, key: PrivateKey) -> dict[Path, str]:
+    """The file with the signatures, and one more in it."""
+    from fretc.attestation.keys import sealed
+    from fretc.attestation.signatures import appended, beside, envelope, kept, read
+    from fretc.attestation.statement import text
+
+    known = read(what.path)
+    if isinstance(known, Diagnostic):
+        stop(known)
+    new = envelope(sealed(text(what.statement), key))
+    left = len(known) - len(kept(known, new, what.current))
+    if left:
+        told = "earlier signature is" if left == 1 else "earlier signatures are"
+        say_line(f"{left} {told} left out: yours of the same, or of what is not there any more")
+    return {Path(beside(what.path)): appended(known, new, what.current)}
+
+
+# What is signed --------------------------------------------------------------------------------
+
+
+def _signable(path: str, key: str, reviewer: str | None, verification: str | None) -> Signable:
+    suffix = Path(path).suffix
+    if reviewer is not None and suffix not in (".lock", ".toml"):
+        stop(_usage(f"`{path}` is by no reviewer", "leave `--reviewer` out"))
+    if suffix not in (".lock", ".toml", ".json", *_REPORTS):
+        mend = "name evidence (`.json`), a lock (`.lock`), waivers (`.toml`) or a report"
+        stop(_usage(f"`{path}` is nothing that fretc signs", mend))
+    match suffix:
+        case ".lock":
+            return _lock(path, key, reviewer)
+        case ".toml":
+            return _waivers(path, key, reviewer)
+        case ".json":
+            return _json(path, verification)
+        case _:
+            return _report(path)
+
+
+_REPORTS = (".html", ".md", ".csv", ".xml", ".sarif", ".reqif", ".yaml")
+
+
+def _usage(what: str, mend: str) -> Diagnostic:
+    return Diagnostic(Code.BAD_USAGE, what, help=mend)
+
+
+def _json(path: str, verification: str | None) -> Signable:
+    """Evidence, proofs, or a report: they say which."""
+    from compiler.files.text_files import read as read_text
+    from compiler.logic import claims as proved
+    from fretc.audit.evidence.reader import read
+    from fretc.report.model.views import SCHEMA
+    from fretc.verification.reader import written
+
+    source = read_text(path)
+    if isinstance(source, Diagnostic):
+        stop(source)
+    schema = _schema(source)
+    if schema == proved.SCHEMA:
+        return _proved(path)
+    if schema == SCHEMA:
+        return _report(path)
+    audited = read(path)
+    if isinstance(audited, Diagnostic):
+        stop(_as_error(audited))
+    place = verification or written()
+    return _evidence(audited, _proofs(place) if place is not None else None)
+
+
+def _schema(source: Source) -> object:
+    """What the file says it is; whatever is wrong with it, its own reader says."""
+    from compiler.files.checked_json import MisshapenError, Shape, plain
+
+    try:
+        whole = Shape(plain(source.text))
+        return whole.field("schema").value
+    except MisshapenError as error:
+        stop(
+            Diagnostic(
+                Code.BAD_EVIDENCE,
+                f"`{source.name}` is nothing that fretc signs: {error}",
+                Source(source.name, "").span(),
+                help="name what `fretc audit`, `fretc verify` or `fretc report` has written",
+            )
+        )
+
+
+def _as_error(wrong: Diagnostic) -> Diagnostic:
+    from dataclasses import replace
+
+    return replace(wrong, severity=Severity.ERROR)
+
+
+def _evidence(audited: Evidence, proofs: Proofs | None) -> Signable:
+    from fretc.attestation import statement as attestation
+
+    _same_bytes(audited.file, audited.sha256)
+    if not audited.results:
+        stop(_usage(f"`{audited.file}` tells of no run", "audit one: `fretc audit LOG...`"))
+    statement = attestation.evidence(audited, proofs)
+    lines = (*_said(audited), *(_said_of_proofs(proofs) if proofs else ()))
+    return Signable(audited.file, statement, statement.main, lines)
+
+
+def _said(audited: Evidence) -> Iterator[str]:
+    from fretc.audit.measurements.confidence_intervals import REFUTED
+    from fretc.report.model.claims import Judged
+    from monitors import kernel
+
+    verdicts = [Judged(result, ()).verdict for result in audited.results]
+    counts = Counter(verdicts)
+    told = ", ".join(f"{count} {verdict}" for verdict, count in sorted(counts.items()))
+    yield f"evidence {audited.file}: {told}"
+    for result, verdict in zip(audited.results, verdicts, strict=True):
+        if verdict == kernel.VIOLATED:
+            yield f"  {result.requirement} is violated in {result.run}"
+        if "log" not in result.hashes:
+            yield f"  no SHA-256 is known of {result.run}: the log itself is not signed"
+    for one in audited.probabilities:
+        if one.answer == REFUTED:
+            yield f"  {one.requirement} is refuted by all runs"
+
+
+def _proofs(path: str) -> Proofs:
+    from fretc.verification.reader import read
+
+    found = read(path)
+    if isinstance(found, Diagnostic):
+        stop(found)
+    _same_bytes(path, found.sha256)
+    return found
+
+
+def _proved(path: str) -> Signable:
+    from fretc.attestation import statement as attestation
+
+    found = _proofs(path)
+    statement = attestation.proofs(found)
+    return Signable(path, statement, statement.main, tuple(_said_of_proofs(found)))
+
+
+def _said_of_proofs(found: Proofs) -> Iterator[str]:
+    from compiler.logic.claims import COUNTEREXAMPLE
+
+    counts = Counter(proof.result for proof in found.proofs)
+    told = ", ".join(f"{count} {result}" for result, count in sorted(counts.items()))
+    yield f"proofs {found.file}: {told or 'none'}"
+    for proof in found.proofs:
+        if proof.result == COUNTEREXAMPLE:
+            yield f"  {proof.requirement}, {proof.layer}: a counterexample to: {proof.claim}"
+
+
+def _same_bytes(path: str, sha256: str) -> None:
+    """What was read, and what everybody else hashes, are the same."""
+    from compiler.files.text_files import file_sha256
+
+    if file_sha256(path) != sha256:
+        stop(
+            Diagnostic(
+                Code.UNREADABLE,
+                f"`{path}` is no plain file of UTF-8 without a mark at its start, or is being "
+                "written to",
+                Source(path, "").span(),
+                help="wait until it is complete, or make it again",
+            )
+        )
+
+
+def _report(path: str) -> Signable:
+    from compiler.files.text_files import file_sha256, unreadable
+    from fretc.attestation import statement as attestation
+
+    found = file_sha256(path)
+    if found is None:
+        stop(unreadable(path, FileNotFoundError()))
+    statement = attestation.report(path, found)
+    return Signable(path, statement, statement.main, (f"report {path}",))
+
+
+def _lock(path: str, key: str, reviewer: str | None) -> Signable:
+    from fretc.report.traceability.lock import read
+
+    found = read(path)
+    if isinstance(found, Diagnostic):
+        stop(_as_error(found))
+    names = _names(path, [each.reviewer for each in found.reviews.values()], key, reviewer)
+    mine = [each for each in found.reviews.values() if each.reviewer in names]
+    return of_reviews(path, mine, found.reviews.values())
+
+
+def of_reviews(path: str, mine: Iterable[Review], all_: Iterable[Review]) -> Signable:
+    """Some of the reviews of a lock."""
+    from fretc.attestation import statement as attestation
+
+    chosen = sorted(mine, key=lambda review: natural(review.requirement))
+    return Signable(
+        path,
+        attestation.reviews(chosen),
+        frozenset(map(attestation.review, all_)),
+        tuple(f"review of {r.requirement} by {r.reviewer}, {r.date}: {r.shown}" for r in chosen),
+    )
+
+
+def _waivers(path: str, key: str, reviewer: str | None) -> Signable:
+    from compiler.files.dates import today
+    from fretc.attestation import statement as attestation
+    from fretc.report.traceability.waivers import read
+
+    found, wrong = read(path, None, today())
+    if any(each.is_error for each in wrong):
+        stop(*wrong)
+    names = _names(path, [each.by for each in found.values()], key, reviewer)
+    chosen = [each for each in found.values() if each.by in names]
+    return Signable(
+        path,
+        attestation.waivers(chosen),
+        frozenset(map(attestation.waiver, found.values())),
+        tuple(map(_granted, chosen)),
+    )
+
+
+def _granted(waiver: Waiver) -> str:
+    until = f"until {waiver.expires}"
+    return f"waiver of {waiver.requirement} by {waiver.by} {until}: covers {waiver.verdict}"
+
+
+def _names(path: str, written: Sequence[str], key: str, reviewer: str | None) -> Sequence[str]:
+    """By whom the reviews or waivers are that are to be signed."""
+    names = list(dict.fromkeys(written))
+    listed = ", ".join(f"`{name}`" for name in names) or "nobody"
+    if reviewer is not None:
+        if reviewer not in names:
+            stop(_usage(f"nothing in `{path}` is by `{reviewer}`", f"it is by {listed}"))
+        return [reviewer]
+    mine = _by_key(path, names, key) if len(names) > 1 else names
+    if not mine:
+        what = f"`{path}` does not say what is yours: it is by {listed}"
+        stop(_usage(what, "add `--reviewer NAME`"))
+    return mine
+
+
+def _by_key(path: str, names: Sequence[str], key: str) -> Sequence[str]:
+    """Those of the names that the list of signers gives to the key."""
+    from fretc.attestation.signatures import SIGNERS
+    from fretc.attestation.signers import read
+
+    place = Path(path).parent / SIGNERS
+    public = Path(f"{key}.pub")
+    if not place.exists() or not public.exists():
+        return []
+    found, mine = read(str(place)), _public(str(public))
+    if isinstance(found, Diagnostic):
+        stop(found)
+    known = [signer for signer in found.signers if signer.key.fingerprint == mine]
+    return [name for name in names if any(signer.goes_by(name) for signer in known)]
+
+
+def _public(path: str) -> str:
+    """The fingerprint of a public key."""
+    from fretc.attestation.signers import trusted
+
+    found = trusted(path)
+    if isinstance(found, Diagnostic):
+        stop(found)
+    return next((signer.key.fingerprint for signer in found.signers), "")
+
+
+# What must be signed ---------------------------------------------------------------------------
+
+
+def demand(evidence: Evidence, by: str, others: Mapping[str, str | None]) -> None:
+    """Stop, with exit status 1, where a key has not signed exactly this evidence.
+
+    Args:
+        evidence: as it was read.
+        by: path of the public key, or of a list of signers, that the user trusts.
+        others: kind of other files (`report`, `proofs`) → path, where they must be signed, too.
+    """
+    from compiler.files.text_files import file_sha256
+    from fretc.attestation.signatures import book
+    from fretc.attestation.signers import trusted
+
+    _installed()
+    keys = trusted(by)
+    if isinstance(keys, Diagnostic):
+        stop(keys)
+    named = {kind: path for kind, path in others.items() if path is not None}
+    known = book([evidence.file, *named.values()], keys)
+    if isinstance(known, Diagnostic):
+        stop(known)
+    wrong = list(known.diagnostics())
+    found = known.agreed(evidence)
+    if not found.is_good:
+        wrong.append(_unsigned(evidence.file, by, found.text))
+    for kind, path in named.items():
+        one = known.of_file(kind, file_sha256(path) or "")
+        if not one.is_good:
+            wrong.append(_unsigned(path, by, one.text))
+    say(wrong)
+    if any(each.is_error for each in wrong):
+        raise SystemExit(VIOLATION)
+    say_line(visible(f"{evidence.file} is {found.text}"))
+
+
+def _unsigned(path: str, by: str, why: str) -> Diagnostic:
+    """F558."""
+    return Diagnostic(
+        Code.NOT_SIGNED,
+        f"`{path}` is not signed as `{by}` asks for: {why}",
+        Source(path, "").span(),
+        help=f"have it signed as it is now: `fretc sign {path} --key KEY`",
+    )

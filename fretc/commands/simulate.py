@@ -1,0 +1,264 @@
+"""The command about simulated missions: record one, or count many."""
+
+from __future__ import annotations
+
+import json
+import math
+import os
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from fretc.terminal.output import SHOWN, VIOLATION, deliver, not_written, say_line, stop
+from fretc.terminal.progress import progress
+from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.diagnostics.source import Source, Span
+
+if TYPE_CHECKING:
+    from simulation.world.scenario import Scenario
+
+
+@click.command(short_help="Record missions of the simulated robot.")
+@click.argument("scenarios", nargs=-1, metavar="[SCENARIO]...")
+@click.option("--out", help="The MCAP file to record; of a campaign, the folder for all logs.")
+@click.option("--seed", default=1, show_default=True, type=click.IntRange(min=0))
+@click.option(
+    "--duration",
+    type=click.FloatRange(min=0, min_open=True),
+    help="Simulated seconds after which the mission is given up; else what the scenario says.",
+)
+@click.option("--encoding", type=click.Choice(("ros2", "ros1")), default="ros2", show_default=True)
+@click.option("--png", metavar="FILE", help="Also draw the mission.")
+@click.option("--gif", metavar="FILE", help="Also draw it as it went on.")
+@click.option(
+    "--campaign",
+    type=click.IntRange(min=1),
+    metavar="N",
+    help="Run each scenario with N seeds, audit each log, print one table.",
+)
+@click.option("--jobs", default=os.cpu_count() or 1, type=click.IntRange(min=1), metavar="J")
+@click.option(
+    "--format", "form", type=click.Choice(("text", "json")), default="text", show_default=True
+)
+@click.option("--list", "listing", is_flag=True, help="Name the scenarios, and record nothing.")
+def simulate(
+    scenarios: Sequence[str],
+    out: str | None,
+    seed: int,
+    duration: float | None,
+    encoding: str,
+    png: str | None,
+    gif: str | None,
+    campaign: int | None,
+    jobs: int,
+    form: str,
+    listing: bool,
+) -> None:
+    """Let the simulated robot drive its mission and record it.
+
+    SCENARIO says what goes wrong: one of `--list`, or a file (`.toml`); `nominal` if not given. The
+    safety function in it is the monitor that fretc compiles from R1. Needs the extra `sim`:
+    pip install 'fretc[sim]'.
+    """
+    from simulation.world.scenario import NOMINAL, load, names
+
+    if listing:
+        for name in names():
+            click.echo(f"{name:<16} {load(name).title}")
+        return
+    _installed()
+    if campaign is not None:
+        if png or gif or duration is not None or encoding != "ros2":
+            raise click.UsageError("a campaign takes no --png, --gif, --duration or --encoding")
+        _count([_scenario(n) for n in scenarios or names()], seed, campaign, jobs, out, form)
+    if len(scenarios) > 1:
+        raise click.UsageError("several scenarios need --campaign")
+    if out is None:
+        raise click.UsageError("missing option '--out'")
+    scenario = _scenario(scenarios[0] if scenarios else NOMINAL)
+    _record(scenario, out, seed, duration, encoding, {"png": png, "gif": gif})
+
+
+def _installed() -> None:
+    from simulation import missing
+
+    absent = missing()
+    if absent:
+        stop(_missing_extra(absent))
+
+
+def _scenario(name: str) -> Scenario:
+    from simulation.mission import possible
+    from simulation.world.scenario import ScenarioError, load
+
+    try:
+        scenario = load(name)
+        possible(scenario)
+        _known(scenario)
+    except OSError as error:
+        stop(_bad_scenario(name, error.strerror or str(error)))
+    except (ScenarioError, ValueError) as error:
+        stop(_bad_scenario(name, str(error)))
+    return scenario
+
+
+def _known(scenario: Scenario) -> None:
+    """Whether there are the requirements of which it says how they come out.
+
+    Raises:
+        ScenarioError: one is not there.
+    """
+    from fretc.campaigns.experiment import project
+    from simulation.world.scenario import ScenarioError
+
+    known = [rule.id for rule in project().rules]
+    for id, verdict in scenario.expect.verdicts.items():
+        if id not in known:
+            where = f"`expect.{verdict.replace(' ', '_')}`"
+            there = ", ".join(known)
+            raise ScenarioError(f"{where} names `{id}`, which is no requirement; there are {there}")
+
+
+def _place(name: str, why: str) -> Span | None:
+    """Where the key stands that the text names first; the file's start where it cannot be found."""
+    from compiler.files.text_files import read
+
+    source = read(name) if name.endswith(".toml") else None
+    if not isinstance(source, Source):
+        return None
+    *tables, key = why.partition("`")[2].partition("`")[0].split(".")
+    text = source.text
+    header = re.search(rf"^\s*\[+\s*{re.escape(tables[0])}\b", text, re.M) if tables else None
+    begin = header.end() if header else 0
+    found = re.compile(rf"(?<![\w-]){re.escape(key)}(?=\s*=)").search(text, begin) if key else None
+    return source.span(*found.span()) if found else source.span(0, 0)
+
+
+def _bad_scenario(name: str, why: str) -> Diagnostic:
+    """F914."""
+    return Diagnostic(
+        Code.BAD_SCENARIO,
+        f"the scenario `{name}` cannot be run: {why}",
+        _place(name, why),
+        help="`fretc simulate --list` names those that come with fretc",
+    )
+
+
+def _file(out: str) -> Path:
+    """Where a file is to go, if it can."""
+    from compiler.files.text_files import destination
+
+    try:
+        path = destination(Path(out))
+    except OSError as error:
+        stop(not_written(out, error.strerror or str(error)))
+    if out == "-":
+        stop(not_written(out, "it is a file of its own"))
+    if path.exists() and not path.is_file():
+        stop(not_written(out, "it is no regular file"))
+    _folder(path.parent, out)
+    return path
+
+
+def _folder(folder: Path, out: str) -> None:
+    """Make it, with those that it lies in."""
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        stop(not_written(out, error.strerror or str(error)))
+
+
+def _record(
+    scenario: Scenario,
+    out: str,
+    seed: int,
+    duration: float | None,
+    encoding: str,
+    pictures: Mapping[str, str | None],
+) -> None:
+    from compiler.files.edition import __version__
+    from fretc.campaigns.campaign import intercepted
+    from fretc.campaigns.experiment import safety_function
+    from simulation.mission import record
+    from simulation.recording import Encoding
+
+    path = _file(out)
+    drawn = {form: _file(name) for form, name in pictures.items() if name is not None}
+    if len({path, *drawn.values()}) <= len(drawn):
+        stop(not_written(out, "two outputs would go there"))
+    limit = scenario.duration if duration is None else duration
+    if not math.isfinite(limit):
+        stop(not_written(out, "a mission ends"))
+    decision = safety_function(scenario.safety.threshold)
+    with progress(int(limit), "simulating") as tell:
+        try:
+            mission = record(
+                path,
+                scenario,
+                intercepted(scenario.interceptor),
+                seed,
+                decision,
+                Encoding(encoding),
+                limit,
+                lambda now: tell(int(now), f"{now:.0f} s"),
+                {"fretc": __version__},
+            )
+        except OSError as error:
+            stop(not_written(out, error.strerror or str(error)))
+    say_line(f"wrote {out}")
+    if drawn:
+        from simulation.picture import animate, draw
+
+        painters = {"png": draw, "gif": animate}
+        deliver({Path(str(pictures[form])): painters[form](mission) for form in drawn})
+    click.echo(
+        f"{scenario.name}, seed {mission.seed}: {mission.duration:.1f} s, "
+        f"{mission.goals_reached} of {mission.goals_total} goals, {len(mission.stops)} stops, "
+        f"{mission.contacts} contacts, least clearance {mission.true_clearance * 100:.1f} cm, "
+        f"{mission.messages} messages"
+    )
+
+
+def _count(
+    scenarios: Sequence[Scenario], seed: int, count: int, jobs: int, out: str | None, form: str
+) -> None:
+    """Run the campaign and exit."""
+    from fretc.campaigns.campaign import campaign, table
+
+    called = [scenario.name for scenario in scenarios]
+    if len(set(called)) < len(called):
+        raise click.UsageError("two of the scenarios have the same name")
+    folder = Path(out) if out is not None else None
+    if folder is not None:
+        _folder(folder, str(out))
+    total = len(scenarios) * count
+    with progress(total, "simulating") as show:
+        try:
+            runs = campaign(
+                scenarios,
+                range(seed, seed + count),
+                jobs,
+                folder,
+                lambda done: show(done, f"{done}/{total} missions"),
+            )
+        except OSError as error:
+            stop(not_written(out or "a folder for temporary files", error.strerror or str(error)))
+    if form == "json":
+        click.echo(json.dumps([asdict(run) for run in runs], indent=2))
+    else:
+        click.echo(table(runs), nl=False)
+    raise SystemExit(VIOLATION if any(run.wrong for run in runs) else SHOWN)
+
+
+def _missing_extra(absent: Sequence[str]) -> Diagnostic:
+    names = " and ".join(f"`{name}`" for name in absent)
+    return Diagnostic(
+        Code.MISSING_EXTRA,
+        f"the simulated robot needs {names}",
+        help="install the extra: pip install 'fretc[sim]' "
+        "(in a checkout: .venv/bin/pip install '.[sim]')",
+    )

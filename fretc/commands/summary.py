@@ -1,0 +1,155 @@
+"""`fretc audit --summary`: what a table of many runs says, for a person or as JSON."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from typing import TYPE_CHECKING, Any, NoReturn
+
+import click
+
+from fretc.terminal.output import NOT_SHOWN, SHOWN, VIOLATION, say, stop
+from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.diagnostics.rendering import visible
+
+if TYPE_CHECKING:
+    from fretc.audit.outputs.summary import Answer, Summary
+
+
+def summarize(paths: Sequence[str], query: str | None, form: str) -> NoReturn:
+    """Print what tables or evidence say, or the answer to a query; exit as their audit did."""
+    from fretc.audit.outputs.summary import answered, summarized
+    from fretc.audit.outputs.table import missing, read
+
+    if form not in ("text", "json"):
+        stop(_no_form(form))
+    absent = missing()
+    if absent is not None:
+        stop(absent)
+    table = read(paths)
+    if isinstance(table, Diagnostic):
+        stop(table)
+    if query is not None:
+        answer = answered(table, query)
+        if isinstance(answer, Diagnostic):
+            stop(answer)
+        click.echo(_json(answer.records) if form == "json" else _listed(answer), nl=False)
+        raise SystemExit(SHOWN)
+    summary = summarized(table)
+    say(summary.remarks)
+    click.echo(_json(summary.as_record) if form == "json" else _text(summary), nl=False)
+    raise SystemExit(VIOLATION if summary.violated else SHOWN if summary.shown else NOT_SHOWN)
+
+
+def _no_form(form: str) -> Diagnostic:
+    return Diagnostic(
+        Code.BAD_USAGE,
+        f"a summary cannot be printed as `{form}`",
+        help="it can as `text` or `json`",
+    )
+
+
+def _json(value: object) -> str:
+    return f"{json.dumps(_plain(value), indent=2, allow_nan=False, default=str)}\n"
+
+
+def _plain(value: object) -> object:
+    """Without what JSON has no word for: NaN and the infinities."""
+    match value:
+        case dict():
+            return {str(key): _plain(item) for key, item in value.items()}
+        case list() | tuple():
+            return [_plain(item) for item in value]
+        case float() if not math.isfinite(value):
+            return None
+        case _:
+            return value
+
+
+def _text(summary: Summary) -> str:
+    from fretc.audit.outputs.summary import MOST
+
+    whole = summary.whole
+    damaged = f", {_many(whole['damaged'], 'damaged run')}" if whole["damaged"] else ""
+    lines = [
+        f"{_many(whole['runs'], 'run')}, {_many(whole['requirements'], 'requirement')}, "
+        f"{whole['seconds'] / 3600:.1f} h{damaged}",
+        "",
+        *_aligned(*_verdicts(summary)),
+    ]
+    failed = summary.failed.records
+    if failed:
+        listed = f" ({MOST} of {len(failed):,})" if len(failed) > MOST else ""
+        lines += ["", f"worst runs{listed}", *_aligned(*_worst(failed[:MOST]))]
+    if summary.slowest.rows:
+        lines += ["", "slowest answers", *_aligned(*_slowest(summary))]
+    return "".join(f"{line}\n" for line in lines)
+
+
+def _verdicts(summary: Summary) -> tuple[list[str], list[list[str]]]:
+    from fretc.audit.evidence.verdicts import VERDICTS
+    from fretc.audit.outputs.summary import COUNTED
+
+    counted = (f"{VERDICTS[word].glyph} {word}" for word in COUNTED.values())
+    head = ["requirement", "runs", *counted, "violations"]
+    rows = [
+        [
+            row["requirement"],
+            *(f"{row[name]:,}" for name in ("runs", *COUNTED, "violations")),
+        ]
+        for row in summary.requirements.records
+    ]
+    return head, rows
+
+
+def _worst(failed: Sequence[Mapping[str, Any]]) -> tuple[list[str], list[list[str]]]:
+    head = ["run", "violated", "not shown", "violations", "why"]
+    rows = [
+        [row["run"], str(row["violated"]), str(row["not_shown"]), str(row["violations"])]
+        + [row["reason"]]
+        for row in failed
+    ]
+    return head, rows
+
+
+def _slowest(summary: Summary) -> tuple[list[str], list[list[str]]]:
+    head = ["requirement", "longest", "median", "run"]
+    rows = [
+        [
+            row["requirement"],
+            f"{row['latency_max_s']:.2f} s",
+            f"{row['latency_median_s']:.2f} s",
+            row["run"],
+        ]
+        for row in summary.slowest.records
+    ]
+    return head, rows
+
+
+def _listed(answer: Answer) -> str:
+    """A query's answer: its columns, then its rows."""
+    rows = [["" if value is None else str(value) for value in row] for row in answer.rows]
+    return "".join(f"{line}\n" for line in _aligned(list(answer.columns), rows))
+
+
+def _aligned(head: list[str], rows: list[list[str]]) -> Iterator[str]:
+    """Columns of one width each, numbers to the right."""
+    cells = [[visible(cell) for cell in row] for row in (head, *rows)]
+    columns = list(zip(*cells, strict=True))
+    widths = [max(map(len, column)) for column in columns]
+    right = [all(_is_number(cell) for cell in column[1:]) for column in columns]
+    for row in cells:
+        told = [
+            cell.rjust(width) if number else cell.ljust(width)
+            for cell, width, number in zip(row, widths, right, strict=True)
+        ]
+        yield f"  {'  '.join(told)}".rstrip()
+
+
+def _is_number(cell: str) -> bool:
+    return not cell.strip("0123456789.,-+e s")
+
+
+def _many(count: Any, thing: str) -> str:
+    return f"{count:,} {thing}{'' if count == 1 else 's'}"

@@ -1,0 +1,277 @@
+"""The command about proofs: whether what was made of requirements keeps them."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from fretc.terminal.group import Grouped
+from fretc.terminal.output import (
+    BAD,
+    NOT_SHOWN,
+    SHOWN,
+    VIOLATION,
+    coloured,
+    deliver,
+    say,
+    stop,
+)
+from fretish.diagnostics.diagnostic import Code, Diagnostic, has_errors
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+
+    from compiler.logic.claims import Evidence
+    from compiler.project.folder import Project
+    from fretc.verification.verify import Request
+    from fretish.diagnostics.source import Source
+
+_LAYERS = ("monitor", "interceptor", "loop", "bounds", "agent", "ajpf")
+_HEADINGS = {
+    "What is looked at": ("layers", "monitor", "provers", "bindings", "limit"),
+    "Texts in place of new ones": ("path", "interceptor", "agent", "properties", "percepts"),
+    "Found by others": ("ajpf",),
+    "Printed and written": ("form", "output", "traces"),
+}
+
+
+@click.command(
+    cls=Grouped,
+    headings=_HEADINGS,
+    short_help="Prove that what is made of requirements keeps them.",
+)
+@click.argument("files", nargs=-1, required=True, metavar="FILE...")
+@click.option(
+    "--layer",
+    "layers",
+    multiple=True,
+    type=click.Choice(_LAYERS),
+    help="What to look at, maybe several; all six if none is given.",
+)
+@click.option("--monitor", is_flag=True, help="The same as `--layer monitor`.")
+@click.option(
+    "--with",
+    "provers",
+    multiple=True,
+    type=click.Choice(("dafny", "crosshair")),
+    help="A prover to ask as well, if it is installed.",
+)
+@click.option("--file", "path", help="A monitor that was made before.")
+@click.option("--interceptor", help="An interceptor that was made before.")
+@click.option("--agent", help="An agent in Gwendolen; with --properties.")
+@click.option("--properties", help="The properties of the agent, as AJPF reads them.")
+@click.option(
+    "--percept", "percepts", multiple=True, help="A percept that the agent's environment draws."
+)
+@click.option(
+    "--ajpf",
+    multiple=True,
+    help="A result of AJPF; each build/*_ajpf/result.json if none is given.",
+)
+@click.option("--bindings", help="bindings.toml; the one beside the first FILE if not given.")
+@click.option(
+    "--limit",
+    type=click.IntRange(min=1),
+    default=60,
+    show_default=True,
+    help="Seconds of a processor for each claim.",
+)
+@click.option(
+    "--format", "form", type=click.Choice(("text", "json")), default="text", show_default=True
+)
+@click.option(
+    "-o",
+    "--output",
+    default="build/verification.json",
+    show_default=True,
+    help="Where evidence goes; - prints it.",
+)
+@click.option("--traces", help="A folder for each counterexample as a table that monitors read.")
+def verify(
+    files: tuple[str, ...],
+    layers: tuple[str, ...],
+    monitor: bool,
+    provers: tuple[str, ...],
+    path: str | None,
+    interceptor: str | None,
+    agent: str | None,
+    properties: str | None,
+    percepts: tuple[str, ...],
+    ajpf: tuple[str, ...],
+    bindings: str | None,
+    limit: int,
+    form: str,
+    output: str,
+    traces: str | None,
+) -> None:
+    """Prove that what is made of requirements keeps them, layer by layer.
+
+    monitor: the text of a monitor means what its sentence says. interceptor: its text keeps its
+    contracts. loop: both, and any environment, keep the requirement under the assumptions of the
+    bindings. bounds: so they do whatever the times are. agent: its text has its properties.
+    ajpf: what AJPF itself has said of it.
+
+    Exit status: 0 all proved, 1 a claim about a requirement is refuted, 2 bad use or input,
+    3 something is vacuous, not checked, or stays stopped.
+    """
+    from compiler.logic.claims import Layer
+    from compiler.project.folder import companions
+    from fretc.verification.ajpf_results import written
+    from fretc.verification.engines.sandbox import Limits
+    from fretc.verification.verify import Request
+
+    if (agent is None) != (properties is None):
+        stop(_half(agent))
+    named = dict.fromkeys((*layers, *(["monitor"] if monitor else [])))
+    if path is not None and not named:
+        named = {"monitor": None}
+    project = _project(files, bindings)
+    results = ajpf or (written() if "ajpf" in (named or _LAYERS) else ())
+    asked = Request(
+        [Layer(name) for name in named or _LAYERS],
+        Limits(seconds=limit),
+        _read(path),
+        _read(interceptor),
+        _read(agent),
+        _read(properties),
+        percepts,
+        provers,
+        _said_by_ajpf(project, results),
+    )
+    _refused(project, asked)
+    found = _evidence(project, asked)
+    given = (path, interceptor, agent, properties, bindings, *results)
+    read = [requirement.wording.source.name for requirement in project.requirements]
+    inputs = [*read, *companions(read), *(name for name in given if name is not None)]
+    _tell(found, form, output, traces, inputs)
+    raise SystemExit(_status(found))
+
+
+def _said_by_ajpf(project: Project, results: Sequence[str]) -> Sequence[Evidence]:
+    from fretc.verification.ajpf_results import evidence
+
+    lines, said = evidence(project.rules, results)
+    say(said)
+    if has_errors(said):
+        raise SystemExit(BAD)
+    return lines
+
+
+def _half(agent: str | None) -> Diagnostic:
+    given, missing = ("properties", "agent") if agent is None else ("agent", "properties")
+    return Diagnostic(
+        Code.BAD_USAGE,
+        f"`--{given}` is of no use without `--{missing}`",
+        help="name both: `--agent FILE.gwen --properties FILE.psl`",
+    )
+
+
+def _project(files: tuple[str, ...], bindings: str | None) -> Project:
+    from compiler.project.folder import listed, load
+
+    paths = listed(files)
+    if isinstance(paths, Diagnostic):
+        stop(paths)
+    project = load(paths, bindings)
+    say(project.diagnostics)
+    if has_errors(project.diagnostics):
+        raise SystemExit(BAD)
+    if not project.rules:
+        stop(Diagnostic(Code.NOTHING_TO_DO, "there is no requirement to verify"))
+    return project
+
+
+def _read(path: str | None) -> Source | None:
+    from compiler.files.text_files import read
+
+    if path is None:
+        return None
+    source = read(path)
+    if isinstance(source, Diagnostic):
+        stop(source)
+    return source
+
+
+def _refused(project: Project, asked: Request) -> None:
+    """Layers that step a monitor need one."""
+    from compiler.logic.claims import Layer
+    from compiler.targets.python import monitor
+
+    if not {Layer.MONITOR, Layer.LOOP, Layer.BOUNDS}.intersection(asked.layers):
+        return
+    found = (monitor.refuse(rule) for rule in project.rules)
+    wrong = [diagnostic for diagnostic in found if diagnostic is not None]
+    if wrong:
+        stop(*wrong)
+
+
+def _evidence(project: Project, asked: Request) -> Sequence[Evidence]:
+    from fretc.terminal.progress import at_work
+    from fretc.verification.monitor.verifying import NotAMonitorError
+    from fretc.verification.verify import evidence
+
+    try:
+        found = evidence(project, asked, at_work)
+    except NotAMonitorError as error:
+        assert asked.monitor is not None
+        stop(
+            Diagnostic(
+                Code.BAD_MONITOR,
+                f"`{asked.monitor.name}` is no generated monitor: {error}",
+                asked.monitor.span(0, 0),
+                help="name a file that `--emit monitor` wrote",
+            )
+        )
+    if isinstance(found, Diagnostic):
+        stop(found)
+    return found
+
+
+def _tell(
+    found: Sequence[Evidence], form: str, output: str, traces: str | None, inputs: Iterable[str]
+) -> None:
+    """Print it, and write the evidence and the runs."""
+    from compiler.files.edition import __version__
+    from compiler.files.templating import to_json
+    from compiler.logic.claims import document
+    from fretc.verification.text_output import lines
+
+    text = f"{to_json(document(__version__, found))}\n"
+    if output != "-" or form == "json":
+        click.echo(text if form == "json" else coloured([*lines(found)]), nl=False)
+    files: dict[Path, str | bytes] = {}
+    if output != "-" or form != "json":
+        files[Path(output)] = text
+    if traces is not None:
+        files.update(_tables(found, Path(traces)))
+    deliver(files, inputs)
+
+
+def _tables(found: Sequence[Evidence], folder: Path) -> dict[Path, str]:
+    """Each run that a monitor can step, under the requirement, the layer and a number."""
+    from compiler.logic.claims import Counterexample, Layer
+    from fretc.verification.loop.replay import EXTRA
+    from fretc.verification.text_output import as_csv
+
+    files: dict[Path, str] = {}
+    for one in found:
+        if one.layer not in (Layer.MONITOR, Layer.LOOP, Layer.BOUNDS):
+            continue
+        if isinstance(one.result, Counterexample) and one.result.trace is not None:
+            trace = one.result.trace
+            names = trace.names if one.layer is Layer.MONITOR else trace.names[: -len(EXTRA)]
+            stem = f"{one.requirement.lower()}_{one.layer}"
+            number = sum(path.name.startswith(f"{stem}_") for path in files) + 1
+            files[folder / f"{stem}_{number}.csv"] = as_csv(trace, names)
+    return files
+
+
+def _status(found: Sequence[Evidence]) -> int:
+    from compiler.logic.claims import Counterexample, Proved
+    from fretc.verification.loop.layer import RELEASED
+
+    if any(isinstance(one.result, Counterexample) and one.claim != RELEASED for one in found):
+        return VIOLATION
+    return SHOWN if all(isinstance(one.result, Proved) for one in found) else NOT_SHOWN

@@ -1,0 +1,1 @@
+"""Recorded logs: files, URLs and bags become a Recording."""

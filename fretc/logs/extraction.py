@@ -1,0 +1,298 @@
+"""Payloads of one stream → the numbers that its signals ask for, many messages at once.
+
+Fields are taken from their places in the payloads. Made-up messages and the first real ones are
+decoded by the official decoder too, and where that says anything else, it reads the whole stream:
+it is slower, and the reference.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Container, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fretc.logs import findings
+from fretc.logs.mcap.container import Stream
+from fretc.logs.mcap.damage import LATEST
+from fretc.logs.mcap.payloads import Payloads, Places
+from fretc.logs.messages.decoding import Decode, decoder, is_single, shape, stamp
+from fretc.logs.messages.layouts import Found, Group, Layout, Layouts, Shape, Where
+from fretc.logs.messages.probes import trusted
+from fretc.logs.messages.vectorized import nearest, samples, siblings
+from fretc.logs.signals.samples import EXACT, Numbers, Times, Values, widest
+from fretc.logs.signals.signals import RANGE_MIN, FieldError, sample
+from fretc.logs.signals.signals import nearest as nearest_of_one
+from fretish.bindings.declarations import Reduce, Signal
+from fretish.diagnostics.diagnostic import Diagnostic
+
+_CHECKED = 8
+"""Layouts of a stream of which the official decoder reads three messages too."""
+_BLOCK = 2**17
+"""Numbers of an array field that are taken at once: the passes over them stay within the cache."""
+_FEW = 512
+"""Bytes; fewer are decoded sooner than taken from their places. Two channels of one topic may send
+by turns, and then each message comes alone."""
+_SECONDS = ("int32", "uint32")
+"""What a stamp may be made of: no sum of seconds and nanoseconds is too large."""
+_STAMPS = (("sec", "nanosec"), ("secs", "nsecs"))
+"""Names of the fields of a stamp, in ROS 2 and in ROS 1."""
+
+
+@dataclass(slots=True)
+class Extract:
+    """What some messages of a stream hold, all in their order."""
+
+    values: dict[str, Values]
+    """Of each signal, shape (messages,), as recorded; NaN where unknown, or not decoded."""
+    decoded: NDArray[np.bool_]
+    stamps: Times
+    stamped: NDArray[np.bool_]
+    nearest: dict[str, float] = field(default_factory=dict)
+
+    @classmethod
+    def empty(cls, count: int, signals: Iterable[Signal], single: Container[str] = ()) -> Extract:
+        """Of messages that are still to be read; `single` are signals of 32-bit floats."""
+        kinds = {one.name: "f4" if one.name in single and _chosen(one) else "f8" for one in signals}
+        return cls(
+            {name: np.full(count, np.nan, kind) for name, kind in kinds.items()},
+            np.zeros(count, bool),
+            np.zeros(count, np.int64),
+            np.zeros(count, bool),
+        )
+
+    def put(self, signal: Signal, at: int | Places, found: float | Values) -> None:
+        """What the signal is in some messages."""
+        wide = isinstance(found, int) or (isinstance(found, np.ndarray) and found.dtype == EXACT)
+        if wide:
+            self.values[signal.name] = self.values[signal.name].astype(EXACT, copy=False)
+        self.values[signal.name][at] = found
+
+    def near(self, signal: Signal, least: float | None) -> None:
+        """Some messages state a least distance."""
+        if least is not None:
+            self.nearest[signal.name] = min(least, self.nearest.get(signal.name, least))
+
+
+def _chosen(signal: Signal) -> bool:
+    """Whether its samples are numbers of the log, and not computed of them."""
+    return signal.reduce not in (Reduce.MEAN, Reduce.OUTLINE)
+
+
+class Extraction:
+    """Reads one stream."""
+
+    def __init__(self, stream: Stream, signals: Sequence[Signal]) -> None:
+        self.signals = list(signals)
+        """Those that can be read; one with something wrong is taken out."""
+        self.wrong: dict[str, Diagnostic] = {}
+        self._checks = _CHECKED
+        found = decoder(stream)
+        self._decode: Decode | None = None if isinstance(found, str) else found
+        self._single: frozenset[str] = frozenset()
+        """Signals of 32-bit floats."""
+        if self._decode is not None:
+            self._single = frozenset(s.name for s in signals if is_single(stream, s.path.fields))
+        self._shape = _shape(stream, self._decode)
+        self._sought: tuple[Where, ...] | None = None
+        """What the layouts were made for: less, once a signal was refused."""
+        if isinstance(found, str):
+            for signal in signals:
+                self._refuse(signal, findings.unknown_encoding(signal, found))
+
+    @property
+    def reads(self) -> bool:
+        """Whether anything can be decoded."""
+        return self._decode is not None
+
+    def extract(self, payloads: Payloads) -> Extract:
+        """What the messages hold."""
+        extract = Extract.empty(len(payloads), self.signals, self._single)
+        if self._decode is None:
+            return extract
+        slow: Sequence[int] = range(len(payloads))
+        if self._shape is not None and payloads.sizes.sum() >= _FEW:
+            if not self._placed(self._shape):  # one message tells which signals have no place
+                self._one_by_one(0, bytes(payloads.payload(0)), extract)
+                slow = slow[1:]
+            if self._placed(self._shape):
+                slow = self._at_once(payloads, extract)
+        for row in slow:
+            self._one_by_one(row, bytes(payloads.payload(row)), extract)
+        return extract
+
+    def _refuse(self, signal: Signal, diagnostic: Diagnostic) -> None:
+        self.signals.remove(signal)
+        self.wrong[signal.name] = diagnostic
+
+    # By the official decoder
+
+    def _one_by_one(self, row: int, payload: bytes, extract: Extract) -> None:
+        message = self._message(payload)
+        if message is None:
+            return
+        extract.decoded[row] = True
+        time = stamp(message)
+        if time is not None:
+            extract.stamps[row] = max(-LATEST, min(time, LATEST))
+            extract.stamped[row] = True
+        for signal in tuple(self.signals):
+            try:
+                extract.put(
+                    signal, row, sample(signal, message, single=signal.name in self._single)
+                )
+            except FieldError as error:
+                self._refuse(signal, findings.no_field(signal, error))
+                continue
+            extract.near(signal, nearest_of_one(signal, message))
+
+    def _message(self, payload: bytes) -> object | None:
+        assert self._decode is not None
+        try:
+            return self._decode(payload)
+        except Exception:  # the decoder trusts each byte, and each may be wrong
+            return None
+
+    # By places
+
+    def _placed(self, shape: Shape) -> bool:
+        """Whether all that is asked for has a place; where not, each message has to be seen."""
+        return all(_reads(shape, signal) for signal in self.signals) and all(
+            field is not None and field.type in _SECONDS
+            for field in map(shape.number, _stamp_places(shape))
+        )
+
+    def _at_once(self, payloads: Payloads, extract: Extract) -> Sequence[int]:
+        """Read all messages that fit a layout; gives the rows that are left."""
+        assert self._shape is not None
+        wanted = self._wanted(self._shape)
+        if wanted != self._sought:
+            self._sought, self._layouts = wanted, Layouts(self._shape, wanted)
+        left: list[int] = []
+        for group in self._layouts.groups(payloads):
+            if not self._taken(payloads, group, extract):
+                left.extend(group.rows.tolist())
+        return sorted(left)
+
+    def _wanted(self, shape: Shape) -> tuple[Where, ...]:
+        wanted: dict[Where, None] = {}
+        for signal in self.signals:
+            wanted[signal.path.fields] = None
+            wanted.update({(name,): None for name in siblings(signal)})
+            if shape.has((RANGE_MIN,)):
+                wanted[RANGE_MIN,] = None
+        wanted.update(dict.fromkeys(_stamp_places(shape)))
+        return tuple(wanted)
+
+    def _taken(self, payloads: Payloads, group: Group, extract: Extract) -> bool:
+        """Read the messages of one layout, unless the official decoder reads them otherwise."""
+        if group.layout is None or self._shape is None:
+            return False
+        if group.new and self._checks:
+            self._checks -= 1
+            last = len(group.rows) - 1
+            rows = {0, last // 2, last}
+            if not all(self._agrees(int(group.rows[i]), payloads, group.layout) for i in rows):
+                self._shape = None
+                return False
+        self._fill(payloads, group.rows, group.layout, group.rows, extract)
+        return True
+
+    def _agrees(self, row: int, payloads: Payloads, layout: Layout) -> bool:
+        """Whether both ways read the same of one message."""
+        slow, fast = (Extract.empty(1, self.signals, self._single) for _ in range(2))
+        before = len(self.wrong)
+        self._one_by_one(0, bytes(payloads.payload(row)), slow)
+        if len(self.wrong) != before or not slow.decoded[0]:
+            return False
+        self._fill(payloads, np.array([row]), layout, np.zeros(1, np.int64), fast)
+        return (
+            all(
+                np.array_equal(slow.values[s.name], fast.values[s.name], equal_nan=True)
+                for s in self.signals
+            )
+            and bool(slow.stamped[0] == fast.stamped[0])
+            and bool(slow.stamps[0] == fast.stamps[0])
+            and slow.nearest == fast.nearest
+        )
+
+    def _fill(
+        self, payloads: Payloads, rows: Places, layout: Layout, to: Places, extract: Extract
+    ) -> None:
+        """Put what the messages `rows` hold at the places `to` of the extract."""
+        extract.decoded[to] = True
+        found = layout.found
+        single = {
+            where: payloads.gathered(rows, field.at, field.dtype, None)
+            for where, field in found.items()
+            if field.count is None
+        }
+        for signal in self.signals:
+            beside = {name: _numbers(single[name,]) for name in siblings(signal)}
+            field = found[signal.path.fields]
+            if field.count is None:
+                values = _matrix(single[signal.path.fields])
+                extract.put(signal, to, samples(signal, values, beside))
+            else:
+                extract.put(signal, to, self._reduced(signal, payloads, rows, field, beside))
+            if (RANGE_MIN,) in single and signal.reduce in (Reduce.MIN, Reduce.OUTLINE):
+                extract.near(signal, nearest(signal, _numbers(single[RANGE_MIN,])))
+        places = _stamp_places(self._shape) if self._shape is not None else ()
+        if places:
+            seconds, nanoseconds = (single[place].astype(np.int64) for place in places)
+            extract.stamps[to] = seconds * 10**9 + nanoseconds
+            extract.stamped[to] = True
+
+    def _reduced(
+        self,
+        signal: Signal,
+        payloads: Payloads,
+        rows: Places,
+        field: Found,
+        beside: Mapping[str, Numbers],
+    ) -> Values:
+        """A signal of an array, block by block; shape (rows,)."""
+        values: list[Values] = [np.zeros(0, np.float32)]
+        step = max(1, _BLOCK // max(1, field.count or 0))
+        for first in range(0, len(rows), step):
+            block = slice(first, first + step)
+            taken = payloads.gathered(rows[block], field.at, field.dtype, field.count)
+            some = {name: numbers[block] for name, numbers in beside.items()}
+            values.append(samples(signal, _matrix(taken), some))
+        return np.concatenate(values)
+
+
+def _shape(stream: Stream, decode: Decode | None) -> Shape | None:
+    """How the messages are laid out; None where that is not certain."""
+    found = shape(stream) if decode is not None else None
+    return found if decode and found and trusted(found, decode) else None
+
+
+def _reads(shape: Shape, signal: Signal) -> bool:
+    """Whether the signal's fields are numbers, or arrays where it takes them for arrays."""
+    field, path = shape.number(signal.path.fields), signal.path
+    return (
+        field is not None
+        and field.many == (path.each or path.index is not None)
+        and all(shape.has((name,)) for name in siblings(signal))
+    )
+
+
+def _matrix(numbers: NDArray[np.generic]) -> Values:
+    """One row for each message."""
+    return widest(numbers.reshape(len(numbers), numbers[:1].size))
+
+
+def _numbers(numbers: NDArray[np.generic]) -> Numbers:
+    with np.errstate(invalid="ignore"):
+        return numbers.astype(np.float64)
+
+
+def _stamp_places(shape: Shape) -> tuple[Where, ...]:
+    """Seconds and nanoseconds of `header.stamp`, where the messages have one."""
+    for names in _STAMPS:
+        places = tuple(("header", "stamp", name) for name in names)
+        if all(map(shape.has, places)):
+            return places
+    return ()

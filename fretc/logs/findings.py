@@ -1,0 +1,333 @@
+"""What there is to say about a log: one function for each message (F400 to F418).
+
+`place` is the log itself; what concerns one signal points at its line of the bindings. Times are
+nanoseconds.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Sequence
+
+from fretc.logs.mcap.damage import Damage
+from fretc.logs.messages.decoding import MissingExtra
+from fretc.logs.signals.samples import Gap
+from fretc.logs.signals.signals import FieldError
+from fretc.logs.signals.stamps import STILL
+from fretc.logs.storage.refusals import install
+from fretish.bindings.declarations import Signal, short_type
+from fretish.clock import Clock, TimeSource
+from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity, suggestion
+from fretish.diagnostics.source import Span
+
+_SECOND = 10**9
+_MOST_TOLD = 20
+
+# The whole file
+
+
+def changed(place: Span) -> Diagnostic:
+    """F903: what was read and what was hashed may be different bytes."""
+    return Diagnostic(
+        Code.UNREADABLE,
+        "it was changed while it was read",
+        place,
+        "wait until its recording or its copy is complete",
+    )
+
+
+def empty(place: Span) -> Diagnostic:
+    """No bytes, or no messages."""
+    return Diagnostic(
+        Code.EMPTY_LOG,
+        "the log holds no message",
+        place,
+        "was the recorder stopped at once, or did it subscribe to no topic?",
+    )
+
+
+_PACKED = {
+    b"\x28\xb5\x2f\xfd": ("zstd", "zstd -d"),
+    b"\x04\x22\x4d\x18": ("lz4", "lz4 -d"),
+    b"\x1f\x8b": ("gzip", "gunzip"),
+    b"\xfd7zXZ\x00": ("xz", "unxz"),
+    b"BZh": ("bzip2", "bunzip2"),
+    b"PK\x03\x04": ("zip", "unzip"),
+}
+"""What compressed files begin with, and what unpacks them."""
+
+
+def not_a_log(start: bytes, place: Span) -> Diagnostic:
+    """Another kind of file, told by its first bytes."""
+    for magic, (what, command) in _PACKED.items():
+        if start.startswith(magic):
+            return Diagnostic(
+                Code.NOT_A_LOG,
+                f"it is a whole file compressed with {what}",
+                place,
+                f"unpack it first: `{command} FILE`; MCAP compresses within the file",
+            )
+    return Diagnostic(
+        Code.NOT_A_LOG,
+        "it is not a log: neither MCAP, nor a ROS 1 bag, nor rosbag2's SQLite",
+        place,
+        "name a recording",
+    )
+
+
+def truncated(cut: int, place: Span) -> Diagnostic:
+    """It has no end, and no whole message before byte `cut`."""
+    return Diagnostic(
+        Code.TRUNCATED_LOG,
+        f"the log breaks off after byte {cut}: no message in it is whole",
+        place,
+        "copy the log again from where it was recorded",
+    )
+
+
+def nothing_whole(damage: Damage, place: Span) -> Diagnostic:
+    """There are messages, and none of them is whole."""
+    return Diagnostic(
+        Code.DAMAGED_CHUNK,
+        f"no message of the log can be read: {damage.what}",
+        place,
+        "copy the log again from where it was recorded",
+    )
+
+
+def too_long(length: int, ticks: int, clock: Clock, place: Span) -> Diagnostic:
+    """So many ticks that a time must be wrong."""
+    return Diagnostic(
+        Code.UNREADABLE_LOG,
+        f"the log lasts {_seconds(length)}, which is {ticks} ticks: a message has a wrong time "
+        f"({clock.time})",
+        place,
+        "use another `time` under `[clock]`, or a longer `tick`",
+    )
+
+
+# Damaged places
+
+
+def damaged(damage: Damage, gap: Gap | None, origin: int, place: Span) -> Diagnostic:
+    """One place; the gap that it has left is told in seconds from `origin`."""
+    if damage.code in (Code.TRUNCATED_LOG, Code.REINDEXED) and gap is not None:
+        what = damage.what if damage.at < 0 else f"the log breaks off after byte {damage.at}"
+        return Diagnostic(
+            damage.code,
+            f"{what}: whole messages go {_seconds(gap[0] - origin)} far, and what came then is "
+            "unknown",
+            place,
+            "what it shows up to there counts, and nothing counts as satisfied",
+            Severity.WARNING,
+        )
+    lost = "no message is known to be lost"
+    if gap is not None:
+        start, end = (_seconds(time - origin) for time in gap)
+        lost = f"what was recorded from {start} to {end} counts as unknown"
+    where = f"the log is damaged near byte {damage.at}: " if damage.at >= 0 else ""
+    return Diagnostic(
+        damage.code,
+        f"{where}{damage.what}; {lost}",
+        place,
+        "copy the log again from where it was recorded; nothing counts as shown by a damaged log",
+        Severity.WARNING,
+    )
+
+
+def few(told: list[Diagnostic], place: Span) -> list[Diagnostic]:
+    """Not more than a page of them."""
+    if len(told) <= _MOST_TOLD:
+        return told
+    more = f"the log is damaged in {len(told) - _MOST_TOLD} more places"
+    return [
+        *told[:_MOST_TOLD],
+        Diagnostic(Code.DAMAGED_CHUNK, more, place, told[0].help, Severity.WARNING),
+    ]
+
+
+# One topic
+
+
+def no_message(topic: str, span: Span | None) -> Diagnostic:
+    """F405: the log knows the topic and holds nothing of it."""
+    return Diagnostic(
+        Code.NO_TOPIC,
+        f"the log holds no message of `{topic}`",
+        span,
+        "the topic was recorded, but nothing was published on it",
+    )
+
+
+def no_topic(topic: str, topics: Collection[str], span: Span | None) -> Diagnostic:
+    """F405, with the topics that the log does have."""
+    near = suggestion(topic, topics)
+    listed = ", ".join(sorted(topics)[:8]) + (", ..." if len(topics) > 8 else "")
+    return Diagnostic(
+        Code.NO_TOPIC,
+        f"the topic `{topic}` is not in the log",
+        span,
+        f"did you mean `{near}`?" if near else f"it holds {listed}",
+    )
+
+
+def no_field(signal: Signal, error: FieldError) -> Diagnostic:
+    """The message does not hold the number that the signal asks for."""
+    return Diagnostic(Code.NO_FIELD, f"in `{signal.path.topic}` {error}", signal.span, error.mend)
+
+
+def never_stated(signal: Signal, held: Collection[str]) -> Diagnostic:
+    """The messages may leave out the field that the signal asks for, and all of them do."""
+    name = ".".join(signal.path.fields)
+    known = [path.removesuffix("[:]") for path in held]
+    near = suggestion(name, known)
+    listed = f"they state {', '.join(known[:8])}{', ...' if len(known) > 8 else ''}"
+    return Diagnostic(
+        Code.NO_FIELD,
+        f"no message of `{signal.path.topic}` states a number in `{name}`",
+        signal.span,
+        f"did you mean `{near}`?" if near else listed if known else "they state no number at all",
+    )
+
+
+def wrong_type(signal: Signal, found: str) -> Diagnostic:
+    """The topic is of another type than the signal declares."""
+    return Diagnostic(
+        Code.WRONG_TYPE,
+        f"`{signal.path.topic}` is of type `{short_type(found)}` in the log, "
+        f"not `{short_type(signal.type or '')}`",
+        signal.span,
+        f'write `type = "{short_type(found)}"`, and check that `path` still fits',
+    )
+
+
+def several_types(signal: Signal, types: Sequence[str]) -> Diagnostic:
+    """F421: the topic has messages of more than one type, and the signal names none."""
+    *some, last = [f"`{name}`" if name else "no type" for name in types]
+    return Diagnostic(
+        Code.SEVERAL_TYPES,
+        f"`{signal.path.topic}` has messages of {', '.join(some)} and {last}: "
+        f"`{signal.name}` is read of all of them",
+        signal.span,
+        "a field of the same name may mean something else there; "
+        f'with `type = "{types[0] or types[-1]}"` a log with any other is refused',
+        Severity.WARNING,
+    )
+
+
+def unknown_encoding(signal: Signal, why: str) -> Diagnostic:
+    """No message of the topic can be decoded; or only by a part of fretc that is not installed."""
+    if isinstance(why, MissingExtra):
+        return Diagnostic(
+            Code.MISSING_EXTRA,
+            f"`{signal.path.topic}` cannot be read: {why}",
+            signal.span,
+            install(why.extra),
+        )
+    return Diagnostic(
+        Code.UNKNOWN_ENCODING,
+        f"`{signal.path.topic}` cannot be read: {why}",
+        signal.span,
+        "fretc reads messages of ROS 2 (cdr with ros2msg or ros2idl), ROS 1 (ros1 with ros1msg), "
+        "JSON (with or without jsonschema) and Protobuf",
+    )
+
+
+def bad_messages(signal: Signal, bad: int, count: int) -> Diagnostic:
+    """Single messages of the topic cannot be decoded."""
+    return Diagnostic(
+        Code.BAD_MESSAGE,
+        f"{bad} of {count} messages of `{signal.path.topic}` cannot be decoded: their samples are "
+        "unknown",
+        signal.span,
+        "the recorder and the publisher may differ in the type's definition",
+    )
+
+
+def out_of_order(signal: Signal, late: int, count: int) -> Diagnostic:
+    """Messages of the topic are earlier than one before them."""
+    return Diagnostic(
+        Code.OUT_OF_ORDER,
+        f"{late} of {count} messages of `{signal.path.topic}` are earlier than one before them: "
+        "they are sorted by time",
+        signal.span,
+        "check the clocks of publisher and recorder",
+        Severity.WARNING,
+    )
+
+
+def unstamped(signal: Signal, shift: int) -> Diagnostic:
+    """The topic has no stamps, and those of others are `shift` nanoseconds from log times."""
+    message = f"the messages of `{signal.path.topic}` have no header.stamp: their log_time is used"
+    if shift < _SECOND:
+        return Diagnostic(Code.NO_FIELD, message, signal.span, severity=Severity.NOTE)
+    return Diagnostic(
+        Code.NO_FIELD,
+        f"{message}, and that is {_seconds(shift)} away from the stamps of the other topics",
+        signal.span,
+        'two clocks are mixed: use `time = "log_time"` under `[clock]`',
+        Severity.WARNING,
+    )
+
+
+def zero_stamps(
+    topic: str, place: Span | None, zero: int, count: int, time: TimeSource
+) -> Diagnostic:
+    """F416: the publisher, or the recorder, never set the time of some messages."""
+    return Diagnostic(
+        Code.ZERO_STAMP,
+        f"{zero} of {count} messages of `{topic}` have a zero for a time: their samples are "
+        "unknown",
+        place,
+        _other_time(time),
+        Severity.WARNING,
+    )
+
+
+def still_clock(
+    topic: str, place: Span | None, same: int, count: int, time: TimeSource
+) -> Diagnostic:
+    """F420: many messages in a row have one time."""
+    return Diagnostic(
+        Code.STILL_CLOCK,
+        f"the clock of `{topic}` stands still: {same} of {count} messages have the {time} of "
+        f"{STILL - 1} or more beside them",
+        place,
+        f"{_other_time(time)}; what happened between them is taken for one instant",
+        Severity.WARNING,
+    )
+
+
+def _other_time(time: TimeSource) -> str:
+    if time is TimeSource.LOG_TIME:
+        return 'check the clock of the recorder, or use `time = "header.stamp"` under `[clock]`'
+    return 'let the publisher set it, or use `time = "log_time"` under `[clock]`'
+
+
+def clock_jumps(signal: Signal, jumps: int, largest: int) -> Diagnostic:
+    """F417: the declared time and the log time part by more than a second between two messages."""
+    times = "once" if jumps == 1 else f"{jumps} times, at most"
+    return Diagnostic(
+        Code.CLOCK_JUMP,
+        f"the clock of `{signal.path.topic}` jumps against log_time {times} by {_seconds(largest)}",
+        signal.span,
+        "was a clock set, a simulation begun anew, or were messages held back? "
+        "durations around it are not what they seem",
+        Severity.WARNING,
+    )
+
+
+def mixed_clocks(signal: Signal, other: str, apart: int) -> Diagnostic:
+    """F418: against log times, the stamps of two topics are more than a second apart."""
+    return Diagnostic(
+        Code.MIXED_CLOCKS,
+        f"the stamps of `{signal.path.topic}` are {_seconds(abs(apart))} "
+        f"{'ahead of' if apart > 0 else 'behind'} those of `{other}`, by the times at which both "
+        "were recorded",
+        signal.span,
+        'two clocks are mixed: use `time = "log_time"` under `[clock]`, or set the clocks',
+        Severity.WARNING,
+    )
+
+
+def _seconds(length: int) -> str:
+    return f"{length / _SECOND:.3f} s"

@@ -1,0 +1,28 @@
+"""Whether two logs are of one run: what their messages say, whatever file they are in."""
+
+from __future__ import annotations
+
+import hashlib
+
+import numpy as np
+
+from fretc.logs.signals.samples import Recording
+
+
+def fingerprint(recording: Recording) -> str | None:
+    """SHA-256 of the times and values of all signals that were read; None where there are none.
+
+    A log that is written again (by another tool, with other metadata, chunks or compression) has
+    the same. Unknown values are all alike, and so are the kinds of numbers.
+    """
+    if not any(len(samples.times) for samples in recording.samples.values()):
+        return None
+    digest = hashlib.sha256()
+    for name, samples in sorted(recording.samples.items()):
+        values = samples.values.astype(np.float64)
+        values[np.isnan(values)] = np.nan
+        digest.update(f"{name} {len(values)} {samples.scale}\n".encode())
+        digest.update(samples.times.astype("<i8").tobytes())
+        digest.update(values.astype("<f8").tobytes())
+    digest.update(np.asarray(recording.ticks).astype("<i8").tobytes())
+    return digest.hexdigest()

@@ -1,0 +1,1 @@
+"""MCAP as bytes: records, chunks, index, damage."""

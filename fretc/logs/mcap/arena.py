@@ -1,0 +1,60 @@
+"""Memory that the beginnings of chunks are unpacked into, again and again.
+
+New memory for each chunk costs more than unpacking it. Codecs work in blocks, so that the beginning
+of a chunk costs as much as its blocks: 128 KiB of zstd, 64 KiB of lz4.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from fretc.logs.mcap.container import BrokenError, unpack_into
+from fretc.logs.mcap.payloads import Bytes
+
+SIZE = 2**22
+"""Bytes that are filled before they are read."""
+_CHUNK = 2**20
+"""Bytes of the chunk that fills it; more are made room for when they come."""
+SPARE = 64
+"""Bytes that stay free behind what is unpacked: more than the head of a message."""
+
+
+class Arena:
+    """Bytes of chunks, one behind the other."""
+
+    def __init__(self) -> None:
+        self.data: Bytes = np.zeros(SIZE + _CHUNK + SPARE, np.uint8)
+        self.used = 0
+
+    def clear(self) -> None:
+        """What was unpacked is overwritten from now on."""
+        self.used = 0
+
+    def target(self, size: int) -> memoryview:
+        """So many bytes behind those in use."""
+        needed = self.used + size + SPARE
+        if needed > len(self.data):
+            larger = np.zeros(needed, np.uint8)
+            larger[: self.used] = self.data[: self.used]
+            self.data = larger
+        return self.data.data[self.used : self.used + size]
+
+    def unpack(self, compression: str, packed: memoryview, size: int, *, whole: bool) -> bool:
+        """Put the first `size` bytes of a chunk behind those in use, which they then are not yet.
+
+        Args:
+            compression: `lz4` or `zstd`.
+            packed: the chunk's data, or its beginning.
+            size: bytes to unpack.
+            whole: whether these are all that the data holds.
+
+        Returns:
+            False where the data is too short for it.
+
+        Raises:
+            BrokenError: the data is no such data, or holds more than it should.
+        """
+        got = unpack_into(compression, packed, self.target(size), whole=whole)
+        if got > size:
+            raise BrokenError("a chunk has another size than it states")
+        return got == size

@@ -1,0 +1,109 @@
+"""The messages of one MCAP file: by its index, or record by record.
+
+By its index only what is wanted is read, where the index explains the whole file. In any other file
+each record is looked at: that names what is damaged, and when.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import zlib
+from dataclasses import dataclass, replace
+from io import BufferedReader
+
+from fretc.logs.mcap.container import BLOCK, HEAD, BrokenError, summary
+from fretc.logs.mcap.damage import Damage
+from fretc.logs.mcap.index import Index, indexed
+from fretc.logs.mcap.messages import Sink
+from fretc.logs.mcap.projection import Projection
+from fretc.logs.mcap.walk import Walk
+from fretc.logs.signals.integrity import Checked, Integrity
+from fretc.logs.signals.samples import Gap
+
+
+@dataclass(frozen=True, slots=True)
+class Contents:
+    """What was found in one file, apart from its messages."""
+
+    damages: tuple[tuple[Damage, Gap | None], ...]
+    """Damaged places, with the time that each has cost; None where it cost nothing."""
+    span: Gap | None
+    """The earliest and the latest whole message; None where there is none."""
+    cut: int | None
+    """Up to which byte there are whole records, in a file without an end."""
+    checked: Checked
+    unprotected: bool = False
+    """Whether messages were read that no CRC covers."""
+    summary_sha256: str = ""
+    """Of what tells one log from another where it is not hashed (`_identity`)."""
+
+
+def contents(stream: BufferedReader, size: int, sink: Sink, integrity: Integrity) -> Contents:
+    """Read a file.
+
+    Args:
+        stream: an MCAP file, which can be sought in.
+        size: its bytes.
+        sink: takes the messages.
+        integrity: whether the index may be trusted.
+
+    Raises:
+        BrokenError: the file is not as its index says. The sink has got what it should not have:
+            read again, with another one and `Integrity.FULL`.
+    """
+    if integrity is not Integrity.FULL:
+        index = indexed(stream, size, summary(stream, size))
+        if index is not None:
+            return _by_index(stream, index, sink, integrity)
+    walk = Walk(stream, size, sink)
+    walk.run()
+    if walk.damages.span is None:
+        kept = tuple((damage, None) for damage in walk.damages.kept)
+        return Contents(kept, None, walk.cut, walk.checked)
+    damages, span = tuple(walk.settled()), walk.damages.span
+    return Contents(damages, span, walk.cut, walk.checked, walk.unprotected)
+
+
+def _by_index(stream: BufferedReader, index: Index, sink: Sink, integrity: Integrity) -> Contents:
+    projection = Projection(stream, index, sink)
+    projection.run()
+    known = index.data_crc if integrity is Integrity.HASH else 0
+    if known and _crc32(stream, index.data_end) != known:
+        raise BrokenError("its data has another CRC than it states")
+    unprotected = projection.checked.without_crc > 0 and not known
+    statistics = index.statistics
+    span = statistics.message_start_time, statistics.message_end_time
+    if integrity is Integrity.HASH:
+        return Contents((), span, None, projection.checked, unprotected)
+    checked = replace(projection.checked, hashed=False)
+    return Contents((), span, None, checked, unprotected, _identity(stream, index))
+
+
+def _identity(stream: BufferedReader, index: Index) -> str:
+    """SHA-256 of all that follows the data, and of the CRC that each chunk states.
+
+    A summary says where messages are, and not what they hold: with values of the same length it is
+    the same for another log. What the CRCs say covers the messages.
+    """
+    digest = hashlib.sha256()
+    for chunk in index.chunks:
+        stream.seek(chunk.chunk_start_offset + HEAD.size + _CHUNK_CRC)
+        digest.update(stream.read(4))
+    stream.seek(index.data_end)  # the CRC of the data, if one is stated, is what follows first
+    while block := stream.read(BLOCK):
+        digest.update(block)
+    return digest.hexdigest()
+
+
+_CHUNK_CRC = 24
+"""Bytes before it in a chunk: two times and a size of eight bytes each."""
+
+
+def _crc32(stream: BufferedReader, size: int) -> int:
+    """The CRC of the first `size` bytes."""
+    stream.seek(0)
+    crc = 0
+    while size > 0 and (block := stream.read(min(size, BLOCK))):
+        crc = zlib.crc32(block, crc)
+        size -= len(block)
+    return crc

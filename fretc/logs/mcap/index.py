@@ -1,0 +1,150 @@
+"""Where the messages of a log are, by its own index, where that explains every byte of the file.
+
+What the index says is taken for true only if the file leaves no doubt: one part behind the other,
+each of a kind that is known, and as many chunks and messages as are stated. In any other log each
+record has to be looked at (`fretc.logs.mcap.walk`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from io import BufferedReader
+
+from mcap.opcode import Opcode
+from mcap.records import Channel, ChunkIndex, DataEnd, Schema, Statistics
+
+from fretc.logs.mcap.container import (
+    HEAD,
+    LARGEST,
+    MAGIC,
+    BrokenError,
+    Stream,
+    Summary,
+    parse,
+)
+
+_PASSED_BY = frozenset({Opcode.HEADER, Opcode.ATTACHMENT, Opcode.METADATA})
+
+
+@dataclass(frozen=True, slots=True)
+class Index:
+    """A log whose summary tells where everything is."""
+
+    chunks: tuple[ChunkIndex, ...]
+    """In the order of the file."""
+    streams: dict[int, Stream]
+    """By the number of the channel."""
+    statistics: Statistics
+    data_end: int
+    """The byte up to which the CRC of the data goes."""
+    data_crc: int
+    """0: none is stated."""
+    summary: int
+    """The byte at which the summary begins."""
+
+
+def indexed(stream: BufferedReader, size: int, found: Summary | None) -> Index | None:
+    """The index of a file of `size` bytes; None where anything about it is unusual.
+
+    Args:
+        stream: the file.
+        size: its bytes.
+        found: what its end states.
+    """
+    if found is None or not found.sound or found.after != size or found.statistics is None:
+        return None
+    statistics, chunks = found.statistics, tuple(found.chunks[at] for at in sorted(found.chunks))
+    if not chunks:
+        return None
+    streams = {
+        id: Stream(channel, found.schemas.get(channel.schema_id))
+        for id, channel in found.channels.items()
+    }
+    counts = statistics.channel_message_counts
+    if (
+        statistics.chunk_count != len(chunks)
+        or not 0 < statistics.message_count == sum(counts.values())
+        or not streams.keys() >= {id for id, count in counts.items() if count}
+        or any(one.schema is None and one.channel.schema_id for one in streams.values())
+        or not all(map(_is_usual, chunks))
+        or statistics.message_start_time != min(chunk.message_start_time for chunk in chunks)
+        or statistics.message_end_time != max(chunk.message_end_time for chunk in chunks)
+    ):
+        return None
+    try:
+        end = _between(stream, found, chunks)
+    except BrokenError:
+        return None
+    return Index(chunks, streams, statistics, *end, found.end) if end is not None else None
+
+
+def _is_usual(chunk: ChunkIndex) -> bool:
+    """Whether it can be read by its index: it tells where its messages are."""
+    first, last = chunk.chunk_start_offset, chunk.chunk_start_offset + chunk.chunk_length
+    return (
+        bool(chunk.message_index_offsets)
+        and chunk.uncompressed_size <= LARGEST
+        and chunk.compression in ("", "lz4", "zstd")
+        and first + chunk.compressed_size < last
+        and all(
+            last <= at < last + chunk.message_index_length
+            for at in chunk.message_index_offsets.values()
+        )
+    )
+
+
+def _between(
+    stream: BufferedReader, found: Summary, chunks: tuple[ChunkIndex, ...]
+) -> tuple[int, int] | None:
+    """Where the data ends, and its CRC; None where something unusual is between the chunks."""
+    at, end = len(MAGIC), None
+    for chunk in (*chunks, None):
+        wall = found.end if chunk is None else chunk.chunk_start_offset
+        if at > wall or end is not None:
+            return None
+        for place, opcode, content in _records(stream, at, wall):
+            if end is not None:
+                return None
+            if opcode == Opcode.DATA_END:
+                end = place, parse(DataEnd.read, content).data_section_crc
+            elif opcode not in _PASSED_BY and not is_known(
+                opcode, content, found.schemas, found.channels
+            ):
+                return None
+        if chunk is not None:
+            at = wall + chunk.chunk_length + chunk.message_index_length
+    return end
+
+
+def _records(stream: BufferedReader, at: int, wall: int) -> Iterator[tuple[int, int, bytes]]:
+    """Place, kind and content of what stands there; of large records no content.
+
+    Raises:
+        BrokenError: the last one goes on beyond the wall.
+    """
+    while at < wall:
+        stream.seek(at)
+        head = stream.read(HEAD.size)
+        opcode, length = HEAD.unpack(head) if len(head) == HEAD.size else (0, wall)
+        if at + HEAD.size + length > wall:
+            raise BrokenError("a record is cut off")
+        yield at, opcode, b"" if opcode in _PASSED_BY else stream.read(length)
+        at += HEAD.size + length
+
+
+def is_known(
+    opcode: int, content: bytes, schemas: Mapping[int, Schema], channels: Mapping[int, Channel]
+) -> bool:
+    """Whether a record declares a topic or its messages, and as the summary does.
+
+    Raises:
+        BrokenError: it cannot be read.
+    """
+    if opcode == Opcode.SCHEMA:
+        schema = parse(Schema.read, content)
+        return bool(schemas.get(schema.id) == schema)
+    if opcode == Opcode.CHANNEL:
+        channel = parse(Channel.read, content)
+        return bool(channels.get(channel.id) == channel)
+    return False

@@ -1,0 +1,372 @@
+"""The messages of some topics of a log, by its index: nothing else is unpacked.
+
+A chunk is unpacked up to the last message that is wanted, where that saves much; otherwise it is
+unpacked whole, and its CRC is checked. What the index says of a message is held against the
+message itself, and the records of a chunk without CRC have to follow each other as its index says.
+Whatever does not fit is a `BrokenError`: then each record has to be looked at.
+
+Source: MCAP specification, Message Index (op=0x07), Chunk Index (op=0x08).
+"""
+
+from __future__ import annotations
+
+import zlib
+from collections import Counter, defaultdict
+from collections.abc import Container
+from dataclasses import dataclass, field
+from io import BufferedReader
+
+import numpy as np
+from mcap.opcode import Opcode
+from mcap.records import ChunkIndex
+from numpy.typing import NDArray
+
+from fretc.logs.mcap.arena import SIZE, Arena
+from fretc.logs.mcap.container import (
+    CHUNK,
+    ENTRY,
+    HEAD,
+    INDEX,
+    BrokenError,
+    Stream,
+    is_absurd,
+)
+from fretc.logs.mcap.damage import LATEST
+from fretc.logs.mcap.index import Index, is_known
+from fretc.logs.mcap.messages import Messages, Sink
+from fretc.logs.mcap.payloads import Places
+from fretc.logs.signals.integrity import Checked
+
+_SLACK = 4096
+"""Bytes that the last message of a chunk is taken to have until a longer one was seen."""
+_FEW = 32
+"""Numbers that Python compares sooner than NumPy."""
+_BLOCK = 2**17
+"""Bytes that a codec unpacks at once."""
+
+
+_NOWHERE: Places = np.zeros(0, np.int64)
+Entries = NDArray[np.uint64]
+"""Of a message index: time, place, time, place, ..."""
+
+
+@dataclass(slots=True)
+class _Found:
+    """Messages of one channel in the arena."""
+
+    entries: list[Entries] = field(default_factory=list)
+    """Of each chunk."""
+    limits: list[tuple[int, int, int, int, int]] = field(default_factory=list)
+    """Of each chunk: how many messages, where it begins and ends, and between which times."""
+
+
+class Projection:
+    """One way through a log; the messages of the wanted topics go to the sink."""
+
+    def __init__(self, stream: BufferedReader, index: Index, sink: Sink) -> None:
+        self._stream, self._index, self._sink = stream, index, sink
+        streams = index.streams
+        self._wanted = {id for id, one in streams.items() if sink.wants(one.channel.topic)}
+        self._arena = Arena()
+        self._packed = bytearray(2**20)
+        self._longest: Counter[int] = Counter(dict.fromkeys(self._wanted, _SLACK))
+        self._found: defaultdict[int, _Found] = defaultdict(_Found)
+        self._counts: Counter[int] = Counter()
+        self._unpacked = self._crc_checked = self._without_crc = 0
+        some = [one.schema for one in streams.values() if one.schema is not None]
+        self._schemas = {schema.id: schema for schema in some}
+        self._channels = {id: one.channel for id, one in streams.items()}
+        self._known: set[tuple[int, bytes]] = set()
+        """Records in chunks that declare what the summary does."""
+        self._met: set[int] = set()
+        """Channels of which a message was found."""
+
+    @property
+    def checked(self) -> Checked:
+        """What was looked at, so far."""
+        chunks = len(self._index.chunks)
+        return Checked(
+            by_index=True,
+            chunks=chunks,
+            crc_checked=self._crc_checked,
+            without_crc=self._without_crc,
+            skipped=chunks - self._unpacked,
+        )
+
+    def run(self) -> None:
+        """Read all messages.
+
+        Raises:
+            BrokenError: something in the file is not as its index says.
+        """
+        for stream in self._index.streams.values():
+            self._sink.declare(stream)
+        for chunk in self._index.chunks:
+            if not self._wanted.isdisjoint(chunk.message_index_offsets):
+                self._chunk(chunk)
+                if self._arena.used >= SIZE:
+                    self._hand_on()
+        self._hand_on()
+        stated = self._index.statistics.channel_message_counts
+        for id, stream in self._index.streams.items():
+            if id not in self._wanted:
+                self._sink.count(stream, stated.get(id, 0))
+            elif self._counts[id] != stated.get(id, 0):
+                raise BrokenError("a topic holds another number of messages than is stated")
+
+    # One chunk
+
+    def _chunk(self, chunk: ChunkIndex) -> None:
+        entries = self._entries(chunk, self._wanted)
+        if not entries:
+            return
+        crc = self._head(chunk)
+        size, base = chunk.uncompressed_size, self._arena.used
+        last, final = max((last, id) for id, _, last in entries)
+        places = _NOWHERE if crc else self._places(chunk)
+        needed = last + HEAD.size + self._longest[final]
+        while True:
+            whole = needed > size // 2
+            needed = size if whole else needed
+            self._unpack(chunk, needed, whole=whole)
+            end = self._end(final, base, last, needed)
+            if end <= needed and not crc:
+                wall = int(min(places[places > last], default=size))
+                end = end if end == wall else max(end, wall)
+            if end <= needed:
+                break
+            if end > size:
+                raise BrokenError("a message is cut off")
+            needed = end
+        if whole and crc:
+            if zlib.crc32(self._arena.target(needed)) != crc:
+                raise BrokenError("a chunk has another CRC than it states")
+            self._crc_checked += 1
+        self._without_crc += not crc
+        self._unpacked += 1
+        if crc:
+            firsts = [int(some[1::2].min()) for id, some, _ in entries if id not in self._met]
+            self._met.update(id for id, _, _ in entries)
+            self._declared(base, needed, max(firsts, default=0))
+        else:
+            self._tiled(base, needed, size, places)
+        span = chunk.message_start_time, chunk.message_end_time
+        for id, some, _ in entries:
+            found = self._found[id]
+            found.entries.append(some)
+            found.limits.append((len(some) // 2, base, base + needed, *span))
+        self._arena.used += needed
+
+    def _declared(self, base: int, needed: int, until: int) -> None:
+        """Hold what a chunk declares against the summary: at its beginning, and `until` a place.
+
+        A log that was merged from others may call two topics by the same number.
+        """
+        data, at, end = self._arena.data.data, base, base + needed
+        while at + HEAD.size <= end:
+            opcode, length = HEAD.unpack_from(data, at)
+            start, at = at + HEAD.size, at + HEAD.size + length
+            if opcode == Opcode.MESSAGE:
+                if at > base + until:
+                    return
+            elif at > end:
+                return
+            else:
+                self._as_declared(opcode, bytes(data[start:at]))
+
+    def _as_declared(self, opcode: int, content: bytes) -> None:
+        """Hold a record that declares something against the summary."""
+        if (opcode, content) not in self._known:
+            if not is_known(opcode, content, self._schemas, self._channels):
+                raise BrokenError("a chunk declares what its summary does not")
+            self._known.add((opcode, content))
+
+    def _places(self, chunk: ChunkIndex) -> Places:
+        """Where the messages of a chunk begin, by its index, in the order of the file."""
+        found = self._entries(chunk, chunk.message_index_offsets.keys())
+        return np.sort(np.concatenate([some[1::2] for _, some, _ in found]).astype(np.int64))
+
+    def _tiled(self, base: int, needed: int, size: int, places: Places) -> None:
+        """Hold the records of a chunk that no CRC protects against its index, as far as unpacked.
+
+        Where one message ends the next one begins, but for definitions between them.
+
+        Args:
+            base: where the chunk stands in the arena.
+            needed: how much of it is there.
+            size: its size.
+            places: where its messages begin.
+        """
+        there = places[places + HEAD.size <= needed]
+        data = self._arena.data
+        lengths = np.ndarray((len(data) - 8,), "<u8", data.data, 1, (1,))[there + base]
+        if (data[there + base] != Opcode.MESSAGE).any() or (lengths > size).any():
+            raise BrokenError("the index of a chunk names what is no message")
+        ends = np.append(0, there + HEAD.size + lengths.astype(np.int64))
+        walls = np.append(places, size)[: len(ends)]
+        for row in np.flatnonzero((ends != walls) & (walls <= needed)).tolist():
+            self._between(base + int(ends[row]), base + int(walls[row]))
+
+    def _between(self, at: int, wall: int) -> None:
+        """What stands between two messages, in the arena: definitions, and nothing else."""
+        data = self._arena.data.data
+        while at != wall:
+            opcode, length = HEAD.unpack_from(data, at) if at + HEAD.size <= wall else (0, 0)
+            start, at = at + HEAD.size, at + HEAD.size + length
+            if at > wall:
+                raise BrokenError("the records of a chunk are not where its index says")
+            self._as_declared(opcode, bytes(data[start:at]))
+
+    def _entries(self, chunk: ChunkIndex, ids: Container[int]) -> list[tuple[int, Entries, int]]:
+        """Of each of the channels in the chunk: its number, its index, and its last place."""
+        begin = chunk.chunk_start_offset + chunk.chunk_length
+        self._stream.seek(begin)
+        data = self._stream.read(chunk.message_index_length)
+        entries = []
+        for id, place in chunk.message_index_offsets.items():
+            if id not in ids:
+                continue
+            at = place - begin
+            if at + HEAD.size + INDEX.size > len(data):
+                raise BrokenError("a record is cut off")
+            opcode, length = HEAD.unpack_from(data, at)
+            channel, size = INDEX.unpack_from(data, at + HEAD.size)
+            start = at + HEAD.size + INDEX.size
+            if (opcode, channel, size % ENTRY.itemsize) != (Opcode.MESSAGE_INDEX, id, 0):
+                raise BrokenError("the index of a chunk is not there")
+            if INDEX.size + size > length or start + size > len(data):
+                raise BrokenError("a record is cut off")
+            if size:
+                some = np.frombuffer(data, "<u8", size // 8, start)
+                places = some[1::2]
+                last = max(places.tolist()) if len(places) < _FEW else int(places.max())
+                if last >= chunk.uncompressed_size:
+                    raise BrokenError("the index of a chunk names a place outside of it")
+                entries.append((id, some, last))
+        return entries
+
+    def _head(self, chunk: ChunkIndex) -> int:
+        """The CRC that a chunk states; all else that it states is in its index too."""
+        self._stream.seek(chunk.chunk_start_offset)
+        compression = chunk.compression.encode()
+        size = HEAD.size + CHUNK.size + len(compression) + 8
+        head = self._stream.read(size)
+        if len(head) < size:
+            raise BrokenError("a record is cut off")
+        start, end, unpacked, crc, length = CHUNK.unpack_from(head, HEAD.size)
+        stated = (*HEAD.unpack_from(head), start, end, unpacked, length)
+        if stated != (
+            Opcode.CHUNK,
+            chunk.chunk_length - HEAD.size,
+            chunk.message_start_time,
+            chunk.message_end_time,
+            chunk.uncompressed_size,
+            len(compression),
+        ):
+            raise BrokenError("a chunk is not what its index says")
+        tail = compression + chunk.compressed_size.to_bytes(8, "little")
+        if head[-len(tail) :] != tail or chunk.chunk_length < size + chunk.compressed_size:
+            raise BrokenError("a chunk is not what its index says")
+        return int(crc)
+
+    def _unpack(self, chunk: ChunkIndex, size: int, *, whole: bool) -> None:
+        """Put the first `size` bytes of a chunk behind those in use."""
+        packed = chunk.compressed_size
+        at = chunk.chunk_start_offset + HEAD.size + CHUNK.size + len(chunk.compression) + 8
+        if not chunk.compression:
+            if packed != chunk.uncompressed_size:
+                raise BrokenError("a chunk has another size than it states")
+            self._fill(at, self._arena.target(size))
+            return
+        if is_absurd(chunk.uncompressed_size, packed):
+            raise BrokenError("a chunk states an absurd size")
+        for length in (packed,) if whole else (_share(chunk, size), packed):
+            if length > len(self._packed):
+                self._packed = bytearray(length)
+            some = memoryview(self._packed)[:length]
+            self._fill(at, some)
+            if self._arena.unpack(chunk.compression, some, size, whole=whole):
+                return
+        raise BrokenError("a chunk has another size than it states")
+
+    def _fill(self, at: int, target: memoryview) -> None:
+        self._stream.seek(at)
+        if self._stream.readinto(target) != len(target):
+            raise BrokenError("a chunk is cut off")
+
+    def _end(self, id: int, base: int, last: int, needed: int) -> int:
+        """Where in its chunk the last message of a channel ends, as far as can be seen."""
+        content = last + HEAD.size
+        if content > needed:
+            return content
+        _, length = HEAD.unpack_from(self._arena.data.data, base + last)
+        self._longest[id] = max(self._longest[id], min(length, SIZE))
+        return content + int(length)
+
+    # Many chunks
+
+    def _hand_on(self) -> None:
+        """Give the messages in the arena to the sink, topic by topic."""
+        topics: defaultdict[str, list[int]] = defaultdict(list)
+        for id in self._found:
+            topics[self._index.streams[id].channel.topic].append(id)
+        for ids in topics.values():
+            parts = [(self._index.streams[id], self._messages(id)) for id in ids]
+            for stream, messages in parts if len(parts) == 1 else _by_turns(parts):
+                self._sink.add_all(stream, messages)
+        self._found.clear()
+        self._arena.clear()
+
+    def _messages(self, id: int) -> Messages:
+        """Those of one channel, in the order of the file."""
+        found = self._found[id]
+        entries = np.concatenate(found.entries)
+        counts, *of_chunks = np.array(found.limits, np.uint64).T
+        bases, limits, first, last = (
+            np.repeat(some, counts.astype(np.int64)) for some in of_chunks
+        )
+        times, places = entries[::2], (entries[1::2] + bases).astype(np.int64)
+        if (places[1:] < places[:-1]).any():  # some writers sort the index by time
+            order = np.argsort(places)
+            places, times = places[order], times[order]
+            limits, first, last = limits[order], first[order], last[order]
+        data = self._arena.data
+        lengths = np.ndarray((len(data) - 8,), "<u8", data.data, 1, (1,))[places]
+        contents = places + HEAD.size
+        if (
+            (data[places] != Opcode.MESSAGE).any()
+            or (places[1:] == places[:-1]).any()
+            or (lengths > len(data)).any()
+            or (contents.astype(np.uint64) + lengths > limits).any()
+            or (lengths < Messages.HEAD).any()
+        ):
+            raise BrokenError("the index of a chunk names what is no message")
+        messages = Messages.at(data, contents, contents + lengths.astype(np.int64))
+        if (
+            (messages.channels != id).any()
+            or (messages.logs != times).any()
+            or ((times < first) | (times > last) | (times >= LATEST)).any()
+        ):
+            raise BrokenError("the index of a chunk names other messages than are in it")
+        self._counts[id] += len(messages)
+        return messages
+
+
+def _share(chunk: ChunkIndex, size: int) -> int:
+    """How many bytes of a chunk's data its first `size` bytes need at most, most likely."""
+    blocks = -(-size // _BLOCK) * _BLOCK
+    likely = int(blocks * chunk.compressed_size / chunk.uncompressed_size * 1.3) + 2**14
+    return min(likely, chunk.compressed_size)
+
+
+def _by_turns(parts: list[tuple[Stream, Messages]]) -> list[tuple[Stream, Messages]]:
+    """Messages of several channels of one topic: those in a row together, in the file's order."""
+    owners = np.concatenate([np.full(len(some), i) for i, (_, some) in enumerate(parts)])
+    inner = np.concatenate([np.arange(len(some)) for _, some in parts])
+    order = np.argsort(np.concatenate([some.starts for _, some in parts]))
+    owners, inner = owners[order], inner[order]
+    cuts = np.flatnonzero(np.diff(owners)) + 1
+    return [
+        (parts[int(owner[0])][0], parts[int(owner[0])][1].chosen(rows))
+        for owner, rows in zip(np.split(owners, cuts), np.split(inner, cuts), strict=True)
+    ]

@@ -1,0 +1,1 @@
+"""Payloads decoded: CDR, ROS 1, JSON, Protobuf."""

@@ -1,0 +1,250 @@
+"""Payloads decoded: messages of ROS 2 (cdr with ros2msg or ros2idl), of ROS 1, JSON and Protobuf.
+
+A message definition may be any text, and a payload any bytes.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Sequence
+from contextlib import redirect_stderr, redirect_stdout
+from functools import lru_cache
+from io import StringIO
+
+from mcap.records import Schema
+
+from fretc.logs.mcap.container import Stream
+from fretc.logs.messages import idl, protobuf
+from fretc.logs.messages import json_messages as jsontext
+from fretc.logs.messages.definitions import TooLargeError, types
+from fretc.logs.messages.layouts import Shape
+from fretc.logs.signals.signals import Sparse, fields, stated_field
+from fretish.bindings.declarations import short_type
+
+Decode = Callable[[bytes], object]
+"""From a payload to an object with the message's fields; it raises whatever it likes."""
+
+_STAMPS = (("sec", "nanosec"), ("secs", "nsecs"))
+"""Names of the fields of a stamp, in ROS 2 and in ROS 1."""
+_SPARSE_STAMPS = (("seconds", "nanos"), ("sec", "nsec"))
+"""Those of google.protobuf.Timestamp, and of Foxglove's JSON and Gazebo's messages."""
+_LAID_OUT = ("ros1msg", "ros2msg", "ros2idl")
+_EXTRAS = {"protobuf": ("mcap-protobuf-support", "protobuf"), "cdr": ("rosbags", "bags")}
+"""What decodes an encoding, and the extra that installs it."""
+
+_NAME = r"[A-Za-z][A-Za-z0-9_]*"
+_ROS1_TYPE = re.compile(rf"{_NAME}/{_NAME}")
+_FIELD = re.compile(rf"{_NAME}(/{_NAME})?(\[[0-9]*\])? {_NAME}")
+_CONSTANT = re.compile(rf"{_NAME} [^=]*=")
+_NEXT_TYPE = re.compile(rf"MSG: {_NAME}/{_NAME}")
+_SEPARATOR = re.compile(r"={3,}")
+
+
+class MissingExtra(str):
+    """Why nothing decodes the messages of a stream: a part of fretc is not installed."""
+
+    __slots__ = ("extra",)
+
+    def __new__(cls, what: str, extra: str) -> MissingExtra:
+        """`what` is what is missing."""
+        text = super().__new__(cls, f"that needs `{what}`")
+        text.extra = extra
+        return text
+
+    extra: str
+    """By which name pip installs it."""
+
+
+def decoder(stream: Stream) -> Decode | str:
+    """What decodes the messages of a stream, or why nothing does."""
+    encoding, schema = stream.channel.message_encoding, stream.schema
+    if schema is None and encoding != "json":
+        return "its messages have no definition"
+    try:
+        match encoding, schema.encoding if schema is not None else "":
+            case "json", "jsonschema" | "":
+                jsontext.stated(schema.data if schema is not None else b"")
+                return jsontext.decode
+            case "protobuf", "protobuf":
+                return protobuf.decoder(stream)
+            case "cdr", "ros2idl":
+                decode = idl.decoder(stream)
+                return lambda payload: decode(_plain(payload))
+            case "cdr", "ros2msg":
+                assert schema is not None
+                return _ros2(schema.name, schema.data)
+            case "ros1", "ros1msg":
+                assert schema is not None
+                return _ros1(schema.name, schema.data)
+            case _, defined:
+                return f"its messages are encoded as `{encoding}`, defined in `{defined}`"
+    except ModuleNotFoundError:
+        what, extra = _EXTRAS[encoding]
+        return MissingExtra(what, extra)
+    except Exception:  # the parsers trust the definition
+        return "the definition of its messages cannot be read"
+
+
+def shape(stream: Stream) -> Shape | None:
+    """How the messages of a stream are laid out; None where only its decoder knows."""
+    schema = stream.schema
+    if schema is None or schema.encoding not in _LAID_OUT:
+        return None
+    return _shape(schema.encoding, schema.name, schema.data)
+
+
+def is_single(stream: Stream, where: Sequence[str]) -> bool:
+    """Whether the numbers at that place of each message are 32-bit floats.
+
+    Args:
+        stream: of messages that can be decoded.
+        where: the names of fields from the message down.
+    """
+    if stream.channel.message_encoding == "protobuf":
+        return protobuf.is_single(stream, where)
+    known = shape(stream)
+    found = known.number(tuple(where)) if known is not None else None
+    return found is not None and found.type == "float32"
+
+
+_MOST = 256
+"""Definitions that are kept: all logs of a robot have the same ones."""
+
+
+@lru_cache(_MOST)
+def _shape(encoding: str, name: str, data: bytes) -> Shape | None:
+    ros1 = encoding == "ros1msg"
+    try:
+        definition = data.decode()
+        if encoding == "ros2idl":
+            known = idl.types(name, definition)
+        else:
+            known = types(name, definition, ros1=ros1)
+    except Exception:  # no UTF-8, nothing that is laid out, or a parser that trusts it
+        return None
+    return Shape(short_type(name), known, cdr=not ros1)
+
+
+def numbers(stream: Stream, payloads: Sequence[bytes] = ()) -> tuple[str, ...] | None:
+    """The paths of all numbers in the messages of a stream: `a.b`, and `a.c[:]` for an array.
+
+    Args:
+        stream: of messages.
+        payloads: some of them; those of JSON tell what their schema leaves open.
+
+    Returns:
+        None where its messages cannot be read.
+    """
+    if isinstance(decoder(stream), str):
+        return None
+    match stream.channel.message_encoding:
+        case "json":
+            stated = jsontext.stated(stream.schema.data if stream.schema is not None else b"")
+            return tuple(dict.fromkeys((*stated, *jsontext.held(payloads))))
+        case "protobuf":
+            return protobuf.numbers(stream)
+    known = shape(stream)
+    if known is None:
+        return ()
+    fields = ((where, known.number(where)) for where in known.numbers())
+    return tuple(
+        f"{'.'.join(where)}{'[:]' if field is not None and field.many else ''}"
+        for where, field in fields
+    )
+
+
+@lru_cache(_MOST)
+def _ros2(name: str, data: bytes) -> Decode:
+    from mcap_ros2.decoder import DecoderFactory
+
+    _measured(name, data.decode(), ros1=False)
+    with redirect_stdout(StringIO()), redirect_stderr(StringIO()):  # its parser prints
+        decode = DecoderFactory().decoder_for("cdr", Schema(1, data, "ros2msg", name))
+    assert decode is not None
+    return lambda payload: decode(_plain(payload))
+
+
+def _plain(payload: bytes) -> bytes:
+    """The payload, if it is plain CDR: its first two bytes tell the representation."""
+    if payload[:2] not in (b"\0\0", b"\0\1"):
+        raise ValueError("not plain CDR")
+    return payload
+
+
+@lru_cache(_MOST)
+def _ros1(name: str, data: bytes) -> Decode:
+    """With the decoder that is made of the fields alone.
+
+    It makes Python code of the definition and runs it: constants, comments and names of any
+    other kind would run too.
+
+    Raises:
+        ValueError: something else is in the definition, or it is too large.
+    """
+    from mcap_ros1.decoder import DecoderFactory
+
+    if not _ROS1_TYPE.fullmatch(name):
+        raise ValueError(f"`{name}` is no type")
+    text = _fields_only(data.decode())
+    _measured(name, text, ros1=True)
+    bare = Schema(1, text.encode(), "ros1msg", name)
+    decode = DecoderFactory().decoder_for("ros1", bare)
+    assert decode is not None
+    return decode
+
+
+def _measured(name: str, definition: str, *, ros1: bool) -> None:
+    """Official decoders write each type out in each type that has it, and each element of an array.
+
+    Raises:
+        TooLargeError: that would not end.
+    """
+    try:
+        types(name, definition, ros1=ros1)
+    except TooLargeError:
+        raise
+    except ValueError:  # the official parser knows more
+        return
+
+
+def _fields_only(definition: str) -> str:
+    """The definition of a ROS 1 message with nothing in it but types and names of fields.
+
+    Raises:
+        ValueError: something else is in it than those, constants and comments.
+    """
+    lines = []
+    for line in definition.splitlines():
+        bare = " ".join(line.split("#")[0].split())
+        if _SEPARATOR.fullmatch(bare):
+            lines.append("=" * 80)
+        elif _FIELD.fullmatch(bare):
+            lines.append(bare)
+        elif _NEXT_TYPE.fullmatch(bare):
+            lines += [bare, ""]  # without a line after it, the name of an empty type is cut off
+        elif bare and not _CONSTANT.match(bare):
+            raise ValueError(f"`{bare}` is no field")
+    return "\n".join(lines)
+
+
+def stamp(message: object | None) -> int | None:
+    """`header.stamp` in nanoseconds; None for a message without one.
+
+    Of JSON and Protobuf the field `timestamp` too, which Foxglove's messages have instead.
+    """
+    time = stated_field(stated_field(message, "header"), "stamp")
+    if not isinstance(message, Sparse):
+        return _nanoseconds(time, _STAMPS)
+    if time is None:
+        time = stated_field(message, "timestamp")
+    return _nanoseconds(time, (*_STAMPS, *_SPARSE_STAMPS))
+
+
+def _nanoseconds(time: object | None, kinds: Sequence[tuple[str, str]]) -> int | None:
+    names = fields(time)
+    for parts in kinds:
+        if all(part in names for part in parts):
+            seconds, nanoseconds = (stated_field(time, part) for part in parts)
+            if isinstance(seconds, int) and isinstance(nanoseconds, int):
+                return seconds * 10**9 + nanoseconds
+    return None

@@ -1,0 +1,162 @@
+"""Message definitions in OMG IDL, as ROS 2 records them (`ros2idl`), and their decoder.
+
+The decoder is that of rosbags. It makes Python code of a definition and runs it, so only types
+and names of fields reach it: constants, comments and annotations do not.
+
+Source: MCAP registry, `ros2idl`, https://mcap.dev/spec/registry#ros2idl.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Mapping
+from typing import Any
+
+from fretc.logs.mcap.container import Stream
+from fretc.logs.messages.definitions import (
+    NUMBERS,
+    TEXTS,
+    DefinitionError,
+    Field,
+    Types,
+    measured,
+    short,
+)
+
+_SEPARATOR = re.compile(r"^={3,}[ \t]*\r?\n(?:IDL:[^\n]*\n)?", re.MULTILINE)
+_INCLUDE = re.compile(r"^[ \t]*#.*$", re.MULTILINE)
+"""A line for a preprocessor; what it names is in the same text."""
+_NAME = re.compile(r"[A-Za-z]\w*(/[A-Za-z]\w*)*", re.ASCII)
+_TEXT = r'"(?:\\.|[^"\\])*"'
+_UNUSED = re.compile(
+    rf"(?P<text>{_TEXT})|/\*.*?\*/|//[^\n]*|@\s*[\w:]+(?:\s*\((?:{_TEXT}|[^()\"])*\))?", re.DOTALL
+)
+"""Comments and annotations; texts are matched too, for what looks like one may stand in them."""
+_COMPUTED = re.compile(r"[(+*/%&|^~]|<<|-\s*-")
+"""What bounds that are computed have in them; no message of ROS has any."""
+_NESTED = re.compile(r"\bsequence\s*<(\s*sequence\b|[^;]*\[)")
+"""Arrays of arrays, of which the parser keeps one."""
+_LONGEST = 2**20
+"""Characters; no definition is longer."""
+
+_MOST = 4096
+"""Elements of an array with a fixed length that are no numbers: the decoder writes each out."""
+_KINDS = {"byte": "uint8", "char": "uint8"}
+"""What these are; the decoder takes an octet for a number with a sign."""
+
+
+def decoder(stream: Stream) -> Callable[[bytes], object]:
+    """What decodes the messages of a stream.
+
+    Raises:
+        ModuleNotFoundError: the extra `bags` is not installed.
+        Exception: of many kinds; the definition cannot be read.
+    """
+    from rosbags.typesys import Stores, get_typestore
+
+    schema = stream.schema
+    assert schema is not None
+    parsed = _parsed(schema.data.decode())
+    store = get_typestore(Stores.EMPTY)
+    store.register({name: ([], fields) for name, fields in parsed.items()})
+    name = _full(schema.name)
+    store.get_msgdef(name)
+    return lambda payload: store.deserialize_cdr(payload, name)
+
+
+def types(name: str, definition: str) -> Types:
+    """All types that a message is made of, by their short names.
+
+    Raises:
+        DefinitionError: one of them is of a kind that is not laid out here.
+        Exception: of many kinds; the definition cannot be read.
+    """
+    found = {
+        short(full): tuple(_field(part, kind) for part, kind in fields)
+        for full, fields in _parsed(definition).items()
+    }
+    if short(name) not in found:
+        raise DefinitionError(f"the type `{name}` is not defined")
+    return measured(found)
+
+
+def _parsed(definition: str) -> Mapping[str, Any]:
+    """The fields of each type, as rosbags has them.
+
+    Raises:
+        DefinitionError: a name is none, a type is defined in two ways, or the definition could
+            cost more than it is worth.
+    """
+    from rosbags.typesys import get_types_from_idl
+
+    if len(definition) > _LONGEST:
+        raise DefinitionError("the definition is too long")
+    found: dict[str, Any] = {}
+    for section in _SEPARATOR.split(_INCLUDE.sub("", definition)):
+        bare = _bare(section)
+        for name, (_, fields) in get_types_from_idl(bare).items() if bare else ():
+            names = [name, *(field for field, _ in fields)]
+            if not all(_NAME.fullmatch(one) for one in names):
+                raise DefinitionError(f"`{name}` is no type")
+            fields = [(part, _known(kind)) for part, kind in fields]
+            if found.setdefault(name, fields) != fields:
+                raise DefinitionError(f"the type `{name}` is defined twice")
+    return found
+
+
+def _bare(section: str) -> str:
+    """A definition without comments and annotations.
+
+    Raises:
+        DefinitionError: the parser would take very long for it, or take it for something else.
+    """
+    bare = _UNUSED.sub(lambda match: match["text"] or " ", section).strip()
+    outside = re.sub(_TEXT, "", bare)
+    if _COMPUTED.search(outside):
+        raise DefinitionError("the definition computes its bounds")
+    if _NESTED.search(outside):
+        raise DefinitionError("the definition holds arrays of arrays")
+    return bare
+
+
+def _known(kind: Any) -> Any:
+    """The kind of a field, as the decoder should take it."""
+    from rosbags.interfaces import Nodetype
+
+    node, what = kind
+    if node == Nodetype.BASE:
+        return node, (_KINDS.get(what[0], what[0]), what[1])
+    if node == Nodetype.NAME:
+        return kind
+    inner, count = what
+    numbers = inner[0] == Nodetype.BASE and inner[1][0] not in TEXTS
+    if node == Nodetype.ARRAY and not numbers and count > _MOST:
+        raise DefinitionError(f"an array of {count} elements is too long")
+    return node, (_known(inner), count)
+
+
+def _full(name: str) -> str:
+    """`sensor_msgs/msg/LaserScan` for `sensor_msgs/LaserScan`."""
+    return name if name.count("/") != 1 else name.replace("/", "/msg/")
+
+
+def _field(name: str, kind: Any) -> Field:
+    from rosbags.interfaces import Nodetype
+
+    node, what = kind
+    if node in (Nodetype.BASE, Nodetype.NAME):
+        return Field(name, _type(kind), many=False, count=None)
+    inner, count = what
+    return Field(name, _type(inner), many=True, count=count if node == Nodetype.ARRAY else None)
+
+
+def _type(kind: Any) -> str:
+    from rosbags.interfaces import Nodetype
+
+    node, what = kind
+    if node == Nodetype.NAME:
+        return short(what)
+    base = str(what[0])
+    if base not in NUMBERS and base not in TEXTS:
+        raise DefinitionError(f"`{base}` is not laid out here")
+    return base

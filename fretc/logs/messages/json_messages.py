@@ -1,0 +1,192 @@
+"""Messages in JSON, and what a JSON schema says of the numbers in them.
+
+Each message stands for itself: a schema is no promise, and nothing is checked against it. A field
+that a message leaves out or states as `null` is unknown in that message: `null` is what several
+writers make of NaN and of both infinities, so it can never stand for one of them.
+
+Sources: RFC 8259; NaN and Infinity as Python and JavaScript's JSON5 write them, and as texts as
+ProtoJSON writes them, https://protobuf.dev/programming-guides/json/.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from math import isfinite
+from typing import Any
+
+from fretc.logs.signals.signals import Sparse, UnstatedError
+
+_WORDS = {"NaN": float("nan"), "Infinity": float("inf"), "-Infinity": float("-inf")}
+"""Texts that stand where a number should."""
+_LARGEST = int(1.7976931348623157e308)
+_DEEPEST = 20
+_MOST = 2000
+"""Fields of one topic that are listed."""
+_MOST_STEPS = 20_000
+"""Parts of a schema that are looked at: those that refer to each other have no end."""
+
+
+class Object(Sparse):
+    """A JSON object."""
+
+    __slots__ = ("_values",)
+
+    def __init__(self, values: Mapping[str, object]) -> None:
+        self._values = values
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Of the fields that it states."""
+        return tuple(self._values)
+
+    def field(self, name: str) -> object:
+        """What it states; any field may be left out."""
+        value = self._values.get(name)
+        if value is None:
+            raise UnstatedError
+        if isinstance(value, str):
+            return _WORDS.get(value, value)
+        if isinstance(value, list):
+            return [_WORDS.get(one, one) if isinstance(one, str) else one for one in value]
+        return value
+
+
+def decode(payload: bytes) -> Object:
+    """A message.
+
+    Raises:
+        ValueError: it is no JSON, no object, names a field twice, or holds a number that is
+            beyond 64-bit floats: 1e400 is no measurement, and no infinity either.
+        RecursionError: it is nested too deep.
+    """
+    message = json.loads(
+        payload.decode(), object_pairs_hook=_object, parse_float=_float, parse_int=_int
+    )
+    if not isinstance(message, Object):
+        raise ValueError("a message is an object")
+    return message
+
+
+def _object(pairs: Sequence[tuple[str, object]]) -> Object:
+    values = dict(pairs)
+    if len(values) < len(pairs):
+        raise ValueError("a field is named twice")
+    return Object(values)
+
+
+def _float(text: str) -> float:
+    value = float(text)
+    if not isfinite(value):
+        raise ValueError(f"{text[:40]} is too large")
+    return value
+
+
+def _int(text: str) -> int:
+    value = int(text)
+    if abs(value) > _LARGEST:
+        raise ValueError(f"{text[:40]} is too large")
+    return value
+
+
+# Which numbers there are
+
+
+def stated(schema: bytes) -> tuple[str, ...]:
+    """The paths of all numbers that a JSON schema names: `a.b`, and `a.c[:]` for an array.
+
+    Raises:
+        ValueError: it is no JSON, or no schema.
+        RecursionError: it is nested too deep.
+    """
+    found = json.loads(schema.decode() or "{}")
+    if not isinstance(found, dict | bool):
+        raise ValueError("a schema is an object")
+    return _some(_of_schema(found))
+
+
+def held(payloads: Iterable[bytes]) -> tuple[str, ...]:
+    """The paths of all numbers that some messages hold; those that are no messages do not count."""
+    paths: dict[str, None] = {}
+    for payload in payloads:
+        try:
+            message = decode(payload)
+        except (ValueError, RecursionError):
+            continue
+        paths.update(dict.fromkeys(_some(_of_value(message, "", 0))))
+    return _some(iter(paths))
+
+
+def _some(paths: Iterator[str]) -> tuple[str, ...]:
+    kept: dict[str, None] = {}
+    for path in paths:
+        if len(kept) == _MOST:
+            break
+        kept[path] = None
+    return tuple(kept)
+
+
+def _of_schema(root: Any) -> Iterator[str]:  # a schema is whatever its writer made of it
+    """The nearest ones first."""
+    left: list[tuple[Any, str, tuple[int, ...]]] = [(root, "", ())]
+    for schema, path, within in left:
+        schema = _resolved(root, schema)
+        if not isinstance(schema, dict) or id(schema) in within or len(left) > _MOST_STEPS:
+            continue
+        yield from _own(root, schema, path)
+        within = (*within, id(schema))
+        for several in ("allOf", "anyOf", "oneOf"):
+            parts = schema.get(several)
+            left += [(one, path, within) for one in (parts if isinstance(parts, list) else ())]
+        properties = schema.get("properties")
+        for name, one in properties.items() if isinstance(properties, dict) else ():
+            if _is_name(name):
+                left.append((one, f"{path}.{name}" if path else name, within))
+
+
+def _own(root: Any, schema: dict[Any, Any], path: str) -> Iterator[str]:
+    """The path, as far as it is itself one of numbers."""
+    kinds = schema.get("type")
+    kinds = kinds if isinstance(kinds, list) else [kinds]
+    if path and any(kind in ("number", "integer", "boolean") for kind in kinds):
+        yield path
+    if path and "array" in kinds:
+        element = _resolved(root, schema.get("items"))
+        if isinstance(element, dict) and element.get("type") in ("number", "integer", "boolean"):
+            yield f"{path}[:]"
+
+
+def _resolved(root: Any, schema: Any) -> Any:
+    """The schema itself, or the one of the same text that it refers to."""
+    for _ in range(_DEEPEST):
+        reference = schema.get("$ref") if isinstance(schema, dict) else None
+        if not isinstance(reference, str) or not reference.startswith("#"):
+            return schema
+        schema = root
+        for part in reference[1:].split("/")[1:]:
+            part = part.replace("~1", "/").replace("~0", "~")
+            schema = schema.get(part) if isinstance(schema, dict) else None
+    return None
+
+
+def _of_value(value: object, path: str, depth: int) -> Iterator[str]:
+    if isinstance(value, Object) and depth < _DEEPEST:
+        for name in filter(_is_name, value.names):
+            try:
+                inner = value.field(name)
+            except UnstatedError:
+                continue
+            yield from _of_value(inner, f"{path}.{name}" if path else name, depth + 1)
+    elif isinstance(value, int | float):
+        yield path
+    elif (
+        isinstance(value, list)
+        and any(isinstance(one, int | float) for one in value)
+        and all(one is None or isinstance(one, int | float) for one in value)
+    ):
+        yield f"{path}[:]"
+
+
+def _is_name(name: object) -> bool:
+    """Whether the path of a signal can name it."""
+    return isinstance(name, str) and name.isidentifier() and name.isascii()

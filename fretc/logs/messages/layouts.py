@@ -1,0 +1,279 @@
+"""Where in a payload the wanted fields stand: found once, then checked for many messages at once.
+
+Fields stand one after the other, and strings and arrays have their lengths before them. Messages
+of one topic mostly have the same lengths, and so the same layout: the first of them is walked,
+and the others are held against the lengths that were met on the way. Nothing is decoded that is not
+wanted.
+
+Sources: OMG DDSI-RTPS and CDR (plain CDR, XCDR version 1); ROS 1 serialization,
+https://wiki.ros.org/roscpp/Overview/MessagesSerializationAndAdaptingTypes.
+"""
+
+from __future__ import annotations
+
+import struct
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fretc.logs.mcap.payloads import Payloads, Places
+from fretc.logs.messages.definitions import CARRIED, NUMBERS, TEXTS, Field, Types
+
+Where = tuple[str, ...]
+"""The names of fields from the message down."""
+
+_LENGTH = struct.Struct("<I")
+_PADDING = 7
+"""Bytes that may follow the last field of CDR."""
+_MOST_CHECKS = 64
+"""A message with more lengths than so is of no layout that others share."""
+_MOST_KNOWN = 64
+"""Layouts of a stream that are kept: messages that all differ are held against each of them."""
+
+
+class LayoutError(ValueError):
+    """The payload does not fit its definition, or a field is not there."""
+
+
+@dataclass(frozen=True, slots=True)
+class Found:
+    """A wanted field within a payload."""
+
+    at: int
+    """Its first byte."""
+    dtype: str
+    count: int | None
+    """How many numbers an array holds; None for a number alone."""
+
+
+@dataclass(frozen=True, slots=True)
+class Layout:
+    """What all messages of one shape have in common."""
+
+    size: int
+    """Bytes of the payload."""
+    marks: tuple[tuple[int, str, int], ...]
+    """Places, types and values of the lengths on the way, and of what marks plain CDR."""
+    found: Mapping[Where, Found]
+    texts: tuple[tuple[int, int], ...] = ()
+    """Places and lengths of what the decoder reads as UTF-8, and refuses where it is not."""
+
+
+class Shape:
+    """The type of a topic's messages."""
+
+    def __init__(self, name: str, types: Types, *, cdr: bool) -> None:
+        self.name, self.types, self.cdr = name, types, cdr
+        self._asked: dict[Where, Field | None] = {}
+
+    def number(self, where: Where) -> Field | None:
+        """The number, or the array of numbers, at that place of each message.
+
+        None also for a time of ROS 1 that stands in the message itself: its decoder carries
+        nanoseconds over into seconds.
+        """
+        if where not in self._asked:
+            self._asked[where] = self._number(where)
+        return self._asked[where]
+
+    def _number(self, where: Where) -> Field | None:
+        name = self.name
+        for depth, part in enumerate(where, 1):
+            fields = self.types.get(name, ())
+            field = next((field for field in fields if field.name == part), None)
+            if field is None:
+                return None
+            if depth == len(where):
+                carried = depth == 2 and name in CARRIED
+                return field if field.type in NUMBERS and not carried else None
+            if field.many:
+                return None
+            name = field.type
+        return None
+
+    def has(self, where: Where) -> bool:
+        """Whether there is a number at that place of each message."""
+        field = self.number(where)
+        return field is not None and not field.many
+
+    def numbers(self) -> tuple[Where, ...]:
+        """All places of which `number` knows."""
+        places: list[Where] = []
+        below: list[tuple[Where, str]] = [((), self.name)]
+        for where, name in below:
+            for field in self.types[name]:
+                at = (*where, field.name)
+                if self.number(at) is not None:
+                    places.append(at)
+                elif field.type in self.types and not field.many:
+                    below.append((at, field.type))
+        return tuple(places)
+
+    def layout(self, payload: memoryview, wanted: Sequence[Where]) -> Layout:
+        """Where the wanted fields of one payload are.
+
+        Args:
+            payload: a whole message; of CDR with the four bytes before it.
+            wanted: numbers, or arrays of numbers.
+
+        Raises:
+            LayoutError: the payload has another length than its fields, or is not plain
+                little-endian CDR; or a wanted field is not there, or holds no numbers.
+        """
+        walk = _Walk(payload, self.types, frozenset(wanted), cdr=self.cdr)
+        try:
+            walk.message(self.name, ())
+        except struct.error:
+            raise LayoutError("the payload is cut off") from None
+        if not 0 <= len(payload) - walk.at <= (_PADDING if self.cdr else 0):
+            raise LayoutError("the payload has another length than its fields")
+        missing = [where for where in wanted if where not in walk.found]
+        if missing:
+            raise LayoutError(f"there are no numbers in `{'.'.join(missing[0])}`")
+        return Layout(len(payload), tuple(walk.marks), walk.found, tuple(walk.texts))
+
+
+class _Walk:
+    """One way through a payload."""
+
+    def __init__(
+        self, payload: memoryview, types: Types, wanted: frozenset[Where], *, cdr: bool
+    ) -> None:
+        self.at = 0
+        self.marks: list[tuple[int, str, int]] = []
+        self.found: dict[Where, Found] = {}
+        self.texts: list[tuple[int, int]] = []
+        self._payload, self._types, self._wanted, self._cdr = payload, types, wanted, cdr
+        if cdr:
+            if bytes(payload[:2]) != b"\0\1":
+                raise LayoutError("it is not plain little-endian CDR")
+            self.marks.append((0, ">u2", 1))
+            self.at = 4
+
+    def message(self, name: str, where: Where) -> None:
+        """All fields of a type; ROS 2 writes a byte for a type without any."""
+        if self._cdr and not self._types[name]:
+            self.at += 1
+        for field in self._types[name]:
+            self._field(field, (*where, field.name))
+        if self.at > len(self._payload):  # said here, lest an array of them goes on
+            raise LayoutError("the payload is cut off")
+
+    def _field(self, field: Field, where: Where) -> None:
+        count = (self._length() if field.count is None else field.count) if field.many else None
+        if field.type in NUMBERS:
+            self._numbers(NUMBERS[field.type], count, where)
+        elif field.type in TEXTS:
+            for _ in range(1 if count is None else self._bounded(count)):
+                self._text(self._length())
+        elif count is None:
+            self.message(field.type, where)
+        elif self._cdr or self._types[field.type]:  # ROS 1 writes nothing for an empty type
+            for _ in range(self._bounded(count)):
+                self.message(field.type, ("[]",))  # no wanted field is below
+
+    def _numbers(self, dtype: str, count: int | None, where: Where) -> None:
+        size = np.dtype(dtype).itemsize
+        if self._cdr and count != 0:  # what is not there needs no alignment
+            self.at += -(self.at - 4) % size
+        if where in self._wanted:
+            self.found[where] = Found(self.at, dtype, count)
+        self.at += size if count is None else size * count
+
+    def _text(self, length: int) -> None:
+        if self._cdr and length > 1:  # the last byte ends it
+            self.texts.append((self.at, length - 1))
+        self.at += length
+
+    def _length(self) -> int:
+        if self._cdr:
+            self.at += -self.at % 4
+        (length,) = _LENGTH.unpack_from(self._payload, self.at)
+        self.marks.append((self.at, "<u4", length))
+        self.at += 4
+        return int(length)
+
+    def _bounded(self, count: int) -> int:
+        """Each element of an array takes a byte at least, or it is not counted one by one."""
+        if count > len(self._payload):
+            raise LayoutError("the payload is cut off")
+        return count
+
+
+# Many messages --------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True)
+class Group:
+    """Messages of one layout; None where they fit no layout."""
+
+    rows: Places
+    layout: Layout | None
+    new: bool = False
+    """Whether no message before them had this layout."""
+
+
+class Layouts:
+    """The layouts of the messages of one stream, as they are met."""
+
+    def __init__(self, shape: Shape, wanted: Sequence[Where]) -> None:
+        self._shape, self._wanted = shape, wanted
+        self._known: dict[int, list[Layout]] = {}
+        """By size; not more than `_MOST_KNOWN` of all sizes."""
+        self._count = 0
+
+    def groups(self, payloads: Payloads) -> Iterator[Group]:
+        """All messages, those of one layout together."""
+        left = np.arange(len(payloads))
+        if self._count:
+            for size in np.unique(payloads.sizes).tolist():
+                for layout in self._known.get(size, ()):
+                    same = _same(payloads, left, layout)
+                    yield from _split(payloads, left[same], layout, new=False)
+                    left = left[~same]
+        while len(left):
+            try:
+                layout = self._shape.layout(payloads.payload(int(left[0])), self._wanted)
+            except LayoutError:
+                yield Group(left[:1], None)
+                left = left[1:]
+                continue
+            self._keep(layout)
+            same = _same(payloads, left, layout)
+            same[0] = True
+            rows, left = left[same], left[~same]
+            yield from _split(payloads, rows, layout, new=True)
+
+    def _keep(self, layout: Layout) -> None:
+        if self._count < _MOST_KNOWN and len(layout.marks) <= _MOST_CHECKS:
+            self._count += 1
+            self._known.setdefault(layout.size, []).append(layout)
+
+
+def _split(payloads: Payloads, rows: Places, layout: Layout, *, new: bool) -> Iterator[Group]:
+    """Those whose texts only the decoder can judge go to it."""
+    plain = _plain(payloads, rows, layout)
+    if plain.any():
+        yield Group(rows[plain], layout, new)
+    if not plain.all():
+        yield Group(rows[~plain], None)
+
+
+def _same(payloads: Payloads, rows: Places, layout: Layout) -> NDArray[np.bool_]:
+    """Which of the rows have the layout, as far as its marks can tell."""
+    same: NDArray[np.bool_] = payloads.sizes[rows] == layout.size
+    if len(layout.marks) > _MOST_CHECKS:
+        return np.zeros(len(rows), bool)
+    for at, dtype, value in layout.marks:
+        same[same] = payloads.gathered(rows[same], at, dtype, None) == value
+    return same
+
+
+def _plain(payloads: Payloads, rows: Places, layout: Layout) -> NDArray[np.bool_]:
+    """In which of the rows all texts are ASCII; only the decoder knows whether others are texts."""
+    plain = np.ones(len(rows), bool)
+    for at, length in layout.texts:
+        plain &= (payloads.gathered(rows, at, "u1", length).view(np.int8) >= 0).all(axis=1)
+    return plain

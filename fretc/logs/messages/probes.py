@@ -1,0 +1,126 @@
+"""Messages made up of a definition: layouts are held against the official decoder with them.
+
+What a log holds may hide an error: where all is zero, a byte too far reads the same. Made-up
+messages have other bytes everywhere, and lengths that move what follows.
+"""
+
+from __future__ import annotations
+
+import random
+from functools import lru_cache, reduce
+
+import numpy as np
+
+from fretc.logs.messages.decoding import Decode
+from fretc.logs.messages.definitions import NUMBERS, TEXTS, Field, Types
+from fretc.logs.messages.layouts import Found, Shape
+from fretc.logs.signals.samples import Numbers
+
+_PROBES = 8
+"""So many that each length takes each place between two numbers of 8 bytes."""
+_LARGEST = 2**18
+"""Bytes of a made-up message; one that would be longer is not made."""
+
+
+@lru_cache(256)
+def trusted(shape: Shape, decode: Decode) -> bool:
+    """Whether the decoder reads each number of some made-up messages as the layout does."""
+    payloads = [probe(shape, seed) for seed in range(_PROBES)]
+    return all(payload is not None and _same(shape, decode, payload) for payload in payloads)
+
+
+def probe(shape: Shape, seed: int) -> bytes | None:
+    """A payload with random contents; None where it would be too long."""
+    probe = _Probe(shape.types, seed, cdr=shape.cdr)
+    try:
+        probe.message(shape.name)
+    except _TooLongError:
+        return None
+    return bytes(probe.payload)
+
+
+def _same(shape: Shape, decode: Decode, payload: bytes) -> bool:
+    wanted = shape.numbers()
+    try:
+        layout = shape.layout(memoryview(payload), wanted)
+        message = decode(payload)
+        official = [_numbers(reduce(getattr, where, message)) for where in wanted]
+    except Exception:  # whatever the decoder raises: it cannot read the message
+        return False
+    found = [_found(payload, layout.found[where]) for where in wanted]
+    return all(
+        one.shape == other.shape and np.array_equal(one, other, equal_nan=True)
+        for one, other in zip(found, official, strict=True)
+    )
+
+
+def _numbers(value: object) -> Numbers:
+    return np.array(list(value) if isinstance(value, bytes) else value, np.float64).reshape(-1)
+
+
+def _found(payload: bytes, found: Found) -> Numbers:
+    count = 1 if found.count is None else found.count
+    with np.errstate(invalid="ignore"):  # signalling NaN
+        taken = np.frombuffer(payload, found.dtype.replace("?", "u1"), count, found.at)
+        return (taken != 0 if found.dtype == "?" else taken).astype(np.float64)
+
+
+class _TooLongError(Exception):
+    pass
+
+
+class _Probe:
+    """A payload that grows."""
+
+    def __init__(self, types: Types, seed: int, *, cdr: bool) -> None:
+        self.payload = bytearray(b"\0\1\0\0" if cdr else b"")
+        self._types, self._random, self._cdr = types, random.Random(seed), cdr
+        self._next = seed
+        self._left = _LARGEST
+
+    def message(self, name: str) -> None:
+        """All fields of a type."""
+        fields = self._types[name]
+        if self._cdr and not fields:
+            self._put(1, b"\0")
+        for field in fields:
+            self._field(field)
+
+    def _field(self, field: Field) -> None:
+        count = 1
+        if field.many:
+            count = self._other(4) if field.count is None else field.count
+            if field.count is None:
+                self._length(count)
+        self._spend(count)
+        for _ in range(count):
+            if field.type in NUMBERS:
+                size = np.dtype(NUMBERS[field.type]).itemsize
+                self._put(size, self._random.randbytes(size))
+            elif field.type in TEXTS:
+                self._text()
+            else:
+                self.message(field.type)
+
+    def _text(self) -> None:
+        text = b"text of a"[: self._other(8)] + (b"\0" if self._cdr else b"")
+        self._length(len(text))
+        self.payload += text
+
+    def _other(self, most: int) -> int:
+        """A length: another one in each message, and at each place of it."""
+        self._next += 1
+        return self._next % most
+
+    def _length(self, length: int) -> None:
+        self._put(4, length.to_bytes(4, "little"))
+
+    def _put(self, size: int, data: bytes) -> None:
+        if self._cdr:
+            self.payload += bytes(-(len(self.payload) - 4) % size)
+        self.payload += data
+
+    def _spend(self, count: int) -> None:
+        self._left -= count + 1
+        if self._left < 0:
+            raise _TooLongError

@@ -1,0 +1,113 @@
+"""Messages in Protobuf, by the definition that the log carries: a FileDescriptorSet.
+
+A field whose presence is known (a submessage, a member of a `oneof`, an `optional`, every single
+field of proto2) is unknown where it is left out, and never its default. For a plain field of
+proto3 nobody can know: 0 and "left out" are the same bytes, and both are 0.
+
+Source: https://protobuf.dev/programming-guides/field_presence/.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from typing import Any
+
+from fretc.logs.mcap.container import Stream
+from fretc.logs.signals.signals import Sparse, UnstatedError
+
+_MOST = 2000
+"""Fields of one topic that are listed."""
+_MOST_STEPS = 20_000
+"""Messages within messages that are looked at."""
+
+
+class Message(Sparse):
+    """A decoded message."""
+
+    __slots__ = ("_message",)
+
+    def __init__(self, message: Any) -> None:
+        self._message = message
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Of the fields that its type has."""
+        return tuple(field.name for field in self._message.DESCRIPTOR.fields)
+
+    def field(self, name: str) -> object:
+        """The value of a field; numbers of an enum, bytes, texts and messages as they are."""
+        descriptor = self._message.DESCRIPTOR.fields_by_name[name]
+        if descriptor.has_presence and not self._message.HasField(name):
+            raise UnstatedError
+        value = getattr(self._message, name)
+        if _is_repeated(descriptor):
+            return dict(value) if _is_map(descriptor) else list(value)
+        return Message(value) if descriptor.message_type is not None else value
+
+
+def decoder(stream: Stream) -> Callable[[bytes], Message]:
+    """What decodes the messages of a stream.
+
+    Raises:
+        ModuleNotFoundError: the extra `protobuf` is not installed.
+        Exception: of many kinds; the definition cannot be read.
+    """
+    official = _official(stream)
+    return lambda payload: Message(official(payload))
+
+
+def numbers(stream: Stream) -> tuple[str, ...]:
+    """The paths of all numbers in its messages: `a.b`, and `a.c[:]` for a repeated one."""
+    descriptor = _official(stream)(b"").DESCRIPTOR
+    paths: list[str] = []
+    for path in _numbers(descriptor):
+        if len(paths) == _MOST:
+            break
+        paths.append(path)
+    return tuple(paths)
+
+
+def is_single(stream: Stream, where: Sequence[str]) -> bool:
+    """Whether there are 32-bit floats at that place of each message."""
+    descriptor, found = _official(stream)(b"").DESCRIPTOR, None
+    for name in where:
+        found = descriptor.fields_by_name.get(name) if descriptor is not None else None
+        descriptor = found.message_type if found is not None else None
+    return found is not None and bool(found.type == found.TYPE_FLOAT)
+
+
+def _official(stream: Stream) -> Callable[[bytes], Any]:
+    from mcap_protobuf.decoder import DecoderFactory
+
+    decode = DecoderFactory().decoder_for("protobuf", stream.schema)
+    assert decode is not None
+    return decode
+
+
+def _numbers(descriptor: Any) -> Iterator[str]:
+    """The nearest ones first."""
+    left: list[tuple[Any, str, tuple[str, ...]]] = [(descriptor, "", ())]
+    for message, path, within in left:
+        if message.full_name in within or len(left) > _MOST_STEPS:
+            continue
+        for field in message.fields:
+            where = f"{path}.{field.name}" if path else field.name
+            many = _is_repeated(field)
+            if field.message_type is not None:
+                if not many:
+                    left.append((field.message_type, where, (*within, message.full_name)))
+            elif field.cpp_type != field.CPPTYPE_STRING:
+                yield f"{where}[:]" if many else where
+            elif field.type == field.TYPE_BYTES and not many:
+                yield f"{where}[:]"
+
+
+def _is_repeated(field: Any) -> bool:
+    """Older releases of the library know only the label."""
+    many = getattr(field, "is_repeated", None)
+    return bool(field.label == field.LABEL_REPEATED if many is None else many)
+
+
+def _is_map(descriptor: Any) -> bool:
+    inner = descriptor.message_type
+    return inner is not None and bool(inner.GetOptions().map_entry)

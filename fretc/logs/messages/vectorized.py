@@ -1,0 +1,294 @@
+"""Signals of many messages at once: what `fretc.logs.signals.signals.sample` says of each of them.
+
+Numbers are in the unit of the field, clearances in metres; NaN is unknown.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fretc.logs.mcap.payloads import Places
+from fretc.logs.signals.measures import COMPARE, Measure, Scope, term, together
+from fretc.logs.signals.outline import distances, places
+from fretc.logs.signals.propositions import TRUE, truth
+from fretc.logs.signals.samples import EXACT, Numbers, Values, scaled
+from fretc.logs.signals.signals import clearance, unrounded
+from fretish import expressions as e
+from fretish.bindings.declarations import Invalid, Reading, Reduce, Signal
+from fretish.expressions import MIRRORED
+
+Truths = NDArray[np.bool_]
+Between = Callable[["Values", slice | NDArray[np.intp]], Truths]
+"""Which elements are measurements; told with the values are the messages that they are of."""
+
+
+def siblings(signal: Signal) -> tuple[str, ...]:
+    """The fields beside the signal's own that are read with it, and must be there."""
+    names = {name.id for name in e.names(signal.valid)} - {"x"} if signal.valid else set()
+    if signal.reduce is Reduce.OUTLINE:
+        names |= {"angle_min", "angle_increment"}
+    return tuple(sorted(names))
+
+
+def samples(signal: Signal, values: Values, beside: Mapping[str, Numbers]) -> Values:
+    """The signal's value in each message.
+
+    Args:
+        signal: what to read, and how.
+        values: shape (messages, elements), as they were recorded; one element for a number.
+        beside: each of `siblings`, shape (messages,).
+
+    Returns:
+        Shape (messages,); times `signal.scale` it is in base units.
+    """
+    index = signal.path.index
+    if index is not None:
+        values = values[:, index : index + 1]
+    if not values.shape[1]:
+        return np.full(len(values), np.nan)
+    found = np.empty(len(values), EXACT if values.dtype == EXACT else np.float64)
+    with np.errstate(all="ignore"):  # what is too large is infinite, and a NaN may signal
+        if signal.reduce is None and signal.valid is None and np.isfinite(values).all():
+            return values[:, 0]
+        plain = _plain(signal, values, beside, found)
+        if not plain.all():
+            rows = ~plain
+            some = {name: numbers[rows] for name, numbers in beside.items()}
+            found[rows] = _samples(signal, values[rows], some)
+    return found
+
+
+def _plain(signal: Signal, values: Values, beside: Mapping[str, Numbers], found: Values) -> Truths:
+    """Fill in the messages of which the least or the greatest measurement is soon seen.
+
+    These are most: one of their elements makes them unknown, or they hold a measurement and
+    nothing that takes precedence over it. Elements that are dropped never do, nor does what is far
+    over the least, or near over the greatest.
+    """
+    if signal.reduce not in (Reduce.MIN, Reduce.MAX):
+        return np.zeros(len(values), bool)
+    between = _between(signal, beside, len(values))
+    if between is None or (signal.valid is not None and values.dtype != np.float32):
+        return np.zeros(len(values), bool)
+    unknown, stronger = (np.zeros(len(values), bool) for _ in range(2))
+    for reading, chosen in _classes(signal.invalid, values, between):
+        if reading is Reading.UNKNOWN:
+            unknown |= chosen().any(axis=1)
+        elif reading not in (Reading.DROP, _WEAKER[signal.reduce]):
+            stronger |= chosen().any(axis=1)
+    ends, measured = _ends(signal.reduce, values, between)
+    plain: Truths = unknown | (measured & ~stronger)
+    found[plain] = np.where(unknown, np.nan, ends.astype(found.dtype) + 0.0)[plain]
+    return plain
+
+
+def _ends(reduce: Reduce, values: Values, between: Between) -> tuple[Values, Truths]:
+    """The least or the greatest measurement of each message, and whether there is one."""
+    least = reduce is Reduce.MIN
+    # Where the least of all numbers is a measurement, no other element has to be looked at.
+    ends = (np.fmin if least else np.fmax).reduce(values, axis=1)
+    measured = between(ends[:, None], slice(None))[:, 0]
+    rows = np.flatnonzero(~measured)
+    if len(rows):
+        some = values[rows]
+        accepted = between(some, rows)
+        np.copyto(some, np.inf if least else -np.inf, where=~accepted)
+        ends[rows] = some.min(axis=1) if least else some.max(axis=1)
+        measured[rows] = accepted.any(axis=1)
+    return ends, measured
+
+
+_WEAKER = {Reduce.MIN: Reading.FAR, Reduce.MAX: Reading.NEAR}
+"""What counts only where nothing was measured."""
+
+
+def _classes(
+    invalid: Invalid, values: Values, between: Between
+) -> Iterator[tuple[Reading, Callable[[], Truths]]]:
+    """What each kind of element that is no measurement means, and which elements are of it."""
+    yield invalid.nan, lambda: np.isnan(values)
+    yield invalid.positive_infinity, lambda: np.isposinf(values)
+    yield invalid.negative_infinity, lambda: np.isneginf(values)
+    yield invalid.other, lambda: np.isfinite(values) & ~between(values, slice(None))
+
+
+def _between(signal: Signal, beside: Mapping[str, Numbers], count: int) -> Between | None:
+    """Tells which elements are measurements, of 32-bit floats that are compared with such.
+
+    None where it takes more to say.
+    """
+    bounds = [] if signal.valid is None else _bounds(signal.valid)
+    if bounds is None:
+        return None
+    scope = Scope(count, beside, signal.unit)
+    field = Measure(np.zeros(1, np.float32))
+    compared: list[tuple[str, NDArray[np.float32]]] = []
+    for op, side in bounds:
+        _, numbers, _ = together(field, term(side, scope))
+        narrow = numbers.astype(np.float32)
+        if not np.array_equal(narrow, numbers, equal_nan=True):
+            return None
+        same = bool((narrow == narrow[:1]).all())
+        compared.append((op, narrow[:1, None] if same else narrow[:, None]))
+
+    def between(values: Values, rows: slice | NDArray[np.intp]) -> Truths:
+        accepted: Truths = np.isfinite(values)
+        for op, bound in compared:
+            accepted &= COMPARE[op](values, bound if len(bound) == 1 else bound[rows])
+        return accepted
+
+    return between
+
+
+def _bounds(valid: e.Expression) -> list[tuple[str, e.Expression]] | None:
+    """`x >= range_min and x <= range_max`: the operators and what `x` is compared with.
+
+    None where it is no such conjunction.
+    """
+    match valid:
+        case e.And(args):
+            parts = [_bounds(arg) for arg in args]
+            return None if None in parts else [bound for part in parts if part for bound in part]
+        case e.Comparison(op, left, right) if op in MIRRORED:
+            if _is_x(left) and _without_x(right):
+                return [(op, right)]
+            if _is_x(right) and _without_x(left):
+                return [(MIRRORED[op], left)]
+    return None
+
+
+def _is_x(part: e.Expression) -> bool:
+    return isinstance(part, e.Name) and part.id == "x"
+
+
+def _without_x(part: e.Expression) -> bool:
+    return all(name.id != "x" for name in e.names(part))
+
+
+def _samples(signal: Signal, values: Values, beside: Mapping[str, Numbers]) -> Values:
+    """`samples`, whatever the elements are."""
+    valid = _valid(signal, values, beside)
+    readings, unknown = _readings(signal, unrounded(signal, values), valid)
+    found = _reduced(signal, readings, beside)
+    return np.where(unknown | np.isnan(readings).all(axis=1), np.nan, found)
+
+
+def nearest(signal: Signal, stated: Numbers) -> float | None:
+    """The least distance that the sensor can report, of `range_min` in each message."""
+    finite = stated[np.isfinite(stated)]
+    return scaled(float(finite.min()), signal.unit.factor) if len(finite) else None
+
+
+def _valid(signal: Signal, values: Values, beside: Mapping[str, Numbers]) -> Truths:
+    """Which elements are measurements."""
+    finite = np.isfinite(values)
+    if signal.valid is None:
+        return finite
+    count, width = values.shape
+    names = {name.id for name in e.names(signal.valid)} - {"x"}
+    numbers = {name: _spread(beside[name], width) for name in names}
+    scope = Scope(count * width, {"x": values.reshape(-1), **numbers}, signal.unit)
+    accepted: Truths = (truth(signal.valid, scope) == TRUE).reshape(count, width)
+    return finite & accepted
+
+
+def _spread(numbers: Numbers, width: int) -> Numbers:
+    """One number for each element; one alone where all messages state the same."""
+    same = len(numbers) > 0 and bool((numbers == numbers[0]).all())
+    return numbers[:1] if same else np.repeat(numbers, width)
+
+
+def _readings(signal: Signal, values: Values, valid: Truths) -> tuple[Values, Truths]:
+    """The elements with what is far or near put in; and which messages are unknown."""
+    invalid = signal.invalid
+    readings, unknown = values.copy(), np.zeros(len(values), bool)
+    for reading, chosen in _classes(invalid, values, lambda _, __: valid):
+        if reading is Reading.UNKNOWN:
+            unknown |= chosen().any(axis=1)
+        else:
+            readings[chosen()] = _PUT[reading]
+    return readings, unknown
+
+
+_PUT = {Reading.DROP: np.nan, Reading.FAR: np.inf, Reading.NEAR: -np.inf}
+
+
+def _reduced(signal: Signal, readings: Values, beside: Mapping[str, Numbers]) -> Values:
+    match signal.reduce:
+        case None:
+            return readings[:, 0]
+        case Reduce.MIN:
+            return np.asarray(np.fmin.reduce(readings, axis=1) + 0.0)
+        case Reduce.MAX:
+            return np.asarray(np.fmax.reduce(readings, axis=1) + 0.0)
+        case Reduce.MEAN:
+            return np.array([_mean(row) for row in readings])
+        case Reduce.OUTLINE:
+            return _clearances(
+                signal, readings.astype(np.float64), beside["angle_min"], beside["angle_increment"]
+            )
+
+
+def _mean(readings: Values) -> float:
+    measured = readings[~np.isnan(readings)]
+    return float(measured.mean()) if len(measured) else float("nan")
+
+
+# The robot's outline
+
+_SLACK = 1e-6
+"""Metres by which rounding could make a distance too small, many times over."""
+_TOO_FAR = 1e9
+"""Metres; with farther ends of beams numbers may become too large on the way."""
+
+
+def _clearances(signal: Signal, readings: Numbers, starts: Numbers, increments: Numbers) -> Numbers:
+    """`clearance` of each message.
+
+    A point is at most so much nearer to the outline than to the sensor as the farthest corner is
+    from the sensor. So once the end of the nearest beam has been measured, most of the others are
+    too far away to be nearer.
+    """
+    found = np.empty(len(readings))
+    usual = _usual(signal, readings, starts, increments)
+    for row in np.flatnonzero(~usual):
+        found[row] = clearance(signal, readings[row], float(starts[row]), float(increments[row]))
+    for rows in _of_one_kind(np.flatnonzero(usual), starts, increments):
+        beams = np.arange(readings.shape[1], dtype=float)
+        angles = starts[rows[0]] + increments[rows[0]] * beams
+        found[rows] = _least(signal, scaled(readings[rows], signal.unit.factor), angles)
+    return found
+
+
+def _usual(signal: Signal, readings: Numbers, starts: Numbers, increments: Numbers) -> Truths:
+    """Which messages measure something, nothing beyond measure, and nothing too near to measure."""
+    last = starts + increments * readings.shape[1]
+    most = np.where(np.isfinite(readings), np.abs(readings), -1.0).max(axis=1)
+    sound: Truths = np.isfinite(starts) & np.isfinite(increments) & np.isfinite(last)
+    sound &= (most >= 0) & (scaled(most, signal.unit.factor) < _TOO_FAR)
+    return sound & ~np.isneginf(readings).any(axis=1)
+
+
+def _of_one_kind(rows: Places, starts: Numbers, increments: Numbers) -> Iterator[Places]:
+    """Messages of which the beams have the same directions."""
+    while len(rows):
+        same = (starts[rows] == starts[rows[0]]) & (increments[rows] == increments[rows[0]])
+        yield rows[same]
+        rows = rows[~same]
+
+
+def _least(signal: Signal, ranges: Numbers, angles: Numbers) -> Numbers:
+    """The least distance from the outline in each row of ranges, which are in metres."""
+    ranges = np.where(np.isfinite(ranges), ranges, np.inf)
+    first = ranges.argmin(axis=1)
+    rows = np.arange(len(ranges))
+    found = distances(places(ranges[rows, first], angles[first], signal.sensor), signal.footprint)
+    corners = np.array(signal.footprint) - np.array(signal.sensor[:2])
+    reach = float(np.hypot(*corners.T).max()) + _SLACK
+    row, beam = np.nonzero(ranges <= (found + reach)[:, None])
+    ends = places(ranges[row, beam], angles[beam], signal.sensor)
+    np.minimum.at(found, row, distances(ends, signal.footprint))
+    return found

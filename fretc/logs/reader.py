@@ -1,0 +1,443 @@
+"""Recorded logs: files → samples of signals, and how healthy the files are.
+
+Where the index of a log explains every byte of it, only the messages in question are read. Any
+other log is read from its first record to its last; what its summary states (where the chunks are,
+how many messages there are) is held against what was found, so that a damaged place is a named
+gap and never a silent loss. The files of a rosbag2 folder are one log. Times are nanoseconds.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from functools import partial, reduce
+from operator import add
+from statistics import median
+
+import numpy as np
+
+from fretc.logs import findings
+from fretc.logs.first_messages import Examples
+from fretc.logs.mcap.container import MAGIC, BrokenError
+from fretc.logs.mcap.contents import contents
+from fretc.logs.mcap.damage import Damage
+from fretc.logs.mcap.messages import Sink
+from fretc.logs.messages.decoding import decoder, numbers
+from fretc.logs.messages.json_messages import held as stated_fields
+from fretc.logs.signals.integrity import Checked, Integrity
+from fretc.logs.signals.samples import Gap, Recording, Samples, Topic
+from fretc.logs.signals.stamps import JUMP, Stamps, stamps, still
+from fretc.logs.storage import bags, refusals
+from fretc.logs.storage.bags import NOWHERE
+from fretc.logs.storage.folders import METADATA, Folder, folder, is_folder, of_all
+from fretc.logs.storage.inputs import Input, opened, shown
+from fretc.logs.storage.parts import Numbered, Part, around, widened
+from fretc.logs.storage.splits import ACTIVE, named, split, unclosed_backup
+from fretc.logs.topic_columns import Column, Columns
+from fretish.bindings.declarations import Declarations, Signal
+from fretish.clock import Clock
+from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.diagnostics.source import Source, Span
+from fretish.reading.limits import grant, within
+
+_MOST_TICKS = 20_000_000
+
+
+@dataclass(frozen=True, slots=True)
+class Overview:
+    """A log as it is, whatever is bound."""
+
+    recording: Recording
+    """By log times, without samples."""
+    numbers: Mapping[str, tuple[str, ...] | None]
+    """Of each topic the fields that a signal can read; None where its messages cannot be read."""
+    reasons: Mapping[str, str]
+    """Why not."""
+
+
+def read(
+    path: str,
+    declarations: Declarations,
+    wanted: Collection[str],
+    integrity: Integrity = Integrity.HASH,
+) -> Recording | Diagnostic:
+    """Read a log.
+
+    Args:
+        path: the file, as the user names it.
+        declarations: clock and signals.
+        wanted: names of declared signals.
+        integrity: what is looked at beyond the messages of the topics that the bindings name. A
+            log that is not as its index says is looked at in full.
+
+    Returns:
+        The recording, with findings about single topics and damaged places; or what keeps the
+        whole file from being read. Of a signal with an error among the findings there are no
+        samples.
+
+    Raises:
+        KeyError: a wanted signal is not declared.
+    """
+    signals = [declarations.signals[name] for name in dict.fromkeys(wanted)]
+    reading = partial(_read_log, path, declarations, signals, integrity)
+    return within(0, Source(shown(path), "").span(), reading)
+
+
+def _read_log(
+    path: str, declarations: Declarations, signals: Sequence[Signal], integrity: Integrity
+) -> Recording | Diagnostic:
+    found = _opened(path, lambda: Columns(declarations, signals), integrity)
+    if isinstance(found, Diagnostic):
+        return found
+    place, run, columns, examples = found
+    recording = _recording(place, run, columns, examples, signals)
+    return _too_long(recording, columns.clock, place) or recording
+
+
+def look(path: str) -> Overview | Diagnostic:
+    """Read a log without any bindings: what is in it, and how healthy it is.
+
+    Args:
+        path: the file, as the user names it.
+
+    Returns:
+        The overview, by log times; or what keeps the whole file from being read.
+    """
+    return within(0, Source(shown(path), "").span(), partial(_look, path))
+
+
+def _look(path: str) -> Overview | Diagnostic:
+    nothing = Declarations(Source("", ""), Clock(None, None), {}, {})
+    found = _opened(path, lambda: Columns(nothing, ()), Integrity.FULL)
+    if isinstance(found, Diagnostic):
+        return found
+    place, run, columns, examples = found
+    streams = columns.streams.items()
+    decoders = {topic: decoder(stream) for topic, stream in streams}
+    return Overview(
+        _recording(place, run, columns, examples, ()),
+        {topic: numbers(stream, examples.of(topic)) for topic, stream in streams},
+        {topic: why for topic, why in decoders.items() if isinstance(why, str)},
+    )
+
+
+# One file, or several
+
+
+@dataclass(frozen=True, slots=True)
+class _Run:
+    """What the files of one log have given."""
+
+    sha256: str
+    size: int
+    spans: Sequence[Gap]
+    """The first and the last whole message of each file."""
+    damages: Sequence[tuple[Span, Damage, Gap | None]]
+    """Each with its file, and the time that it has cost."""
+    notes: Sequence[Diagnostic]
+    checked: Checked
+
+
+_Read = tuple[Span, _Run, Columns, Examples]
+"""A log, and what has taken its messages."""
+
+
+def _opened(path: str, new: Callable[[], Columns], integrity: Integrity) -> _Read | Diagnostic:
+    """The log at a path: a file, standard input, what is at a URL, or a folder of rosbag2."""
+    place = Source(shown(path), "").span()
+    try:
+        if is_folder(path):
+            return _tried(partial(_folder, folder(path)), place, new, integrity)
+        if not os.path.lexists(path) and (run := split(path)) is not None:
+            return _tried(partial(_folder, run), place, new, integrity)
+        with opened(path, whole=integrity is not Integrity.INDEX) as log:
+            if isinstance(log, Diagnostic):
+                return log
+            return _tried(partial(_file, path, log), place, new, integrity)
+    except OSError as error:
+        return refusals.unreadable(error, place)
+
+
+def _tried(
+    use: Callable[[Sink, Integrity, Span], _Run | Diagnostic],
+    place: Span,
+    new: Callable[[], Columns],
+    integrity: Integrity,
+) -> _Read | Diagnostic:
+    """Read a log; once more, in full, where it is not as its index says."""
+    columns = new()
+    examples = Examples(columns)
+    try:
+        run = use(examples, integrity, place)
+    except BrokenError:
+        assert integrity is not Integrity.FULL
+        return _tried(use, place, new, Integrity.FULL)
+    columns.settle()
+    return run if isinstance(run, Diagnostic) else (place, run, columns, examples)
+
+
+def _file(
+    path: str, log: Input, sink: Sink, integrity: Integrity, place: Span
+) -> _Run | Diagnostic:
+    part = _part(log, sink, integrity, place)
+    if isinstance(part, Diagnostic):
+        return part
+    if part.span is None:
+        return findings.empty(place)
+    damages, notes = [(place, *one) for one in part.damages], (*part.notes, *_alone(path, place))
+    return _Run(part.sha256, part.size, (part.span,), damages, notes, part.checked)
+
+
+def _alone(path: str, place: Span) -> Iterator[Diagnostic]:
+    """Whether the file is only a part of a run."""
+    parent, name = os.path.split(path)
+    try:
+        about = folder(parent or ".") if is_folder(parent or ".") else None
+        bags_of_run = split(path) if name.endswith((".bag", ACTIVE)) else None
+    except OSError:
+        return
+    if isinstance(about, Folder) and len(about.files) > 1 and name in about.files:
+        whole = f"the folder `{parent or '.'}`"
+    elif bags_of_run is not None:
+        about, whole = bags_of_run, f"'{named(bags_of_run)}'"
+    else:
+        return
+    yield refusals.part_of_a_run(about.files.index(name), len(about.files), whole, place)
+
+
+def _part(log: Input, sink: Sink, integrity: Integrity, place: Span) -> Part | Diagnostic:
+    """The messages of one file; or what keeps the whole file from being read.
+
+    Raises:
+        BrokenError: the file is not as its index says.
+    """
+    grant(log.size)
+    part = _taken(log, sink, integrity, place)
+    return findings.changed(place) if log.changed() else part
+
+
+def _taken(log: Input, sink: Sink, integrity: Integrity, place: Span) -> Part | Diagnostic:
+    log.stream.seek(0)
+    start = log.stream.read(16)
+    if not start:
+        return findings.empty(place)
+    if integrity is not Integrity.INDEX:
+        log.begin()
+    if start.startswith((bags.BAG, bags.DB3)):
+        if log.file is None or log.same is None:
+            return refusals.bag_of_no_file(place)
+        found = bags.read(log.file, log.same, start, sink, place)
+        if isinstance(found, Diagnostic):
+            return found
+        damages = (*found.damages, *_reindexed(log.file, found.span))
+        return Part(log.sha256(), log.size, found.span, damages, found.notes)
+    if not start.startswith(MAGIC):
+        return findings.not_a_log(start, place)
+    held = contents(log.stream, log.size, sink, integrity)
+    if held.span is not None:
+        digest = log.sha256() if held.checked.hashed else held.summary_sha256
+        notes = (refusals.without_crc(place),) if held.unprotected else ()
+        return Part(digest, log.size, held.span, held.damages, notes, held.checked)
+    if held.cut is not None:
+        return findings.truncated(held.cut, place)
+    if held.damages:
+        return findings.nothing_whole(held.damages[0][0], place)
+    return Part(log.sha256(), log.size, None, ())
+
+
+def _reindexed(file: str, span: Gap | None) -> Iterator[tuple[Damage, Gap | None]]:
+    """What a bag has lost that was mended by `rosbag reindex`."""
+    backup = unclosed_backup(file)
+    if backup is not None and span is not None:
+        what = (
+            f"it was reindexed, and the chunk that was being written when its recording broke off "
+            f"is not in it (`{backup}` is beside it)"
+        )
+        yield Damage(NOWHERE, what, code=Code.REINDEXED), (span[1], span[1])
+
+
+def _folder(
+    about: Folder | Diagnostic, one: Sink, integrity: Integrity, place: Span
+) -> _Run | Diagnostic:
+    """The files of one run, in the order that its description gives."""
+    sink = Numbered(one)
+    if isinstance(about, Diagnostic):
+        return about
+    if about.compressed:
+        return refusals.compressed_folder(about.compressed, place)
+    places = [Source(os.path.join(about.path, name), "").span() for name in about.files]
+    found: list[Part | Diagnostic] = []
+    for file in places:
+        sink.next_file()
+        with opened(file.source.name) as log:
+            found.append(log if isinstance(log, Diagnostic) else _part(log, sink, integrity, file))
+    parts = [part for part in found if isinstance(part, Part)]
+    spans = [part.span for part in parts if part.span is not None]
+    if not spans:
+        wrong = [part for part in found if isinstance(part, Diagnostic)]
+        return wrong[0] if wrong else findings.empty(place)
+    damages = list(_losses(about, places, found))
+    if about.messages not in (None, sink.counted) and not damages:
+        lost = (min(a for a, _ in spans), max(b for _, b in spans))
+        what = f"its {METADATA} states {about.messages} messages, and its files hold {sink.counted}"
+        damage = Damage(NOWHERE, what, code=Code.COUNT_MISMATCH)
+        damages.append((place, damage, lost if sink.counted < (about.messages or 0) else None))
+    hashes = {
+        name: part.sha256
+        for name, part in zip(about.files, found, strict=True)
+        if isinstance(part, Part)
+    }
+    notes = {note.message: note for part in parts for note in part.notes}
+    size = sum(part.size for part in parts)
+    checked = reduce(add, (part.checked for part in parts))
+    return _Run(of_all(hashes), size, spans, damages, tuple(notes.values()), checked)
+
+
+def _losses(
+    about: Folder, places: Sequence[Span], found: Sequence[Part | Diagnostic]
+) -> Iterator[tuple[Span, Damage, Gap | None]]:
+    """The damages of all files, in their order; a file that gave nothing is one."""
+    parts = [part if isinstance(part, Part) else None for part in found]
+    for i, (place, part) in enumerate(zip(places, found, strict=True)):
+        before, after = around(parts, i)
+        if isinstance(part, Part):
+            for damage, gap in widened(part, before, after):
+                yield place, damage, gap
+        else:
+            what = f"a file of the run is lost: {part.message}"
+            yield place, Damage(NOWHERE, what, code=Code.LOST_PART), about.lost(i, before, after)
+
+
+def _too_long(recording: Recording, clock: Clock, place: Span) -> Diagnostic | None:
+    length = recording.end_ns - recording.start_ns
+    if clock.period is None or length // clock.period < _MOST_TICKS:
+        return None
+    return findings.too_long(length, length // clock.period, clock, place)
+
+
+def _recording(
+    place: Span, run: _Run, columns: Columns, examples: Examples, wanted: Sequence[Signal]
+) -> Recording:
+    lost = [gap for _, _, gap in run.damages if gap is not None]
+    gaps = tuple(sorted({columns.on_clock(gap) for gap in lost}))
+    origin = min(start for start, _ in [*run.spans, *lost])
+    told = [findings.damaged(damage, gap, origin, file) for file, damage, gap in run.damages]
+    samples = {signal.name: Samples(*columns.samples(signal), signal.scale) for signal in wanted}
+    start, end = columns.span((min(a for a, _ in run.spans), max(b for _, b in run.spans)))
+    return Recording(
+        name=place.source.name,
+        sha256=run.sha256,
+        size=run.size,
+        start_ns=min([start, *(gap[0] for gap in gaps)]),
+        end_ns=max([end, *(gap[1] for gap in gaps)]),
+        samples=samples,
+        ticks=columns.ticks(),
+        gaps=gaps,
+        topics={name: _topic(column) for name, column in sorted(columns.topics.items())},
+        nearest=columns.nearest,
+        findings=(
+            *columns.findings(),
+            *_clocks(columns, wanted),
+            *_never_stated(samples, examples, wanted),
+            *findings.few(told, place),
+            *run.notes,
+        ),
+        intact=not run.damages,
+        checked=run.checked,
+    )
+
+
+def _never_stated(
+    samples: Mapping[str, Samples], examples: Examples, wanted: Sequence[Signal]
+) -> list[Diagnostic]:
+    """About signals that are unknown in all messages, in JSON that has no such field."""
+    found = []
+    for signal in wanted:
+        values = samples[signal.name].values
+        payloads = examples.of(signal.path.topic)
+        if not payloads or not len(values) or not np.isnan(values).all():
+            continue
+        known = stated_fields(payloads)
+        if ".".join(signal.path.fields) not in {path.removesuffix("[:]") for path in known}:
+            found.append(findings.never_stated(signal, known))
+    return found
+
+
+def _clocks(columns: Columns, wanted: Sequence[Signal]) -> list[Diagnostic]:
+    """What is odd about the clocks of the topics that the signals read."""
+    found = list(_unmoved(columns))
+    ahead: dict[str, int] = {}
+    signals = {
+        signal.path.topic: signal for signal in wanted if signal.path.topic in columns.topics
+    }
+    for topic, signal in signals.items():
+        column = columns.topics[topic]
+        clock = _stamps(column)
+        if clock is not None and clock.jumps:
+            found.append(findings.clock_jumps(signal, clock.jumps, clock.largest))
+        if clock is not None and not column.unstamped:
+            ahead[topic] = clock.ahead
+    middle = median(ahead.values()) if ahead else 0
+    true = min(ahead, key=lambda topic: (abs(ahead[topic] - middle), abs(ahead[topic])), default="")
+    for topic, shift in ahead.items():
+        if abs(shift - ahead[true]) > JUMP:
+            found.append(findings.mixed_clocks(signals[topic], true, shift - ahead[true]))
+    return found
+
+
+def _unmoved(columns: Columns) -> Iterator[Diagnostic]:
+    """About clocks that were never set, or that stand still."""
+    for topic, place in columns.readers().items():
+        column, time = columns.topics[topic], columns.clock.time
+        if zero := int(column.unset.sum()):
+            yield findings.zero_stamps(topic, place, zero, column.count, time)
+        if same := still(column.stamps()[~column.unset]):
+            yield findings.still_clock(topic, place, same, column.count, time)
+
+
+def _stamps(column: Column) -> Stamps | None:
+    """Of the messages that the declared clock has a time for."""
+    known = ~column.unset
+    return stamps(np.array(column.logs, np.int64)[known], column.stamps()[known])
+
+
+def _topic(column: Column) -> Topic:
+    if column.stated:
+        return _counted(column)
+    times = np.sort(column.stamps())
+    steps = np.diff(times)
+    clock = _stamps(column) if column.bound else None  # of another there are only log times
+    return Topic(
+        name=column.name,
+        type=column.type,
+        encoding=column.encoding,
+        count=column.count,
+        first_ns=int(times[0]) if len(times) else None,
+        last_ns=int(times[-1]) if len(times) else None,
+        longest_gap_ns=int(steps.max(initial=0)),
+        out_of_order=column.late(),
+        equal_stamps=int((steps == 0).sum()),
+        median_period_ns=int(np.median(steps)) if len(steps) else None,
+        unstamped=column.unstamped,
+        zero_stamps=int(column.unset.sum()),
+        clock_jumps=clock.jumps if clock is not None else 0,
+    )
+
+
+def _counted(column: Column) -> Topic:
+    """A topic whose messages were only counted."""
+    return Topic(
+        name=column.name,
+        type=column.type,
+        encoding=column.encoding,
+        count=column.count,
+        first_ns=None,
+        last_ns=None,
+        longest_gap_ns=None,
+        out_of_order=None,
+        equal_stamps=None,
+        unstamped=None,
+        zero_stamps=None,
+        clock_jumps=None,
+    )

@@ -1,0 +1,1 @@
+"""What a Recording holds, and propositions as truth columns on the clock."""

@@ -1,0 +1,247 @@
+"""Numbers of expressions: constants as exact fractions, samples as they were recorded.
+
+A constant is a fraction until it meets samples; there it becomes the nearest number of their unit
+and of their kind. So `x < 35 cm` and `x < 0.35 m` are the same of every sample, whatever its unit.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from fractions import Fraction
+from functools import lru_cache, reduce
+from math import ceil, floor, isfinite
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fretc.logs.signals.samples import EXACT, WHOLE, Numbers, Values, scaled
+from fretish import expressions as e
+from fretish.bindings.constants import called, computed
+from fretish.expressions import MIRRORED
+from fretish.units import ONE, Unit, unit
+
+COMPARE: dict[str, Callable[..., NDArray[np.bool_]]] = {
+    "<": np.less,
+    "<=": np.less_equal,
+    ">": np.greater,
+    ">=": np.greater_equal,
+    "=": np.equal,
+    "!=": np.not_equal,
+}
+"""The operators of comparisons; NaN is equal to nothing."""
+
+
+class ExpressionError(ValueError):
+    """The expression cannot be evaluated where it stands; the text says why."""
+
+
+@dataclass(frozen=True, slots=True)
+class Scope:
+    """What the names of an expression stand for, at `length` points.
+
+    `numbers` have shape (length,), or one element for all points; NaN is unknown. Times their
+    `scales` (1 where none is given) they are in base units. Quantities are read in `unit` or its
+    powers. `held` are the states of each `... for 200 ms`, as `fretc.logs.signals.propositions` has
+    them.
+    """
+
+    length: int
+    numbers: Mapping[str, Values]
+    unit: Unit = ONE
+    scales: Mapping[str, Fraction] = field(default_factory=dict)
+    held: Mapping[e.Held, NDArray[np.int8]] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, slots=True)
+class Measure:
+    """A number at each point, shape (length,) or (1,): `values * scale` is in base units."""
+
+    values: Values
+    scale: Fraction = Fraction(1)
+
+    @property
+    def base(self) -> Numbers:
+        """In base units, as 64-bit floats."""
+        return scaled(self.values.astype(np.float64), self.scale)
+
+    @property
+    def plain(self) -> Values:
+        """What arithmetic computes with: 64-bit floats."""
+        return self.values.astype(np.float64, copy=False)
+
+
+Term = Measure | Fraction
+"""Measured, or constant."""
+_UNKNOWN = Measure(np.array([np.nan]))
+
+
+def number(expression: e.Expression, scope: Scope) -> Numbers:
+    """The number at each point in base units, shape (scope.length,) or (1,); NaN is unknown.
+
+    Raises:
+        ExpressionError: the expression is a truth value, or names what the scope does not hold.
+    """
+    return _measure(term(expression, scope)).base
+
+
+def term(expression: e.Expression, scope: Scope) -> Term:
+    """The number at each point; a fraction where it is the same constant at all of them.
+
+    What divides by zero is unknown. Infinity is a number: `1 / inf` is 0, `inf - inf` unknown.
+    Constants are computed exactly, everything else in 64-bit floats; what has not been computed
+    (`x`, `-x`, `abs(x)`, `min(x, y)`) stays as it was recorded.
+
+    Raises:
+        ExpressionError: the expression is a truth value, or names what the scope does not hold.
+    """
+    match expression:
+        case e.Number(digits):
+            return Fraction(digits)
+        case e.Quantity(digits, name, _):
+            return _quantity(digits, name, scope.unit)
+        case e.Name(id):
+            if id not in scope.numbers:
+                raise ExpressionError(f"there is no `{id}`")
+            return Measure(scope.numbers[id], scope.scales.get(id, Fraction(1)))
+        case e.Negation(arg):
+            value = term(arg, scope)
+            return -value if isinstance(value, Fraction) else Measure(-value.values, value.scale)
+        case e.Arithmetic(op, left, right):
+            return _arithmetic(op, term(left, scope), term(right, scope))
+        case e.Call(name, args, _):
+            return _call(name, [term(arg, scope) for arg in args])
+        case _:
+            raise ExpressionError("a number is needed, and this is a truth value")
+
+
+@lru_cache(1024)
+def _quantity(digits: str, name: str, read_in: Unit) -> Fraction:
+    """A quantity in a unit, or in a power of it: 4 m^2 are 40 000 beside numbers in cm."""
+    known = unit(name)
+    assert known is not None, "the parser refuses unknown units"
+    powers = (1, 0, 2, 3, -1, -2)
+    same = (n for n in powers if known.dimension == tuple(n * d for d in read_in.dimension))
+    return Fraction(digits) * known.factor / read_in.factor ** next(same, 0)
+
+
+def _measure(value: Term) -> Measure:
+    return Measure(_nearest(value, np.dtype(np.float64))) if isinstance(value, Fraction) else value
+
+
+def together(left: Term, right: Term, op: str = "") -> tuple[Values, Values, Fraction]:
+    """Both sides in one unit, and the scale of it: that of the samples, if they have the same one.
+
+    A constant becomes the nearest number of the kind of the other side: of 32-bit floats, of
+    64-bit floats, or, beside whole numbers beyond them, a whole number for which `op` says the
+    same.
+    """
+    if isinstance(left, Fraction):
+        if isinstance(right, Fraction):
+            return _measure(left).values, _measure(right).values, Fraction(1)
+        return _beside(left, right, MIRRORED.get(op, op)), right.values, right.scale
+    if isinstance(right, Fraction):
+        return left.values, _beside(right, left, op), left.scale
+    if left.scale == right.scale:
+        return left.values, right.values, left.scale
+    return left.base, right.base, Fraction(1)
+
+
+def compared(op: str, left: Term, right: Term) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
+    """Whether it is so at each point, and where that is unknown; shape (length,) or (1,)."""
+    if isinstance(left, Fraction) and isinstance(right, Fraction):
+        signs = np.array([(left > right) - (left < right)])
+        return COMPARE[op](signs, 0), np.zeros(1, bool)
+    one, other, _ = together(left, right, op)
+    return COMPARE[op](one, other), np.isnan(one) | np.isnan(other)
+
+
+# Constants
+
+_HALVES = WHOLE // 2
+"""From here on every 64-bit float is a whole number, and what lies between two of them is none."""
+_BEYOND = 2**64
+"""From here on nothing was recorded as a whole number."""
+
+
+def _beside(constant: Fraction, measure: Measure, op: str) -> Values:
+    """What stands for a constant that `measure op constant` compares."""
+    exact, kind = constant / measure.scale, measure.values.dtype
+    if not _HALVES <= abs(exact) < (_BEYOND if kind == EXACT else WHOLE) or kind == np.float32:
+        return _nearest(exact, kind)
+    if exact.denominator != 1 and op in ("=", "!="):
+        return np.array([np.inf], EXACT)  # no whole number is equal to it
+    return np.array([ceil(exact) if op in ("<", ">=") else floor(exact)], EXACT)
+
+
+@lru_cache(1024)
+def _nearest(exact: Fraction, kind: np.dtype[Any]) -> Values:
+    """The number of a kind that is nearest to a fraction; infinite where that is too large."""
+    try:
+        double = float(exact)
+    except OverflowError:
+        double = float("inf") if exact > 0 else float("-inf")
+    with np.errstate(over="ignore"):
+        narrow = np.float32(double)
+    if kind != np.float32 or not isfinite(narrow):
+        return np.array([double], kind if kind == EXACT else np.float64)
+    around = (narrow, *(np.nextafter(narrow, np.float32(end)) for end in (-np.inf, np.inf)))
+    finite = [one for one in around if isfinite(one)]
+    return np.array([min(finite, key=lambda one: abs(Fraction(float(one)) - exact))], np.float32)
+
+
+# What is computed
+
+
+def _arithmetic(op: e.ArithmeticOperator, left: Term, right: Term) -> Term:
+    if isinstance(left, Fraction) and isinstance(right, Fraction):
+        exact = computed(op, left, right)
+        return _UNKNOWN if exact is None else exact
+    with np.errstate(all="ignore"):
+        if op in ("+", "-"):
+            one, other, scale = together(_double(left), _double(right))
+            return Measure(one + other if op == "+" else one - other, scale)
+        a, b = _measure(left), _measure(right)
+        match op:
+            case "*":
+                return Measure(a.plain * b.plain, a.scale * b.scale)
+            case "/":
+                quotient = np.where(b.plain == 0, np.nan, a.plain / b.plain)
+                return Measure(quotient, a.scale / b.scale)
+            case _:
+                raise ExpressionError(f"bindings have no `{op}`")
+
+
+def _double(value: Term) -> Term:
+    return value if isinstance(value, Fraction) else Measure(value.plain, value.scale)
+
+
+def _beside_constant(value: Term) -> Term:
+    """Without whole numbers beyond 64-bit floats: an end of them and of a constant may be none."""
+    exact = isinstance(value, Measure) and value.values.dtype == EXACT
+    return _double(value) if exact else value
+
+
+def _call(name: str, args: Sequence[Term]) -> Term:
+    match name, len(args):
+        case "abs", 1:
+            value = args[0]
+            if isinstance(value, Fraction):
+                return called("abs", [value])
+            return Measure(np.abs(value.values), value.scale)
+        case "min", _:
+            return reduce(lambda one, other: _end(np.minimum, one, other), args)
+        case "max", _:
+            return reduce(lambda one, other: _end(np.maximum, one, other), args)
+        case _:
+            raise ExpressionError(f"bindings have no `{name}` of {len(args)} numbers")
+
+
+def _end(function: np.ufunc, left: Term, right: Term) -> Term:
+    if isinstance(left, Fraction) and isinstance(right, Fraction):
+        return called("min" if function is np.minimum else "max", [left, right])
+    if isinstance(left, Fraction) or isinstance(right, Fraction):
+        left, right = _beside_constant(left), _beside_constant(right)
+    one, other, scale = together(left, right)
+    return Measure(function(one, other), scale)

@@ -1,0 +1,296 @@
+"""Propositions over samples: three-valued step functions of time.
+
+Kleene's logic: a proposition is true, false or unknown, and what is unknown stays unknown until
+the rest decides. Times are nanoseconds.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from functools import reduce
+from types import MappingProxyType
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fretc.logs.signals.measures import ExpressionError, Scope, Term, compared, term
+from fretc.logs.signals.samples import Recording, Samples, Times, Values
+from fretish import expressions as e
+from fretish.bindings.declarations import Declarations, Proposition, Signal
+
+States = NDArray[np.int8]
+"""One of `FALSE`, `UNKNOWN`, `TRUE` each: `and` is the least of them, `or` the greatest."""
+
+FALSE, UNKNOWN, TRUE = 0, 1, 2
+_VALUES: tuple[bool | None, ...] = (False, None, True)
+_FOREVER = 2**62
+"""Later than any time of a log, and far enough from the end of int64 to add a duration."""
+
+
+@dataclass(frozen=True, slots=True)
+class Steps:
+    """A step function: `states[i]` from `times[i]` on, until `times[i + 1]`.
+
+    Both have shape (n,), n >= 1. Times do not decrease; of several steps at one time each was
+    seen and the last one stays.
+    """
+
+    times: Times
+    states: States
+
+    @property
+    def values(self) -> list[bool | None]:
+        """The states as truth values; None is unknown."""
+        return truth_values(self.states)
+
+
+def truth_values(states: States) -> list[bool | None]:
+    """`FALSE`, `UNKNOWN`, `TRUE` as False, None, True."""
+    return [_VALUES[state] for state in states.tolist()]
+
+
+def evaluate(proposition: Proposition, declarations: Declarations, recording: Recording) -> Steps:
+    """The proposition's truth over the time of the recording.
+
+    A step is taken at the start of the recording, at each sample of each signal that the
+    proposition names, where a sample grows too old (`max_age` and one nanosecond after it), at
+    both ends of each gap of the recording, and where `... for 200 ms` is fulfilled. Samples with
+    the same time are taken in their order: the first of each signal together, then the second.
+
+    A signal is unknown before its first sample, after its last one has grown too old, within a
+    gap and from there to the next sample, and where a sample is unknown. Samples are compared as
+    they were recorded, in their own unit, with the nearest number of their kind: 0.9 as a 32-bit
+    float is 0.9, and not below it.
+
+    Returns:
+        Steps from `recording.start_ns` on; the later ones up to `recording.end_ns`.
+    """
+    signals = {name: declarations.signals[name] for name in proposition.signals}
+    history = history_of(signals, recording)
+    steps = _steps(proposition.expression, history)
+    kept = steps.times <= max(recording.end_ns, recording.start_ns)
+    return Steps(steps.times[kept], steps.states[kept])
+
+
+# Truth at given points
+
+
+def truth(expression: e.Expression, scope: Scope) -> States:
+    """Kleene's truth of the expression at each point, shape (scope.length,).
+
+    Raises:
+        ExpressionError: the expression is a number, or names what the scope does not hold.
+    """
+    match expression:
+        case e.Truth(value):
+            return np.full(scope.length, TRUE if value else FALSE, np.int8)
+        case e.Comparison(op, left, right):
+            return _compared(op, term(left, scope), term(right, scope), scope.length)
+        case e.Not(arg):
+            return _not(truth(arg, scope))
+        case e.And(args):
+            return reduce(np.minimum, (truth(arg, scope) for arg in args))
+        case e.Or(args):
+            return reduce(np.maximum, (truth(arg, scope) for arg in args))
+        case e.Implies(left, right):
+            return np.maximum(_not(truth(left, scope)), truth(right, scope))
+        case e.Iff(left, right):
+            return _same(truth(left, scope), truth(right, scope))
+        case e.Xor(left, right):
+            return _not(_same(truth(left, scope), truth(right, scope)))
+        case e.Held():
+            if expression not in scope.held:
+                raise ExpressionError("`for` needs a proposition: a single message has no duration")
+            return scope.held[expression]
+        case _:
+            raise ExpressionError("a truth value is needed, and this is a number")
+
+
+def _compared(op: str, left: Term, right: Term, length: int) -> States:
+    held, unknown = compared(op, left, right)
+    states = held.astype(np.int8)
+    states *= TRUE  # and what is not true is FALSE, which is 0
+    if unknown.any():
+        states[unknown] = UNKNOWN
+    return states if len(states) == length else np.repeat(states, length)
+
+
+def _not(states: States) -> States:
+    return (TRUE - states).astype(np.int8)
+
+
+def _same(left: States, right: States) -> States:
+    unknown = (left == UNKNOWN) | (right == UNKNOWN)
+    return np.where(unknown, UNKNOWN, np.where(left == right, TRUE, FALSE)).astype(np.int8)
+
+
+# Signals over time
+
+
+@dataclass(frozen=True, slots=True)
+class History:
+    """The signals of a proposition at all its events, as `Samples` has them; shape (n,)."""
+
+    times: Times
+    numbers: Mapping[str, Values]
+    scales: Mapping[str, Fraction]
+
+    def with_times(self, times: Sequence[Times]) -> History:
+        """The same with an event at each of the times that has none; those there are stay."""
+        extra = np.setdiff1d(np.concatenate([self.times[:0], *times]), self.times)
+        if not len(extra):
+            return self
+        in_force = np.searchsorted(self.times, extra, "right") - 1
+        chosen = np.concatenate([np.arange(len(self.times)), in_force])
+        every = np.concatenate([self.times, extra])
+        order = np.argsort(every, kind="stable")
+        numbers = {name: values[chosen[order]] for name, values in self.numbers.items()}
+        return replace(self, times=every[order], numbers=numbers)
+
+    def scope(self, held: Mapping[e.Held, States] = MappingProxyType({})) -> Scope:
+        """What the names stand for at the events."""
+        return Scope(len(self.times), self.numbers, scales=self.scales, held=held)
+
+
+def history_of(signals: Mapping[str, Signal], recording: Recording) -> History:
+    """What the signals are at each time at which `evaluate` looks at them."""
+    samples = {name: recording.samples.get(name, _NONE) for name in signals}
+    gaps = _merged(recording.gaps)
+    fixed = [recording.start_ns, *(edge for gap in gaps for edge in gap)]
+    sources = [np.unique(np.array(fixed, np.int64))]
+    for name, signal in signals.items():
+        sources += [samples[name].times, _expiries(samples[name].times, signal.max_age)]
+    times, places = _events(sources)
+    numbers = {
+        name: _held_values(samples[name], places[1 + 2 * i], times, signal.max_age, gaps)
+        for i, (name, signal) in enumerate(signals.items())
+    }
+    first = int(np.searchsorted(times, recording.start_ns))
+    return History(
+        times[first:],
+        {name: values[first:] for name, values in numbers.items()},
+        {name: samples[name].scale for name in signals},
+    )
+
+
+_NONE = Samples(np.zeros(0, np.int64), np.zeros(0))
+
+
+def _merged(gaps: Sequence[tuple[int, int]]) -> list[tuple[int, int]]:
+    """The same time as gaps that do not touch, in order."""
+    merged: list[tuple[int, int]] = []
+    for start, end in sorted(gaps):
+        if merged and start <= merged[-1][1]:
+            merged[-1] = merged[-1][0], max(end, merged[-1][1])
+        else:
+            merged.append((start, end))
+    return merged
+
+
+def _expiries(times: Times, max_age: int | None) -> Times:
+    """Where a sample has grown too old and no newer one has come."""
+    if max_age is None or not len(times):
+        return np.zeros(0, np.int64)
+    following = np.append(times[1:], _FOREVER)
+    expiries: Times = times + (max_age + 1)
+    return expiries[expiries < following]
+
+
+def _events(sources: Sequence[Times]) -> tuple[Times, list[NDArray[np.intp]]]:
+    """All times, in order, and for each source the places of its own.
+
+    The n-th of equal times of one source stands together with the n-th of the others.
+    """
+    times = np.concatenate(sources)
+    ranks = np.concatenate([_ranks(source) for source in sources])
+    order = np.lexsort((ranks, times))
+    times, ranks = times[order], ranks[order]
+    new = np.ones(len(times), bool)
+    new[1:] = (times[1:] != times[:-1]) | (ranks[1:] != ranks[:-1])
+    place = np.empty(len(times), np.intp)
+    place[order] = np.cumsum(new) - 1
+    ends = np.cumsum([len(source) for source in sources])
+    return times[new], np.split(place, ends[:-1])
+
+
+def _ranks(times: Times) -> NDArray[np.intp]:
+    """How many equal times stand before each one."""
+    return np.arange(len(times)) - np.searchsorted(times, times, "left")
+
+
+def _held_values(
+    samples: Samples,
+    places: NDArray[np.intp],
+    times: Times,
+    max_age: int | None,
+    gaps: Sequence[tuple[int, int]],
+) -> Values:
+    """The value of one signal at each event; NaN where it is unknown."""
+    taken, values = samples.times, samples.values
+    if not len(taken):
+        return np.full(len(times), np.nan)
+    last = np.searchsorted(places, np.arange(len(times)), "right") - 1
+    taken, values = taken[last], values[last]
+    unknown = last < 0
+    if max_age is not None:
+        unknown |= times - taken > max_age
+    if gaps:
+        starts, ends = np.array(gaps, np.int64).T
+        gap = np.searchsorted(starts, times, "right") - 1
+        unknown |= (gap >= 0) & ((times <= ends[gap]) | (taken <= ends[gap]))
+    held: Values = np.where(unknown, values.dtype.type(np.nan), values)
+    return held
+
+
+# Durations
+
+
+def _steps(expression: e.Expression, history: History) -> Steps:
+    held = {
+        part: _held(_steps(part.arg, history), part.duration) for part in _durations(expression)
+    }
+    history = history.with_times([steps.times for steps in held.values()])
+    states = {part: _at(steps, history.times) for part, steps in held.items()}
+    return Steps(history.times, truth(expression, history.scope(states)))
+
+
+def _durations(expression: e.Expression) -> Iterator[e.Held]:
+    """The outermost `... for 200 ms` in it."""
+    if isinstance(expression, e.Held):
+        yield expression
+        return
+    for part in e.children(expression):
+        yield from _durations(part)
+
+
+def _at(steps: Steps, times: Times) -> States:
+    """What the step function is at each of the times, none of them before its first step."""
+    return steps.states[np.searchsorted(steps.times, times, "right") - 1]
+
+
+def _held(arg: Steps, duration: int) -> Steps:
+    """`arg` throughout `[t - duration, t]`.
+
+    False where it was false within it, else unknown where it was unknown within it (and before
+    the log it was), else true. Only changes are steps.
+    """
+    ends = np.append(arg.times[1:], _FOREVER)
+    begins = np.append(arg.times[:1], ends[:-1])  # where it can begin to be true
+    times = np.unique(np.concatenate([arg.times, begins + duration]))
+    states = np.full(len(times), TRUE, np.int8)
+    states[times < arg.times[0] + duration] = UNKNOWN
+    for state in (UNKNOWN, FALSE):
+        having = arg.states == state
+        states[_reached(times, arg.times[having], ends[having] + duration)] = state
+    changed = np.append(True, states[1:] != states[:-1])
+    return Steps(times[changed], states[changed])
+
+
+def _reached(times: Times, starts: Times, ends: Times) -> NDArray[np.bool_]:
+    """Whether a time lies in one of the spans `start <= t < end`; both ends are in order."""
+    if not len(starts):
+        return np.zeros(len(times), bool)
+    last = np.searchsorted(starts, times, "right") - 1
+    return (last >= 0) & (times < ends[last])

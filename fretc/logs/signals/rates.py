@@ -1,0 +1,94 @@
+"""Topics that come too seldom for the clock, or for the age up to which their samples count."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from fretc.logs.signals.samples import Recording, Topic
+from fretish.bindings.declarations import Declarations, Signal
+from fretish.clock import Clock
+from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
+
+_JITTER = 1.1
+"""A topic of 10 Hz has steps a little above 100 ms too."""
+_FEW = 10
+"""Fewer messages have no rate."""
+_EVENTS = 3
+"""Where one step is so many times the middle one, messages come when something happens."""
+
+
+def slow_topics(
+    declarations: Declarations, recording: Recording, signals: Sequence[str]
+) -> Iterator[Diagnostic]:
+    """F315 for each signal that grows too old between messages, and each topic slower than ticks.
+
+    Half of the steps between its messages are longer than `max_age`, or (by a tenth) than a tick.
+    Of a topic that comes only when something happens, and whose samples count until the next one,
+    nothing is told.
+
+    Args:
+        declarations: clock and signals.
+        recording: read with these signals.
+        signals: names of declared signals.
+    """
+    tick = _tick(declarations.clock, recording)
+    told: set[str] = set()
+    for name in signals:
+        signal = declarations.signals[name]
+        topic = recording.topics.get(signal.path.topic)
+        if topic is None or topic.median_period_ns is None:
+            continue
+        period = topic.median_period_ns
+        if signal.max_age is not None and period > signal.max_age:
+            yield _too_old(signal, period, signal.max_age)
+        elif tick is not None and period > tick * _JITTER and _is_regular(signal, topic):
+            if topic.name in told:
+                continue
+            told.add(topic.name)
+            yield _slow(signal, period, declarations.clock, tick)
+
+
+def _is_regular(signal: Signal, topic: Topic) -> bool:
+    """Whether the topic comes at a rate; a sample that counts until the next may be an event."""
+    if signal.max_age is not None:
+        return True
+    period, longest = topic.median_period_ns or 0, topic.longest_gap_ns or 0
+    return topic.count >= _FEW and longest <= _EVENTS * period
+
+
+def _tick(clock: Clock, recording: Recording) -> int | None:
+    """Nanoseconds of a tick; where the clock ticks by message, from one to the next, in the middle.
+
+    None where that is not known.
+    """
+    if clock.period is not None:
+        return clock.period
+    topic = recording.topics.get(clock.topic or "")
+    return topic.median_period_ns if topic is not None else None
+
+
+def _too_old(signal: Signal, period: int, max_age: int) -> Diagnostic:
+    return Diagnostic(
+        Code.SLOW_TOPIC,
+        f"`{signal.path.topic}` comes every {_ms(period)}, and a sample of `{signal.name}` counts "
+        f"for {_ms(max_age)}: in between it is unknown",
+        signal.span,
+        help="raise `max_age` above the time between two messages, or publish more often",
+        severity=Severity.WARNING,
+    )
+
+
+def _slow(signal: Signal, period: int, clock: Clock, tick: int) -> Diagnostic:
+    by = "" if clock.period is not None else f" (each message of `{clock.topic}`)"
+    return Diagnostic(
+        Code.SLOW_TOPIC,
+        f"`{signal.path.topic}` comes every {_ms(period)}, and the clock ticks every "
+        f"{_ms(tick)}{by}: most ticks see a sample of an earlier one",
+        signal.span,
+        help="use a longer `tick`, or publish more often",
+        severity=Severity.WARNING,
+    )
+
+
+def _ms(length: int) -> str:
+    return f"{length / 10**6:.4g} ms"

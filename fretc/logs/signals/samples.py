@@ -1,0 +1,157 @@
+"""What a log holds of the declared signals: the values that pass from reading to judging."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+from math import inf
+from typing import Any, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fretc.logs.signals.integrity import EVERYTHING, Checked
+from fretish.diagnostics.diagnostic import Diagnostic
+
+Times = NDArray[np.int64]
+"""Nanoseconds."""
+
+Numbers = NDArray[np.float64]
+"""NaN is unknown."""
+
+Values = NDArray[np.floating[Any]]
+"""As they were recorded, NaN is unknown: 32-bit floats, 64-bit floats, or `EXACT` numbers."""
+
+EXACT = np.dtype(np.longdouble)
+"""What holds each whole number of 64 bits as well as each float: 80-bit floats. Taken where whole
+numbers of 2^53 and more were recorded."""
+
+WHOLE = 2**53
+"""From here on 64-bit floats do not hold every whole number."""
+
+Gap = tuple[int, int]
+"""First and last nanosecond of a time whose messages are lost."""
+
+
+_Number = TypeVar("_Number", float, Numbers)
+
+
+def scaled(value: _Number, scale: Fraction) -> _Number:
+    """`value * scale`, rounded once where a division or a multiplication alone does it."""
+    with np.errstate(over="ignore", invalid="ignore"):  # what is too large is infinite
+        if scale.numerator == 1:
+            return value / _float(scale.denominator)
+        return value * _float(scale.numerator) / _float(scale.denominator)
+
+
+def _float(whole: int) -> float:
+    """The nearest float of a number above 0; infinite where that is too large."""
+    try:
+        return float(whole)
+    except OverflowError:
+        return inf
+
+
+def widest(values: NDArray[Any]) -> Values:
+    """Numbers of any kind as floats that hold them; 32-bit floats stay what they are."""
+    if values.dtype == np.float32:
+        return values.astype(np.float32, copy=False)
+    whole = values.dtype.kind in "iu" and values.dtype.itemsize == 8 and values.size > 0
+    if whole and (int(values.max()) >= WHOLE or int(values.min()) <= -WHOLE):
+        return values.astype(EXACT)
+    with np.errstate(invalid="ignore"):  # signalling NaN
+        return values.astype(EXACT if values.dtype == EXACT else np.float64)
+
+
+class Series:
+    """Numbers that grow in number: of the narrowest kind that holds all of them."""
+
+    def __init__(self) -> None:
+        self._kind = np.dtype(np.float32)
+        self._data = bytearray()
+
+    def add(self, values: Values) -> None:
+        """Some more."""
+        kind = np.promote_types(self._kind, values.dtype)
+        if kind != self._kind:
+            self._data = bytearray(self.values().astype(kind).tobytes())
+            self._kind = kind
+        self._data += values.astype(kind, copy=False).tobytes()
+
+    def values(self) -> Values:
+        """All of them."""
+        return np.frombuffer(bytes(self._data), self._kind)
+
+
+@dataclass(frozen=True, slots=True)
+class Samples:
+    """One signal.
+
+    `times` has shape (n,), nanoseconds that do not decrease; equal times stand in the order of
+    the file. `values` has shape (n,), as they were recorded; times `scale` they are in the base
+    unit of the signal's dimension. NaN is unknown.
+    """
+
+    times: Times
+    values: Values
+    scale: Fraction = Fraction(1)
+
+    @property
+    def base(self) -> Numbers:
+        """The values in the signal's base unit, as 64-bit floats."""
+        return scaled(self.values.astype(np.float64), self.scale)
+
+
+@dataclass(frozen=True, slots=True)
+class Topic:
+    """How one topic of a log is, by the declared time (`log_time` where no signal reads it).
+
+    `first_ns` and `last_ns` are None for a topic without messages, `median_period_ns` for one
+    with less than two. `out_of_order` counts the messages that are earlier than one before them,
+    `equal_stamps` those with the time of another, `unstamped` those without a stamp where the
+    clock goes by stamps, `zero_stamps` those with a stamp that was never set, and `clock_jumps`
+    those before which the clock jumped against the log times. All but the count are None where
+    the messages were only counted.
+    """
+
+    name: str
+    type: str
+    encoding: str
+    count: int
+    first_ns: int | None
+    last_ns: int | None
+    longest_gap_ns: int | None
+    out_of_order: int | None
+    equal_stamps: int | None
+    median_period_ns: int | None = None
+    unstamped: int | None = 0
+    zero_stamps: int | None = 0
+    clock_jumps: int | None = 0
+
+
+@dataclass(frozen=True, slots=True)
+class Recording:
+    """What one log holds of the declared signals.
+
+    `start_ns` and `end_ns` are the times of the first and the last message of the topics that the
+    bindings read, whichever signals were asked for, widened to the `gaps`. `ticks` are the times
+    of the clock's topic, where the clock ticks by message. Each gap includes both its ends.
+    `nearest` is, for signals that are the nearest of many readings, the least distance in metres
+    that the sensor says it can report. `intact` is False when anything was found that could have
+    lost messages.
+    """
+
+    name: str
+    sha256: str
+    size: int
+    start_ns: int
+    end_ns: int
+    samples: Mapping[str, Samples]
+    ticks: Times
+    gaps: tuple[Gap, ...]
+    topics: Mapping[str, Topic]
+    nearest: Mapping[str, float]
+    findings: tuple[Diagnostic, ...]
+    intact: bool
+    checked: Checked = EVERYTHING

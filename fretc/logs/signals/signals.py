@@ -1,0 +1,390 @@
+"""Signals: from a decoded message to one number.
+
+Numbers are in the unit of the field, clearances in metres; NaN is unknown. What no measurement is
+(NaN, an infinity, a number outside of `valid`) never passes for a number: `Invalid` says what it
+means.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from contextlib import suppress
+from math import isfinite
+from numbers import Real
+from typing import Any, assert_never
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fretc.logs.signals.measures import ExpressionError, Scope
+from fretc.logs.signals.outline import blind_share, distances, places
+from fretc.logs.signals.propositions import TRUE, truth
+from fretc.logs.signals.samples import EXACT, WHOLE, Values, scaled, widest
+from fretc.logs.signals.thresholds import thresholds
+from fretish import expressions as e
+from fretish.bindings.declarations import Declarations, Proposition, Reading, Reduce, Signal
+from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity, suggestion
+
+RANGE_MIN = "range_min"
+"""The field of a range sensor's messages that says what is too near for it."""
+
+
+class FieldError(ValueError):
+    """The message does not hold the number that the signal asks for.
+
+    The text names what is missing; `mend` says what is there instead.
+    """
+
+    def __init__(self, message: str, mend: str | None = None) -> None:
+        super().__init__(message)
+        self.mend = mend
+
+
+class UnstatedError(Exception):
+    """The message could hold the number that the signal asks for, and leaves it out."""
+
+
+class Sparse:
+    """A decoded message that may leave out its fields: of JSON, or of Protobuf."""
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Of the fields that it has, or may have."""
+        raise NotImplementedError
+
+    def field(self, name: str) -> object:
+        """The value of a field.
+
+        Raises:
+            UnstatedError: it is left out, or stated to be nothing.
+            KeyError: there is no such field.
+        """
+        raise NotImplementedError
+
+
+def sample(signal: Signal, message: object, *, single: bool = False) -> float:
+    """The signal's value in one message.
+
+    Elements are told apart first: NaN, +inf, -inf, a finite number for which `valid` is not
+    true, and a valid number. `signal.invalid` then says for each of the first four: it is
+    dropped; it is far (+inf); it is near (-inf, and for `outline` a clearance of 0); or it makes
+    the whole sample unknown. `valid` is read in the unit of the field. Beside 32-bit floats its
+    numbers are rounded to 32 bits too, so that `x <= 0.3` keeps a 0.3.
+
+    `outline` takes each element for a beam, as sensor_msgs/LaserScan defines them, and gives the
+    least distance from `signal.footprint` to their end points. A valid beam that ends inside of
+    the footprint has a clearance of 0: whether it met the robot itself cannot be known.
+
+    Args:
+        signal: what to read, and how.
+        message: an object with the message's fields as attributes, arrays as sequences.
+        single: whether the field was recorded as 32-bit floats.
+
+    Returns:
+        Times `signal.scale` it is in base units; an `int` where a whole number of 64 bits is
+        beyond those that a 64-bit float holds. NaN, unknown, where nothing was measured: an index
+        past the end, an empty array, an element that is unknown, nothing left after the drops, a
+        field that a `Sparse` message leaves out.
+
+    Raises:
+        FieldError: the message has no such field, or something else than numbers is in it.
+    """
+    try:
+        value = _field(signal, message)
+        if isinstance(value, float | int) and signal.valid is None and isfinite(value):
+            return value  # most signals are so, and most of the time is spent on them
+        values = np.array([value], _kind(value)) if isinstance(value, float | int) else value
+        with np.errstate(all="ignore"):  # what is too large is infinite, and a NaN may signal
+            return _sample(signal, message, values.astype(np.float32) if single else values)
+    except UnstatedError:
+        return float("nan")
+
+
+def _kind(value: float) -> np.dtype[Any]:
+    return EXACT if isinstance(value, int) else np.dtype(np.float64)
+
+
+def _sample(signal: Signal, message: object, values: Values) -> float:
+    valid = _valid(signal, message, values)
+    readings = _readings(signal, unrounded(signal, values), valid)
+    if readings is None or np.isnan(readings).all():
+        return float("nan")
+    if signal.reduce is Reduce.OUTLINE:
+        start, step = _sibling(message, "angle_min"), _sibling(message, "angle_increment")
+        return clearance(signal, readings, start, step)
+    measured = readings[~np.isnan(readings)]
+    return _reduced(signal.reduce, measured)
+
+
+def nearest(signal: Signal, message: object) -> float | None:
+    """The least distance that the sensor can report, as the message itself states it.
+
+    Returns:
+        `range_min` in metres, for a signal that is the nearest of many readings; None for
+        others, and where the message does not state it.
+    """
+    if signal.reduce not in (Reduce.MIN, Reduce.OUTLINE):
+        return None
+    stated = stated_field(message, RANGE_MIN)
+    if not isinstance(stated, Real) or not np.isfinite(float(stated)):
+        return None
+    return scaled(float(stated), signal.unit.factor)
+
+
+# Elements
+
+
+def _field(signal: Signal, message: object) -> float | Values:
+    """A number, or the chosen elements of an array, shape (n,), in the unit of the field."""
+    path = signal.path
+    value = message
+    for position, name in enumerate(path.fields):
+        value = _attribute(value, name, ".".join(path.fields[:position]))
+    name = ".".join(path.fields)
+    if not path.each and path.index is None:
+        return _number(value, name)
+    if path.index is not None and isinstance(value, list):
+        value = value[path.index : path.index + 1]  # whatever else is in it
+        return _array(value, name)
+    values = _array(value, name)
+    if path.index is None:
+        return values
+    return values[path.index : path.index + 1]
+
+
+def _attribute(value: object, name: str, parent: str) -> object:
+    if isinstance(value, Sparse):
+        with suppress(KeyError):
+            return value.field(name)
+    known = fields(value)
+    if name in known:
+        return getattr(value, name)
+    where = f"`{parent}`" if parent else "the message"
+    near = suggestion(name, known)
+    listed = f"it has {', '.join(known)}" if known else None
+    raise FieldError(
+        f"{where} has no field `{name}`", f"did you mean `{near}`?" if near else listed
+    )
+
+
+def fields(message: object) -> tuple[str, ...]:
+    """The names of a decoded message's fields, in their order; none where it is no message."""
+    if isinstance(message, Sparse):
+        return message.names
+    slots = getattr(type(message), "__slots__", None)
+    if slots:
+        return tuple(slots)
+    return tuple(getattr(message, "__dict__", ()))
+
+
+def stated_field(message: object, name: str) -> object | None:
+    """A field of a decoded message; None where it has none of that name, or leaves it out."""
+    if not isinstance(message, Sparse):
+        return getattr(message, name, None)
+    try:
+        return message.field(name)
+    except (KeyError, UnstatedError):
+        return None
+
+
+def _number(value: object, name: str) -> float:
+    if isinstance(value, float | int | Real | np.bool_):  # the frequent ones first
+        return _exact(value)
+    inner = fields(value)
+    if inner:
+        raise FieldError(f"`{name}` is no number", f"it has {', '.join(inner)}")
+    if isinstance(value, list | tuple | bytes | np.ndarray):
+        raise FieldError(
+            f"`{name}` is an array", f"write `{name}[0]`, or `{name}[:]` with `reduce`"
+        )
+    raise FieldError(f"`{name}` is no number")
+
+
+def _exact(value: float | Real | np.bool_) -> float:
+    """As a float; a whole number of 64 bits that a 64-bit float may not hold stays what it is."""
+    if isinstance(value, int | np.integer):
+        whole = int(value)
+        if WHOLE <= whole < 2**64 or -(2**63) <= whole <= -WHOLE:
+            return whole
+    return float(value)
+
+
+def _array(value: object, name: str) -> Values:
+    if isinstance(value, bytes | bytearray):
+        return np.frombuffer(value, np.uint8).astype(np.float64)
+    if isinstance(value, str) or not isinstance(value, list | tuple | np.ndarray):
+        raise FieldError(f"`{name}` is no array", "leave out the index")
+    try:
+        values = np.asarray(value)
+    except (TypeError, ValueError):
+        raise FieldError(f"`{name}` is no array of numbers") from None
+    if values.ndim == 1 and values.dtype.kind in "biuf":
+        large = np.isfinite(values) & (np.abs(values) >= WHOLE)
+        if isinstance(value, np.ndarray) or values.dtype.kind != "f" or not large.any():
+            return widest(values)
+    elements = [_element(one, name) for one in value]
+    whole = any(isinstance(element, int) for element in elements)
+    return np.array(elements, EXACT if whole else np.float64)
+
+
+def _element(value: object, name: str) -> float:
+    """One of an array whose elements are not all numbers of one kind."""
+    if value is None:
+        raise UnstatedError
+    if not isinstance(value, Real | np.bool_):
+        raise FieldError(f"`{name}` is no array of numbers")
+    return _exact(value)
+
+
+# What the elements mean
+
+
+def _valid(signal: Signal, message: object, values: Values) -> NDArray[np.bool_]:
+    """Which elements are measurements."""
+    finite = np.isfinite(values)
+    if signal.valid is None:
+        return finite
+    names = {name.id for name in e.names(signal.valid)} - {"x"}
+    siblings = {name: np.array([_sibling(message, name)]) for name in names}
+    scope = Scope(len(values), {"x": values, **siblings}, signal.unit)
+    try:
+        accepted: NDArray[np.bool_] = truth(signal.valid, scope) == TRUE
+    except ExpressionError as error:
+        raise FieldError(f"`valid` cannot be evaluated: {error}") from None
+    return finite & accepted
+
+
+def _sibling(message: object, name: str) -> float:
+    return float(_number(_attribute(message, name, ""), name))
+
+
+def unrounded(signal: Signal, values: Values) -> Values:
+    """The elements as 64-bit floats; as they are where those would not do, and one is chosen."""
+    chosen = signal.reduce not in (Reduce.MEAN, Reduce.OUTLINE)
+    return values if chosen and values.dtype == EXACT else values.astype(np.float64)
+
+
+def _readings(signal: Signal, values: Values, valid: NDArray[np.bool_]) -> Values | None:
+    """The elements with what is far or near put in; NaN where one is dropped.
+
+    None when an element makes the whole sample unknown.
+    """
+    invalid = signal.invalid
+    readings = values.copy()
+    for chosen, reading in (
+        (np.isnan(values), invalid.nan),
+        (np.isposinf(values), invalid.positive_infinity),
+        (np.isneginf(values), invalid.negative_infinity),
+        (np.isfinite(values) & ~valid, invalid.other),
+    ):
+        if not chosen.any():
+            continue
+        match reading:
+            case Reading.UNKNOWN:
+                return None
+            case Reading.DROP:
+                readings[chosen] = np.nan
+            case Reading.FAR:
+                readings[chosen] = np.inf
+            case Reading.NEAR:
+                readings[chosen] = -np.inf
+            case _:
+                assert_never(reading)
+    return readings
+
+
+def _reduced(reduce: Reduce | None, readings: Values) -> float:
+    match reduce:
+        case None:
+            return _python(readings[0])
+        case Reduce.MIN:
+            return _python(readings.min()) + 0  # never -0.0: which zero is first depends on NumPy
+        case Reduce.MAX:
+            return _python(readings.max()) + 0
+        case Reduce.MEAN:
+            return float(readings.mean())
+        case _:
+            raise AssertionError(f"{reduce} takes more than the numbers")
+
+
+def _python(value: np.floating[Any]) -> float:
+    number = float(value)
+    return int(value) if value.dtype == EXACT and WHOLE <= abs(number) < np.inf else number
+
+
+def clearance(signal: Signal, readings: Values, start: float, step: float) -> float:
+    """Metres from the footprint to the nearest end of a beam; inf where all are far.
+
+    Args:
+        signal: with `outline`.
+        readings: of each beam in turn; NaN where one is dropped.
+        start: radians, the angle of the first beam.
+        step: radians from a beam to the next.
+    """
+    if np.isneginf(readings).any():
+        return 0.0
+    beams = np.isfinite(readings)
+    if not beams.any():
+        return float("inf")
+    angles = start + step * np.arange(len(readings), dtype=float)
+    ranges = scaled(readings[beams].astype(np.float64), signal.unit.factor)
+    ends = places(ranges, angles[beams], signal.sensor)
+    return float(distances(ends, signal.footprint).min())
+
+
+# Bounds where the sensor is blind
+
+
+def blind_zones(
+    proposition: Proposition, declarations: Declarations, nearest: Mapping[str, float]
+) -> tuple[Diagnostic, ...]:
+    """F311 for each bound of the proposition that lies nearer than its sensor can measure.
+
+    A bound is a number that a signal is compared with by `<`, `<=`, `>` or `>=`; where nothing
+    beyond it can be measured, the comparison says the same for ever. Signals for which readings
+    outside of `valid` count as near are left out.
+
+    Args:
+        proposition: with an expression over signals.
+        declarations: what it was declared with.
+        nearest: for each signal the least distance that its sensor reports, in metres, as
+            `Recording.nearest` has it.
+    """
+    found = []
+    for threshold in thresholds(proposition, declarations.signals):
+        if not isinstance(threshold.term, e.Name):
+            continue
+        signal, limit = declarations.signals[threshold.term.id], nearest.get(threshold.term.id)
+        if limit is None or signal.invalid.other is Reading.NEAR:
+            continue
+        share = _blind(signal, threshold.bound, limit, threshold.operator)
+        if share > 0:
+            found.append(_blind_zone(proposition, signal, threshold.bound, limit, share))
+    return tuple(found)
+
+
+def _blind(signal: Signal, bound: float, limit: float, op: str) -> float:
+    """In how much of the circle the bound cannot be reached; for `min` it is all or nothing."""
+    if signal.reduce is Reduce.OUTLINE:
+        return blind_share(bound, limit, signal.footprint, signal.sensor)
+    return float(bound <= limit if op in ("<", ">=") else bound < limit)
+
+
+def _blind_zone(
+    proposition: Proposition, signal: Signal, bound: float, limit: float, share: float
+) -> Diagnostic:
+    where = "" if share == 1 else f" in {round(share * 360)} of 360 degrees"
+    return Diagnostic(
+        Code.BLIND_ZONE,
+        f"`{proposition.name}` compares `{signal.name}` with {_written(bound, signal)}, and "
+        f"`{signal.path.topic}` reports nothing nearer than {_written(limit, signal)}: what is "
+        f"nearer than the bound cannot be seen{where}",
+        proposition.span,
+        help="raise the bound above what the sensor can measure, or use a sensor that measures "
+        "nearer; only a reading of -inf could tell that something is too near",
+        severity=Severity.WARNING,
+    )
+
+
+def _written(value: float, signal: Signal) -> str:
+    return f"{scaled(value, 1 / signal.unit.factor):.4g} {signal.unit_name}".rstrip()

@@ -1,0 +1,98 @@
+"""Thresholds: the comparisons of a proposition that hold a measured number against a constant.
+
+Numbers are in the base unit of their dimension.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from math import isfinite
+
+from fretc.logs.signals.measures import Scope, number
+from fretish import expressions as e
+from fretish.bindings.declarations import Proposition, Signal
+from fretish.bindings.expressions import dimension
+from fretish.diagnostics.diagnostic import Diagnostic
+from fretish.diagnostics.source import Source
+from fretish.expressions import MIRRORED, Order
+from fretish.printer import expression
+from fretish.units import base_name
+
+
+@dataclass(frozen=True, slots=True)
+class Threshold:
+    """`term operator bound`, as if the number that is measured stood on the left."""
+
+    proposition: str
+    term: e.Expression
+    """A signal, or what is computed of some: `abs(vx)`."""
+    operator: Order
+    bound: float
+    unit: str
+    """The base unit of both sides; empty for a plain number."""
+    limit: e.Expression
+    """What the bound was written as."""
+
+    @property
+    def comparison(self) -> e.Comparison:
+        """The whole, with the term on the left."""
+        return e.Comparison(self.operator, self.term, self.limit)
+
+    @property
+    def text(self) -> str:
+        """The term as it is written in the bindings."""
+        return expression(self.term)
+
+
+def thresholds(proposition: Proposition, signals: Mapping[str, Signal]) -> tuple[Threshold, ...]:
+    """The thresholds of a proposition, in the order of its expression.
+
+    Equalities are none: nothing is near to them. Nor are comparisons of two signals, nor those
+    with a bound that is no number (`1 / 0`).
+
+    Args:
+        proposition: with an expression over the signals.
+        signals: what is declared.
+    """
+    return tuple(
+        threshold
+        for part in _comparisons(proposition.expression)
+        if (threshold := _threshold(proposition, part, signals)) is not None
+    )
+
+
+def _comparisons(whole: e.Expression) -> Iterator[e.Comparison]:
+    if isinstance(whole, e.Comparison):
+        yield whole
+    for part in e.children(whole):
+        yield from _comparisons(part)
+
+
+def _threshold(
+    proposition: Proposition, part: e.Comparison, signals: Mapping[str, Signal]
+) -> Threshold | None:
+    if part.op not in MIRRORED:
+        return None
+    mirrored = MIRRORED[part.op]
+    for term, other, operator in (
+        (part.left, part.right, MIRRORED[mirrored]),
+        (part.right, part.left, mirrored),
+    ):
+        if any(e.names(term)) and not any(e.names(other)):
+            bound = float(number(other, Scope(1, {}))[0])
+            unit = _unit(term, signals)
+            return (
+                Threshold(proposition.name, term, operator, bound, unit, other)
+                if isfinite(bound)
+                else None
+            )
+    return None
+
+
+def _unit(term: e.Expression, signals: Mapping[str, Signal]) -> str:
+    kinds = {name: signal.unit.dimension for name, signal in signals.items()}
+    found = dimension(term, kinds, Source("", "").span())
+    assert found is not None, "a comparison is of numbers"
+    assert not isinstance(found, Diagnostic), "the reader of bindings refuses such an expression"
+    return base_name(found)

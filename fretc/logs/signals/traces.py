@@ -1,0 +1,204 @@
+"""Truth columns on the declared clock: what each tick of a recording sees.
+
+Times are nanoseconds. None is unknown: neither true nor false.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fretc.logs.signals.propositions import (
+    FALSE,
+    TRUE,
+    UNKNOWN,
+    States,
+    Steps,
+    evaluate,
+    truth_values,
+)
+from fretc.logs.signals.samples import Recording, Times
+from fretish.bindings.declarations import Aggregate, Declarations, Proposition
+from monitors.kernel import Column
+
+
+@dataclass(frozen=True, slots=True)
+class Timeline:
+    """The whole ticks of one recording.
+
+    `times` has shape (n,), when each tick is, in nanoseconds; it does not decrease. `period` is
+    None where the clock ticks by message.
+    """
+
+    times: Times
+    period: int | None
+
+
+@dataclass(frozen=True, slots=True)
+class Trace:
+    """One column for each proposition: bit i is its truth at tick i.
+
+    `cut` is what a tick would see that was cut short by the end of the log: what came after the
+    last whole tick. No duration counts it. None where nothing came after that.
+    """
+
+    timeline: Timeline
+    columns: Mapping[str, Column]
+    cut: Mapping[str, bool | None] | None
+
+
+def trace(declarations: Declarations, recording: Recording, names: Collection[str]) -> Trace:
+    """The propositions' truth at each tick.
+
+    A tick sees what happened since the tick before: the steps after that tick's time, up to and
+    including its own time; the first tick what happened since the log began, or, where the clock
+    ticks by message, what happened at its own time. `any` of them makes it true, or
+    else unknown if one of them is unknown; `all` makes it false, or else unknown; `last` is the
+    last one. Without a step it sees what was in force before. `on_unknown` replaces what is then
+    unknown.
+
+    Args:
+        declarations: clock, signals and propositions.
+        recording: with the samples of all signals that the propositions name.
+        names: of propositions that are declared.
+    """
+    ticks = timeline(declarations, recording)
+    is_cut = len(ticks.times) > 0 and recording.end_ns > ticks.times[-1]
+    times = np.append(ticks.times, recording.end_ns) if is_cut else ticks.times
+    first = recording.start_ns if ticks.period is not None else None
+    states = {name: _states(name, declarations, recording, times, first) for name in names}
+    count = len(ticks.times)
+    columns = {name: packed(found[:count]) for name, found in states.items()}
+    if not is_cut:
+        return Trace(ticks, columns, None)
+    return Trace(ticks, columns, {name: truth_values(s[-1:])[0] for name, s in states.items()})
+
+
+def packed(states: States) -> Column:
+    """The states, shape (ticks,), as one bit a tick."""
+    return Column(bits(states == TRUE), bits(states == UNKNOWN))
+
+
+def bits(values: NDArray[np.bool_]) -> int:
+    """Truth values, shape (ticks,), as an integer: bit i is the one at tick i."""
+    return int.from_bytes(np.packbits(values, bitorder="little").tobytes(), "little")
+
+
+def timeline(declarations: Declarations, recording: Recording) -> Timeline:
+    """The whole ticks of the declared clock over the recording.
+
+    Every `period` from the start on, not later than the last bound message; or one for each
+    message of the clock's topic, and messages with the same time are a tick each. The start is
+    the first bound message, or the first of the last topic to begin, where that is less than a
+    tick later: recorders hear no two topics at once, and the first tick shall know all of them. The
+    clock's phase is added to it.
+    """
+    period = declarations.clock.period
+    if period is None:
+        return Timeline(recording.ticks, None)
+    start, phase = origin(declarations, recording, period), declarations.clock.phase
+    count = (max(0, recording.end_ns - start) - phase) // period + 1
+    return Timeline(start + phase + np.arange(count, dtype=np.int64) * period, period)
+
+
+def origin(declarations: Declarations, recording: Recording, period: int) -> int:
+    """Where the grid of ticks begins at phase 0."""
+    topics = {signal.path.topic for signal in declarations.signals.values()}
+    found = (recording.topics[name].first_ns for name in topics if name in recording.topics)
+    last = max((first for first in found if first is not None), default=recording.start_ns)
+    return last if 0 <= last - recording.start_ns < period else recording.start_ns
+
+
+def _states(
+    name: str, declarations: Declarations, recording: Recording, ticks: Times, first: int | None
+) -> States:
+    proposition = declarations.propositions[name]
+    steps = evaluate(proposition, declarations, recording)
+    begun = None if first is None else (first, heard(proposition, recording))
+    return seen(steps, ticks, proposition, begun)
+
+
+def heard(proposition: Proposition, recording: Recording) -> int:
+    """From when on what is unknown of it is told by the log, not by a topic yet to begin."""
+    samples = [recording.samples.get(name) for name in proposition.signals]
+    begins = [
+        int(signal.times[0]) if signal is not None and len(signal.times) else recording.end_ns
+        for signal in samples
+    ]
+    lost = min((start for start, _ in recording.gaps), default=recording.end_ns)
+    return min(max(begins, default=recording.start_ns), lost)
+
+
+def seen(
+    steps: Steps, ticks: Times, proposition: Proposition, begun: tuple[int, int] | None
+) -> States:
+    """The state of each tick, shape (ticks,).
+
+    `begun` is when the log began, from where on the first tick sees, and when all the signals had:
+    what is unknown only because a topic is yet to begin says nothing of the first tick.
+    """
+    before, upto = _windows(steps.times, ticks)
+    if begun is not None and len(ticks):
+        before[:1] = first_before(steps, begun, upto[:1])
+    return combined(steps, before, upto, proposition)
+
+
+def first_before(steps: Steps, begun: tuple[int, int], upto: NDArray[np.intp]) -> NDArray[np.intp]:
+    """From which step on the first tick sees, where it sees those below `upto`; `begun` as above.
+
+    From the first one that tells something; where none does, the last one alone.
+    """
+    first = int(np.searchsorted(steps.times, begun[0], "left"))
+    told = (steps.states[first:] != UNKNOWN) | (steps.times[first:] >= begun[1])
+    found = first + int(np.argmax(told)) if told.any() else len(steps.times)
+    return np.where(found < upto, found, np.maximum(first, upto - 1))
+
+
+def combined(
+    steps: Steps, before: NDArray[np.intp], upto: NDArray[np.intp], proposition: Proposition
+) -> States:
+    """What ticks see of the steps `before <= i < upto`, each of shape (ticks,)."""
+    states = steps.states
+    found = np.where(before > 0, states[before - 1], UNKNOWN).astype(np.int8)
+    filled = upto > before
+    match proposition.aggregate:
+        case Aggregate.ANY:
+            found[filled] = FALSE
+            found[filled & _some(states == UNKNOWN, before, upto)] = UNKNOWN
+            found[filled & _some(states == TRUE, before, upto)] = TRUE
+        case Aggregate.ALL:
+            found[filled] = TRUE
+            found[filled & _some(states == UNKNOWN, before, upto)] = UNKNOWN
+            found[filled & _some(states == FALSE, before, upto)] = FALSE
+        case Aggregate.LAST:
+            found[filled] = states[upto[filled] - 1]
+    if proposition.on_unknown is not None:
+        found[found == UNKNOWN] = TRUE if proposition.on_unknown else FALSE
+    return found
+
+
+def _some(
+    chosen: NDArray[np.bool_], before: NDArray[np.intp], upto: NDArray[np.intp]
+) -> NDArray[np.bool_]:
+    """Whether any of the steps `before <= i < upto` is chosen."""
+    counts = np.concatenate([[0], np.cumsum(chosen)])
+    return np.asarray(counts[upto] > counts[before])
+
+
+def _windows(times: Times, ticks: Times) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+    """For each tick the steps `before <= i < upto` that it sees.
+
+    Ticks with the same time share the steps of that time: the first tick has the first of them,
+    the last tick has all that are left.
+    """
+    rank = np.arange(len(ticks)) - np.searchsorted(ticks, ticks, "left")
+    upto = np.searchsorted(times, ticks, "right")
+    more = np.append(ticks[1:] == ticks[:-1], False)
+    shared = np.searchsorted(times, ticks, "left") + rank + 1
+    upto = np.where(more, np.minimum(shared, upto), upto)
+    before = np.roll(upto, 1)
+    before[:1] = np.searchsorted(times, ticks[:1], "left")
+    return before, upto

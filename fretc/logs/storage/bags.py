@@ -1,0 +1,334 @@
+"""Bags: ROS 1's `.bag` and rosbag2's `.db3`, read with rosbags; their messages go to a sink.
+
+Neither format has check sums: a changed byte within a message cannot be seen, and that is said.
+What is read ends where the reader ends; what the bag states (how many messages, up to when) is
+held against what came. Times are nanoseconds, log times.
+"""
+
+from __future__ import annotations
+
+import bz2
+import os
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass
+from functools import cache, partial
+from pathlib import Path
+from typing import Any
+from urllib.parse import quote
+
+from mcap.records import Channel, Schema
+
+from fretc.logs.mcap.container import BrokenError, Stream, largest, unpacked_lz4
+from fretc.logs.mcap.damage import LATEST, Damage
+from fretc.logs.mcap.messages import Sink
+from fretc.logs.signals.samples import Gap
+from fretc.logs.storage import refusals
+from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.diagnostics.source import Span
+
+BAG, DB3 = b"#ROSBAG V", b"SQLite format 3\0"
+"""What the files begin with."""
+_LEAST = 2**20
+"""Bytes that a value of a database may have, however small the database is."""
+_STEPS = 20_000
+"""Of SQLite's machine between two looks: some tenths of a millisecond."""
+NOWHERE = -1
+"""Where a damage is that has no byte."""
+
+
+@dataclass(frozen=True, slots=True)
+class Found:
+    """What a bag has given."""
+
+    span: Gap | None
+    """The first and the last of its whole messages."""
+    damages: tuple[tuple[Damage, Gap | None], ...]
+    notes: tuple[Diagnostic, ...]
+
+
+def read(file: str, same: str, start: bytes, sink: Sink, place: Span) -> Found | Diagnostic:
+    """All messages of a bag, in order of time.
+
+    Args:
+        file: its path.
+        same: another path of it, which cannot become that of another file meanwhile.
+        start: its first bytes, `BAG` or `DB3`.
+        sink: what takes the messages.
+        place: the bag, as the user named it.
+
+    Returns:
+        What it has given; or what keeps the whole bag from being read.
+    """
+    try:
+        import rosbags  # noqa: F401
+    except ModuleNotFoundError:
+        return refusals.no_rosbags(place)
+    bag = start.startswith(BAG)
+    reader = _bag(same) if bag else _db3(same)
+    try:
+        with _limited(os.stat(file).st_size):
+            reader.open()
+    except OSError:
+        raise
+    except Exception as error:  # the reader trusts each byte, and each may be wrong
+        return refusals.bad_bag(_reason(error), place, indexed=bag)
+    try:
+        way = _Way(reader, sink, bag=bag)
+        way.run()
+        if not bag:
+            way.check(file)
+    finally:
+        reader.close()
+    damages = tuple(way.settled())
+    if way.span is None:
+        return (
+            refusals.bad_bag(damages[0][0].what, place, indexed=bag)
+            if damages
+            else Found(None, (), ())
+        )
+    return Found(way.span, damages, (refusals.unchecked(place, way.assumed),))
+
+
+def ends(file: str) -> Gap | None:
+    """The first and the last message of a ROS 1 bag, by its index; None where that cannot be."""
+    try:
+        reader = _bag(file)
+        reader.open()
+    except Exception:  # the reader trusts each byte, and each may be wrong; or it is not installed
+        return None
+    try:
+        return (reader.start_time, reader.end_time - 1) if reader.message_count else None
+    finally:
+        reader.close()
+
+
+def _bag(file: str) -> Any:
+    from rosbags.rosbag1 import Reader
+
+    class Bounded(Reader):
+        """Its chunks unpack to as much as the chunks of MCAP may."""
+
+        def read_chunk(self) -> Any:
+            chunk = super().read_chunk()
+            return chunk._replace(decompressor=partial(_unpacked, chunk.decompressor))
+
+    return Bounded(Path(file))
+
+
+def _unpacked(official: Callable[[bytes], bytes], packed: bytes) -> bytes:
+    """What is in a chunk of a ROS 1 bag.
+
+    Raises:
+        BrokenError: it is more than such a chunk can hold.
+        Exception: each codec has its own; it is no such data.
+    """
+    from rosbags.rosbag1.reader import decompressors
+
+    most = largest(len(packed))
+    if official is decompressors["bz2"]:
+        data = bz2.BZ2Decompressor().decompress(packed, most + 1)
+    elif official is decompressors["lz4"]:
+        data = unpacked_lz4(packed, most + 1)
+    else:
+        data = official(packed)
+    if len(data) > most:
+        raise BrokenError(f"a chunk of {len(packed)} bytes holds more than {most}")
+    return data
+
+
+@contextmanager
+def _limited(size: int) -> Iterator[None]:
+    """Databases that are opened meanwhile make no value that is larger than their file.
+
+    Between the steps of a query Python looks whether too much time has gone by.
+    """
+    import apsw
+
+    def limit(connection: apsw.Connection) -> None:
+        connection.limit(apsw.SQLITE_LIMIT_LENGTH, max(_LEAST, size))
+        connection.set_progress_handler(lambda: False, _STEPS)
+
+    apsw.connection_hooks.append(limit)
+    try:
+        yield
+    finally:
+        apsw.connection_hooks.remove(limit)
+
+
+def _db3(file: str) -> Any:
+    from rosbags.rosbag2.storage_sqlite3 import Sqlite3Reader
+
+    return Sqlite3Reader(Path(quote(file)))  # it puts the path into a URI as it is
+
+
+def _reason(error: Exception) -> str:
+    text = str(error).partition("\n")[0].strip()
+    return text[:200] or type(error).__name__
+
+
+class _Way:
+    """One way through a bag."""
+
+    def __init__(self, reader: Any, sink: Sink, *, bag: bool) -> None:
+        self.span: Gap | None = None
+        self.assumed: list[str] = []
+        """Types whose definition the bag does not carry."""
+        self._reader, self._sink, self._bag = reader, sink, bag
+        self._damages: list[tuple[Damage, bool]] = []
+        """Each with whether it has cost all that came after it, or may have cost anything."""
+        self._streams: dict[int, Stream] = {}
+        self._stated = self._ends()
+        self._counts: dict[int, int] = {}
+
+    def _ends(self) -> Gap | None:
+        """The first and the last message, as the bag states it."""
+        source = self._reader if self._bag else self._reader.metadata
+        start, end = source.start_time, source.end_time - 1
+        if not isinstance(start, int) or not isinstance(end, int):
+            return None
+        return (start, end) if 0 <= start <= end < LATEST else None
+
+    def run(self) -> None:
+        """Read everything."""
+        connections = list(self._reader.connections)
+        stated = self._stated_counts(connections)
+        try:
+            for connection in connections:
+                stream = self._stream(connection)
+                self._streams[connection.id] = stream
+                self._sink.declare(stream)
+            messages = self._reader.messages(connections) if connections else ()
+            for connection, time, payload in messages:
+                self._message(connection.id, time, payload)
+        except OSError:
+            raise
+        except Exception as error:  # the reader trusts each byte, and each may be wrong
+            self._damage(f"it cannot be read further: {_reason(error)}", follows=True)
+            return
+        if stated != self._counts:
+            there, held = sum(stated.values()), sum(self._counts.values())
+            what = f"it states {there} messages and holds {held}"
+            if there == held:
+                what = "its topics hold other numbers of messages than it states"
+            self._damage(what, code=Code.COUNT_MISMATCH)
+
+    def _stated_counts(self, connections: list[Any]) -> dict[int, int]:
+        if not self._bag:
+            return {c.id: c.msgcount for c in connections if c.msgcount}
+        counts: dict[int, int] = {}
+        for chunk in self._reader.chunk_infos:
+            for id, count in chunk.connection_counts.items():
+                counts[id] = counts.get(id, 0) + count
+        return {id: count for id, count in counts.items() if count}
+
+    def _message(self, id: int, time: int, payload: bytes) -> None:
+        self._counts[id] = self._counts.get(id, 0) + 1
+        if not (isinstance(payload, bytes) and isinstance(time, int) and 0 <= time < LATEST):
+            self._damage("a message is of an absurd time, or has no contents")
+            return
+        first, _ = self.span or (time, time)
+        self.span = first, time
+        self._sink.add(self._streams[id], time, time, memoryview(payload))
+
+    def check(self, file: str) -> None:
+        """What only a database can tell about itself."""
+        for ending in ("-wal", "-journal"):
+            beside = Path(file + ending)
+            if beside.exists() and beside.stat().st_size:
+                self._damage(f"`{beside.name}` beside it holds messages that are not in it yet")
+        listed = self._reader.metadata.message_count
+        if listed != sum(self._counts.values()) and not self._damages:
+            what = f"it holds {listed} messages, some of them of no topic"
+            self._damage(what, code=Code.COUNT_MISMATCH)
+        try:
+            (said,) = self._reader.dbconn.execute("PRAGMA integrity_check(1)").fetchone()
+        except Exception as error:  # it trusts each byte, and each may be wrong
+            said = _reason(error)
+        if said != "ok":
+            self._damage(f"the database is damaged: {str(said)[:200]}")
+
+    def _damage(self, what: str, *, follows: bool = False, code: Code = Code.DAMAGED_CHUNK) -> None:
+        if all(damage.what != what for damage, _ in self._damages):
+            self._damages.append((Damage(NOWHERE, what, code=code), follows))
+
+    def settled(self) -> Iterator[tuple[Damage, Gap | None]]:
+        """All damages, with the time that each has cost."""
+        if self.span is None:
+            yield from ((damage, None) for damage, _ in self._damages)
+            return
+        stated = self._stated or self.span
+        first, last = min(self.span[0], stated[0]), max(self.span[1], stated[1])
+        for damage, follows in self._damages:
+            yield damage, ((self.span[1] if follows else first), last)
+
+    # Streams
+
+    def _stream(self, connection: Any) -> Stream:
+        if not isinstance(connection.topic, str) or not isinstance(connection.msgtype, str):
+            raise ValueError("a topic has no name, or no type")
+        schema = self._schema(connection)
+        encoding = "ros1" if self._bag else str(connection.ext.serialization_format)
+        channel = Channel(
+            id=connection.id,
+            topic=connection.topic,
+            message_encoding=encoding,
+            metadata={},
+            schema_id=connection.id if schema is not None else 0,
+        )
+        return Stream(channel, schema)
+
+    def _schema(self, connection: Any) -> Schema | None:
+        name, kind, text = connection.msgtype, connection.msgdef.format, connection.msgdef.data
+        encoding = {"MSG": "ros1msg" if self._bag else "ros2msg", "IDL": "ros2idl"}.get(kind.name)
+        if encoding is None:
+            encoding, known = "ros2msg", _standard(name)
+            if known is None:
+                return None
+            text = known
+            self.assumed.append(name)
+        if self._bag:
+            name = name.replace("/msg/", "/")
+        return Schema(connection.id, text.encode(), encoding, name)
+
+
+# Definitions that bags of older releases leave out
+
+
+def _standard(name: str) -> str | None:
+    """The definition of a type of ROS 2's own, if it is the same in all its releases."""
+    stores = [store for store in _stores() if name in store.fielddefs]
+    kinds = {repr(sorted(_closure(store.fielddefs, name).items())) for store in stores}
+    if len(kinds) != 1:
+        return None
+    text, _ = stores[-1].generate_msgdef(name, ros_version=2)
+    return str(text)
+
+
+@cache
+def _stores() -> tuple[Any, ...]:
+    from rosbags.typesys import Stores, get_typestore
+
+    return tuple(get_typestore(store) for store in Stores if store.name.startswith("ROS2_"))
+
+
+def _closure(known: Mapping[str, Any], name: str) -> dict[str, Any]:
+    """The fields of a type, and of all types in it."""
+    found: dict[str, Any] = {}
+    left = [name]
+    while left:
+        one = left.pop()
+        if one in found or one not in known:
+            continue
+        found[one] = known[one][1]
+        left += [part for _, kind in known[one][1] for part in _names(kind)]
+    return found
+
+
+def _names(kind: Any) -> Iterator[str]:
+    """The types that a field is made of."""
+    node, what = kind
+    while not isinstance(what, str) and not isinstance(what[0], str):
+        node, what = what[0]
+    if node.name == "NAME":
+        yield what

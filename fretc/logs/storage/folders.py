@@ -1,0 +1,143 @@
+"""A run in several files: what the `metadata.yaml` of a rosbag2 folder lists.
+
+Times are nanoseconds, log times.
+
+Source: rosbag2, https://github.com/ros2/rosbag2/blob/rolling/rosbag2_storage/include/rosbag2_storage/bag_metadata.hpp.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import os
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path, PurePosixPath
+from typing import Any
+
+from fretc.logs.signals.samples import Gap
+from fretc.logs.storage import refusals
+from fretish.diagnostics.diagnostic import Diagnostic
+from fretish.diagnostics.source import Source
+from fretish.reading.limits import within
+from fretish.reading.yaml_text import loaded
+
+METADATA = "metadata.yaml"
+_LARGEST = 2**24
+"""Bytes; no description of a run is longer."""
+_LATEST = 2**62
+
+
+@dataclass(frozen=True, slots=True)
+class Folder:
+    """One run, as its description states it."""
+
+    path: str
+    files: tuple[str, ...]
+    """Their names within the folder, in order of time."""
+    messages: int | None
+    span: Gap | None
+    """The first and the last message of the run."""
+    spans: Mapping[str, Gap]
+    """Of single files, where it states them."""
+    compressed: str
+    """`file` or `message`: how its files are packed; nothing where they are not."""
+
+    def lost(self, i: int, before: int | None, after: int | None) -> Gap | None:
+        """The time that file `i` has covered, as far as it is known.
+
+        Args:
+            i: a file that cannot be read.
+            before: the last message of the files before it.
+            after: the first message of the files after it.
+        """
+        stated = [self.spans[self.files[i]]] if self.files[i] in self.spans else []
+        whole = [self.span] if self.span is not None else []
+        starts = [before] if before is not None else [a for a, _ in (*stated, *whole)]
+        ends = [after] if after is not None else [b for _, b in (*stated, *whole)]
+        known = [time for time in (*starts, *ends, before, after) if time is not None]
+        return (min(known), max(known)) if known else None
+
+
+def is_folder(path: str) -> bool:
+    """Whether the path is a folder that rosbag2 has described."""
+    return os.path.isdir(path) and (Path(path) / METADATA).is_file()
+
+
+def of_all(hashes: Mapping[str, str]) -> str:
+    """One SHA-256 of several files: that of the lines that `sha256sum` prints for them."""
+    lines = "".join(f"{sha256}  {name}\n" for name, sha256 in hashes.items())
+    return hashlib.sha256(lines.encode()).hexdigest()
+
+
+def folder(path: str) -> Folder | Diagnostic:
+    """What the description in a folder lists.
+
+    Raises:
+        OSError: it cannot be read.
+    """
+    file = Path(path) / METADATA
+    place = Source(str(file), "").span()
+    with file.open("rb") as stream:
+        data = stream.read(_LARGEST)
+    return within(len(data), place, lambda: _described(path, data) or refusals.bad_metadata(place))
+
+
+def _described(path: str, data: bytes) -> Folder | None:
+    """None where it is not as rosbag2 writes it."""
+    try:
+        about = loaded(data.decode())["rosbag2_bagfile_information"]
+        files = tuple(_name(name) for name in about["relative_file_paths"])
+        if len(set(files)) < len(files):
+            return None
+        return Folder(
+            path,
+            files,
+            _whole(about.get("message_count")),
+            _span(about),
+            _spans(about.get("files")),
+            _compressed(about),
+        )
+    except (ValueError, TypeError, KeyError, AttributeError):
+        return None
+
+
+def _name(listed: Any) -> str:
+    """The name of a listed file; it is in the folder, whatever path is stated."""
+    name = PurePosixPath(listed).name
+    if not name or name == ".." or b"\0" in os.fsencode(name):
+        raise ValueError("a file has no name")
+    return name
+
+
+def _compressed(about: Mapping[str, Any]) -> str:
+    mode = about.get("compression_mode") or ""
+    if not isinstance(mode, str):  # never as a text: that of a list of aliases has no end
+        raise ValueError("the mode of compression is no text")
+    return "" if mode.lower() == "none" else mode.lower()
+
+
+def _spans(listed: Any) -> dict[str, Gap]:
+    spans: dict[str, Gap] = {}
+    for about in listed if isinstance(listed, list) else ():
+        if isinstance(about, dict) and isinstance(about.get("path"), str):
+            span = _span(about)
+            if span is not None:
+                spans[PurePosixPath(about["path"]).name] = span
+    return spans
+
+
+def _span(about: Mapping[str, Any]) -> Gap | None:
+    """The first and the last message; None where there is none, or no sense."""
+    start = _whole(_inner(about.get("starting_time"), "nanoseconds_since_epoch"))
+    length = _whole(_inner(about.get("duration"), "nanoseconds"))
+    if start is None or length is None or not about.get("message_count"):
+        return None
+    return (start, start + length) if start + length < _LATEST else None
+
+
+def _inner(about: Any, name: str) -> Any:
+    return about.get(name) if isinstance(about, dict) else None
+
+
+def _whole(value: Any) -> int | None:
+    return value if isinstance(value, int) and value >= 0 else None

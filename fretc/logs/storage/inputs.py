@@ -1,0 +1,358 @@
+"""Where the bytes of a log come from: a file, standard input, or a URL.
+
+Standard input is copied to a temporary file without a name, which is gone with the process,
+however that ends. So is what is at a URL: a server could send other bytes when it is asked for the
+same again, and what is judged is what is hashed. Only where a log is read by its index, and not
+hashed, it is read where it is, in blocks.
+"""
+
+from __future__ import annotations
+
+import errno
+import hashlib
+import io
+import os
+import re
+import shutil
+import stat
+import sys
+import tempfile
+import threading
+import time
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack, closing, contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, BinaryIO, cast
+from urllib.parse import parse_qsl, urlencode, urlsplit, urlunsplit
+
+from fretc.logs.storage import refusals, web
+from fretish.diagnostics.diagnostic import Diagnostic
+from fretish.diagnostics.source import Source
+from fretish.reading.limits import grant
+
+STDIN = "-"
+_MOST = 2**36
+"""Bytes of a log that a server sends without saying how many there are."""
+_SMALL_BLOCK = 2**14
+"""Bytes that are asked of a server at once where most of the file is passed by."""
+_SLOW = "the server sends next to nothing"
+_HASHED = 2**18
+"""Bytes that are hashed at once."""
+_URL = re.compile(r"[A-Za-z][A-Za-z0-9+.:-]*://.*", re.DOTALL)
+_SECRET = re.compile(r"sig|token|key|cred|secret|passw|auth", re.IGNORECASE)
+
+
+@dataclass(frozen=True, slots=True)
+class Input:
+    """A log that can be read."""
+
+    stream: io.BufferedReader
+    size: int
+    sha256: Callable[[], str]
+    """Of all its bytes; asked for when they have been read."""
+    begin: Callable[[], None]
+    """Hash them at the same time as they are read, where that can be."""
+    file: str | None
+    """Its path, where it has one of its own."""
+    same: str | None
+    """Another path of the very file that is open, whatever has its name by now."""
+    changed: Callable[[], bool] = lambda: False
+    """Whether somebody has written to it since it was opened, or its name is another file's."""
+
+
+def is_url(path: str) -> bool:
+    """Whether the path is a URL: it names a protocol."""
+    return _URL.fullmatch(path) is not None
+
+
+def shown(path: str) -> str:
+    """How a log is called: nothing that is secret in a URL is ever printed or kept."""
+    if path == STDIN:
+        return "<stdin>"
+    if not is_url(path):
+        return path
+    try:
+        parts = urlsplit(path)
+        pairs = parse_qsl(parts.query, keep_blank_values=True)
+    except ValueError:
+        return path.partition("://")[0] + "://?"
+    query = parts.query
+    if any(_SECRET.search(name) for name, _ in pairs):
+        hidden = [(name, "..." if _SECRET.search(name) else value) for name, value in pairs]
+        query = urlencode(hidden, safe="./")
+    return urlunsplit((parts.scheme, parts.netloc.rpartition("@")[2], parts.path, query, ""))
+
+
+@contextmanager
+def opened(path: str, *, whole: bool = True) -> Iterator[Input | Diagnostic]:
+    """The log at a path, for as long as it is needed; or why there is none.
+
+    Args:
+        path: a file, a URL, or `-`.
+        whole: whether all of it will be read; else a server is asked for less at once.
+
+    Reading from it can raise OSError.
+    """
+    with ExitStack() as stack:
+        try:
+            found = _opened(path, stack, whole=whole)
+        except FileNotFoundError:
+            found = refusals.no_such_file(Source(shown(path), "").span())
+        except OSError as error:
+            found = refusals.unreadable(error, Source(shown(path), "").span())
+        yield found
+
+
+def _opened(path: str, stack: ExitStack, *, whole: bool) -> Input | Diagnostic:
+    if path == STDIN:
+        return _stdin(stack)
+    if is_url(path):
+        return _remote(path, stack, whole=whole)
+    mode = os.stat(path).st_mode
+    if stat.S_ISDIR(mode):
+        return refusals.is_a_directory(Source(path, "").span())
+    if not stat.S_ISREG(mode):
+        return refusals.not_a_file(Source(path, "").span())
+    stream = stack.enter_context(Path(path).open("rb"))  # noqa: SIM115
+    before = os.fstat(stream.fileno())
+
+    def changed() -> bool:
+        try:
+            found = (os.fstat(stream.fileno()), os.stat(path))
+        except OSError:
+            return True
+        return any(_mark(now) != _mark(before) for now in found)
+
+    digest = _Digest(stream.fileno(), before.st_size)
+    same = f"/proc/self/fd/{stream.fileno()}"
+    return Input(stream, before.st_size, digest.result, digest.begin, path, same, changed)
+
+
+def _mark(found: os.stat_result) -> tuple[int, ...]:
+    """What a write or another file of that name changes.
+
+    Whoever may write to a file can set `st_mtime` back, but `st_ctime` only by the machine's clock.
+    """
+    times = found.st_mtime_ns, found.st_ctime_ns
+    return (found.st_dev, found.st_ino, found.st_size, *times)
+
+
+class _Digest:
+    """The SHA-256 of a file, which a second thread takes: hashing leaves the interpreter free.
+
+    It is of the very file that is read: another one may have its name by now.
+    """
+
+    def __init__(self, descriptor: int, size: int) -> None:
+        self._descriptor, self._size = descriptor, size
+        self._thread: threading.Thread | None = None
+        self._found: str | OSError = ""
+
+    def begin(self) -> None:
+        if self._thread is None:
+            own = os.dup(self._descriptor)  # the reader may be gone before this is done
+            self._thread = threading.Thread(target=self._run, args=(own,), daemon=True)
+            self._thread.start()
+
+    def result(self) -> str:
+        self.begin()
+        assert self._thread is not None
+        self._thread.join()
+        if isinstance(self._found, OSError):
+            raise self._found
+        return self._found
+
+    def _run(self, own: int) -> None:
+        digest, block, at = hashlib.sha256(), memoryview(bytearray(_HASHED)), 0
+        try:
+            while at < self._size:
+                read = os.preadv(own, [block[: self._size - at]], at)
+                if not read:
+                    raise OSError(None, "it became shorter while it was read")
+                digest.update(block[:read])
+                at += read
+            self._found = digest.hexdigest()
+        except OSError as error:
+            self._found = error
+        finally:
+            os.close(own)
+
+
+def _copy(stream: io.BufferedReader) -> Input:
+    """A file that has no path."""
+    digest = hashlib.file_digest(stream, "sha256").hexdigest()
+    size = stream.tell()
+    stream.seek(0)
+    return Input(stream, size, lambda: digest, lambda: None, None, None)
+
+
+# Standard input
+
+
+def _stdin(stack: ExitStack) -> Input | Diagnostic:
+    if sys.stdin is None or sys.stdin.closed:
+        return refusals.no_stdin("it is closed")
+    if sys.stdin.isatty():
+        return refusals.no_stdin("it is a terminal")
+    stdin = stack.enter_context(_reader(0))
+    if stat.S_ISREG(os.fstat(0).st_mode) and stdin.tell() == 0:
+        return _copy(stdin)
+    return _copy(_copied(stdin, stack))
+
+
+def _copied(source: BinaryIO, stack: ExitStack) -> io.BufferedReader:
+    """All that follows, in a file without a name."""
+    copy = stack.enter_context(tempfile.TemporaryFile())  # noqa: SIM115
+    while block := source.read(web.BLOCK):
+        copy.write(block)
+        grant(len(block))
+    copy.flush()
+    copy.seek(0)
+    return stack.enter_context(_reader(copy.fileno()))
+
+
+def _reader(descriptor: int) -> io.BufferedReader:
+    return cast("io.BufferedReader", io.BufferedReader(io.FileIO(descriptor, closefd=False)))
+
+
+# URLs
+
+
+class _Hashed(io.RawIOBase):
+    """A file at a URL. What is read in order is hashed on the way, so that it comes once."""
+
+    def __init__(self, file: Any, size: int) -> None:
+        self._file, self._size = _Paced(file, _SMALL_BLOCK), size
+        self._at = self._hashed = 0
+        self._digest = hashlib.sha256()
+
+    def readable(self) -> bool:
+        return True
+
+    def seekable(self) -> bool:
+        return True
+
+    def tell(self) -> int:
+        return self._at
+
+    def seek(self, offset: int, whence: int = os.SEEK_SET) -> int:
+        start = {os.SEEK_SET: 0, os.SEEK_CUR: self._at, os.SEEK_END: self._size}[whence]
+        self._at = max(0, start + offset)
+        return self._at
+
+    def readinto(self, buffer: Any) -> int:
+        data = self._read(len(buffer))
+        buffer[: len(data)] = data
+        return len(data)
+
+    def _read(self, length: int) -> bytes:
+        length = max(0, min(length, self._size - self._at))
+        data = self._file.read(length, self._at)
+        if length and not data:
+            raise OSError(None, f"nothing came from byte {self._at} on")
+        if self._at <= self._hashed < self._at + len(data):
+            self._digest.update(data[self._hashed - self._at :])
+            self._hashed = self._at + len(data)
+        self._at += len(data)
+        return data
+
+    def sha256(self) -> str:
+        self._at = self._hashed
+        while self._hashed < self._size:
+            self._read(web.BLOCK)
+        return self._digest.hexdigest()
+
+
+def _remote(url: str, stack: ExitStack, *, whole: bool) -> Input | Diagnostic:
+    place = Source(shown(url), "").span()
+    try:
+        import fsspec
+    except ModuleNotFoundError:
+        return refusals.no_fsspec(place)
+    try:
+        system, path = fsspec.core.url_to_fs(url, **web.options(url))
+        about = system.info(path)
+        if about.get("type") == "directory":
+            return refusals.is_a_directory(place)
+        size = about.get("size")
+        if size is None or about.get("partial") is False:
+            file = stack.enter_context(closing(_stream(system, path)))
+            return _copy(_copied(_Limited(file, size), stack))
+        if whole:
+            file = stack.enter_context(system.open(path, "rb", block_size=web.BLOCK))
+            return _copy(_copied(_Limited(file, size), stack))
+        file = stack.enter_context(system.open(path, "rb", block_size=_SMALL_BLOCK))
+    except ImportError as error:
+        return refusals.no_protocol_package(url.partition("://")[0], str(error), place)
+    except Exception as error:  # each protocol has its own
+        raise _as_os_error(error) from error
+    hashed = _Hashed(file, size)
+    stream = stack.enter_context(io.BufferedReader(hashed, _SMALL_BLOCK))
+    return Input(cast("io.BufferedReader", stream), size, hashed.sha256, lambda: None, None, None)
+
+
+def _stream(system: Any, path: str) -> Any:
+    """All that is there from its beginning on, where no part of it can be asked for."""
+    return web.Stream(system, path) if web.is_web(path) else system.open(path, "rb", block_size=0)
+
+
+class _Paced:
+    """What a server sends; its errors are the operating system's, and one is that it is slow."""
+
+    def __init__(self, file: Any, least: int = 0) -> None:
+        """`least`: bytes that a question counts for, however few are wanted."""
+        self._file, self._least = file, least
+        self._due, self._spent = 0, 0.0
+
+    def read(self, length: int | None, start: int | None = None) -> bytes:
+        since = time.monotonic()
+        try:
+            if start is not None:
+                self._file.seek(start)
+            data = bytes(self._file.read(length))
+        except Exception as error:  # each protocol has its own
+            raise _as_os_error(error) from error
+        self._spent += time.monotonic() - since
+        self._due += max(self._least, len(data))
+        if self._spent > web.PATIENCE + self._due / web.SLOWEST:
+            raise OSError(None, _SLOW)
+        return data
+
+
+class _Limited(io.BytesIO):
+    """What a server sends, as long as that is not endless and there is room for it.
+
+    All of it comes, if the size is known, or an error.
+    """
+
+    def __init__(self, file: Any, size: int | None) -> None:
+        super().__init__()
+        self._file, self._size, self._got = _Paced(file), size, 0
+        room = shutil.disk_usage(tempfile.gettempdir()).free
+        if size is not None and size > room:
+            raise OSError(None, f"it has {size} bytes, and there is room for {room} of a copy")
+        self._most = min(_MOST, room) if size is None else size
+
+    def read(self, length: int | None = -1) -> bytes:
+        data = self._file.read(length)
+        self._got += len(data)
+        if self._got > self._most:
+            raise OSError(None, "the server sends more than a log has, or than there is room for")
+        if not data and self._size not in (None, self._got):
+            raise OSError(None, f"nothing came from byte {self._got} on")
+        return data
+
+
+def _as_os_error(error: Exception) -> OSError:
+    if isinstance(error, FileNotFoundError) and isinstance(error.__cause__, Exception):
+        error = error.__cause__  # whatever is wrong, it says that there is no file
+    if isinstance(error, TimeoutError):
+        return OSError(None, _SLOW)
+    if isinstance(error, FileNotFoundError | PermissionError):
+        return error
+    status = getattr(error, "status", None)
+    if status == 404:
+        return FileNotFoundError(errno.ENOENT, "not found")
+    text = str(error).strip().partition("\n")[0] or type(error).__name__
+    return OSError(None, f"the server says {status}" if status else text[:200])

@@ -1,0 +1,119 @@
+"""A run in several files: what each of them has given, and what was lost between them.
+
+Times are nanoseconds, log times.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Hashable, Iterator, Sequence
+from dataclasses import dataclass, replace
+
+from fretc.logs.mcap.container import Stream
+from fretc.logs.mcap.damage import Damage
+from fretc.logs.mcap.messages import Messages, Sink
+from fretc.logs.signals.integrity import EVERYTHING, Checked
+from fretc.logs.signals.samples import Gap
+from fretish.diagnostics.diagnostic import Diagnostic
+
+
+@dataclass(frozen=True, slots=True)
+class Part:
+    """What one file has given."""
+
+    sha256: str
+    """Of its bytes; of its summary, where it was read by its index alone."""
+    size: int
+    span: Gap | None
+    """The first and the last of its whole messages; None of a file without any."""
+    damages: tuple[tuple[Damage, Gap | None], ...]
+    notes: tuple[Diagnostic, ...] = ()
+    """What else there is to say."""
+    checked: Checked = EVERYTHING
+
+
+class Numbered:
+    """Hands every message on, and numbers the streams of several files as those of one."""
+
+    def __init__(self, sink: Sink) -> None:
+        self.counted = 0
+        """Messages so far."""
+        self._sink = sink
+        self._known: dict[Hashable, Stream] = {}
+        self._of_file: dict[int, tuple[Stream, Stream]] = {}
+
+    def next_file(self) -> None:
+        """From here on the numbers are those of another file."""
+        self._of_file.clear()
+
+    def declare(self, stream: Stream) -> None:
+        """A stream of the file."""
+        self._sink.declare(self._one(stream))
+
+    def add(self, stream: Stream, log_time: int, publish_time: int, payload: memoryview) -> None:
+        """One whole message."""
+        self.counted += 1
+        self._sink.add(self._one(stream), log_time, publish_time, payload)
+
+    def add_all(self, stream: Stream, messages: Messages) -> None:
+        """Whole messages of one stream."""
+        self.counted += len(messages.starts)
+        self._sink.add_all(self._one(stream), messages)
+
+    def wants(self, topic: str) -> bool:
+        """Whether more than the number of its messages is asked for."""
+        return self._sink.wants(topic)
+
+    def count(self, stream: Stream, count: int) -> None:
+        """So many messages of a stream that is not wanted."""
+        self.counted += count
+        self._sink.count(self._one(stream), count)
+
+    def _one(self, stream: Stream) -> Stream:
+        """The same stream under a number of the whole run."""
+        of_file = self._of_file.get(stream.channel.id)
+        if of_file is not None and of_file[0] is stream:
+            return of_file[1]
+        channel, schema = stream.channel, stream.schema
+        definition = (schema.name, schema.encoding, schema.data) if schema is not None else None
+        key = (channel.topic, channel.message_encoding, definition)
+        if key not in self._known:
+            number = len(self._known) + 1
+            self._known[key] = Stream(
+                replace(channel, id=number, schema_id=number if schema is not None else 0),
+                replace(schema, id=number) if schema is not None else None,
+            )
+        one = self._known[key]
+        self._of_file[channel.id] = stream, one
+        return one
+
+
+def around(parts: Sequence[Part | None], i: int) -> tuple[int | None, int | None]:
+    """The last message before file `i`, and the first one after it; None where there is none."""
+    before = [part.span[1] for part in parts[:i] if part is not None and part.span is not None]
+    after = [part.span[0] for part in parts[i + 1 :] if part is not None and part.span is not None]
+    return max(before, default=None), min(after, default=None)
+
+
+def widened(
+    part: Part, before: int | None, after: int | None
+) -> Iterator[tuple[Damage, Gap | None]]:
+    """The damages of one file, where its run goes on around it.
+
+    A file that breaks off does not tell how far it went: as far as the next one begins. So each
+    loss that touches an end of its file goes on to the messages of the files around it.
+
+    Args:
+        part: the file.
+        before: the last message of the files before it.
+        after: the first message of the files after it.
+    """
+    for damage, gap in part.damages:
+        if gap is None or part.span is None:
+            yield damage, gap
+            continue
+        start, end = gap
+        if start <= part.span[0] and before is not None:
+            start = min(start, before)
+        if end >= part.span[1] and after is not None:
+            end = max(end, after)
+        yield damage, (start, end)

@@ -1,0 +1,61 @@
+"""Where logs may be looked for that somebody else has named: evidence tells where its logs are."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+from dataclasses import dataclass
+from urllib.parse import unquote, urlsplit
+
+from fretc.logs.storage.inputs import is_url
+
+
+@dataclass(frozen=True, slots=True)
+class Places:
+    """What may be opened.
+
+    Files below the present folder and below folders that the user names, `https`, and whatever
+    begins with a URL that the user names.
+    """
+
+    named: Sequence[str] = ()
+    """Folders, and beginnings of URLs."""
+    offline: bool = False
+    """Whether nothing is asked of any server."""
+
+    def refusal(self, place: str) -> str:
+        """Why a place is not opened; empty: it may be."""
+        return self._of_url(place) if is_url(place) else self._of_file(place)
+
+    def _of_url(self, url: str) -> str:
+        if self.offline:
+            return "it is on a server, and `--offline` is given"
+        if any(_begins(url, start) for start in self.named if is_url(start)):
+            return ""
+        if "::" in url:
+            return "it is a chain of protocols"
+        try:
+            parts = urlsplit(url)
+        except ValueError:
+            return "it is no URL"
+        scheme = parts.scheme.lower()
+        return "" if scheme == "https" and parts.hostname else f"its protocol is `{scheme}`"
+
+    def _of_file(self, path: str) -> str:
+        real = os.path.realpath(path)
+        folders = [os.curdir, *(name for name in self.named if not is_url(name))]
+        inside = any(
+            os.path.commonpath([real, folder]) == folder
+            for folder in map(os.path.realpath, folders)
+        )
+        return "" if inside else "it lies outside of the folders that are looked into"
+
+
+def _begins(url: str, start: str) -> bool:
+    """Whether the URL lies below another one; a way up again, and another chain, do not."""
+    if not url.startswith(start):
+        return False
+    rest = url[len(start) :]
+    steps = unquote(rest).replace("\\", "/").split("/")
+    below = start.endswith("/") or not rest or rest.startswith("/")
+    return below and ".." not in steps and "::" not in rest

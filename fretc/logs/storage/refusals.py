@@ -1,0 +1,180 @@
+"""What there is to say of bags, folders, URLs and standard input: one function for each message."""
+
+from __future__ import annotations
+
+import errno
+from collections.abc import Collection
+
+from fretish.bindings.declarations import short_type
+from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
+from fretish.diagnostics.source import Source, Span
+
+
+def install(extra: str) -> str:
+    """How to get an optional part of fretc."""
+    return (
+        f"install the extra: pip install 'fretc[{extra}]' (in a checkout: pip install '.[{extra}]')"
+    )
+
+
+# Standard input and URLs
+
+
+def no_stdin(why: str) -> Diagnostic:
+    """Nothing can be read from standard input."""
+    return Diagnostic(
+        Code.UNREADABLE,
+        f"standard input cannot be read: {why}",
+        Source("<stdin>", "").span(),
+        "send a log: `fretc audit - < run.mcap`",
+    )
+
+
+def no_fsspec(place: Span) -> Diagnostic:
+    """URLs need an extra."""
+    return Diagnostic(
+        Code.MISSING_EXTRA,
+        "a URL cannot be read: that needs `fsspec`",
+        place,
+        install("remote"),
+    )
+
+
+def no_protocol_package(protocol: str, why: str, place: Span) -> Diagnostic:
+    """The package for the protocol of the URL is not installed."""
+    reason = why.strip().partition("\n")[0][:200]
+    packages = {"s3": "s3fs", "s3a": "s3fs", "gs": "gcsfs", "gcs": "gcsfs"}
+    packages |= {"az": "adlfs", "abfs": "adlfs", "http": "aiohttp", "https": "aiohttp"}
+    known = packages.get(protocol.lower())
+    return Diagnostic(
+        Code.MISSING_EXTRA,
+        f"what is at `{protocol}://` cannot be read: {reason}",
+        place,
+        f"install its package: pip install {known}"
+        if known
+        else "what each protocol needs is in fsspec's documentation",
+    )
+
+
+# Bags and folders
+
+
+def no_rosbags(place: Span) -> Diagnostic:
+    """Bags need an extra."""
+    return Diagnostic(
+        Code.MISSING_EXTRA,
+        "a bag cannot be read: that needs `rosbags`",
+        place,
+        install("bags"),
+    )
+
+
+def bad_bag(why: str, place: Span, *, indexed: bool) -> Diagnostic:
+    """The reader of bags gives nothing of it."""
+    return Diagnostic(
+        Code.UNREADABLE_LOG,
+        f"the bag cannot be read: {why}",
+        place,
+        "mend it first: `rosbag reindex`, which loses the chunk that was being written (keep the "
+        "`.orig` file beside it, and audits say so); or copy it again from where it was recorded"
+        if indexed
+        else "copy it again from where it was recorded",
+    )
+
+
+def bag_of_no_file(place: Span) -> Diagnostic:
+    """A bag comes from standard input or a URL."""
+    return Diagnostic(
+        Code.NOT_A_LOG, "a bag can only be read from a file", place, "save it as a file first"
+    )
+
+
+def unchecked(place: Span, assumed: Collection[str]) -> Diagnostic:
+    """What a bag cannot show, and which definitions are not its own."""
+    message = (
+        "a bag has no check sums, and one time for each message: a changed byte within a message "
+        "cannot be seen, and publish_time is log_time"
+    )
+    if not assumed:
+        return Diagnostic(Code.BAG_FORMAT, message, place, severity=Severity.NOTE)
+    names = ", ".join(sorted({short_type(name) for name in assumed})[:8])
+    more = ", ..." if len(set(assumed)) > 8 else ""
+    return Diagnostic(
+        Code.BAG_FORMAT,
+        f"{message}; it defines no types: those of ROS 2 itself, the same in all releases, are "
+        f"taken for {names}{more}",
+        place,
+        "a package of your own under such a name would be misread: record MCAP instead",
+        Severity.WARNING,
+    )
+
+
+def without_crc(place: Span) -> Diagnostic:
+    """What an MCAP file cannot show that states no CRC of its messages."""
+    return Diagnostic(
+        Code.BAG_FORMAT,
+        "no CRC covers its messages: a changed byte within one of them cannot be seen",
+        place,
+        "record with `noChunkCRC: false` in rosbag2's `--storage-config-file`",
+        Severity.NOTE,
+    )
+
+
+def bad_metadata(place: Span) -> Diagnostic:
+    """What describes a run in several files is not as rosbag2 writes it."""
+    return Diagnostic(
+        Code.SPLIT_LOG,
+        "it does not say which files the run has",
+        place,
+        "write it anew: `ros2 bag reindex FOLDER`",
+    )
+
+
+def part_of_a_run(i: int, count: int, whole: str, place: Span) -> Diagnostic:
+    """One file of several is read as if it were a run of its own; `whole` is what to name."""
+    return Diagnostic(
+        Code.SPLIT_LOG,
+        f"it is file {i + 1} of {count} of one run, and judged alone",
+        place,
+        f"name {whole}: its files are one log",
+        Severity.NOTE,
+    )
+
+
+def compressed_folder(mode: str, place: Span) -> Diagnostic:
+    """rosbag2 has compressed whole files, or each message."""
+    return Diagnostic(
+        Code.NOT_A_LOG,
+        f"rosbag2 has compressed each {mode} of the run",
+        place,
+        "unpack it: `ros2 bag convert`, with `compression_mode: none`; MCAP compresses within the "
+        "file: `--storage-preset-profile zstd_fast`",
+    )
+
+
+def no_such_file(place: Span) -> Diagnostic:
+    """There is nothing at the path."""
+    return Diagnostic(Code.NO_SUCH_FILE, "there is no such file", place, "check the path")
+
+
+def is_a_directory(place: Span) -> Diagnostic:
+    """The path names a directory."""
+    return Diagnostic(Code.IS_A_DIRECTORY, "it is a directory", place, "name the logs in it")
+
+
+def not_a_file(place: Span) -> Diagnostic:
+    """The path names a device, a pipe or the like."""
+    return Diagnostic(
+        Code.UNREADABLE, "it is not a regular file", place, "name a file; `-` is standard input"
+    )
+
+
+def unreadable(error: OSError, place: Span) -> Diagnostic:
+    """The system, or the server, does not let it be read."""
+    reason = error.strerror or str(error)
+    mend = "check its permissions"
+    if "://" in place.source.name:
+        mend = "check the address, the network, and whether your credentials reach it"
+    elif error.errno == errno.ENOSPC:
+        mend = "make room in the folder for temporary files, or name another one in `TMPDIR`"
+    return Diagnostic(Code.UNREADABLE, f"it cannot be read: {reason}", place, mend)

@@ -1,0 +1,102 @@
+"""ROS 1 bags that belong together: the files of one run, and what a bag was before its reindexing.
+
+`rosbag record --split` writes `run_0.bag`, `run_1.bag`, and so on; the last one is called
+`run_2.bag.active` until the recorder has closed it. Such a run goes by the name `run_*.bag`.
+Times are nanoseconds, log times.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Sequence
+from itertools import pairwise
+from pathlib import Path
+
+from fretc.logs.signals.samples import Gap
+from fretc.logs.storage.bags import ends
+from fretc.logs.storage.folders import Folder
+
+ACTIVE = ".bag.active"
+"""How the name of a bag ends that its recorder has not closed."""
+_FILE = re.compile(r"(?P<run>.+)_(?P<number>\d+)\.bag(\.active)?", re.DOTALL)
+_WHOLE = re.compile(r"(?P<run>.+)_\*\.bag", re.DOTALL)
+_SOON = 10**9
+"""From one file to the next of a run; files that are farther apart are runs of their own."""
+_BACKUP = re.compile(r".+\.orig\.bag|.+\.bag\.orig\.active", re.DOTALL)
+_HEADER = 4096
+"""Bytes that the header of a bag is padded to."""
+
+
+def split(path: str) -> Folder | None:
+    """The run that a bag is a file of; None where it is one of its own.
+
+    Files of one name are one run if their numbers follow each other, none comes twice (`run_1.bag`
+    and `run_01.bag`), and each begins where the one before it ends: names alone could be those of
+    runs that were numbered.
+
+    Args:
+        path: of one of the files, or what `named` gives.
+
+    Raises:
+        OSError: a file cannot be read.
+    """
+    parent, name = os.path.split(path)
+    match = _WHOLE.fullmatch(name) or _FILE.fullmatch(name)
+    if match is None or (_WHOLE.fullmatch(name) and os.path.lexists(path)):
+        return None
+    found = (_FILE.fullmatch(other) for other in os.listdir(parent or "."))
+    own = [file for file in found if file and file["run"] == match["run"]]
+    numbers = sorted((int(file["number"]), file[0]) for file in own)
+    files = [file for _, file in numbers]
+    follow = all(b == a + 1 for (a, _), (b, _) in pairwise(numbers))
+    if len(files) < 2 or not follow or not _in_time(parent, files):
+        return None
+    return Folder(parent or ".", tuple(files), None, None, {}, "")
+
+
+def named(run: Folder) -> str:
+    """What the run is called: `runs/run_*.bag`."""
+    match = _FILE.fullmatch(run.files[0])
+    assert match is not None
+    name = f"{match['run']}_*.bag"
+    return name if run.path == "." else os.path.join(run.path, name)
+
+
+def _in_time(parent: str, files: Sequence[str]) -> bool:
+    """Whether each file begins where the one before it ends; the last one may be unreadable."""
+    spans: list[Gap | None] = [ends(os.path.join(parent, file)) for file in files]
+    if spans[-1] is None and files[-1].endswith(ACTIVE):
+        spans.pop()
+    known = [span for span in spans if span is not None]
+    soon = all(abs(two[0] - one[1]) <= _SOON for one, two in pairwise(known))
+    return soon and bool(known) and len(known) == len(spans)
+
+
+def is_backup(path: str) -> bool:
+    """Whether it is what `rosbag reindex` leaves of a bag, beside the bag that it has made."""
+    root, name = os.path.split(path)
+    if not _BACKUP.fullmatch(name):
+        return False
+    mended = (name.replace(".orig.bag", ".bag"), name.replace(".bag.orig.active", ".bag"))
+    kept = {*mended, f"{mended[1]}.active"} - {name}
+    return any(os.path.exists(os.path.join(root, one)) for one in kept)
+
+
+def unclosed_backup(path: str) -> str | None:
+    """The name of what a bag was before `rosbag reindex`, if its recorder had not closed it.
+
+    Then the chunk that was being written is not in the bag.
+
+    Raises:
+        OSError: it cannot be read.
+    """
+    file = Path(path.removesuffix(".active"))
+    for backup in (file.with_suffix(".orig.bag"), file.with_name(f"{file.name}.orig.active")):
+        if backup.is_file():
+            with backup.open("rb") as stream:
+                _, found, rest = stream.read(_HEADER).partition(b"index_pos=")
+            place = int.from_bytes(rest[:8], "little") if found else 0
+            if not 0 < place < backup.stat().st_size:
+                return backup.name
+    return None

@@ -1,0 +1,381 @@
+"""Messages in, columns of times and numbers out: of each topic what the signals ask for.
+
+Times are nanoseconds. Only the messages of topics that the bindings name are decoded.
+"""
+
+from __future__ import annotations
+
+from array import array
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fretc.logs import findings
+from fretc.logs.extraction import Extract, Extraction
+from fretc.logs.mcap.container import Stream
+from fretc.logs.mcap.damage import LATEST
+from fretc.logs.mcap.messages import Messages, Stamps
+from fretc.logs.mcap.payloads import Payloads
+from fretc.logs.signals.samples import Gap, Series, Times, Values
+from fretc.logs.signals.stamps import JUMP, placed, unset
+from fretish.bindings.declarations import Declarations, Signal, short_type
+from fretish.clock import TimeSource
+from fretish.diagnostics.diagnostic import Diagnostic
+from fretish.diagnostics.source import Span
+
+_MOST, _MOST_BYTES = 4096, 2**22
+"""Messages, and bytes of them, that are read at once."""
+_ENOUGH = 1024
+"""Messages that are read where they stand; fewer wait for others of their kind."""
+
+
+@dataclass(slots=True)
+class Pending:
+    """Messages of one stream that are still to be read."""
+
+    stream: Stream
+    logs: list[int] = field(default_factory=list)
+    publishes: list[int] = field(default_factory=list)
+    payloads: list[bytes] = field(default_factory=list)
+    size: int = 0
+
+    def add(self, logs: Sequence[int], publishes: Sequence[int], payloads: Sequence[bytes]) -> None:
+        """Some more."""
+        self.logs.extend(logs)
+        self.publishes.extend(publishes)
+        self.payloads.extend(payloads)
+        self.size += sum(map(len, payloads))
+
+    @property
+    def full(self) -> bool:
+        """Whether they should be read before another comes."""
+        return len(self.logs) >= _MOST or self.size >= _MOST_BYTES
+
+
+@dataclass(slots=True)
+class Column:
+    """What is read of one topic; `logs` are the log times, `times` those of the declared clock.
+
+    Until all messages are there, `times` are as they stand in them.
+    """
+
+    name: str
+    type: str
+    encoding: str
+    bound: bool
+    """Whether the bindings name it; of another topic only log times are read."""
+    signals: list[Signal]
+    """Those that are read of it: wanted, and nothing wrong with them."""
+    logs: array[int] = field(default_factory=lambda: array("q"))
+    times: array[int] = field(default_factory=lambda: array("q"))
+    values: dict[str, Series] = field(default_factory=dict)
+    wrong: dict[str, Diagnostic] = field(default_factory=dict)
+    """Why there are no samples of a signal."""
+    types: dict[str, None] = field(default_factory=dict)
+    """Of its messages, in the order in which they came."""
+    pending: Pending | None = None
+    undecoded: int = 0
+    unstamped: int = 0
+    timeless: bytearray = field(default_factory=bytearray)
+    """For each message 1 where the declared clock does not tell its time."""
+    unset: NDArray[np.bool_] = field(default_factory=lambda: np.zeros(0, bool))
+    """For each message whether its time was never set: it is zero, and its samples are unknown."""
+    placed: bool = False
+    """Whether the declared clock tells the time of any of its messages."""
+    stated: int = 0
+    """How many messages the log says it holds of it that were not read."""
+
+    @property
+    def count(self) -> int:
+        """How many messages there are."""
+        return len(self.logs) + self.stated
+
+    def refuse(self, signal: Signal, diagnostic: Diagnostic) -> None:
+        """No samples of this signal."""
+        self.signals.remove(signal)
+        self.wrong[signal.name] = diagnostic
+        self.values.pop(signal.name, None)
+
+    def raw(self) -> tuple[Times, Times]:
+        """Log times, and the times as they stand in the messages; in the order of the file."""
+        logs = np.array(self.logs, np.int64)
+        return logs, np.array(self.times, np.int64) if self.bound else logs
+
+    def place(self, *, from_zero: bool) -> None:
+        """Find the times that were never set; each such message is put where the one before is."""
+        logs, times = self.raw()
+        timeless = np.frombuffer(bytes(self.timeless), np.bool_) if self.bound else logs < 0
+        self.unset = ~timeless & unset(logs, times, from_zero=from_zero)
+        lost = timeless | self.unset
+        self.placed = not lost.all()
+        self.times = array("q", (placed(times, lost) if self.placed else logs).tobytes())
+
+    def stamps(self) -> Times:
+        """In the order of the file: by the declared clock, or log times where no signal reads."""
+        return np.array(self.times, np.int64)
+
+    def numbers(self, signal: Signal) -> Values:
+        """What a signal reads of the messages: nothing of one whose time was never set."""
+        numbers = self.values[signal.name].values().copy()
+        numbers[self.unset] = np.nan
+        return numbers
+
+    def late(self) -> int:
+        """How many messages are earlier than one before them."""
+        stamps = self.stamps()
+        return int((stamps < np.maximum.accumulate(stamps)).sum())
+
+
+class Columns:
+    """Takes messages and keeps the numbers that the signals ask for."""
+
+    def __init__(self, declarations: Declarations, wanted: Sequence[Signal]) -> None:
+        self.topics: dict[str, Column] = {}
+        """Every topic of the log."""
+        self.streams: dict[str, Stream] = {}
+        """The first stream of each topic."""
+        self.nearest: dict[str, float] = {}
+        self.clock = declarations.clock
+        self._source = declarations.source
+        self._wanted = wanted
+        self._bound = {signal.path.topic for signal in declarations.signals.values()}
+        self._bound |= {self.clock.topic} if self.clock.topic else set()
+        self._extractions: dict[int, Extraction] = {}
+
+    # Messages
+
+    def declare(self, stream: Stream) -> None:
+        """A topic of the log, with or without messages."""
+        topic, type_ = stream.channel.topic, stream.schema.name if stream.schema else ""
+        self.streams.setdefault(topic, stream)
+        if topic not in self.topics:
+            self.topics[topic] = Column(
+                topic,
+                type_,
+                stream.channel.message_encoding,
+                topic in self._bound,
+                [signal for signal in self._wanted if signal.path.topic == topic],
+            )
+        column = self.topics[topic]
+        for signal in tuple(column.signals):
+            declared = signal.type and short_type(signal.type)
+            if stream.schema and declared and declared != short_type(type_):
+                column.refuse(signal, findings.wrong_type(signal, type_))
+
+    def add(self, stream: Stream, log_time: int, publish_time: int, payload: memoryview) -> None:
+        """One message; those of bound topics are kept, to be read with others of their kind."""
+        column = self.topics[stream.channel.topic]
+        if not column.bound:
+            column.logs.append(log_time)
+            return
+        payloads = [bytes(payload) if self._decodes(column) else b""]
+        self._wait(column, stream, [log_time], [publish_time], payloads)
+
+    def add_all(self, stream: Stream, messages: Messages) -> None:
+        """Messages of one topic, in their order."""
+        column = self.topics[stream.channel.topic]
+        logs = messages.logs.astype(np.int64)
+        if not column.bound:
+            column.logs.frombytes(logs.tobytes())
+            return
+        if len(messages) >= _ENOUGH or len(messages.data) >= _MOST_BYTES:
+            self._settle(column)
+            self._read(column, stream, logs, messages.publishes, messages.payloads)
+            return
+        payloads = messages.payloads.copies() if self._decodes(column) else [b""] * len(logs)
+        self._wait(column, stream, logs.tolist(), messages.publishes.tolist(), payloads)
+
+    def wants(self, topic: str) -> bool:
+        """Whether the bindings name it."""
+        return topic in self._bound
+
+    def count(self, stream: Stream, count: int) -> None:
+        """So many messages of a topic that the bindings do not name."""
+        self.topics[stream.channel.topic].stated += count
+
+    def _decodes(self, column: Column) -> bool:
+        """Whether anything within its messages is asked for."""
+        return bool(column.signals) or self.clock.time is TimeSource.HEADER_STAMP
+
+    def _wait(
+        self,
+        column: Column,
+        stream: Stream,
+        logs: Sequence[int],
+        publishes: Sequence[int],
+        payloads: Sequence[bytes],
+    ) -> None:
+        """Keep messages until there are many of their stream, or another stream follows."""
+        pending = column.pending
+        if pending is None or pending.stream != stream:
+            self._settle(column)
+            pending = column.pending = Pending(stream)
+        pending.add(logs, publishes, payloads)
+        if pending.full:
+            self._settle(column)
+
+    def settle(self) -> None:
+        """Read the messages that wait: no other follows."""
+        for column in self.topics.values():
+            self._settle(column)
+        from_zero = self._begins_at_zero()
+        for column in self.topics.values():
+            column.place(from_zero=from_zero)
+
+    def _begins_at_zero(self) -> bool:
+        """Whether the declared clock does: a bound topic has a time soon after; else any topic."""
+        columns = self.topics.values()
+        of_all = [c for c in columns if c.bound and c.logs] or list(columns)
+        times = (column.raw()[1] for column in of_all)
+        return any(((some > 0) & (some <= JUMP)).any() for some in times)
+
+    def _settle(self, column: Column) -> None:
+        pending, column.pending = column.pending, None
+        if pending is not None:
+            logs, publishes = np.array(pending.logs, np.int64), np.array(pending.publishes, "u8")
+            payloads = Payloads.of(pending.payloads)
+            self._read(column, pending.stream, logs, publishes, payloads)
+
+    def _read(
+        self, column: Column, stream: Stream, logs: Times, publishes: Stamps, payloads: Payloads
+    ) -> None:
+        """Keep what messages of one stream say."""
+        column.types[short_type(stream.schema.name) if stream.schema else ""] = None
+        extract = self._extract(column, stream, payloads)
+        times, dated = self._times(column, extract, logs, publishes)
+        kept = times < LATEST
+        column.undecoded += int((~kept).sum())
+        column.logs.frombytes(logs[kept].tobytes())
+        column.times.frombytes(times[kept].tobytes())
+        column.timeless.extend((~dated[kept]).tobytes())
+        for signal in column.signals:
+            column.values.setdefault(signal.name, Series()).add(extract.values[signal.name][kept])
+
+    def _extract(self, column: Column, stream: Stream, payloads: Payloads) -> Extract:
+        """What the signals ask for; one with something wrong gets no samples."""
+        if not self._decodes(column):
+            return Extract.empty(len(payloads), ())
+        id = stream.channel.id
+        if id not in self._extractions:
+            self._extractions[id] = Extraction(stream, column.signals)
+        extraction = self._extractions[id]
+        extract = extraction.extract(payloads)
+        for signal in tuple(column.signals):
+            if signal.name in extraction.wrong:
+                column.refuse(signal, extraction.wrong[signal.name])
+        if extraction.reads:
+            column.undecoded += int((~extract.decoded).sum())
+        for name, least in extract.nearest.items():
+            self.nearest[name] = min(least, self.nearest.get(name, least))
+        return extract
+
+    def _times(
+        self, column: Column, extract: Extract, logs: Times, publishes: Stamps
+    ) -> tuple[Times, NDArray[np.bool_]]:
+        """When the messages were, on the declared clock; and of which of them it tells that."""
+        every = np.ones(len(logs), bool)
+        match self.clock.time:
+            case TimeSource.LOG_TIME:
+                return logs, every
+            case TimeSource.PUBLISH_TIME:
+                return publishes.clip(max=LATEST).astype(np.int64), every
+            case TimeSource.HEADER_STAMP:
+                stamped = extract.decoded & extract.stamped
+                column.unstamped += int((extract.decoded & ~stamped).sum())
+                return np.where(stamped, extract.stamps, logs), extract.decoded
+
+    # The results
+
+    def samples(self, signal: Signal) -> tuple[Times, Values]:
+        """Times and values of one signal, in order of time; none where something is wrong."""
+        column = self.topics.get(signal.path.topic)
+        if column is None or signal.name not in column.values:
+            return np.zeros(0, np.int64), np.zeros(0)
+        times = np.array(column.times, np.int64)
+        order = np.argsort(times, kind="stable")
+        return times[order], column.numbers(signal)[order]
+
+    def ticks(self) -> Times:
+        """Times of the clock's topic, where the clock ticks by message."""
+        column = self.topics.get(self.clock.topic or "")
+        return np.sort(np.array(column.times if column else [], np.int64))
+
+    def span(self, whole: Gap) -> Gap:
+        """First and last message of the bound topics, else of all; else those of the `whole` log.
+
+        A topic counts if the declared clock gives the time of any of its messages. Other topics
+        than the bound ones count by log time only: an index knows no other time of them.
+        """
+        known = [column for column in self.topics.values() if column.placed]
+        times = [c.times for c in known if c.bound]
+        if not times and self.clock.time is TimeSource.LOG_TIME:
+            times = [c.times for c in known]
+        return (min(map(min, times)), max(map(max, times))) if times else whole
+
+    def on_clock(self, gap: Gap) -> Gap:
+        """A span of log times, on the declared clock: between the messages around it."""
+        columns = [column for column in self.topics.values() if column.bound and column.placed]
+        if self.clock.time is TimeSource.LOG_TIME or not columns:
+            zeros = any(column.unset.any() for column in self.topics.values())
+            return gap if gap[0] or not zeros else (min(self.span(gap)[0], gap[1]), gap[1])
+        logs = np.concatenate([np.array(column.logs, np.int64) for column in columns])
+        times = np.concatenate([np.array(column.times, np.int64) for column in columns])
+        before, after = times[logs < gap[0]], times[logs > gap[1]]
+        start = int(before.max()) if len(before) else int(times.min())
+        end = int(after.min()) if len(after) else int(times.max())
+        return min(start, end), max(start, end)
+
+    # What there is to say
+
+    def findings(self) -> list[Diagnostic]:
+        """About single topics: what is missing first, then what is odd."""
+        found = [wrong for signal in self._wanted if (wrong := self._wrong(signal)) is not None]
+        if self.clock.topic and not self.ticks().size:
+            found.append(self._absent(self.clock.topic, self._clock_place(self.clock.topic)))
+        for topic, signal in {signal.path.topic: signal for signal in self._wanted}.items():
+            if topic in self.topics:
+                found += self._oddities(self.topics[topic], signal)
+        return found
+
+    def _wrong(self, signal: Signal) -> Diagnostic | None:
+        column = self.topics.get(signal.path.topic)
+        if column is None or not column.logs:
+            return self._absent(signal.path.topic, signal.span)
+        return column.wrong.get(signal.name)
+
+    def _absent(self, topic: str, span: Span | None) -> Diagnostic:
+        if topic in self.topics:
+            return findings.no_message(topic, span)
+        return findings.no_topic(topic, self.topics, span)
+
+    def readers(self) -> dict[str, Span | None]:
+        """The bound topics that are asked for, each with the place that binds it."""
+        places = {self.clock.topic: self._clock_place(self.clock.topic)} if self.clock.topic else {}
+        places |= {signal.path.topic: signal.span for signal in self._wanted}
+        return {topic: place for topic, place in places.items() if topic in self.topics}
+
+    def _clock_place(self, topic: str) -> Span | None:
+        start = self._source.text.find(f'"{topic}"')
+        return self._source.span(start, start + len(topic) + 2) if start >= 0 else None
+
+    def _oddities(self, column: Column, signal: Signal) -> list[Diagnostic]:
+        found, count = [], len(column.logs)
+        if len(column.types) > 1 and signal.type is None:
+            found.append(findings.several_types(signal, list(column.types)))
+        if column.undecoded:
+            found.append(findings.bad_messages(signal, column.undecoded, count))
+        if late := column.late():
+            found.append(findings.out_of_order(signal, late, count))
+        if column.unstamped:
+            found.append(findings.unstamped(signal, self._shift()))
+        return found
+
+    def _shift(self) -> int:
+        """By how many nanoseconds header stamps are away from log times, in the middle."""
+        stamped = [c for c in self.topics.values() if c.bound and c.placed and not c.unstamped]
+        if self.clock.time is not TimeSource.HEADER_STAMP or not stamped:
+            return 0
+        shifts = [np.array(c.logs, np.int64) - np.array(c.times, np.int64) for c in stamped]
+        return int(np.median(np.abs(np.concatenate(shifts))))

@@ -1,0 +1,64 @@
+"""`--junit`: a test case for each requirement, for a CI server.
+
+Source: the JUnit schema of the Jenkins xUnit plugin, https://github.com/jenkinsci/xunit-plugin.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from xml.etree import ElementTree
+
+from fretc.audit.evidence import verdicts
+from fretc.audit.outputs.junit import as_text, counted, valid
+from fretc.report.model.views import Report, RequirementView
+from fretc.report.sections.proofs import is_refuted, refutations
+
+
+def junit(report: Report) -> str:
+    """One test suite; a case fails exactly where `--strict` would end with 1."""
+    root = ElementTree.Element("testsuites", name="fretc report")
+    gone = {one.requirement: one.text for one in report.withdrawn}
+    views = [view for view in report.requirements if view.id not in gone]
+    counts = counted([*map(_kind, views), *("failure" for _ in gone)])
+    name = valid(report.project)
+    suite = ElementTree.SubElement(root, "testsuite", {"name": name, **counts})
+    for view in views:
+        _case(suite, view, name)
+    for id, text in gone.items():
+        case = ElementTree.SubElement(suite, "testcase", name=valid(id), classname=name, time="0")
+        ElementTree.SubElement(case, "failure", message=valid(f"withdrawn: {text}"))
+    return as_text(root)
+
+
+def _kind(view: RequirementView) -> str:
+    """The element for it; empty: it passes."""
+    if is_refuted(view):
+        return "failure"
+    return verdicts.junit(view.mark.word, suspect=view.mark.suspect)
+
+
+def _case(suite: ElementTree.Element, view: RequirementView, project: str) -> None:
+    case = ElementTree.SubElement(
+        suite,
+        "testcase",
+        name=valid(f"{view.id} {view.title}".strip()),
+        classname=project,
+        time="0",
+    )
+    kind = _kind(view)
+    if kind:
+        reasons = list(_reasons(view))
+        message = valid(f"{view.mark.text}: {reasons[0]}" if reasons else view.mark.text)
+        told = ElementTree.SubElement(case, kind, message=message)
+        if kind != "skipped":
+            told.text = valid("\n".join((view.sentence, *reasons)))
+
+
+def _reasons(view: RequirementView) -> Iterator[str]:
+    """The waiver and the verdict behind it, the worst of the runs first, then counterexamples."""
+    if view.waiver:
+        yield f"{view.waiver.reason} (it is {view.waiver.covers.text})"
+    yield from view.reasons
+    if is_refuted(view):
+        yield from (f"{plan.method}: {plan.result}" for plan in view.planned if plan.refuted)
+        yield from (f"{p.layer}: {p.mark.text}: {p.claim}" for p in refutations(view))

@@ -1,0 +1,92 @@
+"""`--markdown`: what a reviewer of a pull request wants to see first.
+
+Source: GitHub Flavored Markdown Spec 0.29, tables (extension).
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+
+from fretc.audit.evidence.verdicts import SUSPECT
+from fretc.report.model.phrases import visible
+from fretc.report.model.views import Mark, Report, RequirementView, worst_first
+
+_MARKUP = re.compile(r"([\\`*_{}\[\]()<>#+!|~&:@-])")
+_LISTED = 50
+
+
+def markdown(report: Report) -> str:
+    """The whole comment."""
+    return "".join(f"{line}\n" for line in _lines(report))
+
+
+def _lines(report: Report) -> Iterator[str]:
+    overall = report.overall
+    yield f"## {overall.mark.glyph} {_plain(overall.headline)}"
+    yield ""
+    for sentence in overall.sentences:
+        yield f"{_plain(sentence)}  "
+    yield ""
+    yield "| requirement | verdict | coverage | review | why |"
+    yield "|---|---|---|---|---|"
+    ordered = worst_first(report.requirements)
+    for view in ordered[:_LISTED]:
+        yield _row(view)
+    if len(ordered) > _LISTED:
+        yield ""
+        yield f"… and {len(ordered) - _LISTED} more requirements."
+    yield from _changes(report)
+    yield from _signatures(report)
+    yield ""
+    yield f"<sub>fretc {_plain(report.fretc)}</sub>"
+
+
+def _row(view: RequirementView) -> str:
+    why = view.reasons[0] if view.reasons else view.results[0].reason if view.results else ""
+    more = f" (and {len(view.reasons) - 1} more)" if len(view.reasons) > 1 else ""
+    cells = (
+        f"**{_plain(view.id)}** {_plain(view.title)}",
+        _verdict(view.mark),
+        view.coverage,
+        view.review.text,
+        f"{_plain(why)}{more}",
+    )
+    return f"| {' | '.join(cells)} |"
+
+
+def _verdict(mark: Mark) -> str:
+    return f"{mark.glyph} {mark.word}, ⚠ {SUSPECT}" if mark.suspect else f"{mark.glyph} {mark.word}"
+
+
+def _changes(report: Report) -> Iterator[str]:
+    if not report.changes:
+        return
+    yield ""
+    yield "### Changed since the review"
+    yield ""
+    for change in report.changes:
+        yield f"- **{_plain(change.requirement)}**: {_plain('; '.join(change.lines))}"
+        for run, then, now in change.verdicts:
+            yield f"  - {_plain(run)}: {then} → {now}"
+
+
+def _signatures(report: Report) -> Iterator[str]:
+    """Those that do not verify come first; reviews stand in the table, too."""
+    signed = report.signatures.signed
+    if not signed:
+        return
+    yield ""
+    yield "### Signatures"
+    yield ""
+    for one in signed[:_LISTED]:
+        mark = one.signature.mark
+        yield f"- {mark.glyph} {one.kind} {_plain(one.name)}: {_plain(one.signature.text)}"
+    if len(signed) > _LISTED:
+        unsigned = sum(not one.signature.is_good for one in signed[_LISTED:])
+        yield f"- … and {len(signed) - _LISTED} more, {unsigned} of them unauthenticated"
+
+
+def _plain(text: str) -> str:
+    """Text as text, on one line: no markup, no mention, no link."""
+    return _MARKUP.sub(r"\\\1", visible(" ".join(text.split())))

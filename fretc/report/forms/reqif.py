@@ -1,0 +1,269 @@
+"""`--reqif`: hazards, requirements and what is shown of them, for a requirements tool.
+
+Sources: OMG, Requirements Interchange Format (ReqIF) 1.2; prostep ivip, ReqIF Implementation
+Guide, for the names that begin with `ReqIF.`.
+"""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+from collections.abc import Iterator, Mapping, Sequence
+from datetime import UTC, datetime
+from html import escape
+
+from reqif.models.reqif_core_content import ReqIFCoreContent
+from reqif.models.reqif_data_type import (
+    ReqIFDataTypeDefinitionEnumeration,
+    ReqIFDataTypeDefinitionString,
+    ReqIFDataTypeDefinitionXHTML,
+    ReqIFEnumValue,
+)
+from reqif.models.reqif_namespace_info import ReqIFNamespaceInfo
+from reqif.models.reqif_req_if_content import ReqIFReqIFContent
+from reqif.models.reqif_reqif_header import ReqIFReqIFHeader
+from reqif.models.reqif_spec_hierarchy import ReqIFSpecHierarchy
+from reqif.models.reqif_spec_object import ReqIFSpecObject, SpecObjectAttribute
+from reqif.models.reqif_spec_object_type import ReqIFSpecObjectType, SpecAttributeDefinition
+from reqif.models.reqif_spec_relation import ReqIFSpecRelation
+from reqif.models.reqif_spec_relation_type import ReqIFSpecRelationType
+from reqif.models.reqif_specification import ReqIFSpecification
+from reqif.models.reqif_specification_type import ReqIFSpecificationType
+from reqif.models.reqif_types import SpecObjectAttributeType
+from reqif.object_lookup import ReqIFObjectLookup
+from reqif.reqif_bundle import ReqIFBundle
+from reqif.unparser import ReqIFUnparser
+
+from compiler.files.dates import source_date
+from fretc.audit.outputs.junit import valid
+from fretc.report.forms.reqif_attributes import (
+    HAZARD,
+    REQUIREMENT,
+    WORDS,
+    Kind,
+    of_hazard,
+    of_requirement,
+)
+from fretc.report.model.views import Report
+
+_KINDS = {
+    Kind.ID: SpecObjectAttributeType.STRING,
+    Kind.TEXT: SpecObjectAttributeType.XHTML,
+    Kind.WORD: SpecObjectAttributeType.ENUMERATION,
+}
+_HAZARDS, _REQUIREMENTS, _PARENT = "type-hazard", "type-requirement", "type-parent"
+_NEVER = datetime.fromtimestamp(0, UTC)
+
+
+def reqif(report: Report) -> str:
+    """The whole file: the same report gives the same bytes.
+
+    Everything in it was last changed at `SOURCE_DATE_EPOCH`, or where that is not set, at the
+    beginning of 1970: a time of its own would make two exports of the same report differ.
+    """
+    return str(ReqIFUnparser.unparse(_Exchange(report).bundle()))
+
+
+class _Exchange:
+    def __init__(self, report: Report) -> None:
+        self._report = report
+        self._changed = (source_date() or _NEVER).isoformat()
+        self._hazards = {hazard.id: f"hazard-{_name(hazard.id)}" for hazard in report.hazards}
+        self._objects = list(_objects(report))
+
+    def bundle(self) -> ReqIFBundle:
+        report = self._report
+        header = ReqIFReqIFHeader(
+            identifier="header",
+            creation_time=self._changed,
+            req_if_tool_id=f"fretc {report.fretc}",
+            req_if_version="1.0",
+            source_tool_id=f"fretc {report.fretc}",
+            title="Hazards, requirements and verdicts",
+        )
+        content = ReqIFReqIFContent(
+            data_types=list(self._data_types()),
+            spec_types=list(self._types()),
+            spec_objects=list(self._spec_objects()),
+            spec_relations=list(self._relations()),
+            specifications=[self._specification()],
+        )
+        lookup = ReqIFObjectLookup.empty()
+        space = ReqIFNamespaceInfo.create_default()
+        return ReqIFBundle(space, header, ReqIFCoreContent(content), False, lookup, [])
+
+    # Types -------------------------------------------------------------------------------------
+
+    def _data_types(self) -> Iterator[object]:
+        changed = self._changed
+        yield ReqIFDataTypeDefinitionString(
+            "string", last_change=changed, long_name="String", max_length="32000"
+        )
+        yield ReqIFDataTypeDefinitionXHTML(
+            "xhtml", last_change=changed, long_name="XHTML", is_self_closed=True
+        )
+        for name, words in WORDS.items():
+            values = [
+                ReqIFEnumValue(
+                    _word(name, word),
+                    str(key),
+                    last_change=changed,
+                    long_name=word,
+                    other_content="",
+                )
+                for key, word in enumerate(words)
+            ]
+            yield ReqIFDataTypeDefinitionEnumeration(
+                name.lower(), last_change=changed, long_name=name, values=values
+            )
+
+    def _types(self) -> Iterator[object]:
+        changed = self._changed
+        yield self._type(_HAZARDS, "Hazard", HAZARD)
+        yield self._type(_REQUIREMENTS, "Requirement", REQUIREMENT)
+        yield ReqIFSpecRelationType(_PARENT, last_change=changed, long_name="Parent")
+        yield ReqIFSpecificationType(
+            "type-specification",
+            last_change=changed,
+            long_name="Specification",
+            is_self_closed=True,
+        )
+
+    def _type(self, id: str, name: str, attributes: Mapping[str, Kind]) -> ReqIFSpecObjectType:
+        definitions = [
+            SpecAttributeDefinition(
+                attribute_type=_KINDS[kind],
+                identifier=_attribute(id, attribute),
+                datatype_definition=_data_type(kind, attribute),
+                last_change=self._changed,
+                long_name=attribute,
+                multi_valued=False if kind is Kind.WORD else None,
+            )
+            for attribute, kind in attributes.items()
+        ]
+        return ReqIFSpecObjectType(
+            id, last_change=self._changed, long_name=name, attribute_definitions=definitions
+        )
+
+    # Objects -----------------------------------------------------------------------------------
+
+    def _spec_objects(self) -> Iterator[ReqIFSpecObject]:
+        for hazard in self._report.hazards:
+            values = of_hazard(hazard)
+            yield self._object(self._hazards[hazard.id], _HAZARDS, HAZARD, values)
+        for id, view in zip(self._objects, self._report.requirements, strict=True):
+            yield self._object(id, _REQUIREMENTS, REQUIREMENT, of_requirement(view))
+
+    def _object(
+        self,
+        id: str,
+        kind_of: str,
+        attributes: Mapping[str, Kind],
+        values: Mapping[str, str],
+    ) -> ReqIFSpecObject:
+        """What is empty is left out."""
+        found = [
+            SpecObjectAttribute(
+                _KINDS[kind], _attribute(kind_of, name), _value(kind, name, values[name])
+            )
+            for name, kind in attributes.items()
+            if (values[name] if kind is Kind.ID else values[name].strip())
+        ]
+        return ReqIFSpecObject(id, found, kind_of, last_change=self._changed)
+
+    def _relations(self) -> Iterator[ReqIFSpecRelation]:
+        """From the child to each parent that is an object here."""
+        ids = [view.id for view in self._report.requirements]
+        known = {**dict(zip(reversed(ids), reversed(self._objects), strict=True)), **self._hazards}
+        for id, view in zip(self._objects, self._report.requirements, strict=True):
+            for parent in dict.fromkeys(parent.id for parent in view.parents):
+                if parent in known:
+                    yield ReqIFSpecRelation(
+                        identifier=f"parent-{id}-of-{known[parent]}",
+                        last_change=self._changed,
+                        relation_type_ref=_PARENT,
+                        source=id,
+                        target=known[parent],
+                    )
+
+    # The order ---------------------------------------------------------------------------------
+
+    def _specification(self) -> ReqIFSpecification:
+        return ReqIFSpecification(
+            "specification",
+            last_change=self._changed,
+            long_name=valid(self._report.project),
+            specification_type="type-specification",
+            children=list(self._places()),
+        )
+
+    def _places(self) -> Iterator[ReqIFSpecHierarchy]:
+        """Each hazard with its requirements, then those without one.
+
+        An object stands at one place only, since tools take it for one item (StrictDoc refuses a
+        second): a requirement below the first of its hazards. Relations tell of the others.
+        """
+        anchors = [view.anchor for view in self._report.requirements]
+        left = dict(zip(anchors, self._objects, strict=True))
+        for hazard in self._report.hazards:
+            rows = [row.anchor for row in self._report.matrix if row.hazard == hazard.id]
+            below = [left.pop(anchor) for anchor in rows if anchor in left]
+            children = [self._place(id, 2) for id in below]
+            yield self._place(self._hazards[hazard.id], 1, children)
+        for id in left.values():
+            yield self._place(id, 1)
+
+    def _place(
+        self, id: str, level: int, children: Sequence[ReqIFSpecHierarchy] = ()
+    ) -> ReqIFSpecHierarchy:
+        return ReqIFSpecHierarchy(
+            identifier=f"place-{id}",
+            spec_object=id,
+            level=level,
+            children=list(children) or None,
+            last_change=self._changed,
+            editable=None,
+            is_table_internal=None,
+        )
+
+
+def _objects(report: Report) -> Iterator[str]:
+    """The identifier of each requirement, also of those that wrongly share an id."""
+    seen: Counter[str] = Counter()
+    for view in report.requirements:
+        seen[view.id] += 1
+        again = f"__{seen[view.id]}" if seen[view.id] > 1 else ""
+        yield f"requirement-{_name(view.id)}{again}"
+
+
+# XML -------------------------------------------------------------------------------------------
+
+
+def _value(kind: Kind, name: str, text: str) -> str | list[str]:
+    if kind is Kind.WORD:
+        return [_word(name, text)]
+    return _xhtml(text) if kind is Kind.TEXT else valid(text)
+
+
+def _xhtml(text: str) -> str:
+    """Text as text; each line ends in a break, and in a line end for who reads only the text."""
+    lines = re.split(r"\r\n|[\r\n]", escape(valid(text.strip())))
+    return "<xhtml:div>" + "<xhtml:br/>\n".join(lines) + "</xhtml:div>"
+
+
+def _data_type(kind: Kind, name: str) -> str:
+    """Words have one for each attribute."""
+    return name.lower() if kind is Kind.WORD else kind.value
+
+
+def _attribute(kind_of: str, name: str) -> str:
+    return f"{kind_of}-{_name(name)}"
+
+
+def _word(name: str, word: str) -> str:
+    return f"{name.lower()}-{_name(word)}"
+
+
+def _name(id: str) -> str:
+    """Letters, digits, `-`, `.`, and `_` around a code point; different for different ids."""
+    return re.sub(r"[^A-Za-z0-9.-]", lambda found: f"_{ord(found[0]):x}_", id)

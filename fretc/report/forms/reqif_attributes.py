@@ -1,0 +1,124 @@
+"""What ReqIF is told of each hazard and each requirement, as text."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator, Mapping
+from enum import StrEnum
+
+from fretc.audit.evidence.verdicts import CURRENT, SUSPECT, VERDICTS
+from fretc.report.model import phrases
+from fretc.report.model.views import HazardView, RequirementView, ResultView
+from fretish.documents import STATUSES
+
+_LISTED = 50
+
+
+class Kind(StrEnum):
+    """How an attribute is held; the values name its data type.
+
+    A string cannot hold the end of a line, and StrictDoc takes backslashes and what is not ASCII
+    in it for escapes: what people wrote is XHTML, as tools expect it of `ReqIF.Text`.
+    """
+
+    ID = "string"
+    TEXT = "xhtml"
+    WORD = "enumeration"
+
+
+HAZARD: Mapping[str, Kind] = {
+    "ReqIF.ForeignID": Kind.ID,
+    "ReqIF.Name": Kind.TEXT,
+    "ReqIF.Text": Kind.TEXT,
+    "Severity": Kind.TEXT,
+    "Source": Kind.TEXT,
+}
+REQUIREMENT: Mapping[str, Kind] = {
+    "ReqIF.ForeignID": Kind.ID,
+    "ReqIF.Name": Kind.TEXT,
+    "ReqIF.Text": Kind.TEXT,
+    "Rationale": Kind.TEXT,
+    "Parents": Kind.TEXT,
+    "Sentence": Kind.TEXT,
+    "Meaning": Kind.TEXT,
+    "FT": Kind.TEXT,
+    "FT finite": Kind.TEXT,
+    "PT": Kind.TEXT,
+    "Status": Kind.WORD,
+    "Coverage": Kind.ID,  # two of its words have a comma, which tools read as two values
+    "Verdict": Kind.WORD,
+    "Currency": Kind.WORD,
+    "Reasons": Kind.TEXT,
+    "Runs": Kind.TEXT,
+    "Review": Kind.TEXT,
+    "Fingerprint SHA-256": Kind.ID,
+}
+"""In the order in which tools show them."""
+WORDS: Mapping[str, tuple[str, ...]] = {
+    "Status": STATUSES,
+    "Verdict": tuple(VERDICTS),
+    "Currency": (CURRENT, SUSPECT),
+}
+"""Every word that an attribute of this kind may have."""
+_FORMULAS = {"FT": "Future time", "FT finite": "Future time, finite", "PT": "Past time"}
+
+
+def of_hazard(hazard: HazardView) -> Mapping[str, str]:
+    """The values of `HAZARD`; empty: there is none."""
+    return {
+        "ReqIF.ForeignID": hazard.id,
+        "ReqIF.Name": " ".join(hazard.title.split()),
+        "ReqIF.Text": hazard.text,
+        "Severity": hazard.severity,
+        "Source": hazard.source,
+    }
+
+
+def of_requirement(view: RequirementView) -> Mapping[str, str]:
+    """The values of `REQUIREMENT`; empty: there is none."""
+    formulas = {formula.name: formula.text for formula in view.formulas}
+    review = view.review
+    return {
+        "ReqIF.ForeignID": view.id,
+        "ReqIF.Name": " ".join(view.title.split()),
+        "ReqIF.Text": view.text,
+        "Rationale": view.rationale,
+        "Parents": ", ".join(parent.id for parent in view.parents),
+        "Sentence": view.sentence,
+        "Meaning": view.meaning,
+        **{name: formulas.get(formula, "") for name, formula in _FORMULAS.items()},
+        "Status": view.status,
+        "Coverage": view.coverage,
+        "Verdict": view.mark.word,
+        "Currency": SUSPECT if view.mark.suspect else CURRENT,
+        "Reasons": "\n".join((*_waived(view), *view.reasons)),
+        "Runs": "\n".join(_runs(view)),
+        "Review": f"{review.text}: {review.by}" if review.by else review.text,
+        "Fingerprint SHA-256": view.fingerprint,
+    }
+
+
+def _waived(view: RequirementView) -> Iterator[str]:
+    """The waiver, and the verdict that it covers: a waiver hides nothing."""
+    found = view.waiver
+    if found is not None:
+        yield f"waived until {found.until} by {found.by}: {found.reason}"
+        yield f"without the waiver: {found.covers.text}"
+
+
+def _runs(view: RequirementView) -> Iterator[str]:
+    """How many have each verdict, what all say together, then each, those not satisfied first."""
+    ordered = sorted(view.results, key=lambda result: result.mark.severity)
+    counts = Counter(result.mark.text for result in ordered)
+    yield "; ".join(f"{text} in {phrases.times(n, 'run')}" for text, n in counts.items())
+    if view.probability:
+        yield f"all runs: {view.probability.mark.text}: {view.probability.reason}"
+    yield from map(_run, ordered[:_LISTED])
+    if len(ordered) > _LISTED:
+        yield f"… and {phrases.times(len(ordered) - _LISTED, 'more run')}"
+
+
+def _run(result: ResultView) -> str:
+    return (
+        f"{result.run_file}: {result.mark.text}: {'; '.join([result.reason, *result.suspicions])}"
+    )

@@ -1,0 +1,52 @@
+"""`--sarif`: what the runs show, for code scanning, each verdict with its currency."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
+
+from compiler.formalization.rule import Rule
+from fretc.audit.outputs import sarif as results
+from fretc.report.model.views import Report
+from fretish.diagnostics.diagnostic import Diagnostic
+from fretish.documents import Requirement
+
+
+def sarif(
+    report: Report,
+    audited: Sequence[Mapping[str, Any]],
+    rules: Sequence[Rule],
+    diagnostics: Sequence[Diagnostic],
+    failed: Sequence[Requirement] = (),
+) -> str:
+    """One SARIF run.
+
+    Args:
+        report: what it says.
+        audited: the results of the evidence that the report was made of, in its order.
+        rules: all requirements of the project.
+        diagnostics: what there is to say of requirements and evidence.
+        failed: requirements of the project without a rule.
+    """
+    together = list(_together(report))
+    return results.sarif(list(_judged(report, audited)), rules, diagnostics, together, failed)
+
+
+def _judged(report: Report, audited: Sequence[Mapping[str, Any]]) -> Iterator[Mapping[str, Any]]:
+    """With verdict and currency as the report has them."""
+    views = {view.id: iter(view.results) for view in report.requirements}
+    for result in audited:
+        view = next(views.get(result["requirement"], iter(())), None)
+        if view is None:
+            continue  # evidence of what is not among the requirements is a diagnostic
+        yield {**result, "verdict": view.mark.word, "suspicions": view.suspicions}
+
+
+def _together(report: Report) -> Iterator[results.AllRuns]:
+    """What all runs say of each requirement with a probability."""
+    for view in report.requirements:
+        told = view.probability
+        if told is not None:
+            text = "; ".join((told.reason, *told.lines))
+            why = told.suspicions or view.suspicions
+            yield results.AllRuns(view.id, told.mark.word, text, why)

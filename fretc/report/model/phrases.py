@@ -1,0 +1,95 @@
+"""Numbers, names and lists as a reader wants to see them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from datetime import UTC, datetime
+from pathlib import PurePosixPath, PureWindowsPath
+
+from fretish.bindings.amounts import value as value
+
+_NARROW = "\N{NARROW NO-BREAK SPACE}"
+
+
+def times(count: int, one: str, many: str = "") -> str:
+    """`1 run`, `2 runs`, `3 latencies`."""
+    return f"{whole(count)} {one if count == 1 else many or one + 's'}"
+
+
+def whole(number: int) -> str:
+    """`1 852 914`: digits in groups of three, with narrow spaces that do not break."""
+    return f"{number:,}".replace(",", _NARROW)
+
+
+def joined(words: Sequence[str]) -> str:
+    """`a`, `a and b`, `a, b and c`."""
+    return " and ".join(filter(None, [", ".join(words[:-1]), *words[-1:]]))
+
+
+def some(words: Sequence[str], most: int = 6) -> str:
+    """`a, b and 12 more`: the first ones, where there are many."""
+    left = len(words) - most
+    return joined(words) if left <= 1 else joined([*words[:most], f"{whole(left)} more"])
+
+
+def decimal(number: float) -> str:
+    """At most three decimals, none that says nothing: `39.8`, `0.001`, `2`."""
+    if abs(number) >= 10**7:
+        return f"{number:.6g}"
+    text = f"{number:,.3f}".rstrip("0").rstrip(".").replace(",", _NARROW)
+    return "0" if text == "-0" else text
+
+
+def seconds(number: float) -> str:
+    """`39.8 s`."""
+    return f"{decimal(number)} s"
+
+
+def size(count: int | None) -> str:
+    """Bytes in decimal units: `1.85 MB (1 852 914 bytes)`."""
+    if count is None:
+        return "not known"
+    exact = times(count, "byte")
+    for factor, name in ((10**9, "GB"), (10**6, "MB"), (10**3, "kB")):
+        if count >= factor:
+            return f"{count / factor:.3g} {name} ({exact})"
+    return exact
+
+
+def instant(ns: int | None) -> str:
+    """Nanoseconds since 1970 as `2023-11-14 22:13:20.041 UTC`."""
+    if ns is None:
+        return "not known"
+    whole_seconds, rest = divmod(ns, 10**9)
+    try:
+        moment = datetime.fromtimestamp(whole_seconds, UTC)
+    except (OverflowError, ValueError, OSError):
+        return f"{ns} ns"
+    return f"{moment:%Y-%m-%d %H:%M:%S}.{rest // 10**6:03d} UTC"
+
+
+def place(path: str) -> str:
+    """A path as it may be shown anywhere: of an absolute one only the last part."""
+    if PurePosixPath(path).is_absolute():
+        return PurePosixPath(path).name or path
+    if PureWindowsPath(path).drive or path.startswith("\\"):
+        return PureWindowsPath(path).name or path
+    return path
+
+
+def visible(text: str) -> str:
+    """Control and direction characters, which would hide or turn text, as escapes."""
+    return "".join(c if _is_plain(c) else _escape(c) for c in text)
+
+
+def _is_plain(character: str) -> bool:
+    return character.isprintable() or character == "\n" or character in _SPACES
+
+
+_SPACES = "\N{NO-BREAK SPACE}\N{NARROW NO-BREAK SPACE}\N{IDEOGRAPHIC SPACE}"
+
+
+def _escape(character: str) -> str:
+    if character == "\t":
+        return " "
+    return character.encode("unicode_escape").decode("ascii")

@@ -1,0 +1,533 @@
+"""What the report says, as frozen values: templates place them and the JSON form lists them.
+
+All that is decided is decided by the functions that build these; nothing here is markup. Times
+are seconds from the first tick of a run, ticks count from 0, intervals include both ends.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+
+from fretc.audit.evidence.verdicts import SUSPECT, VERDICTS, severity, shows
+from fretc.report.model.pictures import Histogram, Timeline
+from fretc.report.traceability.artefacts import Product
+
+SCHEMA = "fretc-report-1"
+
+
+@dataclass(frozen=True, slots=True)
+class Mark:
+    """A verdict as it is shown: always a word and a sign; `kind` is only its colour."""
+
+    word: str
+    glyph: str
+    kind: str
+    suspect: bool = False
+    """Its currency: whether something that it rests on has changed."""
+
+    @property
+    def text(self) -> str:
+        """`violated`, or `violated, suspect`: verdict and currency."""
+        return f"{self.word}, {SUSPECT}" if self.suspect else self.word
+
+    @property
+    def shows(self) -> bool:
+        """Whether it shows its requirement: a suspect verdict never does."""
+        return shows(self.word, suspect=self.suspect)
+
+    @property
+    def severity(self) -> tuple[int, bool]:
+        """By which verdicts are sorted, the worst first."""
+        return severity(self.word, suspect=self.suspect)
+
+
+def verdict_mark(word: str, *, suspect: bool = False) -> Mark:
+    """A verdict as it is shown."""
+    found = VERDICTS[word]
+    return Mark(word, found.glyph, found.kind, suspect)
+
+
+@dataclass(frozen=True, slots=True)
+class Remark:
+    """A diagnostic; `place` is `file:line:column`, empty where it has none."""
+
+    code: str
+    severity: str
+    message: str
+    place: str = ""
+    help: str = ""
+
+
+# 1: the runs -----------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True)
+class Overall:
+    """The result of everything, in words."""
+
+    mark: Mark
+    headline: str
+    sentences: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class TopicView:
+    """One topic of a run; `read_for` names the signals that the bindings read from it."""
+
+    name: str
+    type: str
+    count: str
+    rate: str
+    longest_gap: str
+    out_of_order: str
+    read_for: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class RunView:
+    """One recorded run and whether it can be trusted."""
+
+    anchor: str
+    label: str
+    file: str
+    sha256: str
+    size: str
+    recorded: str
+    duration: str
+    ticks: str
+    clock: str
+    intact: bool
+    health: Mark
+    checked: str
+    gaps: tuple[str, ...]
+    findings: tuple[Remark, ...]
+    topics: tuple[TopicView, ...]
+
+
+# 2: the claims ---------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True)
+class Count:
+    """How many requirements, and how many single audits, have a verdict of one currency."""
+
+    mark: Mark
+    requirements: int
+    results: int
+
+
+@dataclass(frozen=True, slots=True)
+class NotShown:
+    """A requirement that is not shown, and why."""
+
+    requirement: str
+    title: str
+    anchor: str
+    mark: Mark
+    reasons: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Planned:
+    """A planned method of verification and what came of it."""
+
+    requirement: str
+    anchor: str
+    method: str
+    has_result: bool
+    result: str
+    refuted: bool = False
+
+
+# 3: the matrix ---------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True)
+class Cell:
+    """A verdict in the matrix, or a number of runs with the same one; `anchor` is its section."""
+
+    mark: Mark
+    label: str
+    anchor: str
+
+
+@dataclass(frozen=True, slots=True)
+class Row:
+    """A hazard and a requirement that traces to it; no hazard where it traces to none."""
+
+    hazard: str
+    hazard_title: str
+    via: str
+    requirement: str
+    title: str
+    status: str
+    anchor: str
+    mark: Mark
+    limit: str
+    """Why no run can violate it; empty where one can."""
+    artefacts: tuple[Product, ...]
+    cells: tuple[Cell, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class HazardView:
+    """A hazard as it was declared."""
+
+    id: str
+    title: str
+    text: str
+    severity: str
+    source: str
+
+
+@dataclass(frozen=True, slots=True)
+class Orphans:
+    """Where the chain from hazard to verdict has no link, each with the reason in words."""
+
+    hazards: tuple[str, ...]
+    requirements: tuple[str, ...]
+    parents: tuple[str, ...]
+    evidence: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Change:
+    """What is not as it was reviewed, in words; `verdicts` are run, then and now."""
+
+    requirement: str
+    anchor: str
+    state: str
+    lines: tuple[str, ...]
+    links: Listing
+    """The links that are suspect for that."""
+    verdicts: tuple[tuple[str, str, str], ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Withdrawal:
+    """A requirement that was reviewed and is claimed no more, and how, in a sentence."""
+
+    requirement: str
+    text: str
+
+
+@dataclass(frozen=True, slots=True)
+class SignatureView:
+    """Whether something is signed by whoever must have signed it, and by whom it is."""
+
+    mark: Mark
+    text: str
+    is_good: bool
+
+
+@dataclass(frozen=True, slots=True)
+class Signed:
+    """A thing that can be signed, or a signature that does not verify."""
+
+    kind: str
+    name: str
+    anchor: str
+    signature: SignatureView
+
+
+@dataclass(frozen=True, slots=True)
+class Signatures:
+    """Whose keys count, and who signed what."""
+
+    file: str
+    """The list of signers; empty: there is none, and no signature counts."""
+    signers: tuple[str, ...]
+    signed: tuple[Signed, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class ReviewView:
+    """Who has accepted a requirement, and whether that still stands."""
+
+    mark: Mark
+    by: str
+    comment: str
+    changes: tuple[str, ...]
+    signature: SignatureView | None
+    """None: there is no review."""
+
+    @property
+    def text(self) -> str:
+        """The word of its mark, and of its signature."""
+        marks = (self.mark, *([self.signature.mark] if self.signature else []))
+        return ", ".join(mark.word for mark in marks)
+
+
+@dataclass(frozen=True, slots=True)
+class WaiverView:
+    """Why a requirement need not be shown for a while; `covers` is the verdict behind it."""
+
+    requirement: str
+    anchor: str
+    reason: str
+    by: str
+    until: str
+    covers: Mark
+    signature: SignatureView
+
+
+# 4: the requirements ---------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True)
+class ProofView:
+    """What `fretc verify` says of one claim, and why that does not count, if it does not."""
+
+    requirement: str
+    layer: str
+    claim: str
+    mark: Mark
+    detail: str
+    assumptions: tuple[str, ...]
+    engine: str
+    artefacts: tuple[tuple[str, str], ...]
+    suspicions: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Formula:
+    """A formula with what it is read over."""
+
+    name: str
+    over: str
+    text: str
+
+
+@dataclass(frozen=True, slots=True)
+class SignalView:
+    """Where the numbers of a proposition come from."""
+
+    name: str
+    path: str
+    type: str
+    unit: str
+    reading: str
+
+
+@dataclass(frozen=True, slots=True)
+class PropositionView:
+    """A name of the sentence and what it means in the messages."""
+
+    name: str
+    is_bound: bool
+    text: str
+    expression: str
+    properties: str
+    signals: tuple[SignalView, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Parent:
+    """What a requirement traces to; no anchor where it is not declared."""
+
+    id: str
+    title: str
+    anchor: str
+
+
+@dataclass(frozen=True, slots=True)
+class Latency:
+    """How long the response took; waits are the longest ones, those of one answer together."""
+
+    answered: int
+    at_once: int
+    answers: str
+    median: str
+    longest: str
+    longest_s: float
+    is_bounded: bool
+    bound: str
+    waits: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class ViolationView:
+    """A stretch at which the requirement was broken; values are `(signal, value)`."""
+
+    start: str
+    end: str
+    ticks: str
+    trigger: str
+    deadline: str
+    missing: str
+    values: tuple[tuple[str, str], ...]
+
+
+@dataclass(frozen=True, slots=True)
+class ThresholdView:
+    """A comparison with a constant, and how near the signal came to it."""
+
+    proposition: str
+    comparison: str
+    values: str
+    margin: str
+    nearest: str
+
+
+@dataclass(frozen=True, slots=True)
+class Listing:
+    """The first of many lines, and how many there are in all."""
+
+    lines: tuple[str, ...]
+    total: int
+
+
+@dataclass(frozen=True, slots=True)
+class ResultView:
+    """What one run shows of one requirement; with suspicions it is about something else."""
+
+    anchor: str
+    run: str
+    run_label: str
+    run_file: str
+    mark: Mark
+    suspicions: tuple[str, ...]
+    reason: str
+    triggers: int
+    exercised: str
+    latency: Latency | None
+    thresholds: tuple[ThresholdView, ...]
+    violations: tuple[ViolationView, ...]
+    violations_total: int
+    open: Listing
+    unknown: Listing
+    timelines: tuple[Timeline, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class BoundsView:
+    """An interval of a probability, and how it was made."""
+
+    name: str
+    low: float
+    high: float
+
+
+@dataclass(frozen=True, slots=True)
+class ProbabilityView:
+    """What all runs say of a probability; `text` says in words what its picture shows."""
+
+    mark: Mark
+    suspicions: tuple[str, ...]
+    """Why it does not count; empty where it does."""
+    stated: str
+    bound: float
+    reason: str
+    lines: tuple[str, ...]
+    estimate: float | None
+    bars: tuple[BoundsView, ...]
+    text: str
+
+
+@dataclass(frozen=True, slots=True)
+class RequirementView:
+    """Everything known of one requirement."""
+
+    id: str
+    anchor: str
+    title: str
+    mark: Mark
+    suspicions: tuple[str, ...]
+    """Why its verdict is not that of what is there now; empty where it is."""
+    status: str
+    source: str
+    text: str
+    sentence: str
+    canonical: str
+    fingerprint: str
+    meaning: str
+    error: Remark | None
+    diagram: str
+    """The picture of its meaning in words; empty where there is none."""
+    formulas: tuple[Formula, ...]
+    propositions: tuple[PropositionView, ...]
+    clock: str
+    parents: tuple[Parent, ...]
+    rationale: str
+    params: Mapping[str, str]
+    planned: tuple[Planned, ...]
+    artefacts: tuple[Product, ...]
+    proofs: tuple[ProofView, ...]
+    exercise: str
+    """What all runs together have asked of it."""
+    histograms: tuple[Histogram, ...]
+    probability: ProbabilityView | None
+    """None: the sentence gives none, or no evidence tells of it."""
+    results: tuple[ResultView, ...]
+    reasons: tuple[str, ...]
+    """Why it is not shown; empty where it is."""
+    limit: str
+    """Why no run can violate it, in one sentence; empty where one can."""
+    coverage: str
+    """How far along the chain it is; one of `fretc.report.model.claims.COVERAGE`."""
+    review: ReviewView
+    waiver: WaiverView | None
+
+
+def worst_first(views: Iterable[RequirementView]) -> list[RequirementView]:
+    """By their verdicts, those of one verdict in their order."""
+    return sorted(views, key=lambda view: view.mark.severity)
+
+
+# 5: the means ----------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True)
+class Command:
+    """A command to reproduce a part of the report."""
+
+    purpose: str
+    text: str
+
+
+@dataclass(frozen=True, slots=True)
+class Hash:
+    """A line of the manifest."""
+
+    kind: str
+    name: str
+    sha256: str
+
+
+@dataclass(frozen=True, slots=True)
+class Report:
+    """The whole report."""
+
+    schema: str
+    fretc: str
+    project: str
+    components: tuple[str, ...]
+    evidence: str
+    audited_by: str
+    overall: Overall
+    runs: tuple[RunView, ...]
+    claims: str
+    counts: tuple[Count, ...]
+    not_shown: tuple[NotShown, ...]
+    reservations: tuple[str, ...]
+    planned: tuple[Planned, ...]
+    proofs: tuple[ProofView, ...]
+    """What was proved of things that are no requirement: of the interceptor, of the agent."""
+    verification: str
+    """The file with all proofs; empty where there is none."""
+    remarks: tuple[Remark, ...]
+    hazards: tuple[HazardView, ...]
+    matrix: tuple[Row, ...]
+    orphans: Orphans
+    reviewed: str
+    """How many requirements have been reviewed, and whether that stands."""
+    changes: tuple[Change, ...]
+    withdrawn: tuple[Withdrawal, ...]
+    """What was claimed when it was reviewed, and is not any more."""
+    waivers: tuple[WaiverView, ...]
+    signatures: Signatures
+    requirements: tuple[RequirementView, ...]
+    assumptions: tuple[str, ...]
+    commands: tuple[Command, ...]
+    manifest: tuple[Hash, ...]

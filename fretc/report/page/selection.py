@@ -1,0 +1,274 @@
+"""What of a report stands in the page: all verdicts, and as many details as a reader can open.
+
+Nothing that is not satisfied is left out without a word; the evidence has everything.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from itertools import zip_longest
+
+from fretc.audit.evidence.verdicts import SUSPECT
+from fretc.report.model import phrases
+from fretc.report.model.views import Mark, Report, RequirementView, ResultView, RunView
+
+COMPACT = 5_000
+"""More results than these, and only runs that are not satisfied have a row."""
+DETAILED, PICTURES = 100, 60
+"""Results with all details, and pictures of violations, in one page, shared among requirements."""
+_ROWS = 10
+"""Rows of a requirement in a compact page."""
+_RUNS, _TOLD_RUNS = 8, 200
+"""More runs than the first are a table; more rows than the second it does not have."""
+_FOLDED = 60
+"""Up to so many results in all, also those of satisfied runs are in the page, closed."""
+_VIOLATIONS = 12
+"""Violations that are listed of one result, in a page with more results than that."""
+_WHOLE = 200
+"""More requirements than these, and a compact page tells of each only what it says and shows."""
+_REASONS = 3
+
+
+@dataclass(frozen=True, slots=True)
+class RunRow:
+    """One run of a requirement in its table."""
+
+    anchor: str
+    """Of its details; of the row itself where there are none."""
+    run: str
+    label: str
+    file: str
+    mark: Mark
+    triggers: int
+    violations: int
+    longest: str
+    longest_s: float
+    reason: str
+    has_details: bool
+
+
+@dataclass(frozen=True, slots=True)
+class Shown:
+    """What the section of a requirement shows of its runs."""
+
+    rows: tuple[RunRow, ...]
+    details: tuple[ResultView, ...]
+    folded: tuple[ResultView, ...]
+    """Of satisfied runs, to be opened."""
+    left_out: tuple[str, ...]
+    """What is not in the page, and where it is."""
+    is_short: bool
+    """Whether formulas, propositions, artefacts and histograms are left out."""
+
+
+@dataclass(frozen=True, slots=True)
+class Selection:
+    """What the page shows."""
+
+    by_anchor: Mapping[str, Shown]
+    runs: tuple[RunView, ...]
+    """Those with a section of their own."""
+    run_rows: tuple[RunView, ...]
+    """Those in a table; empty where each has a section."""
+    runs_left_out: str
+    notes: tuple[str, ...]
+    is_compact: bool
+    anchors: frozenset[str]
+    """Of all results and runs that can be linked to."""
+
+
+def selection(report: Report) -> Selection:
+    """Choose, from what the report says."""
+    total = sum(len(view.results) for view in report.requirements)
+    compact = total > COMPACT
+    detailed = _detailed(report.requirements, None if total <= _FOLDED else _VIOLATIONS)
+    shown = {
+        view.anchor: _shown(view, detailed, compact, total, len(report.requirements))
+        for view in report.requirements
+    }
+    many = len(report.runs) > _RUNS
+    rows = report.runs[:_TOLD_RUNS] if many else ()  # those with errors and damage come first
+    alone = [run for run in report.runs if run.findings or run.gaps or not run.intact]
+    sections = tuple(alone[:_RUNS]) if many else report.runs
+    left = len(report.runs) - len(rows) if many else 0
+    anchors = {
+        *(row.anchor for each in shown.values() for row in each.rows),
+        *(view.anchor for each in shown.values() for view in (*each.details, *each.folded)),
+        *(run.anchor for run in (*sections, *rows)),
+    }
+    return Selection(
+        by_anchor=shown,
+        runs=sections,
+        run_rows=rows,
+        runs_left_out=_runs_left_out(left, len(alone) - len(sections) if many else 0),
+        notes=tuple(_notes(total, compact, len(report.requirements))),
+        is_compact=compact,
+        anchors=frozenset(anchors),
+    )
+
+
+def _runs_left_out(rows: int, sections: int) -> str:
+    parts = [
+        f"{phrases.times(rows, 'run')} without a row" if rows else "",
+        f"{phrases.times(sections, 'run')} whose findings are not shown" if sections else "",
+    ]
+    told = phrases.joined(list(filter(None, parts)))
+    return f"Left out here: {told}. The evidence file has them all." if told else ""
+
+
+def _notes(total: int, compact: bool, requirements: int) -> Iterator[str]:
+    if not compact:
+        return
+    yield (
+        f"This page is compact, because {phrases.whole(total)} results are more than "
+        f"{phrases.whole(COMPACT)}: runs that satisfy a requirement are counted, and have no rows "
+        "of their own."
+    )
+    if requirements > _WHOLE:
+        yield (
+            f"With more than {_WHOLE} requirements, their formulas, propositions, artefacts and "
+            "histograms are left out as well."
+        )
+    yield "`fretc report --json` and `--csv` write all of it; the evidence file has every event."
+
+
+# The results of a requirement ------------------------------------------------------------------
+
+
+def _is_good(result: ResultView) -> bool:
+    return result.mark.shows
+
+
+def _detailed(views: Sequence[RequirementView], listed: int | None) -> Mapping[str, ResultView]:
+    """Results that get all details: the worst of each requirement first, then the next of each.
+
+    Args:
+        views: the requirements with all their results.
+        listed: violations of one result that have a row; None: all that the report lists.
+    """
+    wanted = [
+        sorted(
+            (r for r in view.results if not _is_good(r) or len(view.results) == 1),
+            key=lambda result: result.mark.severity,
+        )[:DETAILED]
+        for view in views
+    ]
+    found: dict[str, ResultView] = {}
+    pictures = PICTURES
+    for result in (r for turn in zip_longest(*wanted) for r in turn if r is not None):
+        if len(found) == DETAILED:
+            break
+        kept = result.timelines[:pictures]
+        pictures -= len(kept)
+        few = result.violations[:listed]
+        found[result.anchor] = replace(result, timelines=kept, violations=few)
+    return found
+
+
+def _shown(
+    view: RequirementView,
+    detailed: Mapping[str, ResultView],
+    compact: bool,
+    total: int,
+    requirements: int,
+) -> Shown:
+    details = tuple(detailed[r.anchor] for r in view.results if r.anchor in detailed)
+    rest = [result for result in view.results if result.anchor not in detailed]
+    folded = tuple(filter(_is_good, rest)) if total <= _FOLDED else ()
+    rows: Sequence[ResultView] = view.results if len(view.results) > 1 else ()
+    if compact:
+        bad = [result for result in rows if not _is_good(result)]
+        rows = sorted(bad, key=lambda result: result.mark.severity)[:_ROWS]
+    elif view.results and not (details or folded):
+        rows = view.results  # a single one without details
+    open_ = {result.anchor for result in (*details, *folded)}
+    return Shown(
+        rows=tuple(_row(result, result.anchor in open_) for result in rows),
+        details=details,
+        folded=folded,
+        left_out=tuple(_left_out(view, rows, details, folded)),
+        is_short=compact and requirements > _WHOLE,
+    )
+
+
+def _row(result: ResultView, has_details: bool) -> RunRow:
+    latency = result.latency
+    why = f"; {SUSPECT}, because {'; '.join(result.suspicions)}" if result.suspicions else ""
+    return RunRow(
+        anchor=result.anchor,
+        run=result.run,
+        label=result.run_label,
+        file=result.run_file,
+        mark=result.mark,
+        triggers=result.triggers,
+        violations=result.violations_total,
+        longest=phrases.seconds(latency.longest_s) if latency else "\N{EN DASH}",
+        longest_s=latency.longest_s if latency else -1.0,
+        reason=f"{result.reason}{why}",
+        has_details=has_details,
+    )
+
+
+def _left_out(
+    view: RequirementView,
+    rows: Sequence[ResultView],
+    details: Sequence[ResultView],
+    folded: Sequence[ResultView],
+) -> Iterator[str]:
+    bad = sum(not _is_good(result) for result in view.results)
+    good = len(view.results) - bad
+    open_good = sum(map(_is_good, (*details, *folded)))
+    open_bad = len(details) + len(folded) - open_good
+    if view.results and len(rows) < len(view.results) and len(view.results) > 1:
+        listed = sum(not _is_good(result) for result in rows)
+        yield (
+            f"Rows: {phrases.whole(listed)} of {phrases.times(bad, 'run')} not satisfied, "
+            f"{phrases.whole(len(rows) - listed)} of {phrases.whole(good)} satisfied."
+        )
+    if open_bad < bad:
+        yield (
+            f"Details below: of {phrases.whole(open_bad)} of {phrases.times(bad, 'run')} that "
+            "are not satisfied. Those of the others are in the evidence file and in `--json`."
+        )
+    if open_good < good:
+        yield "Details of satisfied runs are in the evidence file and in `--json`."
+
+
+# The page as it is placed ----------------------------------------------------------------------
+
+
+def slimmed(report: Report, chosen: Selection) -> Report:
+    """The report without what the page leaves out; links to nowhere lead to the requirement."""
+    views = tuple(_slim(view, chosen) for view in report.requirements)
+    matrix = tuple(
+        replace(
+            row,
+            cells=tuple(
+                cell if cell.anchor in chosen.anchors else replace(cell, anchor=row.anchor)
+                for cell in row.cells
+            ),
+        )
+        for row in report.matrix
+    )
+    told = tuple(
+        replace(each, reasons=_few(each.reasons)) if chosen.is_compact else each
+        for each in report.not_shown
+    )
+    return replace(report, requirements=views, matrix=matrix, not_shown=told, runs=chosen.runs)
+
+
+def _slim(view: RequirementView, chosen: Selection) -> RequirementView:
+    """A section without its results, which are placed as they were chosen."""
+    reasons = _few(view.reasons) if chosen.is_compact else view.reasons
+    kept = replace(view, results=(), reasons=reasons)
+    if not chosen.by_anchor[view.anchor].is_short:
+        return kept
+    return replace(kept, formulas=(), propositions=(), artefacts=(), histograms=(), diagram="")
+
+
+def _few(reasons: Sequence[str]) -> tuple[str, ...]:
+    left = len(reasons) - _REASONS
+    if left <= 1:
+        return tuple(reasons)
+    return (*reasons[:_REASONS], "and more, in the table of its runs")

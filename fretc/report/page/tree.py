@@ -1,0 +1,334 @@
+"""The assurance argument as an indented tree: each element a shape of GSN, in pieces of a page.
+
+An element with several parents is drawn below the first, and referred to below the others.
+Counter-evidence hangs on its goal by a dashed line with an open arrowhead; a defeated goal is
+crossed. Source of the shapes: GSN Community Standard, version 3 (2021), part 1, with its dialectic
+extension.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from enum import StrEnum
+
+from fretc.report.sections.argument import Element, Kind
+
+MOST = 120
+"""More elements than these are not drawn: then only what is not shown is."""
+_WIDTH, _INDENT, _MARGIN = 720, 26, 4
+_LINE, _PAD, _GAP = 15, 9, 12
+_LETTER = 6.1
+_LINES = 3
+_TALL = 880
+"""A piece fits on a page of A4 at this height."""
+_ASSUMED = 4
+"""More assumptions of one goal are drawn as one."""
+_ROUND = (Kind.SOLUTION, Kind.COUNTER_SOLUTION, Kind.ASSUMPTION, Kind.JUSTIFICATION)
+NAMES = {kind: kind.name.capitalize().replace("_", "-") for kind in Kind}
+
+
+class Hang(StrEnum):
+    """How an element hangs on the one above."""
+
+    SUPPORT = "support"
+    CONTEXT = "context"
+    CHALLENGE = "challenge"
+
+
+@dataclass(frozen=True, slots=True)
+class Placed:
+    """An element in the tree."""
+
+    element: Element
+    depth: int
+    hang: Hang
+    is_reference: bool = False
+    """Whether it stands with all that is below it at a place further up."""
+    is_challenged: bool = False
+    is_doubtful: bool = False
+    """Whether it, or something that it rests on, is challenged."""
+
+    @property
+    def text(self) -> str:
+        """What is written into it."""
+        element = self.element
+        return f"{element.name or element.text}: see above" if self.is_reference else element.text
+
+    @property
+    def state(self) -> str:
+        """`defeated`, `challenged` or `in doubt`; empty where nothing stands against it."""
+        if self.element.defeated:
+            return "defeated"
+        return "challenged" if self.is_challenged else "in doubt" if self.is_doubtful else ""
+
+
+@dataclass(frozen=True, slots=True)
+class Shape:
+    """An element laid out; `path` is its outline, `link` leads from the element above."""
+
+    kind: str
+    name: str
+    lines: tuple[tuple[float, float, str], ...]
+    path: str
+    link: str
+    arrow: str
+    hang: str
+    is_reference: bool
+    letter: tuple[float, float, str] | None
+    diamond: str
+    cross: str
+    state: tuple[float, float, str] | None
+    """Where it says that it is challenged, defeated or in doubt."""
+
+
+@dataclass(frozen=True, slots=True)
+class Piece:
+    """As much of the tree as fits on a page."""
+
+    id: str
+    title: str
+    text: str
+    width: int
+    height: float
+    shapes: tuple[Shape, ...]
+
+
+def placed(elements: Sequence[Element]) -> tuple[Placed, ...]:
+    """All elements from the top goal down, where they are referred to first; then by reference."""
+    known = {element.id: element for element in elements}
+    against = _challengers(elements)
+    doubtful = _above(set(against), known)
+    seen: set[str] = set()
+    found: list[Placed] = []
+    waiting = [(element.id, 0, Hang.SUPPORT) for element in elements[:1]]
+    while waiting:
+        id, depth, hang = waiting.pop()
+        element = known[id]
+        found.append(Placed(element, depth, hang, id in seen, id in against, id in doubtful))
+        if id in seen:
+            continue
+        seen.add(id)
+        below = [
+            *((other, depth + 1, Hang.CONTEXT) for other in element.in_context_of),
+            *((other, depth + 1, Hang.CHALLENGE) for other in against.get(id, ())),
+            *((other, depth + 1, Hang.SUPPORT) for other in element.supported_by),
+        ]
+        waiting.extend(reversed(below))
+    return tuple(found)
+
+
+def _challengers(elements: Sequence[Element]) -> Mapping[str, Sequence[str]]:
+    """Of each challenged element what stands against it."""
+    found: dict[str, list[str]] = {}
+    for element in elements:
+        if element.challenges:
+            found.setdefault(element.challenges, []).append(element.id)
+    return found
+
+
+def _above(ids: Collection[str], known: Mapping[str, Element]) -> set[str]:
+    """These elements, and all that rest on them: a requirement may stand under several hazards."""
+    above: dict[str, list[str]] = {}
+    for element in known.values():
+        for other in element.supported_by:
+            above.setdefault(other, []).append(element.id)
+    found, waiting = set(ids), list(ids)
+    while waiting:
+        for id in above.get(waiting.pop(), ()):
+            if id not in found:
+                found.add(id)
+                waiting.append(id)
+    return found
+
+
+def shortened(elements: Sequence[Element]) -> tuple[Element, ...]:
+    """What is challenged and what is not shown, where all would be too many; the first comes first.
+
+    A goal is left out where everything below it is developed and nothing stands against it, and
+    whatever is neither a goal, a strategy nor counter-evidence with it.
+    """
+    if len(elements) <= MOST:
+        return tuple(elements)
+    known = {element.id: element for element in elements}
+    against = _challengers(elements)
+    worst = _above(set(against), known) | {each for ids in against.values() for each in ids}
+    open_ = {elements[0].id} | _above({e.id for e in elements if e.undeveloped}, known)
+    wanted = [
+        *(element.id for element in elements if element.id in worst),
+        *(element.id for element in elements if element.id in open_ - worst),
+    ]
+    ids = set(wanted[:MOST])
+    kept = [element for element in elements if element.id in ids]
+    return tuple(
+        replace(
+            each, supported_by=tuple(id for id in each.supported_by if id in ids), in_context_of=()
+        )
+        for each in kept
+    )
+
+
+def grouped(elements: Sequence[Element]) -> tuple[Element, ...]:
+    """Many assumptions of one goal as one, which says how many; the page lists them elsewhere."""
+    kinds = {element.id: element.kind for element in elements}
+    found: list[Element] = []
+    gone: set[str] = set()
+    for element in elements:
+        assumed = [id for id in element.in_context_of if kinds[id] is Kind.ASSUMPTION]
+        if len(assumed) <= _ASSUMED:
+            found.append(element)
+            continue
+        gone.update(assumed)
+        id = f"{assumed[0]}_and_others"
+        around = tuple(each for each in element.in_context_of if each not in assumed)
+        found.append(replace(element, in_context_of=(*around, id)))
+        found.append(Element(id, Kind.ASSUMPTION, f"{len(assumed)} assumptions, listed in part 6"))
+    return tuple(element for element in found if element.id not in gone)
+
+
+# Layout ----------------------------------------------------------------------------------------
+
+
+def pieces(elements: Sequence[Element]) -> tuple[Piece, ...]:
+    """The drawing; where it is longer than a page, in several pieces."""
+    groups: list[list[Placed]] = [[]]
+    height = 0.0
+    for cluster in _clusters(placed(elements)):
+        tall = sum(map(_height, cluster))
+        if groups[-1] and (height + tall > _TALL or _begins(cluster[0], height)):
+            groups.append([])
+            height = 0.0
+        groups[-1] += cluster
+        height += tall
+    return tuple(_piece(group, i, len(groups)) for i, group in enumerate(groups, 1) if group)
+
+
+def _clusters(flat: Sequence[Placed]) -> Iterator[list[Placed]]:
+    """What stays on one page: an element with its context and what challenges it."""
+    cluster: list[Placed] = []
+    height = 0.0
+    for each in flat:
+        height += _height(each)
+        if cluster and (each.hang is Hang.SUPPORT or height > _TALL):
+            yield cluster
+            cluster, height = [], _height(each)
+        cluster.append(each)
+    if cluster:
+        yield cluster
+
+
+def _begins(each: Placed, height: float) -> bool:
+    """A hazard does not begin near the end of a page."""
+    return each.depth <= 2 and each.hang is Hang.SUPPORT and height > 0.75 * _TALL
+
+
+def _piece(group: Sequence[Placed], number: int, count: int) -> Piece:
+    shapes: list[Shape] = []
+    above: dict[int, tuple[float, float]] = {}
+    y = 6.0
+    for each in group:
+        shapes.append(_shape(each, y, above))
+        y += _height(each)
+    part = f", part {number} of {count}" if count > 1 else ""
+    text = f"{len(group)} elements, from “{group[0].text}”; the list below says them all."
+    return Piece(f"argument-{number}", f"Assurance argument{part}", text, _WIDTH, y, tuple(shapes))
+
+
+def _shape(each: Placed, y: float, above: dict[int, tuple[float, float]]) -> Shape:
+    element, depth = each.element, each.depth
+    x = _MARGIN + _INDENT * depth + 10
+    width = _WIDTH - x - _MARGIN - (0 if each.hang is Hang.CONTEXT else 160)
+    lines = _lines(each)
+    height = _LINE * len(lines) + 2 * _PAD
+    inset = x + (26 if element.kind in _ROUND or element.kind is Kind.STRATEGY else 12)
+    middle, right = y + height / 2, x + width
+    whole = each.is_reference or not element.undeveloped
+    link = arrow = ""
+    if depth:
+        from_x, from_y = above.get(depth - 1, (x - _INDENT + 6, 0.0))  # from the piece before
+        link, arrow = _link(each.hang, from_x, from_y, x, middle)
+    above[depth] = (x + 6, y + height)
+    cross = f"M{x:g} {y:g}L{right:g} {y + height:g}M{right:g} {y:g}L{x:g} {y + height:g}"
+    return Shape(
+        kind=element.kind.name.lower(),
+        name=NAMES[element.kind],
+        lines=tuple((inset, y + _PAD + 11 + _LINE * i, line) for i, line in enumerate(lines)),
+        path=_outline(element.kind, x, y, width, height),
+        link=link,
+        arrow=arrow,
+        hang=each.hang,
+        is_reference=each.is_reference,
+        letter=_letter(element.kind, right, y + height),
+        diamond="" if whole else f"M{x + width / 2:g} {y + height:g}l7 5l-7 5l-7 -5z",
+        cross=cross if element.defeated else "",
+        state=(right + 10, middle + 4, each.state) if each.state else None,
+    )
+
+
+def _link(hang: Hang, x: float, y: float, to_x: float, to_y: float) -> tuple[str, str]:
+    """A line and its arrowhead; evidence against an element points at it, all else away."""
+    if hang is Hang.CHALLENGE:
+        return f"M{x:g} {y + 1:g}V{to_y:g}H{to_x:g}", f"M{x - 5:g} {y + 9:g}L{x:g} {y + 1:g}l5 8"
+    return f"M{x:g} {y:g}V{to_y:g}H{to_x - 7:g}", f"M{to_x:g} {to_y:g}l-8 -4v8z"
+
+
+def _letter(kind: Kind, right: float, bottom: float) -> tuple[float, float, str] | None:
+    if kind not in (Kind.ASSUMPTION, Kind.JUSTIFICATION):
+        return None
+    return right - 8, bottom + 2, kind.value
+
+
+def _outline(kind: Kind, x: float, y: float, width: float, height: float) -> str:
+    """Rectangle, parallelogram, ellipse-ended or rounded, as the standard draws each kind."""
+    right, bottom, half = x + width, y + height, height / 2
+    match kind:
+        case Kind.GOAL:
+            return f"M{x:g} {y:g}H{right:g}V{bottom:g}H{x:g}Z"
+        case Kind.STRATEGY:
+            return f"M{x + 14:g} {y:g}H{right:g}L{right - 14:g} {bottom:g}H{x:g}Z"
+        case Kind.CONTEXT:
+            r = 10
+            return (
+                f"M{x + r:g} {y:g}H{right - r:g}a{r} {r} 0 0 1 {r} {r}V{bottom - r:g}"
+                f"a{r} {r} 0 0 1 -{r} {r}H{x + r:g}a{r} {r} 0 0 1 -{r} -{r}V{y + r:g}"
+                f"a{r} {r} 0 0 1 {r} -{r}Z"
+            )
+        case _:
+            r = 26
+            return (
+                f"M{x + r:g} {y:g}H{right - r:g}a{r} {half:g} 0 0 1 0 {height:g}"
+                f"H{x + r:g}a{r} {half:g} 0 0 1 0 -{height:g}Z"
+            )
+
+
+def _height(each: Placed) -> float:
+    return _LINE * len(_lines(each)) + 2 * _PAD + _GAP
+
+
+def _lines(each: Placed) -> list[str]:
+    """The text in at most three lines; what does not fit stands in the list."""
+    aside = 0 if each.hang is Hang.CONTEXT else 160
+    room = _WIDTH - 2 * _MARGIN - 10 - _INDENT * each.depth - 60 - aside
+    letters = max(24, int(room / _LETTER))
+    found = list(_wrapped(each.text.replace("`", ""), letters))
+    if len(found) > _LINES:
+        return [*found[: _LINES - 1], f"{found[_LINES - 1][: letters - 1].rstrip()}…"]
+    return found or [""]
+
+
+def _wrapped(text: str, letters: int) -> Iterator[str]:
+    line = ""
+    for word in text.split():
+        while len(word) > letters:
+            if line:
+                yield line
+                line = ""
+            yield word[:letters]
+            word = word[letters:]
+        if line and len(line) + 1 + len(word) > letters:
+            yield line
+            line = word
+        else:
+            line = f"{line} {word}".strip()
+    if line:
+        yield line

@@ -1,0 +1,1 @@
+"""What is drawn: plots over time, histograms, timelines."""

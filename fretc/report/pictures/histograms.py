@@ -1,0 +1,219 @@
+"""What all runs together show of a requirement: how often it was asked, how late, how near."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Callable, Iterator, Sequence
+from math import ceil, floor
+from statistics import median
+
+from compiler.formalization.rule import Rule
+from fretc.audit.evidence.reader import Result, Threshold
+from fretc.report.model import phrases
+from fretc.report.model.claims import Claim
+from fretc.report.model.pictures import Bin, Histogram
+from fretish import syntax
+
+_BINS = 20
+"""At most some so many bars."""
+_MARGINS = 3
+"""Thresholds of a requirement that get a histogram of their own."""
+_NAMED = 3
+
+
+def step(least: float) -> float:
+    """1, 2 or 5 times a power of ten, not below `least`."""
+    if least <= 0:
+        return 1.0
+    power = 10.0 ** len(str(int(least))) if least >= 1 else 1.0
+    while power / 10 >= least and power > 1e-9:
+        power /= 10
+    return next((power / 10 * n for n in (1, 2, 5) if power / 10 * n >= least), power)
+
+
+def exercise(claim: Claim) -> str:
+    """How often all runs that count have asked for it, in one line."""
+    counted = _counted(claim)
+    if not claim.judged:
+        return ""
+    if not counted:
+        return f"none of {phrases.times(len(claim.judged), 'run')} counts: all are suspect"
+    triggers = sum(len(result.triggers) for result in counted)
+    answers = sum(len(result.latencies) for result in counted)
+    waiting = sum(len(result.open) for result in counted)
+    unanswered = sum(map(_unanswered, counted)) if is_answered(claim.rule) else 0
+    asked = sum(bool(result.triggers) for result in counted)
+    suspect = len(claim.judged) - len(counted)
+    parts = [
+        phrases.times(len(counted), "run"),
+        phrases.times(triggers, "trigger"),
+        f"triggered in {phrases.whole(asked)} of them" if len(counted) > 1 else "",
+        f"{phrases.whole(answers)} answered" if answers else "",
+        f"{phrases.whole(unanswered)} without an answer" if unanswered else "",
+        f"{phrases.whole(waiting)} open at the end" if waiting else "",
+        phrases.times(sum(len(r.violations) for r in counted), "violation"),
+        f"{phrases.times(suspect, 'suspect run')} left out" if suspect else "",
+    ]
+    return ", ".join(filter(None, parts))
+
+
+def histograms(claim: Claim) -> tuple[Histogram, ...]:
+    """Of latency, then of the least margin of each run; none of fewer than two values."""
+    counted = _counted(claim)
+    late = [latency for result in counted for latency in result.latencies]
+    found = [_latency(late, counted, claim.rule)] if len(late) > 1 else []
+    margins = list(_margins(counted)) if len(counted) > 1 else []
+    return (*found, *margins[:_MARGINS])
+
+
+def _counted(claim: Claim) -> list[Result]:
+    return [judged.result for judged in claim.judged if not judged.is_stale]
+
+
+# Latency ---------------------------------------------------------------------------------------
+
+
+def is_answered(rule: Rule | None) -> bool:
+    """Whether each trigger waits for an answer, so that one without is missing."""
+    return rule is not None and rule.watch.answer is not None
+
+
+def _unanswered(result: Result) -> int:
+    """Triggers that no longer wait and got no answer: time ran out, or their scope ended."""
+    return max(0, len(result.triggers) - len(result.latencies) - len(result.open))
+
+
+def _latency(late: Sequence[float], runs: Sequence[Result], rule: Rule | None) -> Histogram:
+    bound = _seconds_allowed(rule)
+    bins = _bins(late, [0.0, *([bound] if bound is not None else [])], _below)
+    label = f"bound {phrases.seconds(bound)}" if bound is not None else ""
+    unanswered = sum(map(_unanswered, runs)) if is_answered(rule) else 0
+    waiting = sum(len(result.open) for result in runs)
+    beyond = sum(value > bound + 1e-9 for value in late) if bound is not None else 0
+    limit = (
+        f"{label}, {phrases.whole(beyond)} later" if bound is not None else "no bound in seconds"
+    )
+    text = (
+        f"{phrases.times(len(late), 'answer')} in {phrases.times(len(runs), 'run')}: "
+        f"median {phrases.seconds(median(late))}, longest {phrases.seconds(max(late))}; "
+        f"{limit}. {_in_words(bins, 's', _UP_TO)}{_without(unanswered, waiting)}"
+    )
+    return Histogram(
+        "Latency of the answers",
+        "s",
+        bins,
+        bound,
+        label,
+        text,
+        unanswered=unanswered,
+        open=waiting,
+    )
+
+
+def _without(unanswered: int, waiting: int) -> str:
+    """The triggers that have no answer, in words."""
+    parts = [
+        f"{phrases.times(unanswered, 'trigger')} whose time or scope ran out" if unanswered else "",
+        f"{phrases.times(waiting, 'trigger')} open at the end of a run" if waiting else "",
+    ]
+    told = phrases.joined(list(filter(None, parts)))
+    return f" Without an answer: {told}." if told else ""
+
+
+def _seconds_allowed(rule: Rule | None) -> float | None:
+    """What `within` allows, where a tick is a time."""
+    if rule is None or not isinstance(rule.sentence.timing, syntax.Within):
+        return None
+    if rule.clock is None or rule.clock.period is None or rule.ticks is None:
+        return None
+    return rule.ticks * rule.clock.period / 1e9
+
+
+# Margin ----------------------------------------------------------------------------------------
+
+
+def _margins(results: Sequence[Result]) -> Iterator[Histogram]:
+    """Those that are known of two runs at least, in the order of the propositions."""
+    grouped: dict[tuple[str, str, str, float, str], list[Threshold]] = defaultdict(list)
+    for result in results:
+        for each in result.thresholds:
+            name = (each.proposition, each.signal, each.operator, each.bound, each.unit)
+            grouped[name].append(each)
+    for (proposition, signal, operator, bound, unit), found in grouped.items():
+        known = [each.margin for each in found if each.margin is not None]
+        if len(known) < 2:
+            continue
+        crossed = sum(each.comparison == "crossed" for each in found)
+        bins = _bins(known, [0.0], _above)
+        comparison = f"{signal} {operator} {phrases.value(bound, unit)}"
+        text = (
+            f"{phrases.times(len(known), 'run')} with a margin: least "
+            f"{phrases.value(min(known), unit)}, median {phrases.value(median(known), unit)}; "
+            f"{_crossed(crossed)}. {_in_words(bins, unit, _FROM)}"
+        )
+        title = f"Least margin of each run to {comparison} ({proposition})"
+        yield Histogram(title, unit, bins, 0.0, "threshold", text, crossed)
+
+
+def _crossed(runs: int) -> str:
+    return (
+        f"in {phrases.times(runs, 'run')} the threshold was crossed"
+        if runs
+        else "crossed in no run"
+    )
+
+
+# Bins ------------------------------------------------------------------------------------------
+
+
+def _bins(
+    values: Sequence[float], shown: Sequence[float], place: Callable[[float, float], int]
+) -> tuple[Bin, ...]:
+    """Bars of a round width, from the least to the greatest of the values and what is shown.
+
+    Args:
+        values: what is counted.
+        shown: what has to be in the picture as well.
+        place: the bar of a value, counted from 0, for a width.
+    """
+    low, high = min([*values, *shown]), max([*values, *shown])
+    width = step((high - low) / _BINS) if high > low else 1.0
+    first = place(low, width)
+    last = max(first, place(high, width))
+    counts = [0] * (last - first + 1)
+    for value in values:
+        counts[place(value, width) - first] += 1
+    return tuple(
+        Bin(round((first + i) * width, 9), round((first + i + 1) * width, 9), count)
+        for i, count in enumerate(counts)
+    )
+
+
+def _above(value: float, width: float) -> int:
+    """A value at a border, but for rounding, counts above it: a margin at its bound is on it."""
+    return floor(value / width + 1e-9)
+
+
+def _below(value: float, width: float) -> int:
+    """A value at a border, but for rounding, counts below it: an answer at its bound is in time."""
+    return max(0, ceil(value / width - 1e-9) - 1)
+
+
+_FROM, _UP_TO = "{count} from {low} to below {high}", "{count} {above} {low} up to {high}"
+
+
+def _in_words(bins: Sequence[Bin], unit: str, form: str) -> str:
+    """The fullest bars, in their order."""
+    full = [each for each in bins if each.count]
+    told = sorted(sorted(full, key=lambda each: -each.count)[:_NAMED], key=lambda each: each.low)
+    parts = [
+        form.format(
+            count=phrases.whole(each.count),
+            low=phrases.decimal(each.low),
+            above="above" if each.low > 0 else "from",
+            high=phrases.value(each.high, unit),
+        )
+        for each in told
+    ]
+    rest = sum(each.count for each in full) - sum(each.count for each in told)
+    return f"{phrases.joined([*parts, *([f'{phrases.whole(rest)} elsewhere'] if rest else [])])}."

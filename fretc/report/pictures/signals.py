@@ -1,0 +1,204 @@
+"""The signals around a violation, as panels over its timeline."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from itertools import pairwise
+from math import inf, isinf
+from statistics import median
+
+from fretc.audit.evidence.reader import Result, Threshold, Violation
+from fretc.audit.evidence.samples import Samples
+from fretc.audit.measurements.violations import EVEN_SAMPLES
+from fretc.report.model.pictures import Level, Panel, Piece, SpanMark
+from fretish.bindings.amounts import exact
+
+MOST_PANELS = 4
+"""Signals in one picture; those with a threshold come first."""
+_COLUMNS = 240
+"""Samples that fall together at this resolution are drawn as one stroke, least to greatest."""
+_THINNED = 2.5
+"""Of thinned samples only so many times their median distance is a gap."""
+_EMPTY = 1e-9
+_FAR = 1e300
+"""Farther no axis goes: its length is a 64-bit float, too."""
+
+Known = tuple[float, float, float | None]
+"""From, to, and the value in force."""
+
+
+def panels(
+    violation: Violation, result: Result, ages: Mapping[str, float], start: float, end: float
+) -> tuple[Panel, ...]:
+    """A panel for each of the first signals of the window.
+
+    Args:
+        violation: without a window it has no panel.
+        result: where it was found.
+        ages: seconds after which a sample no longer counts, by the signal; absent: never.
+        start: of the picture, in seconds from the first tick.
+        end: of the picture.
+    """
+    if violation.window is None:
+        return ()
+    bounds = {name: _bounds(name, result) for name in violation.window.samples}
+    names = sorted(bounds, key=lambda name: not bounds[name])[:MOST_PANELS]
+    return tuple(
+        _panel(name, result.units.get(name, ""), bounds[name], stretches, start, end)
+        for name in names
+        for stretches in [
+            _stretches(
+                violation.window.samples[name],
+                ages.get(name, inf),
+                start,
+                end,
+                violation.first.seconds,
+            )
+        ]
+    )
+
+
+def left_out(violation: Violation, drawn: Sequence[Panel]) -> tuple[str, ...]:
+    """Signals of the window that have no panel."""
+    names = {panel.signal for panel in drawn}
+    window = violation.window
+    return tuple(name for name in (window.samples if window else ()) if name not in names)
+
+
+def _bounds(signal: str, result: Result) -> tuple[Threshold, ...]:
+    """Thresholds on the signal itself, or on its absolute value, in its own unit."""
+    unit = result.units.get(signal, "")
+    return tuple(
+        each
+        for each in result.thresholds
+        if each.signal in (signal, f"abs({signal})") and each.unit == unit
+    )
+
+
+def _levels(signal: str, bounds: Sequence[Threshold]) -> Iterator[Level]:
+    for each in bounds:
+        label = f"{each.operator} {exact(each.bound, each.unit)}"
+        if each.signal == signal:
+            yield Level(each.bound, label)
+        else:
+            yield Level(each.bound, f"|{signal}| {label}")
+            yield Level(-each.bound, "")
+
+
+# What is known when ----------------------------------------------------------------------------
+
+
+def _stretches(
+    samples: Samples, age: float, start: float, end: float, broken: float
+) -> list[Known]:
+    """The picture's time as stretches, in each of which one value is in force, or none.
+
+    The sample that is the last at `broken` is never one that thinning put there: where it is too
+    old then, it ends when it grows too old.
+    """
+    longest = _longest(samples, age)
+    found: list[Known] = []
+    following = (*samples.times[1:], inf)[: len(samples.times)]
+    first = samples.times[0] if samples.times else end
+    if first > start:
+        found.append((start, min(first, end), None))
+    for begin, after, value in zip(samples.times, following, samples.values, strict=True):
+        is_stale = begin <= broken < after and round(broken - begin, 9) > age
+        until = min(after, begin + (age if is_stale else longest))
+        found.append((begin, until, value))
+        if until < after:
+            found.append((until, after, None))
+    inside = ((max(a, start), min(b, end), v) for a, b, v in found)
+    return [(a, b, v) for a, b, v in inside if b - a > _EMPTY or (b == a and v is not None)]
+
+
+def _longest(samples: Samples, age: float) -> float:
+    """How long a sample is held: of thinned ones the distances are not those of the log."""
+    if len(samples.times) < EVEN_SAMPLES:
+        return age
+    usual = median(late - early for early, late in pairwise(samples.times))
+    return max(age, _THINNED * usual)
+
+
+def _panel(
+    signal: str,
+    unit: str,
+    bounds: Sequence[Threshold],
+    stretches: Sequence[Known],
+    start: float,
+    end: float,
+) -> Panel:
+    levels = tuple(dict.fromkeys(_levels(signal, bounds)))
+    finite = [v for _, _, v in stretches if v is not None and not isinf(v)]
+    low, high = _range([*finite, *(level.value for level in levels)])
+    width = (end - start) / _COLUMNS
+    return Panel(
+        signal=signal,
+        unit=unit,
+        low=low,
+        high=high,
+        pieces=tuple(_pieces(stretches, width)),
+        levels=levels,
+        unknown=tuple(_unknown(stretches)),
+        infinite=tuple(
+            (_short(a), _short(b), "+inf" if v > 0 else "-inf")
+            for a, b, v in _merged(stretches)
+            if v is not None and isinf(v)
+        ),
+    )
+
+
+def _range(values: Sequence[float]) -> tuple[float, float]:
+    """From the least to the greatest, with some room; never empty."""
+    low, high = (min(values), max(values)) if values else (0.0, 1.0)
+    low, high = (min(max(end, -_FAR), _FAR) for end in (low, high))
+    room = (high - low) * 0.08 or abs(high) * 0.1 or 1.0
+    return low - room, high + room
+
+
+def _merged(stretches: Sequence[Known]) -> list[Known]:
+    """Neighbours with the same value as one."""
+    found: list[Known] = []
+    for begin, end, value in stretches:
+        if found and found[-1][2] == value and begin - found[-1][1] <= _EMPTY:
+            found[-1] = (found[-1][0], end, value)
+        else:
+            found.append((begin, end, value))
+    return found
+
+
+def _unknown(stretches: Sequence[Known]) -> Iterator[SpanMark]:
+    for begin, end, value in _merged(stretches):
+        if value is None:
+            yield SpanMark(_short(begin), _short(end), 1)
+
+
+def _pieces(stretches: Sequence[Known], width: float) -> Iterator[Piece]:
+    """Each run of finite values, as an envelope with few points."""
+    run: list[tuple[float, float, float]] = []
+    for begin, end, value in stretches:
+        if value is None or isinf(value):
+            if run:
+                yield _piece(run, width)
+            run = []
+        else:
+            run.append((begin, end, value))
+    if run:
+        yield _piece(run, width)
+
+
+def _piece(run: Sequence[tuple[float, float, float]], width: float) -> Piece:
+    points: list[tuple[float, float, float]] = []
+    for begin, end, value in run:
+        if points and begin - points[-1][0] < width:
+            at, least, greatest = points[-1]
+            points[-1] = (at, min(least, value), max(greatest, value))
+            if end - at > width:  # it stays in force when the others no longer are
+                points.append((_short(at + width), value, value))
+        elif not points or points[-1][1:] != (value, value):
+            points.append((_short(begin), value, value))
+    return Piece(tuple(points), _short(run[-1][1]))
+
+
+def _short(seconds: float) -> float:
+    return round(seconds, 6)

@@ -1,0 +1,242 @@
+"""What happened when, as a picture with few elements, whatever the length of the run."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from math import floor, log10
+from types import MappingProxyType
+
+from fretc.audit.evidence.reader import Moment, Result, Violation
+from fretc.report.model.first_tick import reading
+from fretc.report.model.phrases import joined, seconds, times, value
+from fretc.report.model.pictures import Flag, Lane, Panel, SpanMark, Timeline
+from fretc.report.pictures.signals import left_out, panels
+
+DETAIL = 400
+"""Two marks nearer than this part of the picture are drawn as one: that bounds their number."""
+DRAWN = 6
+"""Violations of one result that get a picture of their own; the others are listed."""
+_AROUND = 10
+"""Ticks to show before and after a violation, at least."""
+
+
+@dataclass(frozen=True, slots=True)
+class Stretch:
+    """From `start` to `end`, in seconds."""
+
+    start: float
+    end: float
+
+
+def timelines(
+    result: Result, tick: float, ages: Mapping[str, float] = MappingProxyType({})
+) -> tuple[Timeline, ...]:
+    """One for each of the first violations; where there is none, one for the whole run.
+
+    Args:
+        result: one run, one requirement.
+        tick: seconds of a tick; an average where the clock ticks by message.
+        ages: seconds after which a sample of a signal no longer counts; absent: never.
+    """
+    if not result.ticks:
+        return ()
+    events = _Events(result, tick)
+    if not result.violations:
+        return (events.timeline("The whole run", Stretch(0.0, result.ticks * tick)),)
+    return tuple(
+        _explained(events.timeline(f"Violation {number}", stretch), violation, result, tick, ages)
+        for number, violation in enumerate(result.violations[:DRAWN], 1)
+        for stretch in [_around(violation, tick)]
+    )
+
+
+def _explained(
+    plain: Timeline, violation: Violation, result: Result, tick: float, ages: Mapping[str, float]
+) -> Timeline:
+    """With the signals, the trigger, the deadline, the broken stretch, and the cause in words."""
+    drawn = panels(violation, result, ages, plain.start, plain.end)
+    broken = _violated(violation, tick)
+    why = cause(violation, result, ages)
+    told = [
+        why,
+        plain.text,
+        *(_panel_in_words(panel) for panel in drawn),
+        _not_drawn(left_out(violation, drawn)),
+    ]
+    return replace(
+        plain,
+        text=" ".join(filter(None, told)),
+        panels=drawn,
+        flags=tuple(_flags(violation)),
+        broken=_rounded(SpanMark(broken.start, broken.end, 1)),
+        cause=why,
+    )
+
+
+def _flags(violation: Violation) -> Iterable[Flag]:
+    for kind, moment in (("trigger", violation.trigger), ("deadline", violation.deadline)):
+        if moment is not None:
+            yield Flag(kind, round(moment.seconds, 6))
+
+
+def cause(violation: Violation, result: Result, ages: Mapping[str, float]) -> str:
+    """Why it is a violation: what did not come, and what the signals were then."""
+    start, end = violation.first.seconds, violation.last.seconds
+    when = f"at {seconds(start)}" if start == end else f"from {seconds(start)} to {seconds(end)}"
+    missing = violation.missing or "the response"
+    if violation.deadline is not None:
+        what = f"`{missing}` did not come by {seconds(violation.deadline.seconds)}"
+    else:
+        what = f"`{missing}` did not hold {when}"
+    if violation.trigger is not None:
+        what += f", triggered at {seconds(violation.trigger.seconds)}"
+    values = [f"{name} was {reading(name, violation, result, ages)}" for name in violation.values]
+    return f"{what}; at {seconds(start)} {joined(values)}." if values else f"{what}."
+
+
+def _panel_in_words(panel: Panel) -> str:
+    points = [point for piece in panel.pieces for point in piece.points]
+    levels = [level.label for level in panel.levels if level.label]
+    parts = [
+        f"{panel.signal} {_extent(points, panel)}",
+        f"threshold {joined(levels)}" if levels else "",
+        f"unknown for {_total([(m.start, m.end) for m in panel.unknown])}" if panel.unknown else "",
+        f"infinite for {_total([(a, b) for a, b, _ in panel.infinite])}" if panel.infinite else "",
+    ]
+    return f"{', '.join(filter(None, parts))}."
+
+
+def _extent(points: Sequence[tuple[float, float, float]], panel: Panel) -> str:
+    if not points:
+        return "has no finite value"
+    digits = 3 - floor(log10(panel.high - panel.low))  # finer than can be drawn
+    least, greatest = (
+        round(number, digits)
+        for number in (min(point[1] for point in points), max(point[2] for point in points))
+    )
+    if least == greatest:
+        return f"is {value(least, panel.unit)}"
+    return f"is {value(least, panel.unit)} to {value(greatest, panel.unit)}"
+
+
+def _total(stretches: Sequence[tuple[float, float]]) -> str:
+    return seconds(sum(end - start for start, end in stretches))
+
+
+def _not_drawn(names: Sequence[str]) -> str:
+    return f"Not drawn: {joined(names)}." if names else ""
+
+
+def _around(violation: Violation, tick: float) -> Stretch:
+    first = violation.trigger or violation.first
+    start, end = min(first.seconds, violation.first.seconds), violation.last.seconds + tick
+    margin = max(_AROUND * tick, (end - start) / 8, 1e-3)
+    shown = Stretch(max(0.0, start - margin), max(end, start) + margin)
+    window = violation.window
+    if window is None or not window.samples:
+        return shown
+    # Of what lies outside the evidence holds no samples: it is not shown as if it were unknown.
+    inside = Stretch(max(shown.start, window.start), min(shown.end, window.end))
+    return inside if inside.end - inside.start > tick / 2 else shown
+
+
+class _Events:
+    """The events of a result as stretches of time, by their lanes."""
+
+    def __init__(self, result: Result, tick: float) -> None:
+        self.lanes: list[tuple[str, str, list[Stretch]]] = [
+            ("triggered", "trigger", _ticks(result.triggers, tick)),
+            ("waiting", "waiting", _waiting(result)),
+            ("violated", "violated", [_violated(v, tick) for v in result.violations]),
+            (
+                "unknown",
+                "unknown",
+                [Stretch(first * tick, (last + 1) * tick) for first, last in result.unknown],
+            ),
+            ("open at end", "open", _open(result, tick)),
+        ]
+
+    def timeline(self, title: str, window: Stretch) -> Timeline:
+        lanes = [_lane(name, kind, events, window) for name, kind, events in self.lanes]
+        shown = tuple(lane for lane in lanes if lane.marks or lane.kind == "trigger")
+        return Timeline(title, window.start, window.end, shown, _in_words(shown, window))
+
+
+def _ticks(moments: Iterable[Moment], tick: float) -> list[Stretch]:
+    return [Stretch(moment.seconds, moment.seconds + tick) for moment in moments]
+
+
+def _waiting(result: Result) -> list[Stretch]:
+    return [
+        Stretch(trigger.seconds, trigger.seconds + latency)
+        for trigger, latency in answered(result)
+        if latency > 0
+    ]
+
+
+def answered(result: Result) -> list[tuple[Moment, float]]:
+    """Each trigger that was answered with its latency; empty where that cannot be told."""
+    still_open = {moment.tick for moment in result.open}
+    closed = [trigger for trigger in result.triggers if trigger.tick not in still_open]
+    if len(closed) != len(result.latencies):
+        return []
+    return list(zip(closed, result.latencies, strict=True))
+
+
+def _violated(violation: Violation, tick: float) -> Stretch:
+    start = violation.first.seconds
+    return Stretch(start, max(start, violation.last.seconds) + tick)
+
+
+def _open(result: Result, tick: float) -> list[Stretch]:
+    end = result.ticks * tick
+    return [Stretch(m.seconds, max(m.seconds + tick, end)) for m in result.open]
+
+
+def _lane(name: str, kind: str, events: Sequence[Stretch], window: Stretch) -> Lane:
+    inside = sorted(
+        (max(event.start, window.start), min(event.end, window.end))
+        for event in events
+        if event.end > window.start and event.start < window.end
+    )
+    nearest = (window.end - window.start) / DETAIL
+    marks: list[SpanMark] = []
+    for start, end in inside:
+        if marks and start - marks[-1].end < nearest:
+            last = marks[-1]
+            marks[-1] = SpanMark(last.start, max(last.end, end), last.count + 1)
+        else:
+            marks.append(SpanMark(start, end, 1))
+    return Lane(name, kind, tuple(_rounded(mark) for mark in marks))
+
+
+def _rounded(mark: SpanMark) -> SpanMark:
+    return SpanMark(round(mark.start, 6), round(mark.end, 6), mark.count)
+
+
+_WORDS = {
+    "trigger": ("tick with a trigger", "ticks with a trigger"),
+    "waiting": ("trigger waiting for its response", "triggers waiting for their response"),
+    "violated": ("violation", "violations"),
+    "unknown": ("stretch of unknown ticks", "stretches of unknown ticks"),
+    "open": ("demand open at the end", "demands open at the end"),
+}
+_NAMED = 3
+"""Stretches of a lane that are named one by one."""
+
+
+def _in_words(lanes: Sequence[Lane], window: Stretch) -> str:
+    what = [_lane_in_words(lane) for lane in lanes]
+    return f"From {seconds(window.start)} to {seconds(window.end)}: {joined(what)}."
+
+
+def _lane_in_words(lane: Lane) -> str:
+    one, many = _WORDS[lane.kind]
+    count = sum(mark.count for mark in lane.marks)
+    if not count:
+        return f"no {one}"
+    named = [f"{seconds(m.start)} to {seconds(m.end)}" for m in lane.marks[:_NAMED]]
+    more = len(lane.marks) - len(named)
+    rest = [times(more, "later stretch", "later stretches")] if more else []
+    return f"{times(count, one, many)} ({joined([*named, *rest])})"

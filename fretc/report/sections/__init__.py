@@ -1,0 +1,1 @@
+"""How each part of the report is worked out."""

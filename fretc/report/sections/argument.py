@@ -1,0 +1,282 @@
+"""The assurance argument: hazards are controlled because requirements hold, as the evidence shows.
+
+An argument never says more than the report. A goal that nothing shows is undeveloped; counter-
+evidence stands in the argument as a solution that challenges its goal, and defeats it where it is
+about what stands there now. A proof supports what it is about: one about the text of the monitor
+supports the monitor.
+Source: GSN Community Standard, version 3 (2021), part 1, with its dialectic extension.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from enum import StrEnum
+from types import MappingProxyType
+
+from compiler.logic.claims import COUNTEREXAMPLE, METHODS, Layer
+from fretc.audit.evidence.verdicts import BROKEN
+from fretc.audit.measurements.confidence_intervals import REFUTED, SUPPORTED
+from fretc.report.model import phrases
+from fretc.report.model.views import ProofView, Report, RequirementView, ResultView
+from fretc.report.sections.proofs import SHARED, covering, is_proved
+
+
+class Kind(StrEnum):
+    """The elements of GSN; the values are the prefixes of gsn2x."""
+
+    GOAL = "G"
+    STRATEGY = "S"
+    SOLUTION = "Sn"
+    CONTEXT = "C"
+    ASSUMPTION = "A"
+    JUSTIFICATION = "J"
+    COUNTER_SOLUTION = "CSn"
+
+
+@dataclass(frozen=True, slots=True)
+class Element:
+    """One element; ids are unique and begin with the prefix of their kind."""
+
+    id: str
+    kind: Kind
+    text: str
+    supported_by: tuple[str, ...] = ()
+    in_context_of: tuple[str, ...] = ()
+    undeveloped: bool = False
+    challenges: str = ""
+    """Of a counter-solution: the goal that it is evidence against."""
+    defeated: bool = False
+    """Of a goal: evidence that is current stands against it."""
+    name: str = ""
+    """What it is called where it is referred to again; empty: its text."""
+
+
+_SUBJECTS: Mapping[str, str] = MappingProxyType(
+    {
+        Layer.MONITOR: "The monitor of {id} decides it as its sentence means",
+        Layer.LOOP: "Monitor and interceptor keep {id} in the modelled loop",
+        Layer.BOUNDS: "What is claimed of {id} at other bounds and latencies holds in the loop",
+        Layer.INTERCEPTOR: "The interceptor of {id} keeps its contracts",
+        Layer.AGENT: "The agent keeps {id} in its model",
+        Layer.AJPF: "The agent keeps {id} by the verdict of AJPF",
+    }
+)
+"""What the proofs of each layer are about, and no more."""
+_SHARED_SUBJECTS: Mapping[str, str] = MappingProxyType(
+    {
+        "interceptor": "The interceptor keeps its contracts",
+        "agent": "The agent has the properties of its property file in its model",
+    }
+)
+"""The same for proofs that are about no single requirement."""
+_NAMED = 3
+"""Violating runs that an element names; it counts the others."""
+
+
+def argument(report: Report) -> tuple[Element, ...]:
+    """All elements, the top goal first, each after those that refer to it."""
+    return tuple(_Argument(report).elements())
+
+
+class _Argument:
+    def __init__(self, report: Report) -> None:
+        self._report = report
+        self._views = {view.anchor: view for view in report.requirements}
+        self._shared = {
+            name: [proof for proof in report.proofs if proof.requirement == name] for name in SHARED
+        }
+        self._made: set[str] = set()
+
+    def elements(self) -> Iterator[Element]:
+        report = self._report
+        hazards = [hazard.id for hazard in report.hazards]
+        loose = [row.anchor for row in report.matrix if not row.hazard]
+        name = ", ".join(report.components) or report.project
+        below = (
+            *(["S_hazards"] if hazards else []),
+            *(["S_others"] if loose else []),
+            *(_id("G_shared", name) for name, proofs in self._shared.items() if proofs),
+        )
+        assumed = [f"A_{number}" for number, _ in enumerate(report.assumptions, 1)]
+        context = ("C_project", *assumed)
+        text = f"{name} keeps its safety requirements"
+        yield Element("G_top", Kind.GOAL, text, below, context, undeveloped=not below)
+        yield Element(
+            "C_project", Kind.CONTEXT, f"Requirements in {report.project}; {report.claims}"
+        )
+        for id, words in zip(assumed, report.assumptions, strict=True):
+            yield Element(id, Kind.ASSUMPTION, words)
+        if hazards:
+            goals = tuple(_id("G_hazard", hazard) for hazard in hazards)
+            yield Element("S_hazards", Kind.STRATEGY, "Argument over each declared hazard", goals)
+            for hazard in report.hazards:
+                anchors = [row.anchor for row in report.matrix if row.hazard == hazard.id]
+                yield from self._hazard(hazard.id, hazard.title, anchors)
+        if loose:
+            goals = tuple(_id("G", anchor) for anchor in dict.fromkeys(loose))
+            words = "Argument over the requirements that trace to no hazard"
+            yield Element("S_others", Kind.STRATEGY, words, goals)
+            yield from self._requirements(loose)
+        for name, proofs in self._shared.items():
+            if proofs:
+                yield from _subject(_id("G_shared", name), _SHARED_SUBJECTS[name], proofs)
+
+    def _hazard(self, id: str, title: str, anchors: Sequence[str]) -> Iterator[Element]:
+        below = tuple(_id("G", anchor) for anchor in dict.fromkeys(anchors))
+        text = f"{id} is controlled: {title}"
+        yield Element(
+            _id("G_hazard", id), Kind.GOAL, text, below, (), not below, name=f"{id} is controlled"
+        )
+        yield from self._requirements(anchors)
+
+    def _requirements(self, anchors: Sequence[str]) -> Iterator[Element]:
+        """Each once, however many hazards refer to it."""
+        for anchor in anchors:
+            if anchor not in self._made:
+                self._made.add(anchor)
+                yield from self._requirement(self._views[anchor])
+
+    def _requirement(self, view: RequirementView) -> Iterator[Element]:
+        goal = _id("G", view.anchor)
+        shown = view.mark.shows
+        against = tuple(_against(view, goal.replace("G_", "CSn_", 1)))
+        layers = {proof.layer: _of_layer(view.proofs, proof.layer) for proof in view.proofs}
+        subjects = [f"{goal}_{layer}" for layer in layers] + self._relied_upon(view)
+        solution, runs = goal.replace("G_", "Sn_", 1), f"{goal}_runs"
+        # A goal is developed or not: where proofs develop it, what no run shows is a goal below it.
+        evidence = [solution] if shown else [runs] if subjects else []
+        context, waived = goal.replace("G_", "C_", 1), goal.replace("G_", "J_", 1)
+        yield Element(
+            goal,
+            Kind.GOAL,
+            f"{view.id} holds: {view.sentence}",
+            (*evidence, *subjects),
+            (*([context] if view.meaning else []), *([waived] if view.waiver else [])),
+            undeveloped=not (evidence or subjects),
+            defeated=any(each.is_current for each in against),
+            name=f"{view.id} holds",
+        )
+        if view.meaning:
+            yield Element(context, Kind.CONTEXT, view.meaning)
+        if view.waiver:
+            known = "" if view.waiver.signature.is_good else " (unauthenticated)"
+            by = f"{view.waiver.by}{known}"
+            words = f"Waived until {view.waiver.until} by {by}: {view.waiver.reason}"
+            yield Element(waived, Kind.JUSTIFICATION, words)
+        for each in against:
+            yield Element(each.id, Kind.COUNTER_SOLUTION, each.text, challenges=goal)
+        if shown:
+            yield Element(solution, Kind.SOLUTION, _support(view))
+        elif subjects:
+            yield Element(runs, Kind.GOAL, f"The audited runs show {view.id}", undeveloped=True)
+        for layer, proofs in layers.items():
+            subject = _SUBJECTS[layer].format(id=view.id)
+            yield from _subject(f"{goal}_{layer}", subject, proofs)
+
+    def _relied_upon(self, view: RequirementView) -> list[str]:
+        """What all requirements share, where a planned method of this one is shown by it."""
+        methods = [plan.method for plan in view.planned if plan.method in METHODS]
+        return [
+            _id("G_shared", name)
+            for name, proofs in self._shared.items()
+            if any(covering(method, proofs) for method in methods)
+        ]
+
+
+# Runs ------------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True)
+class _Counter:
+    """Evidence against a goal."""
+
+    id: str
+    text: str
+    is_current: bool
+    """Whether it is about what stands there now."""
+
+
+def _support(view: RequirementView) -> str:
+    runs = phrases.times(len(view.results), "audited run")
+    if view.mark.word == SUPPORTED and view.probability is not None:
+        return f"{view.id} is {SUPPORTED} by {runs}: {view.probability.reason}"
+    limit = f". {view.limit}" if view.limit else ""
+    return f"{view.id} is {view.mark.word} in {runs}{limit}"
+
+
+def _against(view: RequirementView, id: str) -> Iterator[_Counter]:
+    """The runs that violate it; those of older texts apart. With a probability, all together."""
+    chance = view.probability
+    if chance is not None:
+        if chance.mark.word == REFUTED:
+            words = f"{view.id} is {REFUTED} over all runs: {chance.reason}"
+            yield _Counter(id, words, not chance.suspicions)
+        return
+    broken = [result for result in view.results if result.mark.word in BROKEN]
+    for old in (False, True):
+        found = [result for result in broken if bool(result.suspicions) is old]
+        if found:
+            yield _Counter(f"{id}_older" if old else id, _violated(view, found, old), not old)
+
+
+def _violated(view: RequirementView, found: Sequence[ResultView], old: bool) -> str:
+    runs = phrases.times(len(view.results), "audited run")
+    worst = sorted(found, key=lambda result: -result.violations_total)[:_NAMED]
+    left = len(found) - len(worst)
+    named = [f"{result.run_label}, {result.run_file}: {result.reason}" for result in worst]
+    more = [f"and {phrases.times(left, 'more run')}"] if left else []
+    why = phrases.joined(list(dict.fromkeys(why for each in found for why in each.suspicions)))
+    age = f", before a change ({why})" if old else ""
+    words = f"{view.id} is violated in {phrases.whole(len(found))} of {runs}{age}"
+    return "; ".join([f"{words}: {named[0]}", *named[1:], *more])
+
+
+# Proofs ----------------------------------------------------------------------------------------
+
+
+def _of_layer(proofs: Sequence[ProofView], layer: str) -> list[ProofView]:
+    return [proof for proof in proofs if proof.layer == layer]
+
+
+def _subject(goal: str, text: str, proofs: Sequence[ProofView]) -> Iterator[Element]:
+    """What proofs of one layer are about: claims that are proved, refuted, and left open."""
+    proved = [proof for proof in proofs if is_proved(proof)]
+    against = [proof for proof in proofs if proof.mark.word == COUNTEREXAMPLE]
+    left = [proof for proof in proofs if proof not in proved and proof not in against]
+    solution, counter = goal.replace("G_", "Sn_", 1), goal.replace("G_", "CSn_", 1)
+    assumption, rest = goal.replace("G_", "A_", 1), f"{goal}_rest"
+    assumed = dict.fromkeys(each for proof in proved for each in proof.assumptions)
+    below = (*([solution] if proved else []), *([rest] if proved and left else []))
+    yield Element(
+        goal,
+        Kind.GOAL,
+        text,
+        below,
+        (assumption,) if assumed else (),
+        undeveloped=not below,
+        defeated=any(not proof.suspicions for proof in against),
+    )
+    if assumed:
+        yield Element(assumption, Kind.ASSUMPTION, "; ".join(assumed))
+    if against:
+        words = _claims("Counterexample to", against)
+        yield Element(counter, Kind.COUNTER_SOLUTION, words, challenges=goal)
+    if proved:
+        yield Element(solution, Kind.SOLUTION, _claims("Proved:", proved))
+    if rest in below:
+        yield Element(rest, Kind.GOAL, _claims("Not shown:", left), undeveloped=True)
+
+
+def _claims(head: str, proofs: Sequence[ProofView]) -> str:
+    """`Proved: it stops; it moves again (by Spot 2.13)`."""
+    by = dict.fromkeys(proof.engine for proof in proofs)
+    why = dict.fromkeys(why for proof in proofs for why in proof.suspicions)
+    said = "; ".join([f"by {phrases.joined(list(by))}", *why])
+    return f"{head} {'; '.join(proof.claim for proof in proofs)} ({said})"
+
+
+def _id(prefix: str, name: str) -> str:
+    """Different for different names; anchors of requirements begin with `req-`."""
+    return f"{prefix}_{re.sub(r'[^A-Za-z0-9]', lambda m: f'_{ord(m[0]):x}_', name)}"

@@ -1,0 +1,175 @@
+"""How to make everything again, and the hashes to compare it with."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from functools import partial
+from pathlib import PurePath
+from typing import TYPE_CHECKING
+
+from compiler.files.edition import __version__
+from compiler.files.shell_quoting import (
+    UnsayableError,
+    check_of,
+    is_sha256,
+    unsayable,
+    word,
+    words,
+)
+from compiler.project.folder import Project
+from fretc.audit.evidence.basis import BINDINGS, of_all
+from fretc.audit.evidence.reader import Evidence
+from fretc.audit.measurements.confidence_intervals import CONFIDENCE
+from fretc.audit.plan import bases
+from fretc.report.model import phrases
+from fretc.report.model.views import Command, Hash, RequirementView
+from fretc.report.sections.runs import Run
+from fretc.verification.reader import Proofs
+from fretish.diagnostics.source import Source
+
+if TYPE_CHECKING:
+    from fretc.attestation.signers import Signers
+
+
+def commands(
+    project: Project,
+    sections: Sequence[RequirementView],
+    runs: Sequence[Run],
+    evidence: str,
+    proofs: Proofs | None,
+    confidence: float = CONFIDENCE,
+) -> tuple[Command, ...]:
+    """The commands, in the order in which they are to be run.
+
+    Names come from evidence, which anybody may have written: each is quoted, and where one cannot
+    be pasted, a comment stands in the place of its command.
+    """
+
+    def audit() -> str:
+        logs = " ".join(_log(run.result.run) for run in runs) or "LOG..."
+        level = "" if confidence == CONFIDENCE else f" --confidence {confidence}"
+        return f"fretc audit {logs} {_options(project)}{level} --evidence {_quoted(evidence)}"
+
+    def report() -> str:
+        proved = f" --verification {_quoted(proofs.file)}" if proofs else ""
+        return f"fretc report {_options(project)} --evidence {_quoted(evidence)}{proved}"
+
+    return (
+        Command("Check the version of the tool", f"fretc --version   # fretc {__version__}"),
+        *_made("Check that the runs are those that were audited", lambda: _check(runs)),
+        *_made("Audit the runs", audit),
+        *_emissions(sections),
+        *_made("Write this report", report),
+    )
+
+
+def _made(purpose: str, text: Callable[[], str]) -> Iterator[Command]:
+    """The command; none where its text is empty."""
+    try:
+        command = text()
+    except UnsayableError as error:
+        command = unsayable(str(error))
+    if command:
+        yield Command(purpose, command)
+
+
+def _log(run: str) -> str:
+    return "-" if run == "<stdin>" else _quoted(run)
+
+
+def _quoted(path: str) -> str:
+    return word(phrases.place(path))
+
+
+def _options(project: Project) -> str:
+    folder = folder_of(project)
+    options = [f"--requirements {word(folder)}"]
+    bindings = project.declarations.source.name if project.declarations else ""
+    if bindings and _folder(bindings) != folder:
+        options.append(f"--bindings {_quoted(bindings)}")
+    return " ".join(options)
+
+
+def folder_of(project: Project) -> str:
+    """Where the requirements are: their folder, or the one file."""
+    files = _files(project)
+    return _folder(files[0].name) if files else "requirements"
+
+
+def _folder(path: str) -> str:
+    """The folder of a file, as it may be shown; of an absolute path its name only."""
+    folder = PurePath(path).parent
+    return str(folder) if phrases.place(path) == path else folder.name or str(folder)
+
+
+def _files(project: Project) -> list[Source]:
+    """The files of the requirements, each once."""
+    return list({r.wording.source.name: r.wording.source for r in project.requirements}.values())
+
+
+def _check(runs: Sequence[Run]) -> str:
+    known = [run.result for run in runs if "log" in run.result.hashes and _is_file(run.result.run)]
+    return check_of((result.hashes["log"], phrases.place(result.run)) for result in known)
+
+
+def _is_file(run: str) -> bool:
+    """Whether `sha256sum` reads the run: no folder, no URL, no standard input."""
+    return PurePath(run).suffix in (".mcap", ".bag", ".db3") and "://" not in run
+
+
+def _emissions(sections: Sequence[RequirementView]) -> Iterable[Command]:
+    """One command for all files with the same targets."""
+    targets: dict[str, list[str]] = {}
+    for section in sections:
+        file = section.source.rpartition(":")[0]
+        allowed = [a.target for a in section.artefacts if not a.refusal]
+        before = targets.get(file, allowed)
+        targets[file] = [target for target in before if target in allowed]
+    groups: dict[tuple[str, ...], list[str]] = {}
+    for file, names in targets.items():
+        groups.setdefault(tuple(dict.fromkeys(names)), []).append(file)
+    for kinds, files in groups.items():
+        if kinds:
+            emits = " ".join(f"--emit {kind}" for kind in kinds)
+            yield from _made("Make the artefacts", partial(_emission, files, emits))
+
+
+def _emission(files: Sequence[str], emits: str) -> str:
+    return f"fretc {words(files)} {emits} --output build"
+
+
+def _of_bindings(project: Project) -> str:
+    """As it stands in evidence: of what the requirements in force read of the bindings."""
+    known = bases(project)
+    inforce = [each for each in project.requirements if each.status != "retired"]
+    return of_all({each.id: known[id(each)][BINDINGS] for each in inforce})
+
+
+def manifest(
+    project: Project,
+    sections: Sequence[RequirementView],
+    runs: Sequence[Run],
+    evidence: Evidence | None,
+    proofs: Proofs | None,
+    signers: Signers | None = None,
+) -> tuple[Hash, ...]:
+    """Every hash that the report rests on."""
+    bindings = project.declarations
+    lines = [Hash("sentence", section.id, section.fingerprint) for section in sections]
+    if bindings is not None:
+        lines.append(Hash("bindings", phrases.place(bindings.source.name), _of_bindings(project)))
+    lines.extend(
+        Hash(artefact.target, artefact.file, artefact.sha256)
+        for section in sections
+        for artefact in section.artefacts
+    )
+    if evidence is not None:
+        lines.append(Hash("evidence", phrases.place(evidence.file), evidence.sha256))
+    if proofs is not None:
+        lines.append(Hash("verification", phrases.place(proofs.file), proofs.sha256))
+    if signers is not None:
+        lines.append(Hash("signers", phrases.place(signers.file), signers.sha256))
+    lines.extend(
+        Hash("run", phrases.place(run.result.run), run.result.hashes.get("log", "")) for run in runs
+    )
+    return tuple(line for line in lines if is_sha256(line.sha256))

@@ -1,0 +1,291 @@
+"""One run against one requirement, as it is shown."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from itertools import groupby
+from statistics import median
+
+from compiler.formalization.rule import Rule
+from fretc.audit.evidence.reader import Moment, Result, Threshold, Violation
+from fretc.audit.evidence.verdicts import (
+    NOT_EXERCISED,
+    RETIRED,
+    SUSPECT,
+    UNFORMALIZED,
+    severity,
+)
+from fretc.report.model import phrases
+from fretc.report.model.claims import Claim, Judged, Together, since_review
+from fretc.report.model.first_tick import reading
+from fretc.report.model.views import (
+    Latency,
+    Listing,
+    ResultView,
+    ThresholdView,
+    ViolationView,
+)
+from fretc.report.pictures.timeline import answered, timelines
+from fretc.report.sections.runs import Key, Run, key
+from fretish import syntax
+from fretish.bindings.amounts import exact
+from fretish.bindings.declarations import Declarations
+from fretish.clock import Clock
+from fretish.meaning import span
+
+LISTED = 100
+"""Violations, open demands and unknown stretches that are listed; the evidence has them all."""
+_WAITS = 5
+_TOLD = 10
+"""Runs that are named as reasons why a requirement is not shown."""
+
+
+def result_views(
+    claim: Claim, runs: dict[Key, Run], declared: Declarations | None
+) -> tuple[ResultView, ...]:
+    """Every audit of a requirement, in the order of the runs."""
+    return tuple(
+        _view(judged, claim, number, runs[key(judged.result)], declared)
+        for number, judged in enumerate(claim.results, 1)
+    )
+
+
+def result_anchor(claim: Claim, number: int) -> str:
+    """Where a result of a requirement is shown, numbered from 1."""
+    return f"{claim.anchor.replace('req-', 'result-', 1)}.{number}"
+
+
+def _view(
+    judged: Judged, claim: Claim, number: int, run: Run, declared: Declarations | None
+) -> ResultView:
+    result = judged.result
+    known = None if claim.judged[number - 1].is_stale else declared
+    tick, ages = _tick(result, known.clock if known else None), _ages(known)
+    return ResultView(
+        anchor=result_anchor(claim, number),
+        run=run.anchor,
+        run_label=run.label,
+        run_file=phrases.place(result.run),
+        mark=judged.mark,
+        suspicions=judged.suspicions,
+        reason=result.reason,
+        triggers=len(result.triggers),
+        exercised=_exercised(result),
+        latency=_latency(result, claim.rule),
+        thresholds=tuple(map(_threshold, result.thresholds)),
+        violations=tuple(_violation(v, result, ages) for v in result.violations[:LISTED]),
+        violations_total=len(result.violations),
+        open=_open(result),
+        unknown=_unknown(result),
+        timelines=timelines(result, tick, ages),
+    )
+
+
+def _tick(result: Result, clock: Clock | None) -> float:
+    """Seconds of a tick; on average, where the clock ticks by message or is not known."""
+    if clock is not None and clock.period:
+        return clock.period / 1e9
+    if result.start_ns is None or result.end_ns is None or result.end_ns <= result.start_ns:
+        return 1.0
+    return (result.end_ns - result.start_ns) / 1e9 / max(1, result.ticks)
+
+
+def _ages(declared: Declarations | None) -> dict[str, float]:
+    """Seconds after which a sample no longer counts, of the signals that have such an age."""
+    signals = declared.signals.values() if declared else ()
+    return {signal.name: signal.max_age / 1e9 for signal in signals if signal.max_age}
+
+
+def _exercised(result: Result) -> str:
+    ticks = phrases.times(result.ticks, "tick")
+    if not result.triggers:
+        return f"never triggered in {ticks}"
+    stretches = len(_stretches(result.triggers))
+    return (
+        f"triggered at {phrases.whole(len(result.triggers))} of {ticks}, "
+        f"in {phrases.times(stretches, 'stretch', 'stretches')}"
+    )
+
+
+def _stretches(moments: Iterable[Moment]) -> list[list[Moment]]:
+    """The moments in order, those of neighbouring ticks together."""
+    found: list[list[Moment]] = []
+    for moment in sorted(moments, key=lambda m: m.tick):
+        if found and moment.tick - found[-1][-1].tick <= 1:
+            found[-1].append(moment)
+        else:
+            found.append([moment])
+    return found
+
+
+# Latency ---------------------------------------------------------------------------------------
+
+
+def _latency(result: Result, rule: Rule | None) -> Latency | None:
+    if not result.latencies:
+        return None
+    longest = max(result.latencies)
+    at_once = sum(latency <= 0 for latency in result.latencies)
+    answers = phrases.times(len(result.latencies), "trigger")
+    unknown = len(result.uncertain - {moment.tick for moment in result.open})
+    since = next((m for m, latency in answered(result) if latency == longest), None)
+    after = f", after the trigger at {phrases.seconds(since.seconds)}" if since and longest else ""
+    return Latency(
+        answered=len(result.latencies),
+        at_once=at_once,
+        answers=f"{answers}, {phrases.whole(at_once)} of them at the same tick"
+        f"{_perhaps(unknown, len(result.latencies))}",
+        median=phrases.seconds(median(result.latencies)),
+        longest=f"{phrases.seconds(longest)}{after}",
+        longest_s=longest,
+        is_bounded=rule is None or not isinstance(rule.sentence.timing, syntax.Eventually),
+        bound=_bound(rule),
+        waits=_waits(result),
+    )
+
+
+def _bound(rule: Rule | None) -> str:
+    """What the sentence says about how long the response may take."""
+    if rule is None:
+        return ""
+    match rule.sentence.timing:
+        case syntax.Eventually(written):
+            how = "says `eventually`" if written else "gives no timing, which means `eventually`"
+            return (
+                f"No bound was required: the sentence {how}, so a response satisfies it however "
+                "late it comes."
+            )
+        case syntax.Within():
+            return f"The sentence allows {span(rule.ticks or 0, rule.clock)}."
+        case _:
+            return ""
+
+
+def _waits(result: Result) -> tuple[str, ...]:
+    """The longest waits; triggers that one answer ends are one wait."""
+    waiting = [(m.seconds, round(m.seconds + late, 6)) for m, late in answered(result) if late > 0]
+    ends = groupby(sorted(waiting, key=lambda wait: wait[::-1]), key=lambda wait: wait[1])
+    waits = [(end, [start for start, _ in group]) for end, group in ends]
+    waits.sort(key=lambda wait: (wait[1][0] - wait[0], wait[0]))
+    return tuple(
+        f"{phrases.seconds(starts[0])} to {phrases.seconds(end)}: "
+        f"{phrases.times(len(starts), 'trigger')}, "
+        f"{'the first ' if len(starts) > 1 else ''}waited {phrases.seconds(end - starts[0])}"
+        for end, starts in waits[:_WAITS]
+    )
+
+
+# Stretches -------------------------------------------------------------------------------------
+
+
+def _violation(violation: Violation, result: Result, ages: Mapping[str, float]) -> ViolationView:
+    first, last, trigger = violation.first, violation.last, violation.trigger
+    ticks = f"{first.tick}" if first.tick == last.tick else f"{first.tick} to {last.tick}"
+    return ViolationView(
+        start=phrases.seconds(first.seconds),
+        end=phrases.seconds(last.seconds),
+        ticks=ticks,
+        trigger=_at(trigger) if trigger else "none",
+        deadline=_at(violation.deadline) if violation.deadline else "none",
+        missing=violation.missing,
+        values=tuple((name, reading(name, violation, result, ages)) for name in violation.values),
+    )
+
+
+def _at(moment: Moment) -> str:
+    return f"{phrases.seconds(moment.seconds)} (tick {moment.tick})"
+
+
+def _threshold(threshold: Threshold) -> ThresholdView:
+    kept, unit, bound = threshold.comparison, threshold.unit, threshold.bound
+    least, greatest = (
+        phrases.value(each, unit, [bound]) for each in (threshold.least, threshold.greatest)
+    )
+    margin = {None: "never known", "crossed": "crossed"}.get(kept) or (
+        "always out of range"
+        if threshold.margin is None
+        else phrases.value(threshold.margin, unit, [0.0])
+    )
+    return ThresholdView(
+        proposition=threshold.proposition,
+        comparison=f"{threshold.signal} {threshold.operator} {exact(bound, unit)}",
+        values="unknown" if threshold.least is None else f"{least} to {greatest}",
+        margin=margin,
+        nearest="" if threshold.nearest is None else phrases.seconds(threshold.nearest),
+    )
+
+
+def _open(result: Result) -> Listing:
+    stretches = _stretches(result.open)
+    lines = (_since(stretch, result.uncertain) for stretch in stretches[:LISTED])
+    return Listing(tuple(lines), len(result.open))
+
+
+def _since(stretch: Sequence[Moment], uncertain: Collection[int]) -> str:
+    first, last = stretch[0], stretch[-1]
+    unknown = _perhaps(sum(moment.tick in uncertain for moment in stretch), len(stretch))
+    if len(stretch) == 1:
+        return f"triggered at {phrases.seconds(first.seconds)} (tick {first.tick}){unknown}"
+    return (
+        f"triggered from {phrases.seconds(first.seconds)} to {phrases.seconds(last.seconds)} "
+        f"(ticks {first.tick} to {last.tick}): {phrases.times(len(stretch), 'demand')}{unknown}"
+    )
+
+
+def _perhaps(count: int, of: int) -> str:
+    """How many may be otherwise, for propositions were unknown."""
+    if not count:
+        return ""
+    some = "" if of == 1 else "all of them " if count == of else f"{count} of them "
+    return f", {some}uncertain for propositions are unknown"
+
+
+def _unknown(result: Result) -> Listing:
+    runs = result.unknown
+    total = sum(max(0, last - first + 1) for first, last in runs)
+    lines = (
+        f"tick {first}" if first == last else f"ticks {first} to {last}"
+        for first, last in runs[:LISTED]
+    )
+    return Listing(tuple(lines), total)
+
+
+# Why not ---------------------------------------------------------------------------------------
+
+
+def reasons(claim: Claim, runs: dict[Key, Run], *, audited: bool) -> tuple[str, ...]:
+    """Why a requirement is not shown, the worst first; empty where it is, or is retired."""
+    if claim.is_shown or claim.unwaived == RETIRED:
+        return ()
+    lines = [(severity(UNFORMALIZED), text) for text in _unformalized(claim)]
+    if claim.together is not None:
+        lines.append((claim.together.mark.severity, _over_all(claim.together)))
+    else:
+        lines += [(j.mark.severity, _against(j, runs)) for j in claim.judged if not j.mark.shows]
+        if not claim.judged and claim.rule is not None:
+            why = "the audit did not cover it" if audited else "no run has been audited"
+            lines.append((severity(NOT_EXERCISED), why))
+    told = [text for _, text in sorted(lines, key=lambda line: line[0])]
+    left = len(told) - _TOLD
+    few = (*told[:_TOLD], f"and {phrases.times(left, 'more run')}") if left > 0 else tuple(told)
+    return (*few, *since_review(claim.standing))
+
+
+def _unformalized(claim: Claim) -> Iterator[str]:
+    if claim.diagnostic is not None and claim.rule is None:
+        yield f"{claim.diagnostic.code.number}: {claim.diagnostic.message}"
+
+
+def _over_all(together: Together) -> str:
+    told = together.told
+    return f"over all runs: {told.answer}, {told.reason}{_because(together.suspicions)}"
+
+
+def _against(judged: Judged, runs: dict[Key, Run]) -> str:
+    result = judged.result
+    label = runs[key(result)].label
+    return f"{label}: {judged.verdict}, {result.reason}{_because(judged.suspicions)}"
+
+
+def _because(suspicions: Sequence[str]) -> str:
+    return f"; {SUSPECT}, because {phrases.joined(suspicions)}" if suspicions else ""

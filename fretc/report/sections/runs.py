@@ -1,0 +1,194 @@
+"""The audited runs: what they are, and whether they can be trusted."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+
+from compiler.project.folder import Project
+from fretc.audit.evidence.reader import Checked, Evidence, Finding, Result, Topic
+from fretc.report.model import phrases
+from fretc.report.model.views import Mark, Remark, RunView, TopicView
+from fretish.diagnostics.diagnostic import Severity
+
+_NONE = "\N{EN DASH}"
+_INTACT = Mark("no damage found", "✔", "satisfied")
+_DAMAGED = Mark("damaged", "✘", "violated")
+_UNREAD = Mark("not readable", "?", "no-data")
+
+
+@dataclass(frozen=True, slots=True)
+class Run:
+    """One audited file, by its name and hash; `result` is any of its results."""
+
+    number: int
+    result: Result
+
+    @property
+    def anchor(self) -> str:
+        """Where its section is."""
+        return f"run-{self.number}"
+
+    @property
+    def label(self) -> str:
+        """`Run 1`."""
+        return f"Run {self.number}"
+
+
+Key = tuple[str, str]
+
+
+def key(result: Result) -> Key:
+    """What makes two results those of the same run: the file's name and its hash."""
+    return result.run, result.hashes.get("log", "")
+
+
+def runs(evidence: Evidence | None) -> dict[Key, Run]:
+    """The runs of the evidence, numbered from 1 in its order."""
+    found: dict[Key, Run] = {}
+    for result in evidence.results if evidence else ():
+        found.setdefault(key(result), Run(len(found) + 1, result))
+    return found
+
+
+def run_views(found: Iterable[Run], project: Project) -> tuple[RunView, ...]:
+    """Each run as it is shown, those with errors first."""
+    return tuple(_view(run, project) for run in sorted(found, key=_severity))
+
+
+def _severity(run: Run) -> tuple[bool, bool, bool, bool]:
+    """By which runs are sorted: errors, damage, other findings, gaps."""
+    health = run.result.health
+    return not _errors(run), health.intact, not health.findings, not health.gaps
+
+
+def _errors(run: Run) -> list[str]:
+    """The codes of its errors, each once."""
+    found = (f.code for f in run.result.health.findings if f.severity == Severity.ERROR)
+    return list(dict.fromkeys(found))
+
+
+def _view(run: Run, project: Project) -> RunView:
+    result = run.result
+    health = result.health
+    return RunView(
+        anchor=run.anchor,
+        label=run.label,
+        file=phrases.place(result.run),
+        sha256=result.hashes.get("log", ""),
+        size=phrases.size(health.size),
+        recorded=phrases.instant(result.start_ns),
+        duration=_duration(result),
+        ticks=phrases.times(result.ticks, "tick"),
+        clock=result.clock,
+        intact=health.intact,
+        health=_INTACT if health.intact else _DAMAGED if health.topics else _UNREAD,
+        checked=_checked(health.checked, hashed="log_summary" not in result.hashes),
+        gaps=_gaps(result),
+        findings=tuple(map(_finding, sorted(health.findings, key=_badness))),
+        topics=tuple(_topic(topic, project) for topic in health.topics),
+    )
+
+
+def _duration(result: Result) -> str:
+    if result.start_ns is None or result.end_ns is None:
+        return "not known"
+    return phrases.seconds((result.end_ns - result.start_ns) / 1e9)
+
+
+def _checked(checked: Checked | None, *, hashed: bool) -> str:
+    """What could be checked of the file, and what was not."""
+    if checked is None:
+        return "not known"
+    if not checked.chunks:
+        return "every record was read" if not checked.by_index else "nothing: it has no chunks"
+    parts = [
+        f"{count} of {checked.chunks} chunks {what}"
+        for count, what in (
+            (checked.crc_checked, "have the CRC that they state"),
+            (
+                checked.crc_unchecked,
+                "have a CRC that was not checked: only their beginning was read",
+            ),
+            (checked.without_crc, "state no CRC"),
+            (checked.skipped, "hold nothing that is bound and were not read"),
+        )
+        if count
+    ]
+    parts.append("read by the index" if checked.by_index else "every record was read")
+    return "; ".join(parts if hashed else [*parts, "not hashed"])
+
+
+def _gaps(result: Result) -> tuple[str, ...]:
+    start = result.start_ns or 0
+    return tuple(
+        f"{phrases.seconds((first - start) / 1e9)} to {phrases.seconds((last - start) / 1e9)}"
+        for first, last in result.health.gaps
+    )
+
+
+def _badness(finding: Finding) -> int:
+    """By which findings are sorted."""
+    return [str(severity) for severity in Severity].index(finding.severity)
+
+
+def _finding(finding: Finding) -> Remark:
+    return Remark(finding.code, finding.severity, finding.message, help=finding.help)
+
+
+def _topic(topic: Topic, project: Project) -> TopicView:
+    signals = project.declarations.signals.values() if project.declarations else ()
+    return TopicView(
+        name=topic.name,
+        type=topic.type,
+        count=phrases.whole(topic.count),
+        rate=_rate(topic),
+        longest_gap=_longest_gap(topic),
+        out_of_order=_NONE if topic.out_of_order is None else phrases.whole(topic.out_of_order),
+        read_for=tuple(signal.name for signal in signals if signal.path.topic == topic.name),
+    )
+
+
+def _longest_gap(topic: Topic) -> str:
+    if topic.longest_gap_ns is None or topic.count < 2:
+        return _NONE
+    return phrases.seconds(topic.longest_gap_ns / 1e9)
+
+
+def _rate(topic: Topic) -> str:
+    """Messages a second, between the first and the last."""
+    if topic.first_ns is None or topic.last_ns is None or topic.last_ns <= topic.first_ns:
+        return _NONE
+    rate = (topic.count - 1) * 1e9 / (topic.last_ns - topic.first_ns)
+    return f"{rate:.1f} Hz" if rate >= 1 else f"{rate:.2g} Hz"
+
+
+def _named(run: Run) -> str:
+    """`Run 2`, with the codes of its errors."""
+    codes = ", ".join(_errors(run))
+    return f"{run.label} ({codes})" if codes else run.label
+
+
+def trust(found: Sequence[Run]) -> str:
+    """Whether the runs can be trusted, in one sentence; empty where there are none."""
+    damaged = [_named(run) for run in found if not run.result.health.intact]
+    wrong = [_named(run) for run in found if run.result.health.intact and _errors(run)]
+    told = [run.label for run in found if run.result.health.findings]
+    if not found:
+        return ""
+    if damaged or wrong:
+        verb = "is" if len(damaged) == 1 else "are"
+        had = "has an error" if len(wrong) == 1 else "have errors"
+        parts = [
+            f"{phrases.some(damaged)} {verb} damaged or could not be read" if damaged else "",
+            f"{phrases.some(wrong)} {had}: read them before the verdicts" if wrong else "",
+        ]
+        return f"{'; '.join(filter(None, parts))}."
+    if told:
+        verb = "has" if len(told) == 1 else "have"
+        return f"{phrases.some(told)} {verb} findings: read them before the verdicts."
+    return (
+        "No damage was found in the run."
+        if len(found) == 1
+        else f"No damage was found in any of {len(found)} runs."
+    )

@@ -1,0 +1,209 @@
+"""A requirement as its section shows it: what it says, means, is made of and has been shown."""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from compiler.explanation.diagram import diagram, words
+from compiler.explanation.violability import limit
+from compiler.formalization.record import wording
+from compiler.formalization.rule import Rule
+from compiler.logic import printing
+from compiler.project.folder import Project
+from fretc.attestation.signatures import NO_SIGNATURES, Book
+from fretc.report.model import phrases
+from fretc.report.model.claims import Claim
+from fretc.report.model.probabilities import probability_view
+from fretc.report.model.views import (
+    Formula,
+    Parent,
+    ProbabilityView,
+    PropositionView,
+    Remark,
+    RequirementView,
+    SignalView,
+)
+from fretc.report.pictures.histograms import exercise, histograms
+from fretc.report.sections.plans import planned
+from fretc.report.sections.proofs import SHARED, proof_views
+from fretc.report.sections.results import reasons, result_views
+from fretc.report.sections.reviews import review, waiver
+from fretc.report.sections.runs import Key, Run
+from fretc.report.traceability.artefacts import Product
+from fretc.verification.reader import Proof
+from fretish.bindings.declarations import Declarations, Proposition, Signal
+from fretish.clock import Clock
+from fretish.diagnostics.diagnostic import Diagnostic
+from fretish.meaning import meaning
+from fretish.printer import sentence
+
+
+def section(
+    claim: Claim,
+    project: Project,
+    runs: dict[Key, Run],
+    anchors: Mapping[str, str],
+    audited: bool,
+    proofs: Sequence[Proof] = (),
+    common: Sequence[Product] = (),
+    book: Book = NO_SIGNATURES,
+) -> RequirementView:
+    """The view of one requirement.
+
+    Args:
+        claim: the requirement.
+        project: all that was read.
+        runs: all runs.
+        anchors: where the section of each requirement is, by its id.
+        audited: whether there is any evidence.
+        proofs: of all requirements, and of what they share.
+        common: what is made of the bindings alone, which proofs are about too.
+        book: who signed what.
+    """
+    requirement, rule = claim.requirement, claim.rule
+    made = (*claim.products, *common)
+    mine = proof_views((p for p in proofs if p.requirement == claim.id), made)
+    shared = proof_views((p for p in proofs if p.requirement in SHARED), common)
+    clock = project.declarations.clock if project.declarations else None
+    return RequirementView(
+        id=claim.id,
+        anchor=claim.anchor,
+        title=requirement.title,
+        mark=claim.mark,
+        suspicions=claim.suspicions,
+        status=requirement.status,
+        source=f"{phrases.place(requirement.wording.source.name)}:{requirement.wording.line}",
+        text=requirement.text,
+        sentence=wording(requirement),
+        canonical=sentence(rule.sentence) if rule else "",
+        fingerprint=rule.fingerprint if rule else "",
+        meaning=meaning(rule.sentence, rule.ticks, rule.clock) if rule else "",
+        error=remark(claim.diagnostic) if claim.diagnostic else None,
+        diagram=words(diagram(rule)) if rule else "",
+        formulas=_formulas(rule) if rule else (),
+        propositions=_propositions(rule, project.declarations) if rule else (),
+        clock=_clock(clock),
+        parents=tuple(_parent(parent, project, anchors) for parent in requirement.parents),
+        rationale=requirement.rationale,
+        params=dict(requirement.params),
+        planned=planned(claim, (*mine, *shared)),
+        artefacts=claim.products,
+        probability=_probability(claim),
+        proofs=mine,
+        exercise=exercise(claim),
+        histograms=histograms(claim),
+        results=result_views(claim, runs, project.declarations),
+        reasons=reasons(claim, runs, audited=audited),
+        limit=_limit(rule),
+        coverage=claim.coverage,
+        review=review(claim, book),
+        waiver=waiver(claim, book),
+    )
+
+
+def _limit(rule: Rule | None) -> str:
+    """Of a probability many runs decide."""
+    return "" if rule is None or rule.sentence.probability is not None else limit(rule)
+
+
+def _probability(claim: Claim) -> ProbabilityView | None:
+    if claim.together is None:
+        return None
+    return probability_view(claim.together.told, claim.together.suspicions)
+
+
+def remark(diagnostic: Diagnostic) -> Remark:
+    """A diagnostic as it is shown."""
+    span = diagnostic.span
+    place = phrases.place(span.source.name) if span else ""
+    where = f":{span.line}:{span.column}" if span and span.source.text else ""
+    return Remark(
+        diagnostic.code.number,
+        str(diagnostic.severity),
+        diagnostic.message,
+        f"{place}{where}",
+        diagnostic.help or "",
+    )
+
+
+def _formulas(rule: Rule) -> tuple[Formula, ...]:
+    return (
+        Formula("Future time", "infinite traces", printing.readable(rule.ft_infinite)),
+        Formula(
+            "Future time, finite",
+            "finite traces, read at the first tick; LAST holds at the last one",
+            printing.readable(rule.ft_finite),
+        ),
+        Formula("Past time", "finite traces, read at the last tick", printing.readable(rule.pt)),
+    )
+
+
+def _clock(clock: Clock | None) -> str:
+    if clock is None:
+        return "not declared"
+    return (
+        f"a tick with {clock}, by {clock.time}"
+        if clock.period is None
+        else (f"a tick every {clock}, by {clock.time}")
+    )
+
+
+def _parent(id: str, project: Project, anchors: Mapping[str, str]) -> Parent:
+    hazard = project.hazards.get(id)
+    if hazard is not None:
+        return Parent(id, hazard.title, "hazards")
+    outside = project.parents.get(id)
+    if outside is not None:
+        return Parent(id, f"{outside.title} ({phrases.place(outside.source)})", "")
+    above = next((r for r in project.requirements if r.id == id), None)
+    return Parent(id, above.title if above else "not declared", anchors.get(id, ""))
+
+
+# Propositions ----------------------------------------------------------------------------------
+
+
+def _propositions(rule: Rule, declared: Declarations | None) -> tuple[PropositionView, ...]:
+    return tuple(_proposition(name, declared) for name in rule.propositions)
+
+
+def _proposition(name: str, declared: Declarations | None) -> PropositionView:
+    bound = declared.propositions.get(name) if declared else None
+    if bound is None or declared is None:
+        return PropositionView(name, False, "", "", "", ())
+    return PropositionView(
+        name=name,
+        is_bound=True,
+        text=bound.text,
+        expression=_written(declared, name),
+        properties=_properties(bound),
+        signals=tuple(_signal(declared.signals[each]) for each in bound.signals),
+    )
+
+
+def _written(declared: Declarations, name: str) -> str:
+    """The expression as it stands in the bindings."""
+    data: Mapping[str, Any] = tomllib.loads(declared.source.text)
+    return str(data["proposition"][name]["expr"])
+
+
+def _properties(bound: Proposition) -> str:
+    unknown = "unknown" if bound.on_unknown is None else str(bound.on_unknown).lower()
+    parts = [str(bound.role), *([bound.kind] if bound.kind else [])]
+    return f"{', '.join(parts)}; of a tick counts: {bound.aggregate}; where unknown: {unknown}"
+
+
+def _signal(signal: Signal) -> SignalView:
+    age = f"{phrases.decimal(signal.max_age / 1e6)} ms" if signal.max_age else ""
+    reading = [
+        str(signal.reduce) if signal.reduce else "",
+        f"unknown when older than {age}" if age else "a sample never grows too old",
+    ]
+    return SignalView(
+        signal.name,
+        str(signal.path),
+        signal.type or "any type",
+        signal.unit_name or "1",
+        "; ".join(filter(None, reading)),
+    )

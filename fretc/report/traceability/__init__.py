@@ -1,0 +1,1 @@
+"""Links from hazard to review, what has changed, what is waived."""

@@ -1,0 +1,62 @@
+"""What targets make of a requirement, by name and hash."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import PurePath
+
+from compiler.emit import TARGETS
+from compiler.files.text_files import sha256
+from compiler.formalization.rule import Rule
+from compiler.project.interceptor_options import ASSUMED, assumed
+from compiler.targets.python import interceptor
+from compiler.targets.target import Target
+from fretish.bindings.declarations import Declarations
+
+
+@dataclass(frozen=True, slots=True)
+class Product:
+    """One file that a target makes; `sha256` is empty where it refuses, and `refusal` says why."""
+
+    target: str
+    file: str
+    sha256: str
+    refusal: str
+
+
+_ALWAYS = ("monitor", "ltl", "ajpf", "json")
+
+
+def products(rule: Rule | None) -> tuple[Product, ...]:
+    """A product for each file that is made of the requirement; where a target refuses, why.
+
+    Some targets are always asked, the others where the requirement plans them in its `verify`:
+    to make all of them may take far longer than all the rest of a report.
+    """
+    if rule is None:
+        return ()
+    planned = [name for name in rule.requirement.verify if name in TARGETS]
+    names = [name for name in dict.fromkeys((*_ALWAYS, *planned)) if TARGETS[name].per_rule]
+    return tuple(product for name in names for product in _of_target(TARGETS[name], rule))
+
+
+def _of_target(target: Target, rule: Rule) -> tuple[Product, ...]:
+    refused = target.refuse(rule)
+    if refused is not None:
+        mend = f"; {refused.help}" if refused.help else ""
+        refusal = f"{refused.code.number} {refused.message}{mend}"
+        return (Product(target.name, "", "", refusal),)
+    return tuple(
+        Product(target.name, str(artifact.path), sha256(artifact.text), "")
+        for artifact in target.emit([rule])
+    )
+
+
+def shared_products(declarations: Declarations | None) -> tuple[Product, ...]:
+    """What is made of the bindings alone, and looked at together with every requirement."""
+    declared = declarations.interceptor if declarations else None
+    if declarations is None or declared is None:
+        return ()
+    text = interceptor.text(declared, PurePath(declarations.source.name).name)
+    node = Product(interceptor.TARGET.name, interceptor.NAME, sha256(text), "")
+    return (node, Product("bindings", ASSUMED, assumed(declarations), ""))

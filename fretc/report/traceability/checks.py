@@ -1,0 +1,185 @@
+"""What can be said of a project before any run: drift, vacuity, missing links, changes.
+
+Mistakes are found while the project is read (`compiler.project.folder`). Here is what is no mistake
+of any one file, and yet keeps the whole from showing what it is there to show.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from shlex import quote
+
+from compiler.emit import TARGETS
+from compiler.formalization.rule import Rule
+from compiler.logic.claims import METHODS
+from compiler.project.ancestry import without_hazard
+from compiler.project.folder import Project
+from compiler.targets.target import Options
+from fretc.report.traceability.chain import Node
+from fretc.report.traceability.lock import Standing
+from fretish.bindings.declarations import Role
+from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity, suggestion
+from fretish.diagnostics.source import Source, Span
+from fretish.expressions import names
+
+_COMMAND = "command"
+_METHODS = ("audit", *METHODS, *TARGETS)
+"""Those whose results fretc knows, or whose files it makes."""
+
+
+def checks(project: Project, standings: Sequence[Standing]) -> tuple[Diagnostic, ...]:
+    """Everything, in the order of the project: warnings, no errors.
+
+    Args:
+        project: read without errors.
+        standings: each requirement beside its review.
+    """
+    rules = [rule for rule in project.rules if rule.requirement.status != "retired"]
+    found = [d for rule in rules for d in (*_own_triggers(rule, project), *_planned(rule))]
+    options = Options(declarations=project.declarations)
+    told = TARGETS["interceptor"].remarks(options)
+    return (*found, *told, *_links(project), *_changes(project, standings))
+
+
+# Vacuity ---------------------------------------------------------------------------------------
+
+
+def _own_triggers(rule: Rule, project: Project) -> Iterator[Diagnostic]:
+    """F209: the condition waits for what the component itself commands.
+
+    Where the component is what the sentence is about, its commands are answers: a property that
+    is triggered by them holds of a component that never acts.
+    """
+    condition = rule.sentence.condition
+    declared = project.declarations
+    if condition is None or declared is None:
+        return
+    for name in dict.fromkeys(name.id for name in names(condition.expression)):
+        bound = declared.propositions.get(name)
+        if bound is None or bound.role is not Role.OUTPUT or bound.kind != _COMMAND:
+            continue
+        yield Diagnostic(
+            Code.OWN_TRIGGER,
+            f"{rule.id} is triggered by `{name}`, which {rule.sentence.component} itself commands: "
+            "it holds where nothing is ever commanded",
+            _place(rule, name),
+            help="trigger it by what the sensors see, or say `role` and `kind` of the proposition",
+            severity=Severity.WARNING,
+        )
+
+
+def _place(rule: Rule, name: str) -> Span:
+    assert rule.sentence.condition is not None
+    found = (n.span for n in names(rule.sentence.condition.expression) if n.id == name)
+    return next(found, None) or rule.requirement.wording
+
+
+# Planned methods -------------------------------------------------------------------------------
+
+
+def _planned(rule: Rule) -> Iterator[Diagnostic]:
+    """F525: a planned method that can give no result; and what a target has to remark."""
+    for method in rule.requirement.verify:
+        target = TARGETS.get("monitor" if method == "audit" else method)
+        if target is None:
+            yield from _misspelt(rule, method)
+            continue
+        refused = target.refuse(rule)
+        if refused is not None:
+            yield Diagnostic(
+                Code.UNREACHABLE_PLAN,
+                f"{rule.id} plans `{method}`, and there can be no result: {refused.message}",
+                rule.requirement.place("verify"),
+                help=refused.help,
+                severity=Severity.WARNING,
+            )
+            continue
+        remark = target.remark(rule)
+        if remark is not None:
+            yield remark
+
+
+def _misspelt(rule: Rule, method: str) -> Iterator[Diagnostic]:
+    """F528: nearly the name of a method whose results fretc knows; any other name is one's own."""
+    near = suggestion(method, _METHODS, cutoff=0.75)
+    if method not in _METHODS and near is not None:
+        yield Diagnostic(
+            Code.MISSPELT_METHOD,
+            f"{rule.id} plans `{method}`, which is no method that fretc knows: it stays open",
+            rule.requirement.place("verify"),
+            help=f"did you mean `{near}`?",
+            severity=Severity.WARNING,
+        )
+
+
+# Links -----------------------------------------------------------------------------------------
+
+
+def _links(project: Project) -> Iterator[Diagnostic]:
+    """F522, F523 and F527: hazards that nothing prevents, requirements that reach none."""
+    active = [r for r in project.requirements if r.status != "retired"]
+    above = {parent for requirement in active for parent in requirement.parents}
+    for hazard in project.hazards.values():
+        if hazard.id not in above:
+            yield Diagnostic(
+                Code.UNCOVERED_HAZARD,
+                f"no requirement in force names {hazard.id} ({hazard.title}) as its parent",
+                help="write one, or name it in the `parents` of one",
+                severity=Severity.WARNING,
+            )
+    for requirement in active if project.hazards or project.parents else ():
+        if not requirement.parents:
+            yield Diagnostic(
+                Code.NO_PARENT,
+                f"{requirement.id} names no parent",
+                requirement.place("id"),
+                help="name the hazard or the requirement that it is there for in `parents`",
+                severity=Severity.WARNING,
+            )
+    declared = {*project.hazards, *project.parents}
+    for requirement in without_hazard(active, declared) if declared else ():
+        yield Diagnostic(
+            Code.REACHES_NO_HAZARD,
+            f"the parents of {requirement.id} lead to no hazard",
+            requirement.place("parents"),
+            help="name the hazard in `parents`, or in those of a requirement above it",
+            severity=Severity.WARNING,
+        )
+
+
+# Reviews ---------------------------------------------------------------------------------------
+
+
+def _changes(project: Project, standings: Sequence[Standing]) -> Iterator[Diagnostic]:
+    """F512 for each requirement whose review no longer stands."""
+    places = {r.id: r.wording for r in project.requirements}
+    for standing in standings:
+        if not standing.is_suspect or standing.review is None:
+            continue
+        causes = dict.fromkeys(cause for s in standing.suspects for cause in s.causes)
+        id = standing.chain.requirement
+        yield Diagnostic(
+            Code.CHANGED_SINCE_REVIEW,
+            f"{id} was reviewed on {standing.review.date}, and since then "
+            f"{', '.join(map(_named, causes))} changed",
+            places.get(id, Source("", "").span()),
+            help=f"look at `fretc diff`, then accept it: `fretc lock {quote(id)} ...`",
+            severity=Severity.WARNING,
+        )
+
+
+def unreviewed(project: Project, standings: Sequence[Standing]) -> Iterator[Diagnostic]:
+    """F544 for each requirement in force without a review; for a project that has a lock."""
+    for requirement, standing in zip(project.requirements, standings, strict=True):
+        if standing.review is None and requirement.status != "retired":
+            yield Diagnostic(
+                Code.NOT_REVIEWED,
+                f"{requirement.id} was never reviewed",
+                requirement.place("id"),
+                help=f"review it, then accept it: `fretc lock {requirement.id} ...`",
+                severity=Severity.WARNING,
+            )
+
+
+def _named(node: Node) -> str:
+    return "the clock" if node.kind == "clock" else f"{node.kind} {node.name}"

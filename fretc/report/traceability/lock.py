@@ -1,0 +1,376 @@
+"""`fretc.lock`: what was reviewed, by whom, and the fingerprint of each thing at that time.
+
+Sorted TOML, a table for each requirement, so that two reviews merge like code. A lock is written
+by `fretc lock` only; a person's reason not to have something shown yet is a waiver, in
+`waivers.toml` (`fretc.report.traceability.waivers`).
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import tomli_w
+
+from compiler.files.dates import is_date, is_to_come
+from compiler.files.text_files import read as read_text
+from fretc.audit.evidence.basis import SENTENCE
+from fretc.audit.evidence.reader import VERDICTS
+from fretc.report.traceability.chain import (
+    IN_FORCE,
+    REVIEW,
+    Chain,
+    Node,
+    Suspect,
+    changed,
+    in_force,
+    suspects,
+)
+from fretish.bindings.canonical import digest
+from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
+from fretish.diagnostics.source import Source
+from fretish.documents import Requirement
+from fretish.reading.natural_order import natural
+from fretish.reading.toml_text import Tables
+from fretish.reading.toml_text import read as read_tables
+from monitors import kernel
+
+NAME = "fretc.lock"
+SCHEMA = "fretc-lock-2"
+_OLDER = ("fretc-lock-1",)
+_TABLE = "review"
+_TEXTS = ("reviewer", "role", "date", "comment")
+_SHA256 = re.compile(r"[0-9a-f]{64}|")
+_HEAD = "# Written by `fretc lock`: what was reviewed, and what it was like then.\n\n"
+
+
+@dataclass(frozen=True, slots=True)
+class Review:
+    """One requirement as somebody accepted it."""
+
+    requirement: str
+    reviewer: str
+    role: str
+    date: str
+    """ISO 8601, as `2026-11-22`."""
+    comment: str
+    prints: Mapping[Node, str]
+    """SHA-256 of everything upstream of the review."""
+    verdicts: Mapping[str, str]
+    """Run → the word of its verdict."""
+
+    @property
+    def was_in_force(self) -> bool:
+        """Whether the requirement was claimed then."""
+        return self.prints.get(in_force(self.requirement)) == IN_FORCE
+
+    @property
+    def shown(self) -> str:
+        """The verdicts that were accepted, in words."""
+        return _in_words(self.verdicts)
+
+    @property
+    def seal(self) -> str:
+        """SHA-256 of all of it: a review that is edited by hand is nobody's."""
+        told = {name: getattr(self, name) for name in ("requirement", *_TEXTS)}
+        prints = {str(node): sha for node, sha in self.prints.items()}
+        return digest([told, prints, dict(self.verdicts)])
+
+
+@dataclass(frozen=True, slots=True)
+class Lock:
+    """A whole lock: requirement → its review, sorted."""
+
+    reviews: Mapping[str, Review]
+
+
+def accepted(chain: Chain, reviewer: str, role: str, date: str, comment: str) -> Review:
+    """The present state of a requirement, accepted."""
+    return Review(chain.requirement, reviewer, role, date, comment, chain.prints, chain.verdicts)
+
+
+def verdicts_of(chain: Chain) -> str:
+    """The verdicts that a review of it would accept, in words, the worst first."""
+    return _in_words(chain.verdicts)
+
+
+def _in_words(verdicts: Mapping[str, str]) -> str:
+    told = []
+    for word in VERDICTS:
+        runs = sorted(run for run, verdict in verdicts.items() if verdict == word)
+        if not runs:
+            continue
+        named = ", ".join(runs[:_NAMED]) if word == kernel.VIOLATED else ""
+        rest = len(runs) - (_NAMED if named else 0)
+        more = f"{rest} {'more ' if named else ''}run{'' if rest == 1 else 's'}" if rest > 0 else ""
+        told.append(f"{word} in {' and '.join(part for part in (named, more) if part)}")
+    return "; ".join(told) or "no run of it was audited"
+
+
+_NAMED = 3
+"""Of so many violated runs the names are told."""
+
+
+def unnamed_violations(chosen: Sequence[Chain], refuted: Collection[str]) -> tuple[Diagnostic, ...]:
+    """F529 for each requirement that would be accepted though runs show that it does not hold.
+
+    Args:
+        chosen: what is to be accepted.
+        refuted: ids of the requirements with a probability that all runs together refute.
+    """
+    wrong = {
+        c.requirement: verdicts_of(c) for c in chosen if kernel.VIOLATED in c.verdicts.values()
+    }
+    wrong |= {c.requirement: "refuted by all runs" for c in chosen if c.requirement in refuted}
+    return tuple(
+        Diagnostic(
+            Code.UNREVIEWED_VIOLATION,
+            f"{id} is {told}",
+            help="mend it, or accept it as it is: add `--accept-violations`",
+        )
+        for id, told in wrong.items()
+    )
+
+
+def outdated_results(chosen: Sequence[Chain]) -> tuple[Diagnostic, ...]:
+    """F541 for each requirement whose evidence is about something else; F542 for unknown logs."""
+    found = []
+    for chain in chosen:
+        causes = dict.fromkeys(cause for nodes in chain.outdated.values() for cause in nodes)
+        if causes:
+            what = ", ".join(f"{cause.kind} {cause.name}" for cause in causes)
+            found.append(
+                Diagnostic(
+                    Code.OUTDATED_RESULT,
+                    f"what was shown of {chain.requirement} is about something else than what is "
+                    f"here now: {what}",
+                    help="audit again, and verify again what was proved; then lock",
+                )
+            )
+        if chain.unhashed:
+            found.append(
+                Diagnostic(
+                    Code.UNKNOWN_LOG,
+                    f"nothing tells the log `{chain.unhashed[0]}` of {chain.requirement} from "
+                    "another one: there is no SHA-256 of it",
+                    help="audit again where the log can be read, then lock",
+                )
+            )
+    return tuple(found)
+
+
+def text(lock: Lock) -> str:
+    """The file."""
+    reviews: dict[str, Any] = {}
+    tables: dict[str, Any] = {"schema": SCHEMA, _TABLE: reviews}
+    for id in sorted(lock.reviews, key=natural):
+        review = lock.reviews[id]
+        reviews[id] = {
+            **{name: getattr(review, name) for name in _TEXTS},
+            "seal": review.seal,
+            "fingerprints": {str(n): sha for n, sha in sorted(review.prints.items())},
+            "verdicts": dict(sorted(review.verdicts.items())),
+        }
+    return f"{_HEAD}{tomli_w.dumps(tables)}"
+
+
+# Reading ---------------------------------------------------------------------------------------
+
+
+def read(path: str) -> Lock | Diagnostic:
+    """A lock from its file, or what is wrong with it; F901 as a note where there is none yet."""
+    source = read_text(path)
+    if isinstance(source, Diagnostic):
+        return _none_yet(path) if source.code is Code.NO_SUCH_FILE else source
+    tables = read_tables(source.span(), Code.BAD_LOCK, "the lock")
+    if isinstance(tables, Diagnostic):
+        return tables
+    wrong = next(_mistakes(tables), None)
+    if wrong is not None:
+        return wrong
+    lock = Lock({id: _review(id, told) for id, told in _reviews(tables)})
+    return next(_broken(tables, lock), lock)
+
+
+def _none_yet(path: str) -> Diagnostic:
+    return Diagnostic(
+        Code.NO_SUCH_FILE,
+        f"nothing has been reviewed: there is no `{path}`",
+        help="accept the present state: `fretc lock --reviewer NAME --role ROLE --comment TEXT`",
+        severity=Severity.NOTE,
+    )
+
+
+def _reviews(tables: Tables) -> Iterable[tuple[str, Any]]:
+    told = tables.data.get(_TABLE, {})
+    return told.items() if isinstance(told, dict) else ()
+
+
+def _mistakes(tables: Tables) -> Iterator[Diagnostic]:
+    schema = tables.data.get("schema")
+    if schema in _OLDER or isinstance(schema, dict):  # a review of a requirement called `schema`
+        yield _older(tables)
+        return
+    if schema != SCHEMA:
+        yield _wrong(tables, f"the lock is not of the form `{SCHEMA}`", "schema")
+    for name, value in tables.data.items():
+        if name not in ("schema", _TABLE) or (name == _TABLE and not isinstance(value, dict)):
+            yield _wrong(tables, f"`{name}` is no part of a lock", name)
+    for id, told in _reviews(tables):
+        if not isinstance(told, dict):
+            yield _wrong(tables, f"`{id}` is no review", _TABLE, id)
+            continue
+        for name in (*_TEXTS, "seal"):
+            if not isinstance(told.get(name), str):
+                yield _wrong(tables, f"the review of {id} has no `{name}`", _TABLE, id, name)
+        if isinstance(told.get("date"), str) and not is_date(told["date"]):
+            yield _wrong(tables, f"`{told['date']}` is no date", _TABLE, id, "date")
+        for name in ("fingerprints", "verdicts"):
+            table = told.get(name)
+            if not isinstance(table, dict) or not all(isinstance(v, str) for v in table.values()):
+                yield _wrong(tables, f"`{name}` of {id} must be a table of texts", _TABLE, id, name)
+            elif name == "fingerprints":
+                yield from _no_prints(tables, id, table)
+
+
+def _no_prints(tables: Tables, id: str, table: Mapping[str, str]) -> Iterator[Diagnostic]:
+    for name, sha in table.items():
+        if ":" not in name or not _SHA256.fullmatch(sha):
+            path = (_TABLE, id, "fingerprints", name)
+            yield _wrong(tables, f"`{name}` of {id} is no fingerprint", *path)
+
+
+def _broken(tables: Tables, lock: Lock) -> Iterator[Diagnostic]:
+    """Reviews that nobody can have made."""
+    for id, review in lock.reviews.items():
+        told = tables.data[_TABLE][id]
+        if told["seal"] != review.seal:
+            what = f"the review of {id} is not as `fretc lock` wrote it: somebody has edited it"
+            yield _wrong(tables, what, _TABLE, id, "seal")
+        elif is_to_come(review.date):
+            what = f"the review of {id} is of {review.date}, a day that is still to come"
+            yield _wrong(tables, what, _TABLE, id, "date")
+
+
+def _older(tables: Tables) -> Diagnostic:
+    return Diagnostic(
+        Code.BAD_LOCK,
+        "the lock was written by an earlier version of fretc, whose fingerprints are others",
+        tables.place("schema"),
+        help="keep it under another name, look at what was accepted, and review anew: `fretc lock`",
+    )
+
+
+def _wrong(tables: Tables, what: str, *path: str) -> Diagnostic:
+    return Diagnostic(
+        Code.BAD_LOCK,
+        what,
+        tables.place(*path),
+        help="take the file from your repository again, or review anew: `fretc lock`",
+    )
+
+
+def _review(id: str, told: Mapping[str, Any]) -> Review:
+    return Review(
+        requirement=id,
+        **{name: told[name] for name in _TEXTS},
+        prints={_node(name): sha for name, sha in told["fingerprints"].items()},
+        verdicts=told["verdicts"],
+    )
+
+
+def _node(text: str) -> Node:
+    kind, _, name = text.partition(":")
+    return Node(kind, name)
+
+
+# Comparing -------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True)
+class Standing:
+    """A requirement as it is now, beside its review."""
+
+    chain: Chain
+    review: Review | None
+    """None: it has never been reviewed, or the review has been taken back."""
+
+    suspects: tuple[Suspect, ...]
+    """The links that no longer stand on what was reviewed; none where nothing was."""
+    changes: tuple[Node, ...]
+    """Everything that is not as it was reviewed."""
+
+    @property
+    def is_suspect(self) -> bool:
+        """Whether anything that its review rests on has changed."""
+        return any(suspect.link.target.kind == REVIEW for suspect in self.suspects)
+
+
+def standings(chains: Sequence[Chain], lock: Lock | None) -> tuple[Standing, ...]:
+    """Each requirement beside its review."""
+    reviews = lock.reviews if lock else {}
+    return tuple(_standing(chain, reviews.get(chain.requirement)) for chain in chains)
+
+
+def _standing(chain: Chain, review: Review | None) -> Standing:
+    if review is None:
+        return Standing(chain, None, (), ())
+    known = review.prints
+    return Standing(chain, review, suspects(chain, known), changed(chain.prints, known))
+
+
+@dataclass(frozen=True, slots=True)
+class Withdrawn:
+    """A requirement that was reviewed when it was claimed, and is claimed no more."""
+
+    review: Review
+    retired: bool
+    """It is still there, and was retired since; else it is not among the requirements."""
+    successor: str = ""
+    """The requirement that has its sentence now, and had none when it was reviewed."""
+
+    @property
+    def text(self) -> str:
+        """In a sentence, with what the runs had shown of it."""
+        how = "is retired now" if self.retired else "is not among the requirements any more"
+        renamed = f"; {self.successor} has its sentence" if self.successor else ""
+        return f"{self.review.requirement} was reviewed ({self.review.shown}) and {how}{renamed}"
+
+
+def withdrawn(
+    requirements: Iterable[Requirement], chains: Iterable[Chain], lock: Lock | None
+) -> tuple[Withdrawn, ...]:
+    """What the lock says was claimed, and is not any more: removed, renamed, split or retired."""
+    if lock is None:
+        return ()
+    status = {requirement.id: requirement.status for requirement in requirements}
+    new = {
+        chain.prints.get(Node(SENTENCE, chain.requirement)): chain.requirement
+        for chain in chains
+        if chain.requirement not in lock.reviews
+    }
+    return tuple(
+        Withdrawn(
+            review,
+            id in status,
+            new.get(review.prints.get(Node(SENTENCE, id)), "") if id not in status else "",
+        )
+        for id, review in lock.reviews.items()
+        if review.was_in_force and status.get(id, "retired") == "retired"
+    )
+
+
+def told(found: Sequence[Withdrawn], path: str) -> tuple[Diagnostic, ...]:
+    """F511 or F540 for each requirement that was withdrawn since its review."""
+    return tuple(
+        Diagnostic(
+            Code.RETIRED_SINCE_REVIEW if one.retired else Code.ORPHANED_REVIEW,
+            one.text,
+            Source(path, "").span(),
+            help=f"if that is meant, accept it: `fretc lock {one.review.requirement} ...`",
+            severity=Severity.WARNING,
+        )
+        for one in found
+    )

@@ -1,0 +1,151 @@
+"""`waivers.toml`: why a requirement may stand without being shown, who says so, and until when.
+
+A waiver hides nothing: the verdict that it covers is shown beside it. It ends by itself.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from datetime import date
+from typing import Any
+
+from compiler.files.dates import is_date
+from compiler.files.text_files import read as read_text
+from fretc.audit.measurements.confidence_intervals import REFUTED
+from fretish.bindings.canonical import digest
+from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity, suggestion
+from fretish.diagnostics.source import Span
+from fretish.reading.toml_text import Tables, unknown_key
+from fretish.reading.toml_text import read as read_tables
+from monitors import kernel
+
+NAME = "waivers.toml"
+_FIELDS = ("verdict", "reason", "by", "role", "granted", "expires")
+UNFORMALIZED, NOT_EXERCISED = "unformalized", "not exercised"
+VERDICTS = (
+    kernel.VIOLATED,
+    REFUTED,
+    UNFORMALIZED,
+    kernel.NO_DATA,
+    kernel.INCONCLUSIVE,
+    kernel.VACUOUS,
+    NOT_EXERCISED,
+)
+"""What a waiver may cover: verdicts that do not show a requirement. That something has changed
+since is none of them: what somebody waived was another thing."""
+
+
+@dataclass(frozen=True, slots=True)
+class Waiver:
+    """One requirement, and why it need not be shown up to a day."""
+
+    requirement: str
+    verdict: str
+    """The one that it covers: one of `VERDICTS`."""
+    reason: str
+    by: str
+    role: str
+    granted: str
+    expires: str
+    """The last day on which it counts; both dates as `2026-11-22`."""
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+    @property
+    def seal(self) -> str:
+        """SHA-256 of all of it, as it is signed."""
+        return digest([self.requirement, *(getattr(self, name) for name in _FIELDS)])
+
+    def covers(self, day: str) -> bool:
+        """Whether it counts on that day."""
+        return self.granted <= day <= self.expires
+
+
+def read(
+    path: str, known: Sequence[str] | None, day: str
+) -> tuple[Mapping[str, Waiver], tuple[Diagnostic, ...]]:
+    """The waivers of a file, and all that there is to say of them.
+
+    Args:
+        path: the file.
+        known: the ids of the requirements; None: any may be waived.
+        day: on which they are to count; one that does not is told as a warning.
+    """
+    source = read_text(path)
+    if isinstance(source, Diagnostic):
+        return {}, (source,)
+    tables = read_tables(source.span(), Code.BAD_WAIVER, "the waivers file")
+    if isinstance(tables, Diagnostic):
+        return {}, (tables,)
+    wrong = tuple(d for id, told in tables.data.items() for d in _mistakes(tables, id, told, known))
+    if wrong:
+        return {}, wrong
+    waivers = {
+        id: Waiver(id, **told, span=tables.value(id, "verdict")) for id, told in tables.data.items()
+    }
+    return waivers, tuple(
+        _ended(tables, waiver) for waiver in waivers.values() if not waiver.covers(day)
+    )
+
+
+def _mistakes(
+    tables: Tables, id: str, told: Any, known: Sequence[str] | None
+) -> Iterator[Diagnostic]:
+    if not isinstance(told, dict):
+        yield _wrong(tables, f"`{id}` is no waiver", f"write `[{id}]`, then its fields", id)
+        return
+    if known is not None and id not in known:
+        near = suggestion(id, known)
+        mend = f"did you mean `{near}`?" if near else "name a requirement of the project"
+        yield _wrong(tables, f"{id} is waived, and is not among the requirements", mend, id)
+    for key in told:
+        if key not in _FIELDS:
+            yield unknown_key(Code.BAD_WAIVER, key, _FIELDS, tables.place(id, key), f"[{id}]")
+    for name in _FIELDS:
+        value = told.get(name)
+        if name == "verdict" and value not in VERDICTS:
+            yield _no_verdict(tables, id, value)
+        elif not isinstance(value, str) or not value.strip():
+            yield _wrong(
+                tables, f"the waiver of {id} needs `{name}`", f'add `{name} = "..."`', id, name
+            )
+        elif name in ("granted", "expires") and not is_date(value):
+            mend = f'write it as `"{date(2026, 11, 22).isoformat()}"`'
+            yield _wrong(tables, f"`{value}` is no date", mend, id, name)
+
+
+def _no_verdict(tables: Tables, id: str, value: object) -> Diagnostic:
+    """A waiver that named none would excuse whatever comes later."""
+    listed = ", ".join(f"`{word}`" for word in VERDICTS)
+    if value is None:
+        what, mend = f"the waiver of {id} does not say which verdict it covers", 'add `verdict = "'
+        return _wrong(tables, what, f'{mend}no data"`; it may be {listed}', id, "reason")
+    near = suggestion(str(value), VERDICTS)
+    mend = f"did you mean `{near}`?" if near else f"it may be {listed}"
+    return _wrong(tables, f"`{value}` is no verdict that can be waived", mend, id, "verdict")
+
+
+def idle(waiver: Waiver, verdict: str) -> Diagnostic:
+    """F543: the requirement has another verdict than the one that is waived."""
+    return Diagnostic(
+        Code.IDLE_WAIVER,
+        f"the waiver of {waiver.requirement} is for `{waiver.verdict}`, and the verdict is "
+        f"`{verdict}`: it covers nothing",
+        waiver.span,
+        help="take it out, or have one granted for what is there now",
+        severity=Severity.WARNING,
+    )
+
+
+def _wrong(tables: Tables, what: str, mend: str, *path: str) -> Diagnostic:
+    return Diagnostic(Code.BAD_WAIVER, what, tables.value(*path), help=mend)
+
+
+def _ended(tables: Tables, waiver: Waiver) -> Diagnostic:
+    return Diagnostic(
+        Code.EXPIRED_WAIVER,
+        f"the waiver of {waiver.requirement} counts from {waiver.granted} to {waiver.expires} only",
+        tables.value(waiver.requirement, "expires"),
+        help="show the requirement, or have the waiver granted anew",
+        severity=Severity.WARNING,
+    )

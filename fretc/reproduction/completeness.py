@@ -1,0 +1,118 @@
+"""What evidence must have: each requirement in force in each run, and the runs that are known.
+
+What is missing is a difference: a result that is left out is not better than one that was changed.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cache, partial
+from typing import Any
+
+from fretc.report.traceability.chain import LOG
+from fretc.report.traceability.lock import Lock, Review
+from fretc.reproduction.outcome import FILE, Rechecked, differs, unknown
+from fretish.reading.natural_order import natural
+
+Prints = Callable[[str], Collection[str]]
+"""Place of a log → each SHA-256 that it is known by: of all of it, and of its summary."""
+
+
+@dataclass(frozen=True, slots=True)
+class Scope:
+    """What evidence is held against."""
+
+    claimed: tuple[str, ...]
+    """The requirements in force, or those of them that are asked for."""
+    lock: Lock | None = None
+    part: bool = False
+    """Whether others in force are not asked for."""
+
+
+def incomplete(
+    whole: Mapping[str, Any], scope: Scope, places: Mapping[str, str], prints: Prints
+) -> Iterator[Rechecked]:
+    """All that is missing, there twice, or not what is known of it.
+
+    Args:
+        whole: the evidence.
+        scope: what it is held against.
+        places: run → where its log is now.
+        prints: for logs that were looked at more or less closely when they were reviewed.
+    """
+    yield from _requirements(whole, scope)
+    yield from _results(whole, scope)
+    if scope.lock is not None:
+        once = cache(prints)
+        known = {run: partial(once, place) for run, place in places.items()}
+        yield from _reviewed(whole, scope, scope.lock, known)
+
+
+def _requirements(whole: Mapping[str, Any], scope: Scope) -> Iterator[Rechecked]:
+    named = Counter(told["id"] for told in whole["requirements"])
+    for id in scope.claimed:
+        if not named[id]:
+            yield differs(FILE, id, f"{id} is claimed and the evidence does not name it")
+    for id, count in named.items():
+        if count > 1:
+            yield differs(FILE, id, "it is named twice")
+
+
+def _results(whole: Mapping[str, Any], scope: Scope) -> Iterator[Rechecked]:
+    """Each run tells of each requirement, once."""
+    found = Counter((result["run"], result["requirement"]) for result in whole["results"])
+    named = {told["id"] for told in whole["requirements"]}
+    for run in dict.fromkeys(run for run, _ in found):
+        here = {id for other, id in found if other == run}
+        for id in sorted(named | here | {*scope.claimed}, key=natural):
+            count = found[run, id]
+            if count > 1:
+                yield differs(run, id, "it is told twice")
+            elif not count and id in scope.claimed:
+                yield differs(run, id, f"{id} is claimed and the evidence has no result of it")
+            elif not count:
+                yield differs(run, id, "its result is left out")
+            elif id not in named:
+                yield differs(run, id, "the file does not name it among its requirements")
+
+
+# The lock ---------------------------------------------------------------------------------------
+
+
+_Known = Mapping[str, Callable[[], Collection[str]]]
+"""Run whose log is there → each SHA-256 that it is known by."""
+
+
+def _reviewed(
+    whole: Mapping[str, Any], scope: Scope, lock: Lock, prints: _Known
+) -> Iterator[Rechecked]:
+    for id, review in lock.reviews.items():
+        if id in scope.claimed:
+            told = [result for result in whole["results"] if result["requirement"] == id]
+            yield from _runs(review, told, prints)
+        elif review.was_in_force and not scope.part:
+            yield differs(FILE, id, "it was claimed when it was reviewed, and is not any more")
+
+
+def _runs(review: Review, told: Sequence[Mapping[str, Any]], prints: _Known) -> Iterator[Rechecked]:
+    """The runs of one review; a log may have another name by now."""
+    known = {sha for result in told for sha in _hashes(result)}
+    runs = {result["run"] for result in told}
+    for node, sha in review.prints.items():
+        if node.kind != LOG or (sha and sha in known):
+            continue
+        if node.name not in runs:
+            why = "the lock names this run and the evidence has no result of it"
+            yield differs(node.name, review.requirement, why)
+        elif node.name not in prints:
+            why = "its log is not found, to be held against the lock"
+            yield unknown(node.name, review.requirement, why)
+        elif sha not in prints[node.name]():
+            why = "its log is not the one that was reviewed"
+            yield differs(node.name, review.requirement, why)
+
+
+def _hashes(result: Mapping[str, Any]) -> tuple[str, ...]:
+    return tuple(sha for name, sha in result["hashes"].items() if name in ("log", "log_summary"))

@@ -1,0 +1,168 @@
+"""A manifest: which logs there must be, each with its SHA-256, as `sha256sum` writes them.
+
+Evidence held against it has each of these logs, with that hash, and no other one.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from compiler.files.text_files import file_sha256
+from compiler.files.text_files import read as read_text
+from fretc.logs.storage.folders import METADATA, Folder, folder, is_folder
+from fretc.logs.storage.inputs import is_url
+from fretc.logs.storage.splits import split
+from fretc.reproduction.outcome import Rechecked, differs, unknown
+from fretish.diagnostics.diagnostic import Code, Diagnostic, has_errors
+from fretish.diagnostics.source import Source
+
+_LINE = re.compile(r"(?P<escape>\\?)(?P<sha256>[0-9a-fA-F]{64}) [ *](?P<path>.+)")
+_ESCAPES = {r"\\": "\\", r"\n": "\n", r"\r": "\r"}
+"""What `sha256sum` writes for such a character, in a line that begins with a backslash."""
+
+
+@dataclass(frozen=True, slots=True)
+class Manifest:
+    """A whole file."""
+
+    file: str
+    logs: Mapping[str, str]
+    """Path, as `_normal` gives it, → SHA-256."""
+
+
+def _normal(path: str) -> str:
+    """The same text for `logs/a.mcap` and `./logs//a.mcap`."""
+    return path if is_url(path) else os.path.normpath(path)
+
+
+def read(path: str) -> Manifest | tuple[Diagnostic, ...]:
+    """Read a manifest; F545 for each line that is none."""
+    source = read_text(path)
+    if isinstance(source, Diagnostic):
+        return (source,)
+    found = list(_lines(source))
+    wrong = [one for one in found if isinstance(one, Diagnostic)]
+    logs = [one for one in found if not isinstance(one, Diagnostic)]
+    if not found:
+        wrong.append(_wrong(source, 0, 0, f"`{path}` names no log"))
+    return tuple(wrong) if has_errors(wrong) else Manifest(path, dict(logs))
+
+
+def _lines(source: Source) -> Iterator[tuple[str, str] | Diagnostic]:
+    known: set[str] = set()
+    start = 0
+    for line in source.text.split("\n"):
+        end = start + len(line)
+        text = line.removesuffix("\r")
+        match = _LINE.fullmatch(text)
+        if match is None:
+            if text.strip() and not text.startswith("#"):
+                yield _wrong(source, start, end, "this is no line of `sha256sum`")
+        else:
+            name = _normal(_unescaped(match["path"]) if match["escape"] else match["path"])
+            if name in known:
+                yield _wrong(source, start, end, "the manifest names this log twice")
+            known.add(name)
+            yield name, match["sha256"].lower()
+        start = end + 1
+
+
+def _unescaped(path: str) -> str:
+    return re.sub(r"\\.", lambda match: _ESCAPES.get(match[0], match[0]), path)
+
+
+def _wrong(source: Source, start: int, end: int, what: str) -> Diagnostic:
+    return Diagnostic(
+        Code.BAD_MANIFEST,
+        what,
+        source.span(start, end),
+        help="write the manifest with `sha256sum LOG... > FILE`",
+    )
+
+
+# Evidence beside it -----------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True)
+class Match:
+    """What became of one run, or of one log that is no run."""
+
+    run: str
+    wrong: tuple[Rechecked, ...]
+    """Empty where all of its bytes are those of the manifest."""
+
+
+def matches(
+    whole: Mapping[str, Any], manifest: Manifest, places: Mapping[str, str]
+) -> tuple[Match, ...]:
+    """Every run of evidence beside the manifest, then the logs that no run is of.
+
+    A log counts by its name. Of those whose name is no run's, one of the same hash counts.
+
+    Args:
+        whole: the evidence; that its hashes are right is for others to say.
+        manifest: what it must have.
+        places: run → where its log is now.
+    """
+    left = dict(manifest.logs)
+    told = {result["run"]: result["hashes"].get("log") for result in whole["results"]}
+    parts = {run: _parts(run, places.get(run)) for run in told}
+    named = {run: {path: left.pop(path) for path in parts[run] if path in left} for run in told}
+    for run, listed in named.items():
+        same = next((path for path, sha in left.items() if sha == told[run]), None)
+        if not listed and same is not None:
+            listed[_normal(run)] = left.pop(same)
+    found = [
+        Match(run, tuple(_wrong_of(run, told[run], named[run], parts[run], places.get(run))))
+        for run in told
+    ]
+    why = "the manifest names it and the evidence has no result of it"
+    return (*found, *(Match(path, (differs(path, "", why),)) for path in left))
+
+
+def _parts(run: str, place: str | None) -> Mapping[str, str | None]:
+    """Path of each file that a run is made of, as a manifest names it → where it is now."""
+    try:
+        about = _folder(place) if place is not None and not is_url(place) else None
+    except OSError:
+        about = None
+    if place is not None and isinstance(about, Folder):
+        described = is_folder(place)
+        names = _normal(run) if described else os.path.dirname(_normal(run))
+        files = (*about.files, *([METADATA] if described else []))
+        return {_normal(os.path.join(names, n)): os.path.join(about.path, n) for n in files}
+    return {_normal(run): place}
+
+
+def _folder(place: str) -> Folder | Diagnostic | None:
+    """What lists the files of a run; None where it is one file."""
+    if is_folder(place):
+        return folder(place)
+    return None if os.path.lexists(place) else split(place)
+
+
+def _wrong_of(
+    run: str,
+    told: str | None,
+    listed: Mapping[str, str],
+    parts: Mapping[str, str | None],
+    place: str | None,
+) -> Iterator[Rechecked]:
+    """What is wrong with one run."""
+    if not listed:
+        yield differs(run, "", "the manifest does not name it")
+        return
+    for path, now in parts.items():
+        if path not in listed:
+            if os.path.basename(path) != METADATA:
+                yield differs(run, "", f"the manifest does not name `{path}`")
+            continue
+        sha = told if now == place and told is not None else file_sha256(now) if now else None
+        if sha is None:
+            yield unknown(run, "", "its hash cannot be taken, to be held against the manifest")
+        elif sha != listed[path]:
+            yield differs(run, "", f"the manifest has another hash for `{path}`")

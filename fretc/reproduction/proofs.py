@@ -1,0 +1,198 @@
+"""Whether proofs still stand: each claim of `fretc verify` proved again, and compared.
+
+Only what fretc makes itself is proved again, in the layers and by the provers that the file names.
+A claim about another text, or of a prover that is not installed, is not checked; so is what AJPF
+has said, which no command here asks again.
+"""
+
+from __future__ import annotations
+
+import json
+from collections import Counter
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from dataclasses import replace
+from typing import Any
+
+from compiler.files.edition import __version__
+from compiler.files.templating import to_json
+from compiler.logic.claims import (
+    ALL,
+    COUNTEREXAMPLE,
+    METHODS,
+    NOT_CHECKED,
+    Layer,
+    as_record,
+)
+from compiler.project.folder import Project
+from compiler.targets.python import monitor
+from fretc.reproduction.outcome import PROOFS, Finding, Rechecked, differs, unknown
+from fretc.verification.ajpf_results import evidence as results_of_ajpf
+from fretc.verification.ajpf_results import written
+from fretc.verification.engines.sandbox import Limits
+from fretc.verification.reader import Proof, Proofs
+from fretc.verification.verify import CROSSHAIR, DAFNY, Request, Tell, evidence
+from fretish.diagnostics.diagnostic import Diagnostic
+
+AGENT = "agent"
+"""What claims about an agent of the user's own are filed under."""
+_KEY = ("requirement", "layer", "claim")
+Record = Mapping[str, Any]
+
+
+def reproved(
+    project: Project, proofs: Proofs, limits: Limits, claimed: Collection[str], tell: Tell
+) -> tuple[Rechecked, ...] | Diagnostic:
+    """Prove every claim of a file again.
+
+    Args:
+        project: the requirements as they are now.
+        proofs: the file.
+        limits: of each claim.
+        claimed: the requirements that are asked for.
+        tell: is called before each claim that takes its time.
+    """
+    records = [one for one in proofs.records if _asked(one, project, claimed)]
+    made = _again(project, records, limits, tell)
+    if isinstance(made, Diagnostic):
+        return made
+    return (
+        *_beginning(proofs),
+        *(_compared(told, made) for told in records),
+        *_twice(records),
+        *_left_out(records, made),
+    )
+
+
+def unproved(
+    project: Project, proofs: Sequence[Proof], claimed: Collection[str]
+) -> Iterator[Rechecked]:
+    """The methods that requirements plan, that could be asked again, and that no claim is of."""
+    for requirement in project.requirements:
+        for method in dict.fromkeys(requirement.verify):
+            known = method in METHODS and method != Layer.AJPF
+            own = [one for one in proofs if one.requirement in (requirement.id, *_SHARED)]
+            if requirement.id in claimed and known and not any(_is_of(one, method) for one in own):
+                why = f"{requirement.id} plans `{method}` and no proof says anything of it"
+                yield unknown(PROOFS, requirement.id, why)
+
+
+_SHARED = ("interceptor", AGENT)
+"""Claims that are about no single requirement."""
+
+
+def _is_of(proof: Proof, method: str) -> bool:
+    """Whether it is a result of a planned method."""
+    return method in (*ALL, proof.layer) or method == _prover(proof.engine)
+
+
+def _prover(engine: str) -> str:
+    """The one of `--with`; empty where it is none."""
+    name = engine.casefold().partition(" ")[0]
+    return name if name in (DAFNY, CROSSHAIR) else ""
+
+
+def _asked(record: Record, project: Project, claimed: Collection[str]) -> bool:
+    """Whether a claim is about what is asked for; one about an unknown requirement always is."""
+    known = {requirement.id for requirement in project.requirements}
+    return record["requirement"] in claimed or record["requirement"] not in known
+
+
+# Again ------------------------------------------------------------------------------------------
+
+
+def _again(
+    project: Project, told: Sequence[Record], limits: Limits, tell: Tell
+) -> Sequence[Record] | Diagnostic:
+    """What is found now, of the requirements, in the layers and by the provers that are named."""
+    named = {record["requirement"] for record in told}
+    own = [record for record in told if not _prover(record["engine"])]
+    layers = [layer for layer in Layer if any(record["layer"] == layer for record in own)]
+    if AGENT in named:
+        layers = [layer for layer in layers if layer != Layer.AGENT]
+    rules = [rule for rule in project.rules if rule.id in named and monitor.refuse(rule) is None]
+    asked = Request(
+        layers,
+        limits,
+        provers=sorted({_prover(record["engine"]) for record in told} - {""}),
+        ajpf=results_of_ajpf(rules, written())[0] if Layer.AJPF in layers else (),
+    )
+    found = evidence(replace(project, rules=tuple(rules)), asked, tell)
+    if isinstance(found, Diagnostic):
+        return found
+    plain: list[Record] = json.loads(to_json([as_record(one) for one in found]))
+    return plain
+
+
+def _key(record: Record) -> tuple[str, ...]:
+    return (*(record[name] for name in _KEY), _prover(record["engine"]))
+
+
+# Compared ---------------------------------------------------------------------------------------
+
+
+def _beginning(proofs: Proofs) -> Iterator[Rechecked]:
+    if proofs.fretc != __version__:
+        yield differs(PROOFS, "", f"this is fretc {__version__}")
+    if not proofs.records:
+        yield unknown(PROOFS, "", f"`{proofs.file}` tells of no claim")
+
+
+def _compared(told: Record, made: Sequence[Record]) -> Rechecked:
+    requirement, claim = told["requirement"], f"{told['layer']}: {told['claim']}"
+    now = next((record for record in made if _key(record) == _key(told)), None)
+    if now is None:
+        return _gone(told, claim)
+    others = told["artefacts"].keys() - now["artefacts"].keys()
+    if others:
+        why = f"it is about `{min(others)}`, which is not made here"
+        return unknown(PROOFS, requirement, why, claim=claim)
+    if now["result"] == NOT_CHECKED:
+        return unknown(PROOFS, requirement, now["detail"], claim=claim)
+    reasons = tuple(_differences(told, now))
+    if told["result"] == NOT_CHECKED and now["result"] != COUNTEREXAMPLE:
+        why = f"it was not checked, says the file; it is {now['result']} now"
+        return unknown(PROOFS, requirement, why, claim=claim)
+    if reasons:
+        return differs(PROOFS, requirement, *reasons, claim=claim)
+    if told["layer"] == Layer.AJPF:
+        return unknown(PROOFS, requirement, "AJPF itself is not asked again", claim=claim)
+    return Rechecked(PROOFS, requirement, Finding.STANDS, (), claim)
+
+
+def _gone(told: Record, claim: str) -> Rechecked:
+    """A claim that was not made again."""
+    if told["layer"] == Layer.AJPF:
+        why = "the file of AJPF's result is not there"
+    elif told["layer"] == Layer.AGENT and told["requirement"] == AGENT:
+        why = "it is about an agent that is not made here"
+    else:
+        return differs(PROOFS, told["requirement"], "no such claim is made now", claim=claim)
+    return unknown(PROOFS, told["requirement"], why, claim=claim)
+
+
+def _differences(told: Record, now: Record) -> Iterator[str]:
+    if told["result"] != now["result"]:
+        yield f"it is {now['result']}, and was {told['result']}"
+    if told["artefacts"] != now["artefacts"]:
+        yield "it is about other texts than those that are made now"
+    others = [
+        name
+        for name in sorted({*told, *now} - {"result", "artefacts"})
+        if json.dumps(told.get(name), sort_keys=True) != json.dumps(now.get(name), sort_keys=True)
+    ]
+    if others:
+        yield f"it differs in {', '.join(others)}"
+
+
+def _twice(told: Sequence[Record]) -> Iterator[Rechecked]:
+    for (requirement, layer, claim, _), count in Counter(map(_key, told)).items():
+        if count > 1:
+            yield differs(PROOFS, requirement, "it is told twice", claim=f"{layer}: {claim}")
+
+
+def _left_out(told: Sequence[Record], made: Sequence[Record]) -> Iterator[Rechecked]:
+    known = {_key(record) for record in told}
+    for record in made:
+        if _key(record) not in known:
+            claim = f"{record['layer']}: {record['claim']}"
+            yield differs(PROOFS, record["requirement"], "it is left out", claim=claim)

@@ -1,0 +1,75 @@
+"""`fretc FILE...` and `fretc COMMAND ...`: which is which."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import click
+
+from fretc.terminal.output import stop
+from fretish.diagnostics.diagnostic import Code, Diagnostic, suggestion
+
+_OWN = ("-h", "--help", "--version", "--parents")
+"""Options of `fretc` itself."""
+DEFAULT = "compile"
+"""The command that `fretc FILE...` stands for."""
+
+
+class Commands(click.Group):
+    """Sub-commands, and `FILE...` without one; a word that is neither gets a suggestion."""
+
+    def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
+        """Put the default command before a file."""
+        if args and args[0] not in self.commands and args[0].partition("=")[0] not in _OWN:
+            if not args[0].startswith("-") and not _is_path(args[0]):
+                stop(_unknown_command(args[0], [*self.commands]))
+            args = [DEFAULT, *args]
+        return super().parse_args(ctx, args)
+
+    def list_commands(self, ctx: click.Context) -> list[str]:
+        """All commands that have a name."""
+        return [name for name in self.commands if name != DEFAULT]
+
+    def format_usage(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        """Both forms."""
+        formatter.write_usage("fretc", "FILE... [--emit KIND]\n       fretc COMMAND ...", "Usage: ")
+
+
+class Compile(click.Command):
+    """The default command: it has no name of its own."""
+
+    def format_usage(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        """As it is typed."""
+        formatter.write_usage("fretc", "FILE... [OPTIONS]")
+
+
+class Grouped(click.Command):
+    """A command with many options: its help shows them under headings."""
+
+    def __init__(self, *, headings: Mapping[str, Sequence[str]], **attributes: Any) -> None:
+        super().__init__(**attributes)
+        self._headings = headings
+
+    def format_options(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        """The options under each heading in its order; those under none come last."""
+        options = {o.name: o for o in self.get_params(ctx) if isinstance(o, click.Option)}
+        named = {heading: [options.pop(n) for n in ns] for heading, ns in self._headings.items()}
+        for heading, some in (*named.items(), ("Other", [*options.values()])):
+            with formatter.section(heading):
+                formatter.write_dl([r for o in some if (r := o.get_help_record(ctx)) is not None])
+
+
+def _is_path(word: str) -> bool:
+    return word == "-" or "/" in word or "." in word or Path(word).exists()
+
+
+def _unknown_command(word: str, commands: Sequence[str]) -> Diagnostic:
+    near = suggestion(word, [c for c in commands if c != DEFAULT])
+    known = ", ".join(c for c in commands if c != DEFAULT)
+    return Diagnostic(
+        Code.UNKNOWN_COMMAND,
+        f"`{word}` is no command of fretc, and no file",
+        help=f"did you mean `fretc {near}`?" if near else f"there are {known}; or name a file",
+    )

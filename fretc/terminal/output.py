@@ -1,0 +1,93 @@
+"""What the commands print, write and exit with."""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Iterable, Mapping, Sequence
+from contextlib import suppress
+from pathlib import Path
+from typing import NoReturn
+
+import click
+
+from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.diagnostics.rendering import render_all, visible
+
+SHOWN, VIOLATION, BAD, NOT_SHOWN, INTERRUPTED = 0, 1, 2, 3, 130
+"""Exit status: all shown, a violation, bad use or input, something not shown, Ctrl-C."""
+
+
+def stop(*diagnostics: Diagnostic) -> NoReturn:
+    """Say it and exit with 2."""
+    say(diagnostics)
+    raise SystemExit(BAD)
+
+
+def say(diagnostics: Sequence[Diagnostic]) -> None:
+    """Print them on standard error."""
+    if diagnostics:
+        say_line(render_all(diagnostics))
+
+
+def say_also(diagnostics: Sequence[Diagnostic], earlier: Sequence[Diagnostic]) -> None:
+    """Print them below others, if any of both there are."""
+    if diagnostics and earlier:
+        say_line("")
+    say(diagnostics)
+
+
+def say_line(text: str) -> None:
+    """Print a line on standard error; where that cannot be, the exit status still tells."""
+    with suppress(OSError):
+        click.echo(text, err=True)
+
+
+def deliver(files: Mapping[Path, str | bytes], protected: Iterable[str] = ()) -> None:
+    """Write the texts, all or none, and name them.
+
+    Args:
+        files: where each text goes; `-` prints it.
+        protected: files that are read, which no output may replace.
+    """
+    from compiler.files.text_files import write
+
+    protect(files, protected)
+    targets = [os.path.realpath(path) for path in files]
+    for path, target in zip(files, targets, strict=True):
+        if targets.count(target) > 1:
+            stop(not_written(str(path), "two outputs would go there"))
+    printed = files.get(Path("-"))
+    if printed is not None:
+        click.echo(printed, nl=False)
+    written = {path: text for path, text in files.items() if path != Path("-")}
+    wrong = write(written)
+    if wrong is not None:
+        stop(wrong)
+    for path in written:
+        say_line(visible(f"wrote {path}"))
+
+
+def protect(outputs: Iterable[Path], protected: Iterable[str]) -> None:
+    """Stop where an output would replace a file that is read."""
+    inputs = {os.path.realpath(path): path for path in protected if path != "-"}
+    for path in outputs:
+        target = os.path.realpath(path)
+        if path != Path("-") and target in inputs:
+            stop(not_written(str(path), f"it is `{inputs[target]}`, which is read"))
+
+
+def coloured(lines: Sequence[tuple[str, str | None]]) -> str:
+    """The lines, each in its colour where standard output is a terminal that wants colours."""
+    plain = not sys.stdout.isatty() or "NO_COLOR" in os.environ
+    return "".join(
+        f"{text if plain or colour is None else click.style(text, fg=colour)}\n"
+        for text, colour in lines
+    )
+
+
+def not_written(path: str, why: str) -> Diagnostic:
+    """F905."""
+    return Diagnostic(
+        Code.NOT_WRITTEN, f"`{path}` cannot be written: {why}", help="name another file"
+    )

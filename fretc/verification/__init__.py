@@ -1,0 +1,1 @@
+"""Proofs about what the compiler makes: the layers of `fretc verify`."""

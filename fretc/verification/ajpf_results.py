@@ -1,0 +1,365 @@
+"""What AJPF itself said of bundles, read from the results that their `run.py` has written.
+
+Nothing in a file is trusted: a wrong shape is F616. A result counts only where it is about the
+texts that fretc makes now; what a result concludes is not read but concluded again, from each of
+its checks, against the checks that a bundle has now, and against the logs where they lie beside it.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path, PurePath
+
+from compiler.files.checked_json import MisshapenError, Shape, plain
+from compiler.files.text_files import content, sha256
+from compiler.files.text_files import read as read_text
+from compiler.formalization.rule import Rule
+from compiler.logic.claims import (
+    COUNTEREXAMPLE,
+    Counterexample,
+    Evidence,
+    Layer,
+    NotChecked,
+    Proved,
+    Result,
+    Trace,
+    Vacuous,
+    as_record,
+)
+from compiler.targets.ajpf import bundle
+from compiler.targets.ajpf import properties as ajpf
+from compiler.targets.ajpf.runner import ERROR, HOLDS, SCHEMA, VIOLATED, verdict
+from compiler.targets.target import DEFAULT, Options
+from fretc.verification.reader import Proof
+from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
+from fretish.diagnostics.source import Source
+from fretish.reading.recursion import deep
+
+PLACES = "build/*_ajpf/result.json"
+"""Where `--emit ajpf-bundle -o build/` and `run.py` leave them."""
+_UNHASHED = ("README.md",)
+"""Of a bundle, what no verdict depends on."""
+_ASSUMED = (
+    "the environment shows the triggers freely, anew at the start, at every action and whenever "
+    "the agent is idle, for ever (Env.java)",
+    "AJPF is right where it says that an agent which loops keeps a property: that is its own "
+    "word, and the layer agent looks at the same texts",
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Check:
+    """One question to AJPF, and its answer."""
+
+    role: str
+    key: str
+    jpf: str
+    text: str
+    """The property."""
+    expected: str
+    told: str
+    why: str
+    seconds: float
+    states: int | None
+    log: str
+    """The name of the file that has what AJPF printed."""
+    log_sha256: str
+    trace: Trace | None
+
+    @property
+    def question(self) -> tuple[str, str, str, str, str]:
+        """What was asked, and what AJPF was expected to say."""
+        return self.role, self.key, self.jpf, self.text, self.expected
+
+
+@dataclass(frozen=True, slots=True)
+class AjpfResult:
+    """A whole file."""
+
+    file: str
+    requirement: str
+    weakened: bool
+    own: tuple[str, str] | None
+    """File and SHA-256 of an agent of the user's own, checked in place of that of the bundle."""
+    engine: str
+    files: Mapping[str, str]
+    checks: tuple[Check, ...]
+
+
+def written() -> tuple[str, ...]:
+    """The results at their usual place."""
+    return tuple(sorted(map(str, Path().glob(PLACES))))
+
+
+def evidence(
+    rules: Sequence[Rule], paths: Sequence[str]
+) -> tuple[tuple[Evidence, ...], tuple[Diagnostic, ...]]:
+    """A line for each result, in the order of the paths, and what there is to say of the files.
+
+    Args:
+        rules: the requirements as they are now.
+        paths: files of `run.py`.
+
+    Returns:
+        The evidence; F616 for what cannot be read, F617 for a requirement that is not there.
+    """
+    known = {rule.id: rule for rule in rules}
+    lines: list[Evidence] = []
+    said: list[Diagnostic] = []
+    for path in paths:
+        found = read(path)
+        if isinstance(found, Diagnostic):
+            said.append(found)
+        elif found.requirement not in known:
+            said.append(_foreign(found))
+        else:
+            lines.append(_line(known[found.requirement], found))
+    return tuple(lines), tuple(said)
+
+
+def merged(proofs: Sequence[Proof], lines: Sequence[Evidence]) -> tuple[Proof, ...]:
+    """The proofs of a file, with these lines in place of what it says of AJPF.
+
+    What it says of AJPF and no result is there for is kept as not checked, since nothing holds it
+    against what is made now; a counterexample stays one.
+    """
+    fresh = {line.requirement for line in lines}
+    old = [
+        _unheld(proof) if proof.layer == Layer.AJPF else proof
+        for proof in proofs
+        if proof.layer != Layer.AJPF or proof.requirement not in fresh
+    ]
+    return (*old, *map(_proof, lines))
+
+
+def _unheld(proof: Proof) -> Proof:
+    if proof.result == COUNTEREXAMPLE:
+        return proof
+    reason = "the file of AJPF's result is not there, to be held against what is made now"
+    return _proof(
+        Evidence(
+            proof.requirement,
+            Layer.AJPF,
+            proof.claim,
+            NotChecked(f"it was {proof.result}; {reason}"),
+            proof.engine,
+            proof.assumptions,
+            proof.artefacts,
+        )
+    )
+
+
+def _proof(line: Evidence) -> Proof:
+    record = as_record(line)
+    return Proof(
+        line.requirement,
+        str(line.layer),
+        line.claim,
+        record["result"],
+        record["detail"],
+        line.assumptions,
+        line.engine,
+        line.artefacts,
+    )
+
+
+# Files -----------------------------------------------------------------------------------------
+
+
+def read(path: str) -> AjpfResult | Diagnostic:
+    """Read and check a file of `run.py`; F616."""
+    source = read_text(path)
+    if isinstance(source, Diagnostic):
+        return source
+    try:
+        return _result(Shape(plain(source.text)), path)
+    except MisshapenError as error:
+        return _wrong(source, f"is not what `run.py` writes: {error}")
+    except (ValueError, AssertionError):
+        return _wrong(source, "is not JSON that fretc can read")
+
+
+def _wrong(source: Source, what: str) -> Diagnostic:
+    return Diagnostic(
+        Code.BAD_AJPF_RESULT,
+        f"`{source.name}` {what}",
+        Source(source.name, "").span(),
+        help="run AJPF again: `python3 run.py` in the folder of the bundle",
+    )
+
+
+def _foreign(found: AjpfResult) -> Diagnostic:
+    return Diagnostic(
+        Code.FOREIGN_AJPF_RESULT,
+        f"`{found.file}` is about {found.requirement}, and there is no such requirement",
+        Source(found.file, "").span(),
+        "it counts for nothing: name the requirement's file, or remove the result",
+        Severity.WARNING,
+    )
+
+
+def _result(file: Shape, path: str) -> AjpfResult:
+    if file.field("schema").text() != SCHEMA:
+        raise file.field("schema").wrong(f"`{SCHEMA}`")
+    own, commit = file.field("agent"), file.field("mcapl").field("commit")
+    mcapl = "of unknown commit" if commit.value is None else commit.text()[:12]
+    return AjpfResult(
+        path,
+        file.field("requirement").text(),
+        file.field("weakened").value is not None,
+        None if own.value is None else (own.field("file").text(), own.field("sha256").text()),
+        f"AJPF, MCAPL {mcapl}, Java {file.field('java').text()}",
+        {name: value.text() for name, value in file.field("files").fields().items()},
+        tuple(map(_check, file.field("checks").items())),
+    )
+
+
+def _check(at: Shape) -> Check:
+    states, trace = at.field("states"), at.field("trace")
+    return Check(
+        at.field("role").text(),
+        at.field("key").text(),
+        at.field("jpf").text(),
+        at.field("property").text(),
+        at.field("expected").one_of((HOLDS, VIOLATED)),
+        at.field("told").one_of((HOLDS, VIOLATED, ERROR)),
+        at.field("why").text(),
+        at.field("seconds").number(),
+        states.field("new").count() if states.has("new") else None,
+        PurePath(at.field("log").text()).name,
+        at.field("log_sha256").text(),
+        None if trace.value is None else _trace(trace),
+    )
+
+
+def _trace(at: Shape) -> Trace:
+    names = tuple(name.text() for name in at.field("names").items())
+    rows = tuple(
+        tuple(None if cell.value is None else cell.flag() for cell in row.items())
+        for row in at.field("rows").items()
+    )
+    actions = tuple(action.text() for action in at.field("actions").items())
+    cycle = at.field("cycle")
+    if any(len(row) != len(names) for row in rows) or len(actions) != len(rows):
+        raise at.wrong("a table")
+    back = None if cycle.value is None else cycle.count()
+    if back is not None and back >= len(rows):
+        raise cycle.wrong("the number of a row")
+    return Trace(names, rows, actions, back)
+
+
+# What counts -----------------------------------------------------------------------------------
+
+
+@deep
+def _line(rule: Rule, found: AjpfResult) -> Evidence:
+    options = Options(weaken=True) if found.weakened else DEFAULT
+    main = next((c for c in found.checks if c.role == "requirement"), None)
+    stated = f": {main.text}" if main else ""
+    which = "its bundle"
+    if found.own:
+        which = f"{Path(found.own[0]).name} (SHA-256 {found.own[1][:12]})"
+    folder = bundle.package(rule)
+    hashes = {
+        f"{folder}/{name}": hashed
+        for name, hashed in found.files.items()
+        if name not in _UNHASHED and not (found.own and name == "SIF.gwen")
+    }
+    if found.own:
+        hashes[Path(found.own[0]).name] = found.own[1]
+    reason = _reason(rule, found, options)
+    said = _concluded(found)
+    if reason is not None:
+        was = "it was refuted; " if isinstance(said, Counterexample) else ""
+        said = NotChecked(f"{was}{reason}")
+    loss = ajpf.weakened(rule, options)
+    if isinstance(said, Proved) and loss is not None:
+        said = NotChecked(f"what AJPF shows is weaker than {rule.id}: {loss}")
+    claim = f"AJPF: every run of the agent of {which} keeps {rule.id}{stated}"
+    return Evidence(rule.id, Layer.AJPF, claim, said, found.engine, _ASSUMED, hashes)
+
+
+def _reason(rule: Rule, found: AjpfResult, options: Options) -> str | None:
+    """Why the result says nothing of what is made now; None: it does."""
+    refused = bundle.refusal(rule, options)
+    if refused is not None:
+        return f"no bundle is made of {rule.id} any more: {refused.code.number} {refused.message}"
+    artifacts = bundle.emit([rule], options)
+    made = {artifact.path.name: artifact.text for artifact in artifacts}
+    manifest = json.loads(made.pop("manifest.json"))
+    stale = sorted(_stale(found, {name: sha256(text) for name, text in made.items()}))
+    if stale:
+        verb = "is" if len(stale) == 1 else "are"
+        return f"{', '.join(stale)} {verb} not made like that any more: run AJPF again"
+    asked = {tuple(map(check.get, _QUESTION)) for check in manifest["checks"]}
+    if asked != {check.question for check in found.checks} or len(asked) != len(found.checks):
+        return "it does not tell of what a bundle asks: run AJPF again"
+    other = next(filter(None, (_otherwise(found.file, check) for check in found.checks)), None)
+    if other is not None or found.own is None:
+        return other
+    return _changed(*found.own)
+
+
+def _otherwise(file: str, check: Check) -> str | None:
+    """Why a log does not say what the result tells of it; None: it does, or is not there.
+
+    A refutation stays one: nothing is asked of its log.
+    """
+    if check.role == "requirement" and check.told == VIOLATED:
+        return None
+    try:
+        told = content(Path(file).parent / "logs" / check.log)
+    except (OSError, ValueError):
+        return None
+    if hashlib.sha256(told).hexdigest() != check.log_sha256:
+        return f"logs/{check.log} is not what AJPF printed then: run AJPF again"
+    said, _ = verdict(told.decode(errors="replace"), 0)
+    if check.told not in (said, ERROR):
+        return f"it tells {check.told} of {check.jpf}, and logs/{check.log} does not"
+    return None
+
+
+_QUESTION = ("role", "key", "jpf", "property", "expected")
+
+
+def _stale(found: AjpfResult, now: Mapping[str, str]) -> Iterator[str]:
+    for name in {*now, *found.files}:
+        ours = found.own is not None and name == "SIF.gwen"
+        if name not in _UNHASHED and not ours and found.files.get(name) != now.get(name):
+            yield name
+
+
+def _changed(file: str, hashed: str) -> str | None:
+    """Why one's own agent is not the one that was checked; None: it is."""
+    try:
+        own = content(file)
+    except (OSError, ValueError):
+        return f"the agent {file} cannot be read, to be held against the one that was checked"
+    if hashlib.sha256(own).hexdigest() != hashed:
+        return f"the agent {file} was changed since: run AJPF again"
+    return None
+
+
+def _concluded(found: AjpfResult) -> Result:
+    """What all checks together show; the refuted requirement first, then what is not known."""
+    checks = found.checks
+    for check in checks:
+        if check.role == "requirement" and check.told == VIOLATED:
+            length = f" of {len(check.trace.rows)} states" if check.trace else ""
+            return Counterexample(f"AJPF found a run{length} that breaks it", check.trace)
+    for check in checks:
+        if check.told == ERROR:
+            return NotChecked(f"{check.jpf}: {check.why}")
+    for check in checks:
+        if check.told != check.expected:
+            what = "the agent without the response keeps it too" * (check.role == "mutant")
+            return Vacuous(what or f"its control {check.key} holds")
+    sizes = ", ".join("?" if c.states is None else f"{c.states:,}" for c in checks)
+    seconds = sum(check.seconds for check in checks)
+    return Proved(
+        f"AJPF says all that is expected of the property, its controls and the mutant ({sizes} "
+        f"states, {seconds:.1f} s)"
+    )

@@ -1,0 +1,1 @@
+"""Other programs and long computations, run with limits."""

@@ -1,0 +1,134 @@
+"""Calls that may take too long or too much: each in a process of its own, with limits.
+
+An engine in C++ cannot be interrupted from Python, and some of them take gigabytes before they
+answer. The process is started anew, not forked: it holds nothing but what the function needs.
+"""
+
+from __future__ import annotations
+
+import multiprocessing
+import resource
+import signal
+import traceback
+from collections.abc import Callable
+from contextlib import suppress
+from dataclasses import dataclass
+from multiprocessing.connection import Connection
+from multiprocessing.context import SpawnProcess
+from typing import Any, ParamSpec, TypeVar
+
+from compiler.files.processes import shield
+
+P = ParamSpec("P")
+R = TypeVar("R")
+
+
+@dataclass(frozen=True, slots=True)
+class Limits:
+    """What a call may take."""
+
+    seconds: int = 60
+    """Of a processor; half a minute and three times as many may pass on the wall clock."""
+    memory: int = 4 * 2**30
+    """Bytes of address space."""
+
+    def __post_init__(self) -> None:
+        assert self.seconds > 0
+        assert self.memory > 0
+
+    @property
+    def wall(self) -> float:
+        """Seconds: other processes take their share, and a process takes time to start."""
+        return 3.0 * self.seconds + 30.0
+
+
+DEFAULT = Limits()
+
+
+@dataclass(frozen=True, slots=True)
+class Stopped:
+    """The call gave no result; it says why, in words."""
+
+    reason: str
+
+
+def confined(
+    limits: Limits, function: Callable[P, R], /, *args: P.args, **kwargs: P.kwargs
+) -> R | Stopped:
+    """The result of the function, or why there is none.
+
+    Whoever is interrupted meanwhile (Ctrl-C) ends the process.
+
+    Args:
+        limits: of time and memory.
+        function: of a module, so that it can be named to another process.
+        args: what can be sent between processes, as can the result.
+        kwargs: likewise.
+
+    Raises:
+        Exception: what the function raises.
+    """
+    shield()
+    context = multiprocessing.get_context("spawn")
+    ours, theirs = context.Pipe(duplex=False)
+    call = (theirs, limits, function, args, kwargs)
+    process = context.Process(target=_serve, args=call, daemon=True)
+    try:
+        process.start()
+        theirs.close()
+        told: R | Stopped = _answer(ours, process, limits)
+        return told
+    finally:
+        if process.pid is not None:
+            process.kill()
+            process.join()
+        ours.close()
+
+
+def _answer(connection: Connection, process: SpawnProcess, limits: Limits) -> Any:
+    if not connection.poll(limits.wall):
+        return Stopped(f"out of time: no answer within {limits.wall:g} s")
+    try:
+        kind, result = connection.recv()
+    except (EOFError, OSError):
+        process.join()
+        return Stopped(_ended(process.exitcode or 0, limits))
+    if kind == "raised":
+        raise result
+    return Stopped(_out_of_memory(limits)) if kind == "memory" else result
+
+
+def _ended(status: int, limits: Limits) -> str:
+    """Why a process ended without a word."""
+    if status in (-signal.SIGXCPU, -signal.SIGKILL):
+        more = "" if status == -signal.SIGXCPU else ", or it was killed"
+        return f"out of time: more than {limits.seconds} s of a processor{more}"
+    how = f"signal {-status}" if status < 0 else f"exit status {status}"
+    return f"the process crashed ({how}); it may have had too little memory"
+
+
+def _out_of_memory(limits: Limits) -> str:
+    return f"out of memory: more than {limits.memory / 2**30:g} GiB"
+
+
+def _serve(
+    connection: Connection,
+    limits: Limits,
+    function: Callable[..., Any],
+    args: tuple[Any, ...],
+    kwargs: dict[str, Any],
+) -> None:
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C goes to all; the first one decides
+    resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+    resource.setrlimit(resource.RLIMIT_CPU, (limits.seconds, limits.seconds + 5))
+    resource.setrlimit(resource.RLIMIT_AS, (limits.memory, limits.memory))
+    told: tuple[str, Any]
+    try:
+        told = "result", function(*args, **kwargs)
+    except MemoryError:
+        told = "memory", None
+    except Exception as error:
+        error.add_note(traceback.format_exc())
+        told = "raised", error
+    with suppress(OSError):
+        connection.send(told)

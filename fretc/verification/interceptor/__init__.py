@@ -1,0 +1,1 @@
+"""The text of an interceptor keeps its contracts."""

@@ -1,0 +1,153 @@
+"""An interceptor's text as a machine that can be put into any state and stepped.
+
+Only its core is executed, once it is known to be pure (`fretc.verification.interceptor.file`): no
+input, no output, no node. The step must not look into velocities, so that opaque commands stand for
+all. Source of that reduction: Wolper, Expressing interesting properties of programs in
+propositional temporal logic, POPL 1986 (data independence).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+from enum import Enum
+from typing import Any
+
+from fretc.verification.interceptor.file import core
+from fretc.verification.interceptor.opaque import InspectedError, Opaque, is_opaque, is_zero
+
+
+class NotAnInterceptorError(Exception):
+    """The text cannot be explored as an interceptor; it says why."""
+
+
+class Heard(Enum):
+    """What an interceptor can hear, as a model tells it apart."""
+
+    STOP = "`true` is heard"
+    RELEASE = "`false` is heard"
+    MOVE = "a command to move is heard"
+    STAND = "a command to stand is heard"
+    SCAN = "a scan is heard"
+    RING = "the timer rings"
+
+
+State = tuple[int | bool, ...]
+"""The fields of an interceptor's state; of the command whether it moves."""
+
+Said = bool | None
+"""Whether what is published moves the wheels; None: nothing is published."""
+
+
+_KEPT, _NEW = Opaque(), Opaque()
+"""Velocities that move: the one that a state holds, and the next one that is heard."""
+
+
+@dataclass(frozen=True, slots=True)
+class Settings:
+    """The options of an interceptor by name, in ticks of its timer."""
+
+    hold: int = 0
+    stop_timeout: int = 0
+    scan_timeout: int = 0
+    command_timeout: int = 0
+    event_driven: bool = False
+    latching: bool = False
+
+
+class Gate:
+    """The step of an interceptor's text, over encoded states, each computed once."""
+
+    def __init__(self, text: str, settings: Settings, most: int = 10**6) -> None:
+        """Raises NotAnInterceptorError where the text is none that can be explored.
+
+        Args:
+            text: with the step.
+            settings: its options.
+            most: states; where there are more, NotAnInterceptorError is raised, too.
+        """
+        self._most = most
+        read = core(text)
+        if isinstance(read, str):
+            raise NotAnInterceptorError(read)
+        self._module = module = read.module
+        named = {field.name: getattr(settings, field.name) for field in fields(settings)}
+        self._options = self._called(module.Options, **named)
+        self._fields = tuple(getattr(module.State, "__dataclass_fields__", ()))
+        if "command" not in self._fields:
+            raise NotAnInterceptorError("its `State` has no `command`")
+        self._events = {
+            Heard.STOP: self._called(module.StopHeard, True),
+            Heard.RELEASE: self._called(module.StopHeard, False),
+            Heard.MOVE: self._called(module.CommandHeard, _NEW),
+            Heard.STAND: self._called(module.CommandHeard, module.ZERO),
+            Heard.SCAN: self._called(module.ScanHeard),
+            Heard.RING: self._called(module.TimerRang),
+        }
+        self._known: dict[tuple[State, Heard], tuple[State, Said]] = {}
+        self._objects: dict[State, Any] = {}
+        self.initial = self._encoded(self._called(module.initial, self._options))
+
+    def hear(self, state: State, heard: Heard) -> tuple[State, Said]:
+        """The state after it, and what is published."""
+        found = self._known.get((state, heard))
+        if found is None:
+            event = self._events[heard]
+            told = self._called(self._module.step, self._objects[state], event, self._options)
+            if type(told) is not tuple or len(told) != 2:
+                raise NotAnInterceptorError("its step gives no pair")
+            found = self._known[state, heard] = self._encoded(told[0]), self._said(told[1])
+        return found
+
+    def stopping(self, state: State) -> bool:
+        """Whether it hands no command on, although sensor and planner have just been heard."""
+        scanned, _ = self.hear(state, Heard.SCAN)
+        _, said = self.hear(scanned, Heard.MOVE)
+        return not said
+
+    def halts(self, state: Any) -> bool:
+        """`halted`, of a state as the text has it."""
+        return bool(self._module.halted(state, self._options))
+
+    def fresh(self) -> Any:
+        """The state at first as the text has it, for a replay."""
+        return self._module.initial(self._options)
+
+    def replayed(self, state: Any, heard: Heard) -> tuple[Any, Said]:
+        """One step of the text itself, nothing encoded and nothing remembered."""
+        after, said = self._module.step(state, self._events[heard], self._options)
+        return after, self._said(said)
+
+    def _called(self, function: Any, *arguments: Any, **named: Any) -> Any:
+        try:
+            return function(*arguments, **named)
+        except InspectedError:
+            raise NotAnInterceptorError("its step looks into a velocity") from None
+        except Exception as error:
+            why = f"{function.__name__} fails: {type(error).__name__}: {error}"
+            raise NotAnInterceptorError(why) from None
+
+    def _encoded(self, state: Any) -> State:
+        if type(state) is not self._module.State:
+            raise NotAnInterceptorError("its step gives no State")
+        values = {name: getattr(state, name) for name in self._fields}
+        moves = self._said(values["command"])
+        if moves is None or not all(
+            type(value) in (bool, int) for name, value in values.items() if name != "command"
+        ):
+            raise NotAnInterceptorError("its State holds something else than it declares")
+        encoded = tuple({**values, "command": moves}.values())
+        if encoded not in self._objects:
+            kept = _KEPT if moves else self._module.ZERO
+            self._objects[encoded] = self._module.State(**{**values, "command": kept})
+        if len(self._objects) > self._most:
+            raise NotAnInterceptorError(f"its State takes more than {self._most} values")
+        return encoded
+
+    def _said(self, velocity: Any) -> Said:
+        if velocity is None:
+            return None
+        if is_opaque(velocity):
+            return True
+        if is_zero(velocity, self._module.Velocity):
+            return False
+        raise NotAnInterceptorError("it makes a velocity that it has not heard")

@@ -1,0 +1,1 @@
+"""Monitor, interceptor and environment in closed loop."""

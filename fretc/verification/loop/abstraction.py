@@ -1,0 +1,257 @@
+"""A twin of the closed loop in six whole numbers, as one relation for solvers and for Python.
+
+It forgets everything but one demand that is open: for how long, what became of the first request
+that was not lost since a stop is requested without a break, and for how long the wheels have zero.
+Requests at every tick are those of a heartbeat of one tick. So it may do more than the
+loop, never less; that is checked step by step where the loop is small (`covered`), and what an
+inductive invariant says of the twin is then true of the loop. Times are cells, those of
+`fretc.verification.loop.model`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from itertools import product
+from typing import Any, NamedTuple, Protocol
+
+from compiler.logic.kripke import TooManyStatesError
+from fretc.verification.loop.model import Channel, Loop, Node, Tick
+
+NONE, ARRIVED = -1, -2
+"""In place of the age of a request: none is in flight; one has been heard."""
+
+
+class Numbers(NamedTuple):
+    """The twin at the end of a tick; whole numbers, or terms of a solver."""
+
+    open: Any
+    """Ticks since the trigger of the oldest open demand; -1: none is open."""
+    age: Any
+    """Cells since the first request was sent that was not lost since a stop is requested."""
+    losses: Any
+    """Messages that were lost since the last that was not."""
+    still: Any
+    """Ends of cells since the wheels have zero, up to `braking + 1`; -1: they move."""
+    asked: Any
+    """1: a stop is requested, whether anyone is told or not; 0: none is."""
+    silent: Any
+    """Ticks from the last message to the next tick."""
+
+
+class Choice(NamedTuple):
+    """What is left open in a step."""
+
+    stands: Any
+    sent: Any
+    lost: Any
+    """The message that is sent."""
+    cell: Any
+    """In which the request is heard, if it is; -1: at the instant of the tick."""
+
+
+class Times(NamedTuple):
+    """The parameters; `cells` and `heartbeat` are numbers in every use, the others may be terms."""
+
+    cells: int
+    heartbeat: int
+    """Ticks: after so many without a message one is sent, lost or not."""
+    latency: Any
+    lost: Any
+    braking: Any
+
+
+class Logic(Protocol):
+    """And, or: of truth values or of terms."""
+
+    def both(self, *parts: Any) -> Any:
+        """All of them."""
+
+    def either(self, *parts: Any) -> Any:
+        """At least one of them."""
+
+    def no(self, part: Any) -> Any:
+        """Not."""
+
+
+class Plain:
+    """Truth values of Python."""
+
+    def both(self, *parts: Any) -> bool:
+        """All of them."""
+        return all(parts)
+
+    def either(self, *parts: Any) -> bool:
+        """At least one of them."""
+        return any(parts)
+
+    def no(self, part: Any) -> bool:
+        """Not."""
+        return not part
+
+
+INITIAL = Numbers(-1, NONE, 0, None, 0, 0)
+"""`still` is what it is when the robot stands: `braking + 1`."""
+
+
+def begins(now: Numbers, times: Times, logic: Logic) -> Any:
+    """Before the first tick."""
+    standing = now.still == times.braking + 1
+    quiet = logic.both(now.losses == 0, now.asked == 0, now.silent == 0)
+    return logic.both(now.open == -1, now.age == NONE, standing, quiet)
+
+
+def relation(now: Numbers, then: Numbers, choice: Choice, times: Times, logic: Logic) -> Any:
+    """Whether the twin can go from one end of a tick to the next, by that choice."""
+    both, either, no = logic.both, logic.either, logic.no
+    sampled = both(
+        either(no(choice.stands), now.still >= 0),
+        either(choice.stands, now.still <= times.braking),
+    )
+    ranges = both(then.open >= -1, then.still >= -1, then.still <= times.braking + 1)
+    opened = both(
+        no(choice.stands),
+        either(
+            both(now.open < 0, then.open == 0),
+            both(now.open >= 0, then.open == now.open + 1),
+        ),
+    )
+    released = both(then.asked == 0, then.open == -1, then.age == NONE)
+    asked = both(
+        then.asked == 1,
+        either(then.open == -1, opened),
+        _requested(now, then, choice, times, logic),
+    )
+    message = _message(now, then, choice, times, logic)
+    return both(sampled, message, ranges, either(released, asked))
+
+
+def _message(now: Numbers, then: Numbers, choice: Choice, times: Times, logic: Logic) -> Any:
+    """What becomes of the message: a change is always told, and silence has an end."""
+    both, either, no = logic.both, logic.either, logic.no
+    quiet = both(
+        then.asked == now.asked, now.silent < times.heartbeat, then.silent == now.silent + 1
+    )
+    lost = both(choice.lost, now.losses < times.lost, then.losses == now.losses + 1)
+    kept = both(no(choice.lost), then.losses == 0)
+    return either(
+        both(no(choice.sent), quiet, then.losses == now.losses),
+        both(choice.sent, then.silent == 1, either(lost, kept)),
+    )
+
+
+def _requested(now: Numbers, then: Numbers, choice: Choice, times: Times, logic: Logic) -> Any:
+    """What becomes of the request in a tick in which a stop is requested."""
+    both, either, no = logic.both, logic.either, logic.no
+    none = either(now.asked == 0, now.age == NONE)
+    unsent, sent = either(no(choice.sent), choice.lost), both(choice.sent, no(choice.lost))
+    waiting = both(no(none), now.age >= 0)
+    heard = both(no(none), now.age == ARRIVED)
+    k, end = times.cells, times.braking + 1
+    return either(
+        both(none, unsent, then.age == NONE),
+        both(none, sent, then.age == k, k < times.latency),
+        both(none, sent, then.age == ARRIVED, _heard(0, then, choice, times, logic)),
+        both(waiting, then.age == now.age + k, then.age < times.latency),
+        both(waiting, then.age == ARRIVED, _heard(now.age, then, choice, times, logic)),
+        both(heard, then.age == ARRIVED, either(then.still >= end, then.still >= now.still + k)),
+    )
+
+
+def _heard(age: Any, then: Numbers, choice: Choice, times: Times, logic: Logic) -> Any:
+    """A request of that age is heard in the cell of the choice; from then on zero is published."""
+    both, either = logic.both, logic.either
+    k = times.cells
+    in_time = either(
+        both(choice.cell == -1, times.latency == 0, age == 0),
+        both(choice.cell >= 0, choice.cell < k, age + choice.cell + 1 <= times.latency),
+    )
+    end = times.braking + 1
+    return both(in_time, either(then.still >= end, then.still >= k - choice.cell))
+
+
+# Against the loop -----------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True)
+class Covered:
+    """What following the loop step by step has shown."""
+
+    steps: int
+    longest: int
+    """The most ticks for which a demand is open; -1: none ever is."""
+    strange: tuple[Numbers, Numbers] | None
+    """A step of the loop that is none of the twin."""
+
+
+def covered(loop: Loop, limit: int, longest: int) -> Covered:
+    """Whether every step of the loop is one of the twin, over all states.
+
+    Args:
+        loop: whose safety function has no deadline, or up to its violation.
+        limit: the most states.
+        longest: ticks; where a demand is open for longer, it is looked no further.
+
+    Raises:
+        TooManyStatesError: there are more states than the limit.
+    """
+    channel = loop.channel
+    assert channel.heartbeat or not channel.edge
+    times = times_of(channel)
+    begin = INITIAL._replace(still=channel.stands)
+    seen: set[tuple[Node, int, int]] = {(loop.initial, begin.open, begin.age)}
+    allowed: dict[tuple[Numbers, Numbers], bool] = {}
+    waiting, steps, most = list(seen), 0, -1
+    for node, open_, age in waiting:
+        now = _numbers(open_, age, node)
+        for tick, after in loop.steps(node):
+            if tick.violated:
+                continue
+            steps += 1
+            then = _followed(now, tick, after, channel)
+            if (now, then) not in allowed:
+                allowed[now, then] = _is_step(now, then, times)
+            if not allowed[now, then]:
+                return Covered(steps, most, (now, then))
+            most = max(most, then.open)
+            key = (after, then.open, then.age)
+            if key not in seen and then.open <= longest:
+                if len(seen) >= limit:
+                    raise TooManyStatesError(limit)
+                seen.add(key)
+                waiting.append(key)
+    return Covered(steps, most, None)
+
+
+def _followed(now: Numbers, tick: Tick, after: Node, channel: Channel) -> Numbers:
+    """What the twin remembers of a step of the loop."""
+    if not tick.requested:
+        return _numbers(-1, NONE, after)
+    age = now.age if now.asked else NONE
+    if age == NONE and tick.sent:
+        age = 0
+    if age >= 0:
+        age += channel.cells
+        flying = any(queued == age for _, queued in after.wheels.queue)
+        age = age if flying else ARRIVED
+    return _numbers(now.open + 1 if tick.owed else -1, age, after)
+
+
+def _numbers(open_: int, age: int, node: Node) -> Numbers:
+    return Numbers(open_, age, node.losses, node.wheels.still, int(node.requested), node.silent)
+
+
+def times_of(channel: Channel) -> Times:
+    """Those of a channel that repeats what it says: at every tick, or after a silence."""
+    beat = channel.heartbeat if channel.edge else 1
+    return Times(channel.cells, beat, channel.latency, channel.lost, channel.braking)
+
+
+def _is_step(now: Numbers, then: Numbers, times: Times) -> bool:
+    return any(relation(now, then, choice, times, Plain()) for choice in _choices(times))
+
+
+def _choices(times: Times) -> Iterator[Choice]:
+    fates = ((False, False), (True, False), (True, True))
+    for stands, (sent, lost), cell in product((False, True), fates, range(-1, times.cells)):
+        yield Choice(stands, sent, lost, cell)

@@ -1,0 +1,368 @@
+"""Layer BOUNDS: how long an answer takes at most, for every latency, loss and braking time.
+
+The closed loop has a twin in whole numbers (`fretc.verification.loop.abstraction`). z3 proves an
+inductive invariant of it with the times left open: a demand is open for less than any D with `D *
+tick >= lost * heartbeat + latency + braking` and `D * tick > lost * heartbeat`, where requests at
+every tick have a heartbeat of a tick. Beside the proof, the twin is held against the texts at small
+times, and the texts show by a run that under the declared times less is not enough.
+
+Source: Manna, Pnueli, Temporal verification of reactive systems: safety, 1995, chapter 1
+(invariance).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from importlib.util import find_spec
+from typing import Any
+
+from compiler.formalization.formalize import formalize
+from compiler.formalization.letters import atoms_of, meanings
+from compiler.formalization.rule import Rule
+from compiler.logic.claims import (
+    Counterexample,
+    Evidence,
+    Layer,
+    NotChecked,
+    Proved,
+    Result,
+)
+from compiler.logic.kripke import TooManyStatesError
+from compiler.targets.python import monitor as target
+from fretc.verification.engines import sandbox as processes
+from fretc.verification.engines.sandbox import Limits, Stopped
+from fretc.verification.interceptor.file import is_original
+from fretc.verification.interceptor.machine import NotAnInterceptorError, Settings
+from fretc.verification.loop.abstraction import (
+    ARRIVED,
+    NONE,
+    Choice,
+    Numbers,
+    Times,
+    begins,
+    covered,
+    relation,
+    times_of,
+)
+from fretc.verification.loop.layer import Setup, artefacts, assumptions, case
+from fretc.verification.loop.model import Channel
+from fretc.verification.loop.search import Case, NotALoopError, Parts, reach, shown
+from fretc.verification.monitor.statements import is_same
+from fretish import syntax as s
+from fretish.clock import in_words
+from fretish.diagnostics.source import Source
+from fretish.documents import Requirement
+from fretish.printer import canonical
+
+_MORE = "as many more, at least one, as `latency` and `braking` fill together"
+ANSWERED = f"every demand is answered within `lost` ticks and {_MORE}"
+INSTALL = "z3 is not installed: pip install 'fretc[bounds]'"
+_SMALL = ((1, 0, 0, 0), (1, 1, 1, 1), (2, 1, 1, 2), (1, 2, 2, 0), (3, 4, 1, 2))
+"""Cells to a tick, latency, losses in a row, braking: where the twin is held against the texts."""
+_QUERY = 20_000
+"""Milliseconds for each query of z3."""
+
+
+@dataclass(frozen=True, slots=True)
+class Question:
+    """What another process needs to know."""
+
+    case: Case
+    sentence: s.Sentence
+    ticks: int | None
+    """The bound of the sentence; None: it has none."""
+    tick: int
+    """Nanoseconds."""
+
+    @property
+    def unknown(self) -> str | None:
+        """Why small times do not speak for all of them; None: they do."""
+        if is_original(self.case.interceptor):
+            return None
+        return (
+            "the interceptor's core is not the one that fretc writes: what it does at the times "
+            "that are looked at says nothing of longer ones"
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class Answer:
+    """The results of both claims, and the version of z3."""
+
+    answered: Result
+    enough: Result
+    z3: str = ""
+
+
+def bounds(rule: Rule, setup: Setup, limits: Limits) -> tuple[Evidence, ...]:
+    """Both claims: an answer comes in time, whatever the times are; and the bound is enough."""
+    asked = question(rule, setup)
+    found: Answer | Stopped
+    found = Stopped(asked) if isinstance(asked, str) else processes.confined(limits, search, asked)
+    if isinstance(found, Stopped):
+        found = Answer(NotChecked(found.reason), NotChecked(found.reason))
+    told, left_open = (
+        () if isinstance(asked, str) else tuple(assumptions(rule, setup, asked.case, any_time=any_))
+        for any_ in (False, True)
+    )
+    engine = f"z3 {found.z3}; fretc, explicit states" if found.z3 else "fretc, explicit states"
+    return tuple(
+        Evidence(rule.id, Layer.BOUNDS, claim, result, engine, assumed, artefacts(setup))
+        for claim, result, assumed in (
+            (_answered(asked), found.answered, left_open),
+            (_enough(rule), found.enough, told),
+        )
+    )
+
+
+def _answered(asked: Question | str) -> str:
+    beat = 1 if isinstance(asked, str) else times_of(asked.case.channel).heartbeat
+    if beat == 1:
+        return ANSWERED
+    return f"every demand is answered within {beat} ticks for each message of `lost` and {_MORE}"
+
+
+def _enough(rule: Rule) -> str:
+    if not isinstance(rule.sentence.timing, s.Within):
+        return "some bound is enough"
+    return f"the bound of {_ticks(rule.ticks or 0)} is enough"
+
+
+def _ticks(amount: int) -> str:
+    return f"{amount} tick{'' if amount == 1 else 's'}"
+
+
+# What can be asked ----------------------------------------------------------------------------
+
+
+def question(rule: Rule, setup: Setup) -> Question | str:
+    """What is to be proved, or why nothing can be."""
+    made = case(rule, setup)
+    if isinstance(made, str):
+        return made
+    sentence = rule.sentence
+    if sentence.scope is not None:
+        return "it has a scope; only requirements about the whole run are looked at"
+    if not isinstance(sentence.timing, s.Within | s.Eventually):
+        return "its timing is neither `within` nor `eventually`"
+    if made.settings.event_driven:
+        return "an interceptor without a timer stops nothing before the next command"
+    if made.channel.edge and not made.channel.heartbeat:
+        return "a request that is sent only once may be lost (`requests`, [assume]: no `heartbeat`)"
+    if not _answers(sentence, made.stands):
+        return f"`{made.stands}` alone does not answer it"
+    assert rule.clock is not None
+    bound = rule.ticks if isinstance(sentence.timing, s.Within) else None
+    if not is_same(made.safety, made.observer):
+        return "the monitor is not the one that fretc writes for it, and only that is looked at"
+    return Question(made, sentence, bound, rule.clock.period or 0)
+
+
+def _answers(sentence: s.Sentence, stands: str) -> bool:
+    """Whether the response holds wherever the robot stands."""
+    atoms = atoms_of(sentence)
+    letters = meanings(sentence, atoms)
+    place = atoms.index(stands)
+    return all(letter[2] for values, letter in letters.items() if values[place])
+
+
+# In another process ---------------------------------------------------------------------------
+
+
+def search(asked: Question) -> Answer:
+    """Prove the invariant, hold the twin against the texts, and look for the least bound."""
+    if find_spec("z3") is None:
+        return Answer(NotChecked(INSTALL), NotChecked(INSTALL))
+    try:
+        steps, loops = _covered(asked)
+        wrong, version = _proved(times_of(asked.case.channel))
+        if wrong is not None:
+            return Answer(NotChecked(wrong), NotChecked(wrong), version)
+        answered: Result = Proved(
+            f"by an inductive invariant; {steps:,} steps of {loops} loops are steps of its model"
+        )
+        if asked.unknown is not None:
+            answered = NotChecked(asked.unknown)
+        return Answer(answered, _least(asked), version)
+    except (NotALoopError, NotAnInterceptorError, TooManyStatesError) as error:
+        return Answer(NotChecked(str(error)), NotChecked(str(error)))
+
+
+def _covered(asked: Question) -> tuple[int, int]:
+    """How many steps of how many loops were held against the twin.
+
+    Raises:
+        NotALoopError: one of them is no step of the twin.
+    """
+    endless = _endless(asked)
+    small = _short(asked.case.settings)
+    cases = [
+        asked.case,
+        endless,
+        *(
+            replace(endless, settings=small, channel=_channel(asked.case.channel, *numbers))
+            for numbers in _SMALL
+        ),
+    ]
+    steps = 0
+    for one in cases:
+        found = covered(Parts.of(one).loop, one.limit, longest=_formula(one.channel) + 1)
+        if found.strange is not None:
+            raise NotALoopError("the loop does what its model in whole numbers does not")
+        steps += found.steps
+    return steps, len(cases)
+
+
+def _channel(declared: Channel, cells: int, latency: int, lost: int, braking: int) -> Channel:
+    """Small times; a heartbeat is made short, too, and stays one."""
+    return replace(
+        declared,
+        cells=cells,
+        latency=latency,
+        lost=lost,
+        braking=braking,
+        heartbeat=min(declared.heartbeat, 3),
+    )
+
+
+def _short(settings: Settings) -> Settings:
+    """The same with short times: what the twin says does not depend on them."""
+    return replace(
+        settings,
+        hold=min(settings.hold, 2),
+        stop_timeout=min(settings.stop_timeout, 3),
+        scan_timeout=min(settings.scan_timeout, 2),
+        command_timeout=min(settings.command_timeout, 2),
+    )
+
+
+def _formula(channel: Channel) -> int:
+    """D: ticks after which each demand is answered, as the claim says."""
+    filled = -(-(channel.latency + channel.braking) // channel.cells)
+    return channel.lost * times_of(channel).heartbeat + max(1, filled)
+
+
+def _endless(asked: Question) -> Case:
+    """The case with `eventually` in place of the bound: no run ends at a deadline."""
+    return _with(asked, s.Eventually())
+
+
+def _with(asked: Question, timing: s.Timing) -> Case:
+    text = canonical(replace(asked.sentence, timing=timing))
+    requirement = Requirement(asked.case.requirement, Source("sentence", text).span())
+    rule, said = formalize(requirement, None)
+    assert rule is not None, said
+    made = target.text(rule)
+    return replace(asked.case, safety=made, observer=made, formula=rule.ft_infinite)
+
+
+def _least(asked: Question) -> Result:
+    """Whether the bound is enough, with the least one that is."""
+    endless = _endless(asked)
+    found = covered(Parts.of(endless).loop, endless.limit, longest=_formula(endless.channel) + 1)
+    least = found.longest + 1
+    if least == 0:
+        return NotChecked("no demand is ever open")
+    told = f"the least that is kept is {_ticks(least)} ({in_words(least * asked.tick)})"
+    before = _with(asked, _bound(least - 1))
+    parts = Parts.of(before)
+    violation = reach(parts.loop, before.limit).violation
+    assert violation is not None, "a demand is open for longer than it can be"
+    if asked.ticks is None:
+        return Proved(told)
+    if asked.ticks >= least:
+        return Proved(f"{told}; with one tick less a run of {_ticks(len(violation))} violates it")
+    trace = _violating(asked)
+    return Counterexample(told, trace)
+
+
+def _bound(ticks: int) -> s.Timing:
+    return s.Within(s.Duration(ticks, "tick")) if ticks else s.Immediately()
+
+
+def _violating(asked: Question) -> Any:
+    """The shortest run that violates the sentence as it is."""
+    assert asked.ticks is not None
+    parts = Parts.of(_with(asked, _bound(asked.ticks)))
+    violation = reach(parts.loop, asked.case.limit).violation
+    assert violation is not None
+    trace, violated = shown(parts, violation)
+    assert violated
+    return trace
+
+
+# z3 -------------------------------------------------------------------------------------------
+
+
+def _proved(declared: Times) -> tuple[str | None, str]:
+    """What keeps the invariant from being proved, if anything does; and z3's version.
+
+    Args:
+        declared: of these, `cells` and `heartbeat` count; the others are left open.
+    """
+    import z3
+
+    class Terms:
+        """Terms of z3."""
+
+        def both(self, *parts: Any) -> Any:
+            return z3.And(*parts)
+
+        def either(self, *parts: Any) -> Any:
+            return z3.Or(*parts)
+
+        def no(self, part: Any) -> Any:
+            return z3.Not(part)
+
+    logic = Terms()
+    cells, beat = declared.cells, declared.heartbeat
+    times = Times(cells, beat, *z3.Ints("latency lost braking"))
+    bound, some = z3.Ints("D n")
+    now, then = (Numbers(*z3.Ints(f"e{i} a{i} w{i} z{i} r{i} s{i}")) for i in (0, 1))
+    stands, sent, lost = z3.Bools("stands is_sent is_lost")
+    choice = Choice(stands, sent, lost, z3.Int("cell"))
+    enough = cells * bound >= cells * beat * times.lost + times.latency + times.braking
+    given = z3.And(
+        times.latency >= 0, times.lost >= 0, times.braking >= 0, bound > beat * times.lost, enough
+    )
+    here, there = (_invariant(numbers, times, bound, logic) for numbers in (now, then))
+    queries = {
+        "it does not hold at first": z3.And(begins(now, times, logic), z3.Not(here)),
+        "a step does not keep it": z3.And(
+            here, relation(now, then, choice, times, logic), z3.Not(there)
+        ),
+        "it does not keep the bound": z3.And(here, some >= bound, now.open >= some),
+    }
+    for wrong, query in queries.items():
+        solver = z3.Solver()
+        solver.set("timeout", _QUERY)
+        solver.add(given, query)
+        told = solver.check()
+        if told != z3.unsat:
+            reason = "z3 gives no answer in time" if told == z3.unknown else wrong
+            return f"of the invariant: {reason}", z3.get_version_string()
+    return None, z3.get_version_string()
+
+
+def _invariant(at: Numbers, times: Times, bound: Any, logic: Any) -> Any:
+    """Why an answer comes in time: what is true at the end of each tick.
+
+    While all requests since a stop is requested are lost, that is for no longer than it takes to
+    send as many; the first that is not lost is in flight for less than the latency; and from when
+    it is heard on, the wheels have zero. A demand that is open is no older than its request.
+    """
+    k, beat, both, either = times.cells, times.heartbeat, logic.both, logic.either
+    passed, tried = k * (at.open + 1), k * beat * times.lost
+    told = at.open + 1 <= (at.losses - 1) * beat + at.silent
+    lost = both(at.age == NONE, at.losses >= 1, at.silent >= 1, told)
+    flying = both(at.age >= k, at.age < times.latency, passed - at.age <= tried)
+    since = passed - tried - times.latency + 1
+    still = either(at.still >= times.braking + 1, at.still >= since)
+    heard = both(at.age == ARRIVED, at.still >= 1, still)
+    released = both(at.asked == 0, at.open == -1, at.age == NONE)
+    asked = both(at.asked == 1, at.open >= -1, at.open < bound, either(lost, flying, heard))
+    ranges = both(
+        *(at.losses >= 0, at.losses <= times.lost, at.silent >= 0, at.silent <= beat),
+        *(at.still >= -1, at.still <= times.braking + 1),
+    )
+    return both(ranges, either(released, asked))

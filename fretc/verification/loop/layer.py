@@ -1,0 +1,235 @@
+"""Layer LOOP: monitor, interceptor and any environment, under the assumptions of the bindings.
+
+What is explored are the texts themselves: the monitor as the safety function that requests stops,
+the monitor that fretc makes of the sentence as the observer, and the steps of the interceptor. The
+model between them is `fretc.verification.loop.model`, and its durations are whole cells, rounded
+up.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, fields
+from math import gcd
+
+from compiler.files.text_files import sha256
+from compiler.formalization.rule import Rule
+from compiler.logic import spot as automata
+from compiler.logic.claims import Evidence, Layer, NotChecked, Result
+from compiler.project.interceptor_options import options, ticks
+from compiler.targets.python import monitor as target
+from fretc.verification.engines import sandbox as processes
+from fretc.verification.engines.sandbox import Limits, Stopped
+from fretc.verification.interceptor.file import otherwise
+from fretc.verification.interceptor.machine import Settings
+from fretc.verification.loop.model import Channel
+from fretc.verification.loop.search import Case, Found, search
+from fretish.bindings.declarations import Assumed, Form, Interception, Planner, Requests
+from fretish.clock import in_words
+from fretish.expressions import names
+
+KEPT = "monitor, interceptor and any environment together keep the requirement"
+RELEASED = "the stop is released once no demand begins any more"
+_FINEST = 20
+"""Cells to a tick, where the interceptor has no timer that says what a cell is."""
+
+
+@dataclass(frozen=True, slots=True)
+class Named:
+    """A text that is looked at, and the name that evidence has for it."""
+
+    name: str
+    text: str
+
+
+@dataclass(frozen=True, slots=True)
+class Setup:
+    """The parts of a loop beside the requirement; None: not declared."""
+
+    monitor: Named
+    interceptor: Named | None
+    interception: Interception | None
+    assumed: Assumed | None
+
+
+def loop(rule: Rule, setup: Setup, limits: Limits) -> tuple[Evidence, ...]:
+    """Both claims: the requirement is kept, and the stop is released."""
+    made = case(rule, setup)
+    if isinstance(made, str):
+        found: Found | Stopped = Stopped(made)
+    else:
+        found = processes.confined(limits, search, made)
+    if isinstance(found, Stopped):
+        found = Found(NotChecked(found.reason), NotChecked(found.reason))
+    told = () if isinstance(made, str) else tuple(assumptions(rule, setup, made))
+    return (
+        _evidence(rule, setup, KEPT, found.kept, told),
+        _evidence(rule, setup, RELEASED, found.released, told),
+    )
+
+
+def _evidence(
+    rule: Rule, setup: Setup, claim: str, result: Result, told: tuple[str, ...]
+) -> Evidence:
+    return Evidence(
+        rule.id,
+        Layer.LOOP,
+        claim,
+        result,
+        f"fretc, explicit states; Spot {automata.version()}",
+        told,
+        artefacts(setup),
+    )
+
+
+def artefacts(setup: Setup) -> dict[str, str]:
+    """SHA-256 of each text."""
+    texts = [setup.monitor, *([setup.interceptor] if setup.interceptor else [])]
+    return {named.name: sha256(named.text) for named in texts}
+
+
+# The case -------------------------------------------------------------------------------------
+
+
+def case(rule: Rule, setup: Setup) -> Case | str:
+    """What is to be searched, or why nothing can be."""
+    interception, assumed = setup.interception, setup.assumed
+    if interception is None or setup.interceptor is None:
+        return "the bindings declare no interceptor (`[interceptor]`)"
+    if assumed is None:
+        return "the bindings assume nothing of the loop (`[assume]`)"
+    if assumed.stands not in {name.id for name in names(rule.sentence.response)}:
+        return f"its response does not speak of `{assumed.stands}`, which is what the loop decides"
+    wrong = otherwise(setup.interceptor.text, interception)
+    if wrong is not None:
+        return wrong
+    known = channel(rule, interception, assumed)
+    if isinstance(known, str):
+        return known
+    return Case(
+        rule.id,
+        rule.ft_infinite,
+        setup.monitor.text,
+        target.text(rule),
+        setup.interceptor.text,
+        settings(interception),
+        known,
+        assumed.stands,
+    )
+
+
+def settings(interception: Interception) -> Settings:
+    """The options of the interceptor, in ticks of its timer."""
+    made = options(interception)
+    return Settings(**{field.name: getattr(made, field.name) for field in fields(Settings)})
+
+
+def channel(rule: Rule, interception: Interception, assumed: Assumed) -> Channel | str:
+    """What is assumed, in cells; or why no cell can be found."""
+    tick = rule.clock.period if rule.clock else None
+    if tick is None:
+        return "the clock has no period: it ticks with messages"
+    cell = cell_of(tick, interception, assumed)
+    if tick % cell:
+        return (
+            f"a tick of the clock, {in_words(tick)}, is no whole number of periods of the "
+            f"interceptor's timer, {in_words(cell)}"
+        )
+    return Channel(
+        tick // cell,
+        ticks(assumed.latency, cell),
+        assumed.lost,
+        assumed.requests is Requests.EDGE,
+        assumed.planner is Planner.EVERY_TICK,
+        ticks(assumed.braking, cell),
+        interception.scan is not None,
+        ticks(assumed.heartbeat, tick),
+    )
+
+
+def cell_of(tick: int, interception: Interception, assumed: Assumed) -> int:
+    """Nanoseconds: a period of the timer; without one whatever measures the durations best."""
+    if interception.form is Form.TIMER:
+        return interception.period
+    exact = gcd(tick, assumed.latency, assumed.braking)
+    return exact if tick // exact <= _FINEST else tick
+
+
+# Assumptions ----------------------------------------------------------------------------------
+
+
+def assumptions(rule: Rule, setup: Setup, made: Case, *, any_time: bool = False) -> Iterator[str]:
+    """What the verdict takes for granted, in words, with where each is declared.
+
+    Args:
+        rule: the requirement.
+        setup: with what is declared.
+        made: the case of both.
+        any_time: the verdict holds whatever latency, losses and braking time are.
+    """
+    interception, assumed, channel = setup.interception, setup.assumed, made.channel
+    assert interception is not None
+    assert assumed is not None
+    assert rule.clock is not None
+    tick = rule.clock.period or 0
+    yield from _messages(assumed, tick, any_time=any_time)
+    if channel.punctual:
+        yield "the planner sends a command in every tick (`planner`, [assume])"
+    braking = "`braking`" if any_time else f"{in_words(assumed.braking)} (`braking`, [assume])"
+    yield (
+        f"`{assumed.stands}` is false while the wheels are told to move, and true once they have "
+        f"had zero for {braking}, or earlier"
+    )
+    yield "the wheels have at once what was published last, and keep it while nothing is published"
+    yield "at the first tick the robot stands, and nothing has been heard yet"
+    yield (
+        "the node around the interceptor's step hands on every message, and publishes what it gives"
+    )
+    if interception.form is Form.TIMER:
+        period = in_words(interception.period)
+        yield f"the interceptor's timer rings once in each {period} (`period`, [interceptor])"
+    yield from _rounded(interception, assumed, tick, any_time=any_time)
+    if not made.settings.stop_timeout:
+        yield "the safety function never falls silent: there is no `stop_timeout` ([interceptor])"
+
+
+def _messages(assumed: Assumed, tick: int, *, any_time: bool) -> Iterator[str]:
+    """What is said of stop messages."""
+    yield (
+        f"the safety function steps at every tick of {in_words(tick)} and sends its request "
+        f"{_when(assumed)}"
+    )
+    latency = "`latency`" if any_time else f"{in_words(assumed.latency)} (`latency`, [assume])"
+    yield f"stop messages are heard in the order of sending, each within {latency}"
+    if any_time:
+        yield "never are more than `lost` stop messages lost in a row"
+    elif assumed.lost:
+        yield f"never are more than {assumed.lost} stop messages lost in a row (`lost`, [assume])"
+    else:
+        yield "no stop message is lost (`lost`, [assume])"
+
+
+def _when(assumed: Assumed) -> str:
+    if assumed.heartbeat:
+        return (
+            f"where it changes, and again once it has been silent for "
+            f"{in_words(assumed.heartbeat)}, or earlier (`requests` and `heartbeat`, [assume])"
+        )
+    when = "only where it changes" if assumed.requests is Requests.EDGE else "every time"
+    return f"{when} (`requests`, [assume])"
+
+
+def _rounded(
+    interception: Interception, assumed: Assumed, tick: int, *, any_time: bool
+) -> Iterator[str]:
+    """Durations that are no whole number of cells, or of ticks: the longer one is proved."""
+    cell = cell_of(tick, interception, assumed)
+    cells = "whole cells of the model"
+    for name, duration, unit, whole in (
+        ("latency", 0 if any_time else assumed.latency, cell, cells),
+        ("braking", 0 if any_time else assumed.braking, cell, cells),
+        ("heartbeat", assumed.heartbeat, tick, "whole ticks of the clock"),
+    ):
+        if duration % unit:
+            longer = in_words(ticks(duration, unit) * unit)
+            yield f"`{name}` of {in_words(duration)} counts as {longer}, {whole}"

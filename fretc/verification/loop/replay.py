@@ -1,0 +1,163 @@
+"""A run of the closed loop as a table, made by running the texts once more from their beginning.
+
+What the model says of a run is believed only so far as the texts themselves do it: monitors are
+stepped without being stopped and put back, the interceptor without encoded states.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+from compiler.logic.claims import Trace
+from fretc.verification.interceptor.machine import Gate, Heard
+from fretc.verification.loop.model import Loop, Node, Tick
+from monitors.kernel import Monitor
+from monitors.kernel.verdicts import VIOLATED, Truth
+from monitors.loading import load
+
+EXTRA = ("request", "delivered", "halt", "wheels")
+"""The columns beside the propositions: what is requested, what of it was heard last in the tick;
+at the end of the tick, whether the interceptor is halted and whether the wheels have to move."""
+
+
+class Moment(NamedTuple):
+    """A tick, and what is heard before the next."""
+
+    tick: Tick
+    heard: tuple[Heard | None, ...]
+    """None: a cell ends."""
+
+
+@dataclass(frozen=True, slots=True)
+class Watched:
+    """A monitor's text and the place of the requirement in it."""
+
+    text: str
+    place: int
+
+    def fresh(self) -> Monitor:
+        """The monitor before its first tick; no other shares it."""
+        return load("monitor", self.text)
+
+
+def moments(loop: Loop, start: Node, run: Sequence[tuple[Tick, Node]]) -> tuple[Moment, ...]:
+    """The run with what is heard in it."""
+    found, before = [], start
+    for tick, after in run:
+        found.append(Moment(tick, loop.word(before, tick, after)))
+        before = after
+    return tuple(found)
+
+
+def replayed(
+    run: Sequence[Moment],
+    safety: Watched,
+    observer: Watched,
+    loop: Loop,
+    cycle: int | None = None,
+) -> tuple[Trace, bool]:
+    """The run as a table, and whether the observer says at its last tick that it is violated.
+
+    Raises:
+        AssertionError: the texts do not do what the model says.
+    """
+    again = _Again(safety, observer, loop)
+    rows = tuple(again.row(moment) for moment in run)
+    names = (*loop.environment.atoms, *EXTRA)
+    actions = tuple(map(_in_words, run))
+    return Trace(names, rows, actions, cycle), again.violated
+
+
+class _Again:
+    """The texts, from their beginning."""
+
+    def __init__(self, safety: Watched, observer: Watched, loop: Loop) -> None:
+        self._safety, self._observer = safety.fresh(), observer.fresh()
+        self._places = safety.place, observer.place
+        self._gate: Gate = loop.gate
+        self._channel, self._environment = loop.channel, loop.environment
+        self._state: Any = loop.gate.fresh()
+        self._still = loop.channel.stands
+        self._flying: list[tuple[bool, int]] = []
+        self._lost, self._silent, self._said = 0, 0, False
+        self.violated = False
+
+    def row(self, moment: Moment) -> tuple[Truth, ...]:
+        """One tick of all of them."""
+        tick = moment.tick
+        self._sample(tick)
+        self._step(self._safety, tick)
+        self._step(self._observer, tick)
+        self.violated = self._observer.verdicts()[self._places[1]] == VIOLATED
+        signals = self._safety.must.signals()[self._places[0]]
+        assert bool(signals.trigger or signals.owed) == tick.requested
+        self._send(tick)
+        delivered = None
+        for heard in moment.heard:
+            if heard in (Heard.STOP, Heard.RELEASE):
+                assert self._flying.pop(0)[0] == (heard is Heard.STOP)
+                delivered = heard is Heard.STOP
+            self._hear(heard)
+        halted = self._gate.halts(self._state)
+        return (*tick.letter, tick.requested, delivered, halted, self._still < 0)
+
+    def _sample(self, tick: Tick) -> None:
+        stands = tick.letter[self._environment.atoms.index(self._environment.stands)]
+        assert self._still >= 0 if stands else self._still < self._channel.stands
+        self._still = self._channel.stands if stands else self._still
+
+    def _step(self, monitor: Monitor, tick: Tick) -> None:
+        values = dict(zip(self._environment.atoms, tick.letter, strict=True))
+        given = {p: values[name] for name, p in monitor.PROPOSITIONS.items()}
+        monitor.step(**given)  # type: ignore[attr-defined]
+
+    def _send(self, tick: Tick) -> None:
+        same = self._channel.edge and tick.requested == self._said
+        beat = self._channel.heartbeat
+        assert tick.again == (same and tick.sent is not None)
+        assert beat or not tick.again
+        assert tick.sent is not None or (same and (not beat or self._silent < beat))
+        self._silent = self._silent + 1 if tick.sent is None else 1
+        if tick.sent is not None:
+            self._said, self._lost = tick.requested, 0 if tick.sent else self._lost + 1
+        assert self._lost <= self._channel.lost
+        if tick.sent:
+            self._flying.append((tick.requested, 0))
+
+    def _hear(self, heard: Heard | None) -> None:
+        if heard is None:
+            self._still += 1 if 0 <= self._still < self._channel.stands else 0
+            self._flying = [(requested, age + 1) for requested, age in self._flying]
+            assert all(age < self._channel.latency for _, age in self._flying)
+            return
+        instant = heard in (Heard.STOP, Heard.RELEASE) and self._channel.latency == 0
+        self._state, said = self._gate.replayed(self._state, heard)
+        if said is not None:
+            self._still = -1 if said else self._still if self._still >= 0 else int(instant)
+
+
+# Words ----------------------------------------------------------------------------------------
+
+
+def _in_words(moment: Moment) -> str:
+    """`a stop is requested, and the message is lost; a command to move is heard`."""
+    return "; ".join((*_message(moment.tick), *_heard(moment.heard)))
+
+
+def _message(tick: Tick) -> Iterator[str]:
+    what = "a stop is requested" if tick.requested else "no stop is requested"
+    again = " again" if tick.again else ""
+    if tick.sent is None:
+        yield f"{what}, and no message is sent" if tick.requested else what
+    elif tick.sent:
+        yield f"{what}, and the message is sent{again}"
+    else:
+        yield f"{what}, and the message is{' sent again, and' if tick.again else ''} lost"
+
+
+def _heard(heard: Sequence[Heard | None]) -> Iterator[str]:
+    """What is heard, without rings of the timer, which are as many in each tick."""
+    told = [one.value for one in heard if one is not None and one is not Heard.RING]
+    yield from told

@@ -1,0 +1,317 @@
+"""What the closed loop can do: a shortest violation, a run that owes for ever, a stop that stays.
+
+All of it is reachability in a finite graph (`fretc.verification.loop.model`); what no finite run
+shows is asked of Spot. A run that is found is run again through the texts before it is told.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import assert_never
+
+from compiler.logic import formula as f
+from compiler.logic.claims import Counterexample, NotChecked, Proved, Result, Trace, Vacuous
+from compiler.logic.kripke import Explored, TooManyStatesError, check, explore
+from fretc.verification.interceptor.machine import Gate, NotAnInterceptorError, Settings
+from fretc.verification.loop.model import Channel, Environment, Loop, Node, Tick
+from fretc.verification.loop.replay import Watched, moments, replayed
+from fretc.verification.monitor.machine import Stepped
+from fretc.verification.monitor.text_check import strange
+from monitors.loading import load
+
+MOST_ATOMS = 8
+"""Each doubles the letters of a tick."""
+LONGEST = 250
+"""Ticks: a longer bound is not given to Spot, which expands it."""
+
+_HALT, _TRIGGER = f.Atom("_halt_"), f.Atom("_trigger_")  # no names of FRETish
+RELEASE = f.implies(
+    f.eventually(f.globally(f.not_(_TRIGGER))), f.eventually(f.globally(f.not_(_HALT)))
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Case:
+    """Everything that the search depends on: texts and numbers."""
+
+    requirement: str
+    formula: f.Formula
+    """Future-time, on infinite traces."""
+    safety: str
+    """The text of the monitor that requests stops."""
+    observer: str
+    """The text of the monitor that tells violations."""
+    interceptor: str
+    settings: Settings
+    channel: Channel
+    stands: str
+    limit: int = 10**6
+    """The most states that are looked at."""
+
+
+@dataclass(frozen=True, slots=True)
+class Found:
+    """The results of both claims."""
+
+    kept: Result
+    released: Result
+
+
+class NotALoopError(Exception):
+    """The case cannot be explored; it says why."""
+
+
+def search(case: Case) -> Found:
+    """Look for a violation, then for an endless one, then for a stop that stays."""
+    try:
+        parts = Parts.of(case)
+        reached = reach(parts.loop, case.limit)
+        told = frozenset(() if is_safety(case.formula) else f.atoms(case.formula))
+        runs = Runs.of(parts.loop, told | {_TRIGGER.name, _HALT.name}, case.limit)
+        return Found(_kept(case, parts, reached, runs), _released(parts, runs))
+    except (NotALoopError, NotAnInterceptorError) as error:
+        return Found(NotChecked(str(error)), NotChecked(str(error)))
+    except TooManyStatesError as error:
+        return Found(NotChecked(str(error)), NotChecked(str(error)))
+
+
+# Parts ----------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True)
+class Parts:
+    """The texts, loaded."""
+
+    loop: Loop
+    safety: Watched
+    observer: Watched
+
+    @classmethod
+    def of(cls, case: Case) -> Parts:
+        """Raises NotALoopError or NotAnInterceptorError where a text is not what it should be."""
+        same = case.safety == case.observer
+        observer, safety = (watched(t, case.requirement) for t in (case.observer, case.safety))
+        watching, requesting = observer.fresh(), safety.fresh()
+        names = (*f.atoms(case.formula), *watching.PROPOSITIONS, *requesting.PROPOSITIONS)
+        atoms = tuple(dict.fromkeys(names))
+        if case.stands not in atoms:
+            raise NotALoopError(f"the monitor does not look at `{case.stands}`")
+        if len(atoms) > MOST_ATOMS:
+            raise NotALoopError(f"{len(atoms)} propositions, more than {MOST_ATOMS}")
+        loop = Loop(
+            Stepped(requesting, safety.place, atoms),
+            None if same else Stepped(watching, observer.place, atoms),
+            Gate(case.interceptor, case.settings, case.limit),
+            Environment(atoms, case.stands),
+            case.channel,
+        )
+        return cls(loop, safety, observer)
+
+
+def watched(text: str, requirement: str) -> Watched:
+    """A monitor of the requirement; its text is executed only where it is laid out as ours are."""
+    reason = strange(text)
+    if reason is not None:
+        raise NotALoopError(f"of the monitor: {reason}")
+    monitor = load("monitor", text)
+    places = [i for i, known in enumerate(monitor.REQUIREMENTS) if known.id == requirement]
+    if not places:
+        raise NotALoopError("the monitor is of other requirements")
+    return Watched(text, places[0])
+
+
+# Finite runs ----------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True)
+class Reached:
+    """Every state that comes before a violation, or the ways to a nearest violation."""
+
+    states: int
+    steps: int
+    violation: tuple[tuple[Tick, Node], ...] | None
+    triggered: bool
+    moved: bool
+    """Whether the robot can be sampled while it does not stand."""
+
+
+def reach(loop: Loop, limit: int) -> Reached:
+    """Every state, breadth first, up to the first violation.
+
+    Raises:
+        TooManyStatesError: there are more states than the limit.
+    """
+    place = loop.environment.atoms.index(loop.environment.stands)
+    came: dict[Node, tuple[Node, Tick] | None] = {loop.initial: None}
+    waiting, known = [loop.initial], set[Node]()
+    steps, triggered, moved = 0, False, False
+    for node in waiting:
+        for tick, begun in loop.begins(node):
+            triggered |= tick.triggered
+            moved |= not tick.letter[place]
+            if tick.violated:
+                run = (*_way(came, node), (tick, next(loop.ends(begun))))
+                return Reached(len(came), steps, run, triggered, moved)
+            if begun in known:
+                continue
+            known.add(begun)
+            for after in loop.ends(begun):
+                steps += 1
+                if after not in came:
+                    if len(came) >= limit:
+                        raise TooManyStatesError(limit)
+                    came[after] = node, tick
+                    waiting.append(after)
+    return Reached(len(came), steps, None, triggered, moved)
+
+
+def _way(came: dict[Node, tuple[Node, Tick] | None], node: Node) -> tuple[tuple[Tick, Node], ...]:
+    way: list[tuple[Tick, Node]] = []
+    while (back := came[node]) is not None:
+        before, tick = back
+        way.append((tick, node))
+        node = before
+    return tuple(reversed(way))
+
+
+def _kept(case: Case, parts: Parts, reached: Reached, runs: Runs) -> Result:
+    if reached.violation is not None:
+        trace, violated = shown(parts, reached.violation)
+        assert violated, "the texts do not violate what the model violates"
+        ticks = len(trace.rows)
+        return Counterexample(f"violated at tick {ticks - 1}; no shorter run shows it", trace)
+    looked = f"{reached.states:,} states, {reached.steps:,} steps"
+    if not reached.triggered:
+        return Vacuous(f"no demand ever begins ({looked})")
+    if not reached.moved:
+        return Vacuous(f"the robot never moves ({looked})")
+    if is_safety(case.formula):
+        return Proved(looked)
+    if f.longest_bound(case.formula) > LONGEST:
+        return NotChecked(f"no finite run violates it; Spot is not asked above {LONGEST} ticks")
+    lasso = _lasso(parts, runs, case.formula)
+    if lasso is None:
+        return Proved(f"{looked}; Spot finds no endless run that violates it")
+    return Counterexample("what is owed never comes: the last ticks are repeated for ever", lasso)
+
+
+def _released(parts: Parts, runs: Runs) -> Result:
+    lasso = _lasso(parts, runs, RELEASE)
+    if lasso is None:
+        if not any(_HALT.name in label for label in runs.explored.kripke.labels):
+            return Vacuous("no stop is ever in force")
+        return Proved("Spot finds no endless run that violates it")
+    return Counterexample("the stop stays: the last ticks are repeated for ever", lasso)
+
+
+def shown(
+    parts: Parts, run: tuple[tuple[Tick, Node], ...], cycle: int | None = None
+) -> tuple[Trace, bool]:
+    """The run as a table, run again through the texts; and whether it violates the requirement."""
+    told = moments(parts.loop, parts.loop.initial, run)
+    return replayed(told, parts.safety, parts.observer, parts.loop, cycle)
+
+
+# Endless runs ---------------------------------------------------------------------------------
+
+Labelled = tuple[frozenset[str], Node]
+"""A state of a Kripke structure: what was true at the last tick, and how the loop stands now."""
+
+
+@dataclass(frozen=True, slots=True)
+class Runs:
+    """All runs, also beyond violations, from before the first tick on."""
+
+    loop: Loop
+    told: frozenset[str]
+    """The atoms that states are told apart by."""
+    explored: Explored[Labelled]
+
+    @classmethod
+    def of(cls, loop: Loop, told: frozenset[str], limit: int) -> Runs:
+        """Raises TooManyStatesError where there are more states than the limit."""
+
+        def successors(state: Labelled) -> Iterator[Labelled]:
+            known = set[tuple[frozenset[str], Node]]()
+            for tick, begun in loop.begins(state[1]):
+                true = _true(loop, tick) & told
+                if (true, begun) not in known:
+                    known.add((true, begun))
+                    for after in loop.ends(begun):
+                        yield _label(loop, true, after), after
+
+        start: Labelled = (frozenset(), loop.initial)
+        return cls(loop, told, explore(start, successors, lambda state: state[0], limit))
+
+    def tick(self, before: Node, label: frozenset[str], after: Node) -> Tick:
+        """One of the ticks that lead from one state to the next."""
+        return next(
+            tick
+            for tick, other in self.loop.steps(before)
+            if other == after
+            and _label(self.loop, _true(self.loop, tick), other) & self.told == label
+        )
+
+
+def _lasso(parts: Parts, runs: Runs, formula: f.Formula) -> Trace | None:
+    """An endless run that violates the formula from tick 0 on; None: there is none."""
+    lasso = check(runs.explored.kripke, f.next_(formula))
+    if lasso is None:
+        return None
+    run: list[tuple[Tick, Node]] = []
+    before = parts.loop.initial
+    for label, after in (runs.explored.states[number] for number in lasso.states[1:]):
+        run.append((runs.tick(before, label, after), after))
+        before = after
+    trace, _ = shown(parts, tuple(run), len(lasso.prefix) - 1)
+    return trace
+
+
+def _true(loop: Loop, tick: Tick) -> frozenset[str]:
+    true = {name for name, value in zip(loop.environment.atoms, tick.letter, strict=True) if value}
+    return frozenset({*true, _TRIGGER.name} if tick.triggered else true)
+
+
+def _label(loop: Loop, true: frozenset[str], after: Node) -> frozenset[str]:
+    return true | {_HALT.name} if loop.gate.stopping(after.wheels.gate) else true
+
+
+def is_safety(formula: f.Formula, positive: bool = True) -> bool:
+    """Whether its form shows that each violation has a finite prefix that shows it.
+
+    Source: Sistla, Safety, liveness and fairness in temporal logic, FAC 6 (1994), section 3.
+    """
+    match formula:
+        case f.Const() | f.Atom():
+            return True
+        case f.Not(arg):
+            return is_safety(arg, not positive)
+        case f.And(args) | f.Or(args):
+            return all(is_safety(arg, positive) for arg in args)
+        case f.Implies(left, right):
+            return is_safety(left, not positive) and is_safety(right, positive)
+        case f.Xor(left, right) | f.Iff(left, right):
+            return all(is_safety(arg, way) for arg in (left, right) for way in (False, True))
+        case f.Next(arg):
+            return is_safety(arg, positive)
+        case f.Eventually(arg, ahead):
+            return (ahead.hi is not None or not positive) and is_safety(arg, positive)
+        case f.Globally(arg, ahead):
+            return (ahead.hi is not None or positive) and is_safety(arg, positive)
+        case f.Until(left, right):
+            return not positive and all(is_safety(arg, positive) for arg in (left, right))
+        case f.Release(left, right):
+            return positive and all(is_safety(arg, positive) for arg in (left, right))
+        case (
+            f.Last()
+            | f.Previous()
+            | f.WeakPrevious()
+            | f.Once()
+            | f.Historically()
+            | f.Since()
+            | f.Odds()
+        ):
+            return False
+        case _:
+            assert_never(formula)

@@ -1,0 +1,1 @@
+"""The text of a monitor means what its sentence means."""

@@ -1,0 +1,66 @@
+"""The column program of a generated monitor: names for columns, and what it tells of them."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterable, Sequence
+
+from fretc.verification.monitor.statements import body_of, demand
+
+_COLUMNS = frozenset(
+    "previous weak_previous once historically since released since_from since_between "
+    "released_between".split()
+)
+"""What a column program calls."""
+
+
+def check_columns(node: ast.stmt, literals: Sequence[str]) -> None:
+    """The function names columns and tells signals, and does nothing else.
+
+    Args:
+        node: it.
+        literals: the names of its parameters.
+
+    Raises:
+        StrangeError: it does something else.
+    """
+    given = ", ".join(f"{name}: int" for name in literals)
+    arguments = f"every: int, *, {given}" if literals else "every: int"
+    *body, last = body_of(node, "columns", arguments, "staticmethod")
+    bound = {"every", *literals}
+    for statement in body:
+        match statement:
+            case ast.Assign([ast.Name(name)], value):
+                demand(name not in bound and name not in {*_COLUMNS, "Signals"}, statement)
+                _check_column(value, bound)
+                bound.add(name)
+            case _:
+                demand(False, statement)
+    match last:
+        case ast.Return(ast.Tuple(told)):
+            for one in told:
+                match one:
+                    case ast.Call(ast.Name("Signals"), [], keywords):
+                        for keyword in keywords:
+                            _check_column(keyword.value, bound)
+                    case _:
+                        demand(False, one)
+        case _:
+            demand(False, last)
+
+
+def _check_column(node: ast.expr, bound: Iterable[str]) -> None:
+    match node:
+        case ast.Name(name):
+            demand(name in bound, node)
+        case ast.Constant(value):
+            demand(value is None or isinstance(value, int), node)
+        case ast.BinOp(left, ast.BitAnd() | ast.BitOr(), right):
+            _check_column(left, bound)
+            _check_column(right, bound)
+        case ast.Call(ast.Name(name), args, []):
+            demand(name in _COLUMNS, node)
+            for arg in args:
+                _check_column(arg, bound)
+        case _:
+            demand(False, node)

@@ -1,0 +1,240 @@
+"""A proof that a monitor means what its sentence means, or a shortest trace that it misjudges.
+
+The monitor and the reference automaton of the sentence (`compiler.formalization.reference`) run in
+lock step over all letters until no new pair of states appears. Both are finite, so this is exact:
+for traces of any length and at the bound as it is. Source: Hopcroft, Karp, A linear algorithm for
+testing equivalence of finite automata, Cornell TR 71-114 (1971).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Hashable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Protocol
+
+from compiler.formalization.letters import (
+    MOST_ATOMS,
+    Valuation,
+    meanings,
+    temporal_predicate,
+)
+from compiler.formalization.reference import (
+    Automaton,
+    Letter,
+    TooManyStatesError,
+    accepts,
+    explore,
+    template,
+)
+from fretish import syntax as s
+
+Judgement = tuple[str, bool]
+"""A verdict (`violated`, `satisfied` or `pending`, as of infinite traces), and whether the trace
+satisfies the sentence, as FRET judges finite traces, if it ends here."""
+
+
+class Machine(Protocol):
+    """A monitor that can be stopped, put back and stepped."""
+
+    def save(self) -> Hashable:
+        """Everything that its further steps depend on, and nothing else."""
+
+    def load(self, state: Hashable) -> None:
+        """Go back to a state that was saved."""
+
+    def step(self, letter: Valuation) -> Judgement:
+        """The judgement after one more tick."""
+
+
+@dataclass(frozen=True, slots=True)
+class Proved:
+    """They say the same at every tick of every trace, up to the first violation."""
+
+    states: int
+    """Pairs of a state of the automaton and one of the monitor that had to be looked at."""
+    steps: int
+    """Steps of the monitor that were compared."""
+
+
+@dataclass(frozen=True, slots=True)
+class Refuted:
+    """A trace at whose last tick they differ."""
+
+    word: tuple[Valuation, ...]
+    expected: Judgement
+    found: Judgement
+    shortest: bool = True
+    """No shorter trace tells them apart; False where there were too many pairs to know."""
+
+
+@dataclass(frozen=True, slots=True)
+class NotChecked:
+    """Nothing is known."""
+
+    reason: str
+
+
+def prove(
+    machine: Machine,
+    sentence: s.Sentence,
+    ticks: int,
+    atoms: Sequence[str],
+    limit: int = 10**6,
+) -> Proved | Refuted | NotChecked:
+    """Compare a monitor with the reference automaton of its sentence.
+
+    Below a violation nothing is compared: it is a monitor's last word.
+
+    Args:
+        machine: the monitor, before its first tick; it is left in any state.
+        sentence: a checked sentence.
+        ticks: what its duration counts; without meaning where it has none.
+        atoms: the order of the values in a letter, by the names that formulas have for them;
+            at least every atom of the sentence.
+        limit: the most states of the automaton, and the most pairs that are looked at.
+
+    Raises:
+        KeyError: an atom of the sentence is not among `atoms`.
+    """
+    predicate = temporal_predicate(sentence)
+    if predicate is not None:
+        return NotChecked(f"`{predicate}` speaks of other ticks, and the automaton knows one")
+    if len(atoms) > MOST_ATOMS:
+        return NotChecked(f"{len(atoms)} propositions, more than {MOST_ATOMS}")
+    letters = meanings(sentence, atoms)
+    try:
+        automaton = explore(template(sentence, ticks), letters.values(), limit)
+    except TooManyStatesError:
+        return NotChecked(f"the automaton has more than {limit} states")
+    return _compared(machine, _Reference.of(automaton, letters), limit)
+
+
+# Lock step ------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True)
+class _Reference:
+    """The automaton, read by valuations of the atoms."""
+
+    valuations: tuple[Valuation, ...]
+    moves: tuple[tuple[int, ...], ...]
+    """For each state and each letter of the automaton: the next state."""
+    letters: tuple[int, ...]
+    """For each valuation: the letter of the automaton."""
+    judgements: tuple[Judgement, ...]
+    """For each state, and at the end, so with the index `BROKEN`, for a broken demand."""
+
+    @classmethod
+    def of(cls, automaton: Automaton, letters: Mapping[Valuation, Letter]) -> _Reference:
+        numbers = {letter: number for number, letter in enumerate(automaton.letters)}
+        broken: Judgement = ("violated", False)
+        judged = (
+            (verdict, accepts(automaton.template, state))
+            for state, verdict in zip(automaton.states, automaton.verdicts, strict=True)
+        )
+        return cls(
+            tuple(letters),
+            automaton.moves,
+            tuple(numbers[letter] for letter in letters.values()),
+            (*judged, broken),
+        )
+
+
+def _compared(machine: Machine, reference: _Reference, limit: int) -> Proved | Refuted | NotChecked:
+    """Whether they are equal, by classes of states; if not, a shortest word, by all pairs."""
+    start = machine.save()
+    found = _in_lock_step(machine, reference, _Classes(len(reference.moves)), limit)
+    if not isinstance(found, Refuted):
+        return found
+    machine.load(start)
+    shortest = _in_lock_step(machine, reference, _Pairs(), limit)
+    return shortest if isinstance(shortest, Refuted) else replace(found, shortest=False)
+
+
+class _Known(Protocol):
+    """The pairs of states that need not be looked at again."""
+
+    def add(self, state: int, saved: Hashable) -> bool:
+        """Whether the pair is new; it is known from now on."""
+
+
+class _Pairs:
+    """Every pair for itself."""
+
+    def __init__(self) -> None:
+        self._seen: set[tuple[int, Hashable]] = set()
+
+    def add(self, state: int, saved: Hashable) -> bool:
+        """Whether the pair is new; it is known from now on."""
+        before = len(self._seen)
+        self._seen.add((state, saved))
+        return len(self._seen) > before
+
+
+class _Classes:
+    """Sets of states that must be equal if all pairs are: what follows from others is known.
+
+    There are no more new pairs than states on both sides together, where the pairs that can be
+    reached may be as many as their product.
+    """
+
+    def __init__(self, states: int) -> None:
+        self._parents = list(range(states))
+        self._numbers: dict[Hashable, int] = {}
+
+    def add(self, state: int, saved: Hashable) -> bool:
+        """Whether the pair is new; it is known from now on."""
+        number = self._numbers.setdefault(saved, len(self._parents))
+        if number == len(self._parents):
+            self._parents.append(number)
+        left, right = self._root(state), self._root(number)
+        self._parents[left] = right
+        return left != right
+
+    def _root(self, number: int) -> int:
+        parents = self._parents
+        while parents[number] != number:
+            parents[number] = parents[parents[number]]
+            number = parents[number]
+        return number
+
+
+def _in_lock_step(
+    machine: Machine, reference: _Reference, known: _Known, limit: int
+) -> Proved | Refuted | NotChecked:
+    """Breadth first through the pairs that are new, from the present state of the machine."""
+    start = (0, machine.save())
+    known.add(*start)
+    pairs = [start]
+    origins: list[tuple[int, Valuation] | None] = [None]
+    steps = 0
+    for place, (state, saved) in enumerate(pairs):  # grows while it is read
+        row = reference.moves[state]
+        for valuation, letter in zip(reference.valuations, reference.letters, strict=True):
+            machine.load(saved)
+            found = machine.step(valuation)
+            steps += 1
+            after = row[letter]
+            expected = reference.judgements[after]
+            if found != expected:
+                return Refuted((*_word(origins, place), valuation), expected, found)
+            if expected[0] == "violated":
+                continue
+            reached = machine.save()
+            if known.add(after, reached):
+                pairs.append((after, reached))
+                origins.append((place, valuation))
+        if len(pairs) > limit:
+            return NotChecked(f"the automaton and the monitor have more than {limit} states")
+    return Proved(len(pairs), steps)
+
+
+def _word(origins: Sequence[tuple[int, Valuation] | None], place: int) -> tuple[Valuation, ...]:
+    """The letters that led to a pair, from the first tick on."""
+    word: list[Valuation] = []
+    origin = origins[place]
+    while origin is not None:
+        place, valuation = origin
+        word.append(valuation)
+        origin = origins[place]
+    return tuple(reversed(word))

@@ -1,0 +1,81 @@
+"""Layer MONITOR: the text of a monitor against its sentence, as one line of evidence."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import assert_never
+
+from compiler.files.text_files import sha256
+from compiler.formalization.rule import Rule
+from compiler.logic import claims as v
+from fretc.verification.engines import sandbox as processes
+from fretc.verification.engines.sandbox import Limits, Stopped
+from fretc.verification.monitor.equivalence import NotChecked, Proved, Refuted
+from fretc.verification.monitor.verifying import (
+    MOST_STATES,
+    Disagreement,
+    Verified,
+    verified,
+)
+
+CLAIM = "the monitor means what the sentence says"
+ENGINE = "fretc, lock step with the counter automaton of the sentence"
+
+
+def evidence(
+    rule: Rule, name: str, text: str, limits: Limits, others: Sequence[Rule] = ()
+) -> v.Evidence:
+    """What can be shown of a monitor's text.
+
+    Args:
+        rule: its requirement.
+        name: of the file.
+        text: what says to be its monitor, maybe beside others.
+        limits: of the process that it is executed in.
+        others: rules that the text may be of, too.
+
+    Raises:
+        NotAMonitorError: the text is no generated monitor.
+    """
+    found = processes.confined(limits, verified, rule, text, MOST_STATES, tuple(others))
+    result = v.NotChecked(found.reason) if isinstance(found, Stopped) else as_result(found)
+    return v.Evidence(rule.id, v.Layer.MONITOR, CLAIM, result, ENGINE, (), {name: sha256(text)})
+
+
+def as_result(found: Verified) -> v.Result:
+    """In the form that all layers share."""
+    match found.result:
+        case Proved(states, steps):
+            return v.Proved(
+                f"the same at every tick of every trace ({states} states, {steps} steps); "
+                f"columns agree on {found.compared} drawn ticks{_beside(found)}"
+            )
+        case Refuted(word, expected, told, shortest):
+            length = f"{len(word)} tick{'' if len(word) == 1 else 's'}"
+            kind = "the shortest trace" if shortest else "a trace"
+            detail = (
+                f"{kind} that shows it has {length}; after it, {_judged(*told)}, and should be "
+                f"{_judged(*expected)}"
+            )
+            return v.Counterexample(detail, v.Trace(found.atoms, word))
+        case Disagreement(word, what):
+            detail = f"{what} on a trace"
+            return v.Counterexample(detail, v.Trace(found.atoms, word))
+        case NotChecked(reason):
+            return v.NotChecked(reason)
+        case _:
+            assert_never(found.result)
+
+
+def _beside(found: Verified) -> str:
+    """What else was compared of a text that is not the one that fretc writes."""
+    if not found.beside:
+        return ""
+    return (
+        "; triggers, answers, open demands and unknown values as in the text that fretc writes "
+        f"({found.beside} states)"
+    )
+
+
+def _judged(verdict: str, finite: bool) -> str:
+    return f"{verdict} ({'true' if finite else 'false'} if it ended there)"

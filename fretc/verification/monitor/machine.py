@@ -1,0 +1,83 @@
+"""A monitor's text as a machine that can be stopped, put back and stepped.
+
+That is sound only where a step depends on nothing but cells and propositions:
+`fretc.verification.monitor.text_check` reads that off the text before anything of it is executed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Hashable, Sequence
+from typing import Any
+
+from compiler.formalization.letters import Valuation
+from fretc.verification.monitor.equivalence import Judgement
+from monitors.kernel import Monitor
+
+
+class Cells:
+    """All cells of a rail: a step reads nothing else of what was before it."""
+
+    def __init__(self, rail: Any) -> None:
+        """Of a rail that is laid out as fretc writes it."""
+        self._rail = rail
+        # The text has a class of its own for windows.
+        self._windows = [n for n in rail.CELLS if hasattr(getattr(rail, n), "restore")]
+        self._plain = [name for name in rail.CELLS if name not in self._windows]
+
+    def save(self) -> Hashable:
+        """Their values."""
+        rail = self._rail
+        cells = tuple([getattr(rail, name) for name in self._plain])
+        return cells, tuple([getattr(rail, name).state() for name in self._windows])
+
+    def load(self, state: Any) -> None:
+        """Go back to values that were saved."""
+        rail, (cells, windows) = self._rail, state
+        for name, value in zip(self._plain, cells, strict=True):
+            setattr(rail, name, value)
+        for name, value in zip(self._windows, windows, strict=True):
+            getattr(rail, name).restore(value)
+
+
+class Stepped:
+    """A monitor whose propositions are all known."""
+
+    def __init__(self, monitor: Monitor, place: int, atoms: Sequence[str]) -> None:
+        """Before its first tick.
+
+        Args:
+            monitor: laid out as fretc writes it; it is reset.
+            place: of the requirement among those of the monitor.
+            atoms: the order of the values in a letter; at least the monitor's propositions.
+        """
+        monitor.reset()
+        rail: Any = monitor.must
+        self._rail, self._place = rail, place
+        self._alone = len(monitor.REQUIREMENTS) == 1
+        self._step: Any = monitor.step  # type: ignore[attr-defined]
+        self._parameters = [(p, atoms.index(name)) for name, p in monitor.PROPOSITIONS.items()]
+        self._cells = Cells(rail)
+        self._fates = [n for n in rail.__slots__ if n.endswith(("_broken", "_doomed"))]
+
+    def save(self) -> Hashable:
+        """All cells."""
+        return self._cells.save()
+
+    def load(self, state: Any) -> None:
+        """Go back to a state; nothing was violated there."""
+        self._cells.load(state)
+        for name in self._fates:
+            setattr(self._rail, name, -1)
+
+    def step(self, letter: Valuation) -> Judgement:
+        """The verdict as the text's own step tells it, and FRET's finite verdict."""
+        told = self._step(**{p: letter[i] for p, i in self._parameters})
+        rail = self._rail
+        signals, marks = rail.signals()[self._place], rail.marks()[self._place]
+        verdict = told if self._alone else told[self._place]
+        return str(verdict), marks.broken < 0 and not signals.fails
+
+    def demands(self) -> tuple[bool, bool]:
+        """Whether a demand began at the last tick, and whether one is open after it."""
+        signals = self._rail.signals()[self._place]
+        return bool(signals.trigger), bool(signals.owed)

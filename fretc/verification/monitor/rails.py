@@ -1,0 +1,139 @@
+"""Whether two monitors tell the same of every trace, whatever of it is unknown.
+
+A monitor is two runs of one code, its rails: an unknown counts as false on the one and as true on
+the other. Each rail of the one monitor goes in lock step with that of the other over all letters,
+unknown values among them, until no new pair of states appears. At each step all signals are
+compared, and what is noted in marks.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Hashable, Iterator, Sequence
+from dataclasses import dataclass
+from itertools import product
+from typing import Any
+
+from compiler.targets.python.program import MARKS, SIGNALS
+from fretc.verification.monitor.machine import Cells
+from monitors.kernel import Monitor
+from monitors.kernel.verdicts import Truth
+
+MOST_PROPOSITIONS = 7
+"""Each has three values: 2 187 steps for each pair of states, on either rail."""
+
+Letter = tuple[Truth, ...]
+"""The values of the propositions at one tick, in a given order; None: unknown."""
+
+
+@dataclass(frozen=True, slots=True)
+class Same:
+    """They tell the same of every trace."""
+
+    states: int
+    """Pairs of states of both rails that were looked at."""
+
+
+@dataclass(frozen=True, slots=True)
+class Apart:
+    """A shortest trace of one rail at whose last tick they tell something else."""
+
+    word: tuple[Letter, ...]
+    what: str
+    """Which signal, or which mark."""
+
+
+def compared(
+    machine: Monitor, place: int, other: Monitor, atoms: Sequence[str], limit: int
+) -> Same | Apart | None:
+    """Compare a requirement of one monitor with the only one of the other.
+
+    Args:
+        machine: laid out as fretc writes it.
+        place: of the requirement among those of the machine.
+        other: a monitor of one requirement.
+        atoms: the order of the values in a letter; at least the propositions of both.
+        limit: the most pairs of states that are looked at; with more, nothing is known: None.
+    """
+    states = 0
+    for doubt in (False, True):
+        left = _Rail(machine, place, doubt, atoms)
+        right = _Rail(other, 0, doubt, atoms)
+        found = _in_lock_step(left, right, len(atoms), limit)
+        if not isinstance(found, Same):
+            return found
+        states += found.states
+    return Same(states)
+
+
+_STARTS = ({"broken": -1, "doomed": -1, "last": -1, "open": -1}, {"last": 1, "open": 2})
+"""What marks may be before a step: none, and of ticks before it."""
+_TICK = 5
+
+
+class _Rail:
+    """A rail that can be put into any state, at one tick for all."""
+
+    def __init__(self, monitor: Monitor, place: int, doubt: bool, atoms: Sequence[str]) -> None:
+        self._rail: Any = monitor.RAIL(doubt=doubt)
+        self._place = place
+        self._cells = Cells(self._rail)
+        self._order = tuple(atoms.index(name) for name in monitor.PROPOSITIONS)
+        prefixes = tuple(n.removesuffix("_open") for n in self._rail.__slots__ if _is_open(n))
+        self._marks = tuple((mark, f"{prefix}_{mark}") for prefix in prefixes for mark in MARKS)
+
+    def save(self) -> Hashable:
+        """Its cells."""
+        return self._cells.save()
+
+    def step(self, state: Hashable, letter: Letter) -> tuple[object, ...]:
+        """The signals after one tick, and the marks from each of `_STARTS`."""
+        row = tuple([letter[i] for i in self._order])
+        told: list[object] = []
+        for start in _STARTS:
+            self._cells.load(state)
+            self._rail.tick = _TICK
+            for mark, name in self._marks:
+                setattr(self._rail, name, start.get(mark, -1))
+            self._rail.advance((row,))
+            told += self._rail.marks()[self._place]
+        return (*map(bool, self._rail.signals()[self._place]), *told)
+
+
+def _is_open(name: str) -> bool:
+    return name.endswith("_open")
+
+
+_NAMES = (*SIGNALS, *(f"mark `{mark}`" for _ in _STARTS for mark in MARKS))
+
+
+def _in_lock_step(left: _Rail, right: _Rail, atoms: int, limit: int) -> Same | Apart | None:
+    """Breadth first through all pairs of states."""
+    letters = tuple(product((False, True, None), repeat=atoms))
+    pairs = [(left.save(), right.save())]
+    origins: list[tuple[int, Letter] | None] = [None]
+    known = {*pairs}
+    for place, (one, other) in enumerate(pairs):  # grows while it is read
+        for letter in letters:
+            found, expected = left.step(one, letter), right.step(other, letter)
+            if found != expected:
+                what = next(n for n, a, b in zip(_NAMES, found, expected, strict=True) if a != b)
+                return Apart((*_word(origins, place), letter), what)
+            reached = left.save(), right.save()
+            if reached not in known:
+                known.add(reached)
+                pairs.append(reached)
+                origins.append((place, letter))
+        if len(pairs) > limit:
+            return None
+    return Same(len(pairs))
+
+
+def _word(origins: Sequence[tuple[int, Letter] | None], place: int) -> Iterator[Letter]:
+    """The letters that led to a pair, from the first tick on."""
+    word: list[Letter] = []
+    origin = origins[place]
+    while origin is not None:
+        place, letter = origin
+        word.append(letter)
+        origin = origins[place]
+    yield from reversed(word)

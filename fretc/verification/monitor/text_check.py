@@ -1,0 +1,304 @@
+"""Whether a text is laid out as generated monitors are, so that nothing in it is hidden.
+
+A proof stops a monitor, puts it back and steps it: that is sound only where a step depends on its
+cells and propositions and on nothing else. So every statement of the text must be one that the
+generator writes. The names of cells, constants and the logic of a tick may be any; of marks and
+signals, which only remember and tell, the form is fixed, and parameters and literals have the names
+that the generator gives to their propositions.
+"""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator, Mapping, Sequence
+
+from compiler.targets.python.monitor import parameters_of, prefixes_of
+from compiler.targets.python.program import MARKS, SIGNALS, locals_of, negation
+from fretc.verification.monitor.column_layout import check_columns
+from fretc.verification.monitor.statements import (
+    StrangeError,
+    below_docstring,
+    body_of,
+    constants,
+    demand,
+    is_one_of,
+    names_in,
+    reads,
+)
+from fretc.verification.monitor.tick_layout import FIXED, Rail, check_advance
+from fretish.reading.text_encoding import is_utf8
+from monitors.source_text import kernel
+
+_OF_RAILS = frozenset({"CELLS", "advance", "signals", "marks"})
+"""What else a rail has."""
+
+
+def strange(text: str) -> str | None:
+    """Why the text may do more than it seems to; None: it does not."""
+    if not is_utf8(text):
+        return "it declares another encoding than UTF-8, so Python would read another text"
+    head, found, own = text.partition(kernel().text)
+    try:
+        if not found or not head.endswith("\n") or not own.startswith("\n") or not _is_head(head):
+            return "the run time in it is not the one of this version of fretc"
+        _check_module(ast.parse(own))
+    except SyntaxError as error:
+        return f"it is no Python: {error}"
+    except StrangeError as error:
+        return str(error)
+    return None
+
+
+def own(text: str) -> ast.Module:
+    """What of a monitor's text stands below the run time; it is laid out as fretc writes it."""
+    return ast.parse(text.partition(kernel().text)[2])
+
+
+def _is_head(head: str) -> bool:
+    return reads(ast.parse(head).body, kernel().imports)
+
+
+def _check_module(module: ast.Module) -> None:
+    match module.body:
+        case [ast.ClassDef() as rail, ast.ClassDef() as monitor, named, run]:
+            pass
+        case _:
+            raise StrangeError("it is not laid out as fretc writes it: two classes and no more")
+    title = rail.name.removesuffix("Rail")
+    demand(rail.name == f"{title}Rail" and title != "", rail)
+    demand(monitor.name == f"{title}Monitor" and _is_plain(rail) and _is_plain(monitor), monitor)
+    demand([ast.unparse(base) for base in (*rail.bases, *monitor.bases)] == ["Monitor"], monitor)
+    demand(is_one_of(named, f"MONITOR: type[Monitor] = {monitor.name}"), named)
+    _check_annotations(module, title)
+    demand(is_one_of(run, 'if __name__ == "__main__":\n    sys.exit(main(MONITOR))'), run)
+    names, advance = _rail(rail)
+    inputs = _monitor(monitor, rail.name, names)
+    reserved = {*FIXED, *_OF_RAILS, *locals_of(inputs.values())}
+    demand(reserved.isdisjoint(names.cells), rail)
+    told = tuple(f"_{name}" for name in (*MARKS, *SIGNALS))
+    demand(not any(cell.startswith("_") or cell.endswith(told) for cell in names.cells), rail)
+    check_advance(advance, names, inputs)
+
+
+def _check_annotations(module: ast.Module, title: str) -> None:
+    """They are evaluated when the text is executed: those that the generator writes do nothing."""
+    allowed = {*_ANNOTATIONS, f"{title}Rail"}
+    for node in ast.walk(module):
+        match node:
+            case ast.FunctionDef(returns=ast.expr() as annotation):
+                demand(ast.unparse(annotation) in allowed, annotation)
+            case ast.AnnAssign(_, annotation) | ast.arg(_, ast.expr() as annotation):
+                demand(ast.unparse(annotation) in allowed, annotation)
+
+
+_ANNOTATIONS = frozenset(
+    (
+        *("None", "bool", "int", "Truth", "Verdict", "tuple[Verdict, ...]", "type[Monitor]"),
+        *("tuple[Signals[bool], ...]", "tuple[Signals[int], ...]", "tuple[Marks, ...]"),
+        *("ClassVar[tuple[str, ...]]", "ClassVar[Mapping[str, str]]"),
+        *("Iterable[Sequence[Any]]", "Iterable[Row | Mapping[str, Truth]]"),
+    )
+)
+
+
+def _is_plain(node: ast.ClassDef) -> bool:
+    plain = not node.keywords and not node.decorator_list
+    return plain and not getattr(node, "type_params", ())
+
+
+def _rail(node: ast.ClassDef) -> tuple[Rail, ast.stmt]:
+    """The names of a rail, once all of it but `advance` is known to be as it should."""
+    body = below_docstring(node)
+    demand(len(body) == 6, node)
+    slots, cells, initial, advance, signals, marks = body
+    match slots, cells:
+        case (
+            ast.Assign([ast.Name("__slots__")], all_slots),
+            ast.AnnAssign(ast.Name("CELLS"), _, ast.expr() as all_cells),
+        ):
+            pass
+        case _:
+            raise StrangeError("it is not laid out as fretc writes it: `__slots__`, `CELLS`")
+    prefixes = _told(signals, marks)
+    named = Rail(names_in(all_cells), frozenset(_windows(initial)), prefixes)
+    reserved = ("doubt", "tick", *named.marks, *named.signals)
+    everything = (*reserved, *named.cells)
+    demand(len({*everything}) == len(everything), cells)
+    demand(sorted(names_in(all_slots)) == sorted(everything), slots)
+    _check_initial(initial, named)
+    return named, advance
+
+
+def _told(signals: ast.stmt, marks: ast.stmt) -> tuple[str, ...]:
+    """The prefixes of the requirements, from what a rail tells of them."""
+    prefixes = tuple(
+        node.attr.removesuffix("_trigger")
+        for node in ast.walk(signals)
+        if isinstance(node, ast.Attribute) and node.attr.endswith("_trigger")
+    )
+    for function, name, kind, names in (
+        (signals, "signals", "Signals", SIGNALS),
+        (marks, "marks", "Marks", MARKS),
+    ):
+        told = ", ".join(
+            f"{kind}({', '.join(f'self.{prefix}_{name}' for name in names)})" for prefix in prefixes
+        )
+        body = body_of(function, name, "self")
+        demand(len(body) == 1 and is_one_of(body[0], f"return ({told},)"), function)
+    return prefixes
+
+
+def _windows(initial: ast.stmt) -> Iterator[str]:
+    for node in ast.walk(initial):
+        match node:
+            case ast.Assign([ast.Attribute(attr=name)], ast.Call(ast.Name("Window"))):
+                yield name
+
+
+def _check_initial(node: ast.stmt, rail: Rail) -> None:
+    fixed = {"doubt": "doubt", **dict.fromkeys(("tick", *rail.marks), "-1")}
+    fixed |= dict.fromkeys(rail.signals, "False")
+    found = []
+    for statement in body_of(node, "__init__", "self, doubt: bool = False"):
+        match statement:
+            case ast.Assign([ast.Attribute(ast.Name("self"), name)], value):
+                right = name in rail.cells and _is_initial(value)
+                demand(right or is_one_of(value, fixed.get(name, "nothing")), statement)
+                found.append(name)
+            case _:
+                demand(False, statement)
+    demand(sorted(found) == sorted((*fixed, *rail.cells)), node)
+
+
+def _is_initial(node: ast.expr) -> bool:
+    match node:
+        case ast.Call(ast.Name("Window"), [ast.Constant(int(lo)), ast.Constant(int(hi))], []):
+            return 0 <= lo <= hi  # else its state is less than what it goes by
+        case ast.UnaryOp(ast.USub(), ast.Constant(value)) | ast.Constant(value):
+            return isinstance(value, int)
+        case _:
+            return False
+
+
+def _monitor(node: ast.ClassDef, rail: str, names: Rail) -> Mapping[str, str]:
+    """Its propositions with their parameters, once it is known to be as it should."""
+    body = below_docstring(node)
+    demand(len(body) == 10, node)
+    program, requirements, propositions, literals, named, must, may, step, run, columns = body
+    demand(isinstance(program, ast.Assign) and _is_text(program, "PROGRAM"), program)
+    _check_requirements(requirements, names.prefixes)
+    inputs = _inputs(propositions, names.prefixes)
+    given = _literals(literals, inputs)
+    demand(is_one_of(named, f"RAIL = {rail}"), named)
+    demand(is_one_of(must, f"must: {rail}") and is_one_of(may, f"may: {rail}"), must)
+    alone = names.prefixes[0] if len(names.prefixes) == 1 else None
+    verdicts = "" if alone is None else "[0]"
+    rows = "self, rows: Iterable[Row | Mapping[str, Truth]]"
+    told = f"self.advance(rows)\nreturn self.verdicts(){verdicts}"
+    demand(reads(body_of(run, "run", rows), told), run)
+    parameters = ", ".join(f"{name}: Truth" for name in inputs.values())
+    stepped = body_of(step, "step", f"self, *, {parameters}" if inputs else "self")
+    _check_step(stepped, tuple(inputs.values()), names.prefixes)
+    check_columns(columns, given)
+    return inputs
+
+
+def _check_requirements(node: ast.stmt, prefixes: Sequence[str]) -> None:
+    ids: list[str] = []
+    match node:
+        case ast.Assign([ast.Name("REQUIREMENTS")], ast.Tuple(told)):
+            for one in told:
+                match one:
+                    case ast.Call(ast.Name("Requirement"), [ast.Constant(str(id)), *rest], []):
+                        demand(len(rest) == 3, one)
+                        demand(all(isinstance(value, ast.Constant) for value in rest), one)
+                        ids.append(id)
+                    case _:
+                        demand(False, one)
+        case _:
+            demand(False, node)
+    demand(bool(ids) and "" not in ids and len({*ids}) == len(ids), node)
+    demand(tuple(prefixes_of(ids).values()) == tuple(prefixes), node)
+
+
+def _inputs(node: ast.stmt, prefixes: Sequence[str]) -> Mapping[str, str]:
+    """The parameter of each proposition: the one that the generator makes of its name."""
+    match node:
+        case ast.AnnAssign(ast.Name("PROPOSITIONS"), _, ast.Dict(keys, values)):
+            names = names_in(ast.Tuple([key for key in keys if key is not None]))
+            demand(len({*names}) == len(keys) and all(names), node)
+            inputs = parameters_of(names, prefixes)
+            demand(tuple(inputs.values()) == names_in(ast.Tuple(values)), node)
+            return inputs
+        case _:
+            demand(False, node)
+            return {}
+
+
+def _literals(node: ast.stmt, inputs: Mapping[str, str]) -> tuple[str, ...]:
+    """The names of literals: a proposition's parameter, or that of its negation."""
+    match node:
+        case ast.Assign([ast.Name("LITERALS")], ast.Tuple(told)):
+            names: list[str] = []
+            for one in told:
+                name, proposition, positive = (*constants(one), None, None, None)[:3]
+                parameter = inputs.get(str(proposition), "")
+                right = parameter if positive is True else negation(parameter)
+                demand(parameter != "" and isinstance(positive, bool) and name == right, one)
+                names.append(right)
+            return tuple(names)
+        case _:
+            demand(False, node)
+            return ()
+
+
+def _check_step(body: Sequence[ast.stmt], inputs: Sequence[str], prefixes: Sequence[str]) -> None:
+    """Both rails take the row, and what they remember is told."""
+    fork = " or ".join(f"{name} is None" for name in inputs)
+    text = f"row = ({', '.join(inputs)}{',' * (len(inputs) == 1)})\n"
+    text += f"if {fork}:\n    self._fork()\n" if inputs else ""
+    text += "must, may = self.must, self.may\nmust.advance((row,))\n"
+    text += "if may is not must:\n    may.advance((row,))"
+    head = len(ast.parse(text).body)
+    demand(reads(body[:head], text), body[0])
+    if len(prefixes) == 1:
+        right = any(reads(body[head:], _alone(*form)) for form in _forms(prefixes[0]))
+        demand(right, body[-1])
+        return
+    match body[head:]:
+        case [ast.Return(ast.Tuple(verdicts))] if len(verdicts) == len(prefixes):
+            for prefix, verdict in zip(prefixes, verdicts, strict=True):
+                forms = (_beside_others(*form) for form in _forms(prefix))
+                demand(is_one_of(verdict, *forms), verdict)
+        case _:
+            demand(False, body[-1])
+
+
+def _forms(prefix: str) -> Iterator[tuple[str, str | None]]:
+    """When a requirement is violated, and when it is satisfied: what can never be is left out."""
+    for doom in (False, True):
+        violated, possible = (
+            f"{rail}.{prefix}_broken >= 0" + f" or {rail}.{prefix}_doomed >= 0" * doom
+            for rail in ("must", "may")
+        )
+        yield violated, None
+        yield violated, f"must.{prefix}_settled and not ({possible})"
+
+
+def _alone(violated: str, satisfied: str | None) -> str:
+    text = f"if {violated}:\n    return VIOLATED\n"
+    text += f"if {satisfied}:\n    return SATISFIED\n" if satisfied else ""
+    return f"{text}return PENDING"
+
+
+def _beside_others(violated: str, satisfied: str | None) -> str:
+    rest = f"SATISFIED if {satisfied} else PENDING" if satisfied else "PENDING"
+    return f"VIOLATED if {violated} else {rest}"
+
+
+def _is_text(node: ast.Assign, name: str) -> bool:
+    match node:
+        case ast.Assign([ast.Name(id)], ast.Constant(str())):
+            return id == name
+        case _:
+            return False

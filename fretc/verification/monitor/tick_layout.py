@@ -1,0 +1,230 @@
+"""A tick of a generated monitor: its rail's `advance`, statement by statement.
+
+The logic of a tick may be any over names that have a value at this tick; how it reads
+propositions, what it carries from tick to tick and what its marks note have a fixed form.
+"""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+
+from compiler.targets.python.program import MARKS, SIGNALS, negation
+from fretc.verification.monitor.statements import StrangeError, body_of, demand, is_one_of
+
+FIXED = frozenset({"self", "rows", "known", "doubt", "tick", "boolean"})
+"""What a tick calls its own, and what it calls."""
+
+
+@dataclass(frozen=True, slots=True)
+class Rail:
+    """The names of a rail."""
+
+    cells: tuple[str, ...]
+    windows: frozenset[str]
+    prefixes: tuple[str, ...]
+
+    @property
+    def marks(self) -> tuple[str, ...]:
+        """The names of all marks."""
+        return tuple(f"{prefix}_{mark}" for prefix in self.prefixes for mark in MARKS)
+
+    @property
+    def signals(self) -> tuple[str, ...]:
+        """The names of all signals."""
+        return tuple(f"{prefix}_{signal}" for prefix in self.prefixes for signal in SIGNALS)
+
+
+def check_advance(node: ast.stmt, rail: Rail, inputs: Mapping[str, str]) -> None:
+    """The function does at each row what it shows, and nothing else.
+
+    Args:
+        node: it.
+        rail: whose it is.
+        inputs: the propositions in the order of a row, each with its parameter.
+
+    Raises:
+        StrangeError: it does something else.
+    """
+    body = body_of(node, "advance", "self, rows: Iterable[Sequence[Any]]")
+    place = next((i for i, part in enumerate(body) if isinstance(part, ast.For)), None)
+    demand(place is not None, node)
+    assert place is not None
+    loop = body[place]
+    assert isinstance(loop, ast.For)
+    demand(place > 2, node)
+    carried = tuple(_carried(body[:place], rail))
+    demand(is_one_of(loop.iter, "rows") and not loop.orelse, loop)
+    row = ", ".join(inputs.values()) + "," * (len(inputs) == 1)
+    demand(is_one_of(loop.target, f"({row})" if inputs else "_"), loop)
+    demand(bool(loop.body) and is_one_of(loop.body[0], "tick += 1"), loop)
+    bound = _Tick(rail, frozenset(carried)).check(loop.body[1:], inputs)
+    _check_end(body[place + 1 :], rail, carried, bound)
+
+
+def _carried(statements: Sequence[ast.stmt], rail: Rail) -> Iterator[str]:
+    """The names that are read from the rail before the first row."""
+    fixed = [ast.unparse(statement) for statement in statements]
+    demand(fixed[:3] == ["known = True", "doubt = self.doubt", "tick = self.tick"], statements[0])
+    allowed = (*rail.cells, *rail.marks)
+    for statement in statements[3:]:
+        name = ast.unparse(statement).partition(" = ")[0]
+        demand(name in allowed and is_one_of(statement, f"{name} = self.{name}"), statement)
+        yield name
+    demand(all(f"{cell} = self.{cell}" in fixed for cell in rail.cells), statements[0])
+
+
+def _check_end(
+    statements: Sequence[ast.stmt], rail: Rail, carried: Iterable[str], bound: frozenset[str]
+) -> None:
+    """What is done after the last row: cells and marks go back, signals are told."""
+    kept = {f"self.{name} = {name}" for name in ("tick", *carried)}
+    opened = {f"{p}_open = {p}_last if self.{p}_owed else -1": p for p in rail.prefixes}
+    told: set[str] = set()
+    if len(statements) < 2:
+        raise StrangeError("it is not laid out as fretc writes it: `advance` does not end")
+    first, *rest, last = statements
+    demand(is_one_of(first, "if tick == self.tick:\n    return True"), first)
+    demand(is_one_of(last, "return known"), last)
+    for statement in rest:
+        text = ast.unparse(statement)
+        if text in kept:
+            kept.remove(text)
+            continue
+        if text in opened:  # of the last tick, and not yet put back
+            demand(f"{opened[text]}_owed" in told, statement)
+            demand(f"self.{opened[text]}_open = {opened[text]}_open" in kept, statement)
+            continue
+        match statement:
+            case ast.Assign([ast.Attribute(ast.Name("self"), name)], value):
+                demand(name in rail.signals and name not in told, statement)
+                _check_value(value, bound - rail.windows, frozenset())
+                told.add(name)
+            case _:
+                demand(False, statement)
+    demand(not kept, first)
+
+
+@dataclass(frozen=True, slots=True)
+class _Tick:
+    """The statements that are executed for each row."""
+
+    rail: Rail
+    carried: frozenset[str]
+
+    def check(self, statements: Sequence[ast.stmt], inputs: Mapping[str, str]) -> frozenset[str]:
+        """The names that have a value after them."""
+        bound = {*self.rail.cells}
+        rest = [*statements]
+        for proposition, name in inputs.items():
+            both = name
+            if rest and is_one_of(rest[0], f"{negation(name)} = not {name}"):
+                rest.pop(0)
+                both = f"{name} = {negation(name)}"
+                bound.add(negation(name))
+            bound.add(name)
+            block = f"""\
+if {name} is not True and {name} is not False:
+    if {name} is None:
+        known = False
+        {both} = doubt
+    else:
+        {name} = boolean({name}, {proposition!r})"""
+            demand(
+                bool(rest) and is_one_of(rest[0], block), rest[0] if rest else ast.Module([], [])
+            )
+            rest.pop(0)
+        return self._after(rest, frozenset(bound))
+
+    def _after(self, statements: Iterable[ast.stmt], bound: frozenset[str]) -> frozenset[str]:
+        """Those of `bound`, and what the statements give a value on every way through them."""
+        for statement in statements:
+            if self._remembers(statement, bound):
+                continue
+            match statement:
+                case ast.Assign([ast.Tuple(targets)], ast.Tuple(values)):
+                    demand(len(targets) == len(values), statement)
+                case ast.Assign([ast.Name() as target], value):
+                    targets, values = [target], [value]
+                case ast.If(test, body, orelse):
+                    self._check(test, bound)
+                    bound = self._after(body, bound) & self._after(orelse, bound)
+                    continue
+                case _:
+                    demand(False, statement)
+            for value in values:
+                self._check(value, bound)
+            bound |= {self._target(target) for target in targets}
+        return bound
+
+    def _target(self, node: ast.expr) -> str:
+        fixed = {*FIXED, *self.rail.marks, *self.rail.windows}
+        demand(isinstance(node, ast.Name) and node.id not in fixed, node)
+        assert isinstance(node, ast.Name)
+        return node.id
+
+    def _check(self, value: ast.expr, bound: frozenset[str]) -> None:
+        _check_value(value, bound - self.rail.windows, self.rail.windows)
+
+    def _remembers(self, statement: ast.stmt, bound: frozenset[str]) -> bool:
+        """It notes the tick of an event in a mark, and does nothing else."""
+        for mark in self.carried.intersection(self.rail.marks):
+            noted, kind = f"{mark} = tick", mark.rpartition("_")[2]
+            match statement:
+                case ast.Assign() if kind == "last" and is_one_of(statement, noted):
+                    return True
+                case ast.If(test, [body], []) if kind == "last" and is_one_of(body, noted):
+                    self._check(test, bound)
+                    return True
+                case ast.If(ast.BoolOp(ast.And(), [once, *tests]), [body], []) if (
+                    kind in ("broken", "doomed")
+                    and is_one_of(once, f"{mark} < 0")
+                    and is_one_of(body, noted)
+                ):
+                    for test in tests:
+                        self._check(test, bound)
+                    return True
+                case ast.If(ast.UnaryOp(ast.Not(), test), [closed], [opened]) if (
+                    kind == "open"
+                    and is_one_of(closed, f"{mark} = -1")
+                    and is_one_of(opened, f"if {mark} < 0:\n    {noted}")
+                ):
+                    self._check(test, bound)
+                    return True
+        return False
+
+
+_OPERATORS = (ast.Lt, ast.LtE, ast.Gt, ast.GtE, ast.Eq, ast.NotEq)
+"""Those that cannot tell True from 1: for a proof they are one state."""
+
+
+def _check_value(node: ast.expr, bound: frozenset[str], windows: frozenset[str]) -> None:
+    """It depends on nothing but names that have a value at this tick."""
+
+    def check(*parts: ast.expr) -> None:
+        for part in parts:
+            _check_value(part, bound, windows)
+
+    match node:
+        case ast.Name(name):
+            if name not in bound:
+                raise StrangeError(f"what it does at a tick depends on `{name}`")
+        case ast.Constant(value):
+            demand(isinstance(value, int), node)
+        case ast.UnaryOp(ast.Not() | ast.USub(), arg):
+            check(arg)
+        case ast.BoolOp(_, args):
+            check(*args)
+        case ast.Compare(left, [operator], [right]):
+            demand(isinstance(operator, _OPERATORS), node)
+            check(left, right)
+        case ast.BinOp(left, ast.Add() | ast.Sub(), right):
+            check(left, right)
+        case ast.IfExp(test, body, orelse):
+            check(test, body, orelse)
+        case ast.Call(ast.Attribute(ast.Name(name), "step"), [left, right], []):
+            demand(name in windows, node)
+            check(left, right)
+        case _:
+            demand(False, node)

@@ -1,0 +1,236 @@
+"""Prove that the text of a generated monitor means what its sentence means.
+
+The text is executed, stepped over every letter and compared with the counter automaton of the
+sentence (`fretc.verification.monitor.equivalence`). Its steps must depend on nothing but its cells,
+propositions and constants: that is read off its tree first
+(`fretc.verification.monitor.text_check`), so a step that looks at the number of the tick cannot
+hide. The automaton knows verdicts of known values. What else a monitor tells (triggers, answers,
+open demands, marks; all of it with unknown values too) is compared with the text that fretc writes
+for the sentence, state by state (`fretc.verification.monitor.rails`), and its column program with
+the one in that text, term by term (`fretc.verification.monitor.column_terms`); for the text itself
+nothing is left to compare. Its column program is also compared with its steps on drawn traces, some
+of which have unknown values: that shows where they differ.
+"""
+
+from __future__ import annotations
+
+import ast
+import random
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+
+from compiler.formalization.letters import atoms_of
+from compiler.formalization.rule import Rule
+from compiler.targets.python import monitor as target
+from fretc.verification.monitor import rails
+from fretc.verification.monitor.column_terms import Terms
+from fretc.verification.monitor.equivalence import NotChecked, Proved, Refuted, prove
+from fretc.verification.monitor.machine import Stepped
+from fretc.verification.monitor.text_check import own, strange
+from monitors.kernel import Column, Monitor
+from monitors.kernel.columns import column, truths
+from monitors.kernel.stepping import literals_of
+from monitors.kernel.verdicts import Truth
+from monitors.loading import load
+
+DRAWN = 20
+"""Traces on which the column program is compared, where the bound is small."""
+_FEWEST, _TICKS = 4, 40_000
+"""At least so many traces; at most so many ticks in all, if there are more traces than that."""
+
+
+MOST_STATES = 10**6
+
+
+class NotAMonitorError(Exception):
+    """The text cannot be executed as a generated monitor; it says why."""
+
+
+@dataclass(frozen=True, slots=True)
+class Disagreement:
+    """A trace at whose last tick it tells something else than it should."""
+
+    word: tuple[tuple[Truth, ...], ...]
+    """The values of `atoms`; None: unknown."""
+    what: str = "its column program and its steps differ"
+
+
+@dataclass(frozen=True, slots=True)
+class Verified:
+    """What could be shown of one requirement's monitor."""
+
+    requirement: str
+    atoms: tuple[str, ...]
+    """The propositions, in the order of the values of a word."""
+    result: Proved | Refuted | NotChecked | Disagreement
+    compared: int = 0
+    """Ticks of drawn traces on which the column program agreed with the steps."""
+    beside: int = 0
+    """States in which it was compared with the text that fretc writes; 0: it is that text."""
+
+
+def verified(
+    rule: Rule, text: str, limit: int = MOST_STATES, others: Sequence[Rule] = ()
+) -> Verified:
+    """Compare the text of a monitor with its rule.
+
+    Args:
+        rule: one that a monitor can be made of, on its own clock.
+        text: what says to be its monitor, maybe beside others.
+        limit: the most states that are looked at.
+        others: rules that the text may be of, too; of a text that fretc writes for several.
+
+    Raises:
+        NotAMonitorError: the text is no generated monitor.
+    """
+    _demand_monitor(text)
+    reason = strange(text)  # nothing else is executed
+    if reason is not None:
+        return Verified(rule.id, (), NotChecked(reason))
+    try:
+        monitor = load(f"{rule.id}_monitor", text)
+    except Exception as error:
+        reason = f"it cannot be executed: {type(error).__name__}: {error}"
+        return Verified(rule.id, (), NotChecked(reason))
+    return _shown(rule, text, monitor, limit, others)
+
+
+def _shown(rule: Rule, text: str, monitor: Monitor, limit: int, others: Sequence[Rule]) -> Verified:
+    """What is known of a text that may be executed."""
+    places = [i for i, known in enumerate(monitor.REQUIREMENTS) if known.id == rule.id]
+    if not places:
+        return Verified(rule.id, (), NotChecked("the monitor is of other requirements"))
+    place = places[0]
+    atoms = tuple(dict.fromkeys((*atoms_of(rule.sentence), *monitor.PROPOSITIONS)))
+    machine = Stepped(monitor, place, atoms)
+    result = prove(machine, rule.sentence, rule.ticks or 0, atoms, limit)
+    if not isinstance(result, Proved):
+        return Verified(rule.id, atoms, result)
+    (stated,) = load("written", target.text(rule)).REQUIREMENTS
+    if tuple(monitor.REQUIREMENTS[place]) != tuple(stated):
+        reason = "it decides the same, but states another sentence or deadline"
+        return Verified(rule.id, atoms, NotChecked(reason))
+    compared, word = _columns_compared(monitor, place, atoms, rule.ticks or 0)
+    if word is not None:
+        return Verified(rule.id, atoms, Disagreement(word), compared)
+    if _is_written(text, monitor, (*others, rule)):
+        return Verified(rule.id, atoms, result, compared)
+    beside = _beside_its_own(rule, text, monitor, place, atoms, limit)
+    if isinstance(beside, int):
+        return Verified(rule.id, atoms, result, compared, beside)
+    return Verified(rule.id, atoms, beside, compared)
+
+
+def _is_written(text: str, monitor: Monitor, rules: Sequence[Rule]) -> bool:
+    """Whether it is what fretc writes for these rules, or for some of them, but for comments."""
+    known = {rule.id: rule for rule in rules}
+    ids = [requirement.id for requirement in monitor.REQUIREMENTS]
+    if not all(id in known for id in ids):
+        return False
+    written = target.text(*(known[id] for id in ids))
+    return ast.dump(own(written)) == ast.dump(own(text))
+
+
+def _beside_its_own(
+    rule: Rule, text: str, monitor: Monitor, place: int, atoms: Sequence[str], limit: int
+) -> int | Disagreement | NotChecked:
+    """In how many states it tells the same as the text that fretc writes for the rule."""
+    written = target.text(rule)
+    if len(atoms) > rails.MOST_PROPOSITIONS:
+        most = rails.MOST_PROPOSITIONS
+        return NotChecked(
+            f"it is not the text that fretc writes, and {len(atoms)} propositions, more than "
+            f"{most}, are too many to compare both with unknown values"
+        )
+    found = rails.compared(monitor, place, load("written", written), atoms, limit)
+    match found:
+        case None:
+            return NotChecked(f"with unknown values there are more than {limit} states")
+        case rails.Apart(word, what):
+            told = f"the text that fretc writes tells another {what}"
+            return Disagreement(word, told)
+        case rails.Same(states):
+            terms = Terms()
+            if terms.of(text, place) == terms.of(written, 0):
+                return states
+            return NotChecked(
+                "its column program is not the one that fretc writes: it agrees with the steps on "
+                "drawn traces, and nothing is known of others"
+            )
+
+
+def _demand_monitor(text: str) -> None:
+    """It is Python, and names a monitor."""
+    try:
+        tree = ast.parse(text)
+    except (SyntaxError, ValueError, RecursionError) as error:
+        raise NotAMonitorError(f"it is no Python: {error}") from None
+    named = (node.target for node in tree.body if isinstance(node, ast.AnnAssign))
+    if not any(isinstance(target, ast.Name) and target.id == "MONITOR" for target in named):
+        raise NotAMonitorError("it names no `MONITOR`")
+
+
+# Columns --------------------------------------------------------------------------------------
+
+
+def _columns_compared(
+    monitor: Monitor, place: int, atoms: Sequence[str], bound: int
+) -> tuple[int, tuple[tuple[Truth, ...], ...] | None]:
+    """The ticks on which both programs agree; and a trace on which they do not."""
+    choose = random.Random(bound)
+    length = 4 * bound + 50
+    count = min(DRAWN, max(_FEWEST, _TICKS // length))
+    for number in range(count):
+        odds = 0.02 if number % 2 else 0.0
+        drawn = {name: _drawn(choose, length, bound, odds) for name in atoms}
+        wrong = _first_difference(monitor, place, drawn, length)
+        if wrong is not None:
+            return 0, tuple(_rows(drawn, wrong + 1))
+    return count * length, None
+
+
+def _first_difference(
+    monitor: Monitor, place: int, columns: Mapping[str, Column], length: int
+) -> int | None:
+    """The first tick of which both programs do not tell the same signals, on either rail."""
+    every = (1 << length) - 1
+    try:
+        must, may = (
+            monitor.columns(every, **literals_of(monitor, columns, every, doubt))[place]
+            for doubt in (False, True)
+        )
+        beyond = any(column >> length for column in (*must, *may))
+    except Exception:
+        return length - 1
+    if beyond:
+        return length - 1
+    monitor.reset()
+    values = [truths(columns[name], length) for name in monitor.PROPOSITIONS]
+    for tick in range(length):
+        monitor.advance([tuple([column[tick] for column in values])])
+        for rail, told in ((monitor.must, must), (monitor.may, may)):
+            found = [bool(value) for value in rail.signals()[place]]
+            if found != [bool(column >> tick & 1) for column in told]:
+                return tick
+    return None
+
+
+def _drawn(choose: random.Random, length: int, bound: int, unknown: float) -> Column:
+    """A column with odds of its own, or of runs about as long as the bound: edges matter."""
+    if choose.random() < 0.5:
+        odds = choose.choice((0.02, 0.2, 0.5, 0.95))
+        codes = bytearray(choose.random() < odds for _ in range(length))
+    else:
+        codes, value = bytearray(), choose.randrange(2)
+        while len(codes) < length:
+            run = choose.choice((1, 1, 2, bound - 1, bound, bound + 1, bound + 2))
+            codes += bytes((value,)) * run
+            value = 1 - value
+        del codes[length:]
+    if unknown:
+        codes = bytearray(2 if choose.random() < unknown else code for code in codes)
+    return column(codes)
+
+
+def _rows(columns: Mapping[str, Column], length: int) -> Iterator[tuple[Truth, ...]]:
+    return (tuple(column.at(tick) for column in columns.values()) for tick in range(length))

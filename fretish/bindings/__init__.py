@@ -1,0 +1,1 @@
+"""bindings.toml: clock, signals, propositions, units, the interceptor."""

@@ -1,0 +1,128 @@
+"""Numbers as a reader wants to see them: in declared units, with digits that say something.
+
+Audits count in base units, whatever unit the bindings declare; people think in the declared ones.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+from decimal import Decimal
+from fractions import Fraction
+from math import copysign, floor, inf, isclose, isfinite, isnan, log10
+from sys import float_info
+from typing import TypeVar
+
+from fretish.bindings.declarations import Signal
+from fretish.units import base_name
+
+_DIGITS = 4
+"""Significant digits of a measured number, where nothing asks for more."""
+_MOST_DIGITS = 17
+"""With these, every 64-bit float is told from every other."""
+_LARGEST = Fraction(float_info.max)
+_PLAIN = 10**15
+"""Below it numbers have no exponent."""
+_NAME = re.compile(r"[A-Za-z_]\w*")
+Number = TypeVar("Number", float, float | None, float | str | None)
+
+
+# Digits ----------------------------------------------------------------------------------------
+
+
+def value(number: float | str | None, unit: str, beside: Sequence[float] = ()) -> str:
+    """A measured number: `0.0318 m`, `unknown`; an infinite one as it is written, `+inf`.
+
+    Args:
+        number: in the unit; None: unknown.
+        unit: as it is shown; empty for a plain number.
+        beside: numbers that are shown exactly with it: it has as many digits as tell it from each,
+            and on which side of each it lies.
+    """
+    if number is None or isinstance(number, str):
+        return "unknown" if number is None else number
+    if not isfinite(number):
+        return "unknown" if isnan(number) else "+inf" if number > 0 else "-inf"
+    text = next(
+        text
+        for digits in range(_least_digits(number), _MOST_DIGITS + 1)
+        for text in [_written(number, digits)]
+        if digits == _MOST_DIGITS
+        or (
+            isfinite(float(text))
+            and all(_side(float(text), each) == _side(number, each) for each in beside)
+        )
+    )
+    return f"{text} {unit}".rstrip()
+
+
+def exact(number: float, unit: str) -> str:
+    """A bound, with all digits that it was written with: `0.05 m`, `1.23456 m`."""
+    if not isfinite(number):
+        return value(number, unit)
+    text = next(
+        text
+        for digits in range(1, _MOST_DIGITS + 1)
+        for text in [_written(number, digits)]
+        if digits == _MOST_DIGITS or isclose(float(text), number, rel_tol=1e-15)
+    )
+    return f"{text} {unit}".rstrip()
+
+
+def _least_digits(number: float) -> int:
+    """All digits before the point, as long as these are no more than a reader takes in."""
+    size = floor(log10(abs(number))) + 1 if number else 1
+    return max(_DIGITS, size) if size <= _DIGITS + 3 else _DIGITS
+
+
+def _written(number: float, digits: int) -> str:
+    text = f"{number:.{digits}g}"
+    return f"{Decimal(text):f}" if "e+" in text and abs(number) < _PLAIN else text
+
+
+def _side(number: float, bound: float) -> int:
+    return (number > bound) - (number < bound)
+
+
+# Units ----------------------------------------------------------------------------------------
+
+
+def declared_unit(signal: str, base: str, declared: Mapping[str, Signal]) -> tuple[str, Fraction]:
+    """The unit in which a signal is shown, and how many base units it has.
+
+    Args:
+        signal: its name.
+        base: the base unit that its numbers are in.
+        declared: the signals of the bindings.
+    """
+    found = declared.get(signal)
+    if found is None or base_name(found.unit.dimension) != base:
+        return base, Fraction(1)
+    return "" if found.unit_name == "1" else found.unit_name, found.unit.factor
+
+
+def shared_unit(term: str, base: str, declared: Mapping[str, Signal]) -> tuple[str, Fraction]:
+    """The unit in which a term is shown: that of its signals, where they have the same one.
+
+    Args:
+        term: as it is written, such as `abs(vx)`.
+        base: the base unit that its numbers are in.
+        declared: the signals of the bindings.
+    """
+    found = {
+        declared_unit(name, base, declared)
+        for name in _NAME.findall(term)
+        if name in declared and base_name(declared[name].unit.dimension) == base
+    }
+    return found.pop() if len(found) == 1 else (base, Fraction(1))
+
+
+def scaled(number: Number, factor: Fraction) -> Number:
+    """A number of base units as one of units that have so many of them, rounded once.
+
+    One beyond the range of 64-bit floats is infinite.
+    """
+    if not isinstance(number, float | int) or factor == 1 or not isfinite(number):
+        return number
+    exactly = Fraction(number) / factor
+    return float(exactly) if abs(exactly) <= _LARGEST else copysign(inf, number)

@@ -1,0 +1,130 @@
+"""What bindings mean, as plain values: the same for all ways of writing the same.
+
+Numbers are exact fractions in base units, durations nanoseconds, defaults are filled in. So `50 cm`
+and `0.5 m` are one, and so are a default and the same value written out.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Iterable
+from fractions import Fraction
+from typing import Any, assert_never
+
+from fretish import expressions as e
+from fretish import units
+from fretish.bindings.declarations import (
+    Declarations,
+    Proposition,
+    Reduce,
+    Signal,
+    short_type,
+)
+from fretish.clock import Clock
+from fretish.reading.recursion import deep
+
+
+def digest(value: Any) -> str:
+    """SHA-256 of plain values; the order of keys does not count."""
+    return hashlib.sha256(json.dumps(value, sort_keys=True).encode()).hexdigest()
+
+
+def clock(declared: Clock) -> Any:
+    """What a tick is; how durations are rounded shows in the formulas of those that are."""
+    where = [declared.period, declared.topic, declared.phase]
+    return [*where, str(declared.time), str(declared.end)]
+
+
+def bound(declarations: Declarations, names: Iterable[str]) -> Any:
+    """What logs say of the propositions: these, and the signals that they read."""
+    known = [declarations.propositions[n] for n in names if n in declarations.propositions]
+    read = {signal for proposition in known for signal in proposition.signals}
+    return {
+        "proposition": {each.name: _proposition(each) for each in known},
+        "signal": {name: _signal(declarations.signals[name]) for name in read},
+    }
+
+
+def described(declarations: Declarations | None, names: Iterable[str]) -> Any:
+    """What the bindings tell people and other tools of the propositions; no log depends on it."""
+    known = declarations.propositions if declarations else {}
+    return {
+        name: [" ".join(known[name].text.split()), str(known[name].role), known[name].kind]
+        for name in names
+        if name in known
+    }
+
+
+def _proposition(proposition: Proposition) -> Any:
+    told = expression(proposition.expression)
+    return [told, str(proposition.aggregate), proposition.on_unknown]
+
+
+def _signal(signal: Signal) -> Any:
+    outline = signal.reduce is Reduce.OUTLINE
+    invalid = signal.invalid
+    return {
+        "path": str(signal.path),
+        "unit": [list(signal.unit.dimension), str(signal.unit.factor)],
+        "type": short_type(signal.type) if signal.type else None,
+        "reduce": str(signal.reduce) if signal.reduce else None,
+        "valid": expression(signal.valid, plain=False) if signal.valid else None,
+        "invalid": [
+            str(reading)
+            for reading in (
+                invalid.nan,
+                invalid.positive_infinity,
+                invalid.negative_infinity,
+                invalid.other,
+            )
+        ],
+        "max_age": signal.max_age,
+        "outline": [signal.footprint, signal.sensor] if outline else None,
+    }
+
+
+@deep
+def expression(tree: e.Expression, *, plain: bool = True) -> Any:
+    """An expression of the bindings as nested lists, numbers exact and in base units.
+
+    Args:
+        tree: what is written.
+        plain: whether a plain number is the same as a quantity without a dimension. It is not in
+            `valid`, which is read in the unit of the field: `35 %` is 35 of a field in percent.
+    """
+    match tree:
+        case e.Truth(value):
+            return value
+        case e.Name(id):
+            return ["name", id]
+        case e.Number(digits):
+            return ["number", str(Fraction(digits))]
+        case e.Quantity(digits, name):
+            return _quantity(digits, name, plain=plain)
+        case e.Arithmetic(op, _, _) | e.Comparison(op, _, _):
+            kind = [type(tree).__name__, op]
+        case e.Call(name, _):
+            kind = ["call", name]
+        case e.Held(_, duration):
+            kind = ["for", str(duration)]
+        case e.Negation() | e.Not() | e.And() | e.Or() | e.Xor() | e.Implies() | e.Iff():
+            kind = [type(tree).__name__]
+        case _:
+            assert_never(tree)
+    return [*kind, *(expression(part, plain=plain) for part in e.children(tree))]
+
+
+def _quantity(digits: str, name: str, *, plain: bool) -> Any:
+    unit = units.unit(name)
+    assert unit is not None, "the parser refuses unknown units"
+    exact = str(Fraction(digits) * unit.factor)
+    if plain and unit.dimension == units.DIMENSIONLESS:
+        return ["number", exact]
+    return ["quantity", exact, list(unit.dimension)]
+
+
+def parameter(text: str) -> Any:
+    """A number that a requirement states, with its unit: exact; as it is written, if it is none."""
+    exact = units.quantity(text)
+    return " ".join(text.split()) if exact is None else [list(exact[0]), str(exact[1])]

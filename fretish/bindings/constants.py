@@ -1,0 +1,94 @@
+"""Numbers that stand in expressions, computed exactly: `10 cm / 2` is 5 cm."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+
+from fretish import expressions as e
+from fretish import units
+from fretish.bindings import expressions as binding
+from fretish.diagnostics.diagnostic import Diagnostic
+from fretish.diagnostics.source import Source
+
+Exact = tuple[units.Dimension, Fraction]
+"""A dimension, and a number in its base units."""
+
+
+def constants(expression: e.Expression) -> set[Exact]:
+    """Every number in the expression.
+
+    What is computed of numbers alone is one number, and `-5 cm` may be stated with its sign or
+    without.
+    """
+    found: set[Exact] = set()
+    waiting = [expression]
+    while waiting:
+        part = waiting.pop()
+        if isinstance(part, e.Held):
+            found.add((units.SECOND.dimension, Fraction(part.duration, 10**9)))
+        exact = constant(part)
+        if exact is not None:
+            found.add(exact)
+        if exact is None or isinstance(part, e.Negation):
+            waiting.extend(e.children(part))
+    return found
+
+
+def constant(expression: e.Expression) -> Exact | None:
+    """What is computed of numbers alone; None for a truth value, and for what is measured."""
+    if any(e.names(expression)):
+        return None
+    dimension = binding.dimension(expression, {}, Source("", "").span())
+    assert not isinstance(dimension, Diagnostic), "the reader of bindings refuses the expression"
+    value = number(expression) if dimension is not None else None
+    return (dimension, value) if dimension is not None and value is not None else None
+
+
+def number(expression: e.Expression) -> Fraction | None:
+    """A number without names, in base units; None where it divides by zero."""
+    match expression:
+        case e.Number(digits):
+            return Fraction(digits)
+        case e.Quantity(digits, name, _):
+            known = units.unit(name)
+            assert known is not None, "the parser refuses unknown units"
+            return Fraction(digits) * known.factor
+        case e.Negation(arg):
+            value = number(arg)
+            return None if value is None else -value
+        case e.Arithmetic(op, left, right):
+            one, other = number(left), number(right)
+            return None if one is None or other is None else computed(op, one, other)
+        case e.Call(name, args, _):
+            values = [value for value in map(number, args) if value is not None]
+            return called(name, values) if len(values) == len(args) else None
+        case _:
+            raise ValueError("a number is needed, and this is a truth value or a name")
+
+
+def computed(op: e.ArithmeticOperator, left: Fraction, right: Fraction) -> Fraction | None:
+    """`left op right`; None where it divides by zero."""
+    match op:
+        case "+":
+            return left + right
+        case "-":
+            return left - right
+        case "*":
+            return left * right
+        case "/":
+            return left / right if right else None
+        case _:
+            raise ValueError(f"bindings have no `{op}`")
+
+
+def called(name: str, values: list[Fraction]) -> Fraction:
+    """`abs`, `min` or `max` of numbers."""
+    match name:
+        case "abs":
+            return abs(values[0])
+        case "min":
+            return min(values)
+        case "max":
+            return max(values)
+        case _:
+            raise ValueError(f"bindings have no `{name}`")

@@ -1,0 +1,351 @@
+"""Expressions of bindings: text → `Expression`, and their dimensions.
+
+A small language of its own, never Python's: signals, numbers with units, comparisons,
+`and`/`or`/`not`, `abs`, `min`, `max`, and `... for 200 ms`.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Collection, Iterator, Mapping
+from fractions import Fraction
+from functools import cache
+from importlib.resources import files
+from typing import Any, cast
+
+from lark import Lark, Token, v_args
+from lark.exceptions import UnexpectedCharacters, UnexpectedInput, VisitError
+from lark.visitors import Transformer_NonRecursive
+
+from fretish import expressions as e
+from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity, suggestion
+from fretish.diagnostics.source import Span
+from fretish.units import DIMENSIONLESS, NAMES, Dimension, base_name, nanoseconds, unit
+
+FUNCTIONS = ("abs", "min", "max")
+Kind = Dimension | None
+"""The dimension of a number; None for a truth value."""
+
+
+def parse(text: Span) -> e.Expression | Diagnostic:
+    """Read one expression, all of it; spans of the tree point into the text's source."""
+    try:
+        return cast(e.Expression, _Build(text).transform(_lark().parse(text.text)))
+    except UnexpectedInput as error:
+        return _unexpected(error, text)
+    except VisitError as error:
+        if isinstance(error.orig_exc, _UnitError):
+            return error.orig_exc.diagnostic
+        raise
+
+
+class _UnitError(Exception):
+    def __init__(self, diagnostic: Diagnostic) -> None:
+        super().__init__(diagnostic.message)
+        self.diagnostic = diagnostic
+
+
+@cache
+def _lark() -> Lark:
+    grammar = files("fretish.bindings").joinpath("expressions.lark").read_text(encoding="utf-8")
+    return Lark(grammar, parser="lalr", lexer="basic", maybe_placeholders=False)
+
+
+def _parts(children: list[Any]) -> list[Any]:
+    return [child for child in children if not isinstance(child, Token)]
+
+
+@v_args(inline=False)
+class _Build(Transformer_NonRecursive[Token, Any]):
+    def __init__(self, text: Span) -> None:
+        super().__init__()
+        self._text = text
+
+    def _span(self, token: Token) -> Span:
+        assert token.start_pos is not None
+        assert token.end_pos is not None
+        return self._text.part(token.start_pos, token.end_pos)
+
+    def start(self, children: list[Any]) -> e.Expression:
+        return cast(e.Expression, children[0])
+
+    def held(self, children: list[Any]) -> e.Expression:
+        arg, token = children[0], children[-1]
+        duration = nanoseconds(str(token))
+        if duration is None:
+            written = str(token)
+            before = len(written) - len(written.lstrip())
+            place = self._span(token).part(before, len(written))
+            raise _UnitError(_bad_duration(written.strip(), place))
+        return e.Held(arg, duration)
+
+    def either(self, children: list[Any]) -> e.Expression:
+        return e.either(*_parts(children))
+
+    def both(self, children: list[Any]) -> e.Expression:
+        return e.both(*_parts(children))
+
+    def not_(self, children: list[Any]) -> e.Expression:
+        return e.Not(*_parts(children))
+
+    def compare(self, children: list[Token]) -> str:
+        return "=" if children[0] == "==" else str(children[0])
+
+    def comparison(self, children: list[Any]) -> e.Expression:
+        left, op, right = children
+        return e.Comparison(op, left, right)
+
+    def arithmetic(self, children: list[Any]) -> e.Expression:
+        left, op, right = children
+        return e.Arithmetic(cast(e.ArithmeticOperator, str(op)), left, right)
+
+    def negation(self, children: list[Any]) -> e.Expression:
+        return e.Negation(*_parts(children))
+
+    def quantity(self, children: list[Token]) -> e.Expression:
+        text = str(children[0])
+        split = next(i for i, c in enumerate(text) if _begins_unit(text, i, c))
+        name = text[split:].strip()
+        if unit(name) is None:
+            raise _UnitError(unknown_unit(name, self._span(children[0])))
+        return e.Quantity(text[:split].strip(), name, self._span(children[0]))
+
+    def number(self, children: list[Token]) -> e.Expression:
+        return e.Number(str(children[0]), self._span(children[0]))
+
+    def truth(self, children: list[Token]) -> e.Expression:
+        return e.Truth(children[0] == "true")
+
+    def name(self, children: list[Token]) -> e.Expression:
+        return e.Name(str(children[0]), self._span(children[0]))
+
+    def call(self, children: list[Any]) -> e.Expression:
+        name, *args = children
+        return e.Call(str(name), tuple(args), self._span(name))
+
+
+def _begins_unit(text: str, i: int, c: str) -> bool:
+    """Whether the unit begins here; the `e` of `1e3` does not begin one."""
+    exponent = c in "eE" and text[i + 1 : i + 2].lstrip("+-")[:1].isdigit()
+    signed = c in "eE" and text[i + 1 : i + 2] in ("+", "-") and text[i + 2 : i + 3].isdigit()
+    return (c.isalpha() or c == "%") and not exponent and not signed
+
+
+def dimension(whole: e.Expression, kinds: Mapping[str, Kind], place: Span) -> Kind | Diagnostic:
+    """What the expression is: a number of some dimension, or a truth value (None).
+
+    Args:
+        whole: the expression.
+        kinds: what each name in scope is.
+        place: where to point when a part has no place of its own.
+    """
+    match whole:
+        case e.Truth():
+            return None
+        case e.Name(id, span):
+            return kinds[id] if id in kinds else _unknown_name(id, kinds, span or place)
+        case e.Number():
+            return DIMENSIONLESS
+        case e.Quantity(_, name, span):
+            known = unit(name)
+            assert known is not None
+            parts = [part for part in re.split("[*/]", name)[1:] if part in kinds]
+            also = [part for part in parts if (one := unit(part)) and one.dimension == kinds[part]]
+            return _ambiguous(name, also[0], span or place) if also else known.dimension
+        case e.Negation(arg):
+            return _numbers([arg], kinds, place)
+        case e.Arithmetic(op, left, right):
+            return _arithmetic(op, left, right, kinds, place)
+        case e.Comparison(_, left, right):
+            both = _numbers([left, right], kinds, place)
+            return both if isinstance(both, Diagnostic) else None
+        case e.Call(name, args, span):
+            if name not in FUNCTIONS:
+                return _unknown_function(name, span or place)
+            if name == "abs" and len(args) != 1:
+                return _wrong_kind("`abs` takes one number", whole, span or place)
+            return _numbers(list(args), kinds, span or place)
+        case _:
+            return _truths(e.children(whole), kinds, place)
+
+
+def _truths(
+    args: tuple[e.Expression, ...], kinds: Mapping[str, Kind], place: Span
+) -> Diagnostic | None:
+    for arg in args:
+        kind = dimension(arg, kinds, place)
+        if isinstance(kind, Diagnostic):
+            return kind
+        if kind is not None:
+            return _wrong_kind("a truth value is needed, and this is a number", arg, place)
+    return None
+
+
+def _numbers(
+    args: list[e.Expression], kinds: Mapping[str, Kind], place: Span
+) -> Dimension | Diagnostic:
+    """The dimension that all of them share."""
+    found: Dimension | None = None
+    for arg in args:
+        kind = dimension(arg, kinds, place)
+        if isinstance(kind, Diagnostic):
+            return kind
+        if kind is None:
+            return _wrong_kind("a number is needed, and this is a truth value", arg, place)
+        if found is not None and kind != found:
+            return _mismatch(
+                f"{_named(found)} cannot be compared with or added to {_named(kind)}", arg, place
+            )
+        found = kind
+    return found or DIMENSIONLESS
+
+
+def _arithmetic(
+    op: str, left: e.Expression, right: e.Expression, kinds: Mapping[str, Kind], place: Span
+) -> Kind | Diagnostic:
+    if op in "+-":
+        return _numbers([left, right], kinds, place)
+    one, two = _numbers([left], kinds, place), _numbers([right], kinds, place)
+    if isinstance(one, Diagnostic):
+        return one
+    if isinstance(two, Diagnostic):
+        return two
+    sign = 1 if op == "*" else -1
+    return tuple(a + sign * b for a, b in zip(one, two, strict=True))
+
+
+def _named(dimension: Dimension) -> str:
+    name = base_name(dimension)
+    return f"a quantity in {name}" if name else "a number without a unit"
+
+
+def _mismatch(message: str, part: e.Expression, place: Span) -> Diagnostic:
+    return Diagnostic(
+        Code.UNIT_MISMATCH,
+        message,
+        getattr(part, "span", None) or place,
+        help="give each number its unit: `min_range < 5 cm`",
+    )
+
+
+def _wrong_kind(message: str, part: e.Expression, place: Span) -> Diagnostic:
+    return Diagnostic(
+        Code.BAD_EXPRESSION,
+        message,
+        getattr(part, "span", None) or place,
+        help="compare numbers, `x < 5 m`, and join truth values by `and`, `or`, `not`",
+    )
+
+
+def is_truth(expression: e.Expression) -> bool:
+    """Whether it is true or false by its outermost operator; a name may be either."""
+    numbers = (e.Number, e.Quantity, e.Negation, e.Arithmetic, e.Call, e.Name)
+    return not isinstance(expression, numbers)
+
+
+def plain_percents(
+    whole: e.Expression, percents: Collection[str], place: Span
+) -> Iterator[Diagnostic]:
+    """F338 for each comparison of a signal in percent with a number that is 1 or more and in none.
+
+    Args:
+        whole: an expression whose dimensions are right.
+        percents: the names of the signals in percent.
+        place: where to point when the number has no place of its own.
+    """
+    for part in e.children(whole):
+        yield from plain_percents(part, percents, place)
+    if not isinstance(whole, e.Comparison):
+        return
+    for side, other in ((whole.left, whole.right), (whole.right, whole.left)):
+        measured = {name.id for name in e.names(side)}
+        limit = other.arg if isinstance(other, e.Negation) else other
+        if not measured or not measured <= {*percents} or not isinstance(limit, e.Number):
+            continue
+        if Fraction(limit.digits) > 1:
+            yield Diagnostic(
+                Code.PLAIN_PERCENT,
+                f"`{', '.join(sorted(measured))}` is in %, and {limit.digits} is no percentage: it "
+                f"is {limit.digits} times 100 %",
+                limit.span or place,
+                help=f"write `{limit.digits} %`",
+                severity=Severity.WARNING,
+            )
+
+
+_SPELT = {"mps": "m/s", "kph": "km/h", "kmh": "km/h", "rps": "rad/s", "degrees": "deg"}
+"""Units by names that are nearer to those of other units."""
+
+
+def unknown_unit(name: str, span: Span) -> Diagnostic:
+    """F306, with the nearest unit."""
+    near = _SPELT.get(name) or suggestion(name, NAMES)
+    known = "m, cm, s, ms, rad, deg, m/s, rad/s, m/s^2, kg, A, V, Hz, %"
+    return Diagnostic(
+        Code.UNKNOWN_UNIT,
+        f"`{name}` is no unit",
+        span,
+        help=f"did you mean `{near}`?" if near else f"write one such as {known}",
+    )
+
+
+def _bad_duration(text: str, span: Span) -> Diagnostic:
+    return Diagnostic(
+        Code.UNKNOWN_UNIT,
+        f"`{text}` is no duration",
+        span,
+        help="write `for 200 ms`; units are ns, us, ms, s, min, h",
+    )
+
+
+def _unknown_name(id: str, kinds: Mapping[str, Kind], span: Span) -> Diagnostic:
+    near = suggestion(id, kinds)
+    known = ", ".join(sorted(kinds)) or "nothing"
+    return Diagnostic(
+        Code.UNKNOWN_NAME,
+        f"`{id}` is not declared",
+        span,
+        help=f"did you mean `{near}`?" if near else f"declared here: {known}",
+    )
+
+
+def _ambiguous(name: str, part: str, span: Span) -> Diagnostic:
+    return Diagnostic(
+        Code.AMBIGUOUS_UNIT,
+        f"`{part}` in `{name}` may be a unit or what is declared as `{part}`",
+        span,
+        help=f"give `{part}` a name that is no unit; a quotient may be written `(2 m) / {part}`",
+    )
+
+
+def _unknown_function(name: str, span: Span) -> Diagnostic:
+    return Diagnostic(
+        Code.UNKNOWN_NAME,
+        f"`{name}` is no function of bindings",
+        span,
+        help=f"there are {', '.join(FUNCTIONS)}",
+    )
+
+
+def _unexpected(error: UnexpectedInput, text: Span) -> Diagnostic:
+    if text.text.startswith("TODO"):
+        return Diagnostic(
+            Code.BAD_EXPRESSION,
+            "the expression is still to be written",
+            text,
+            help="say when the proposition is true, such as `min_range < 5 cm`",
+        )
+    at = error.pos_in_stream
+    length = 1
+    if not isinstance(error, UnexpectedCharacters):
+        token = cast(Any, error).token
+        length = len(token) if token.type != "$END" else 0
+        at = len(text.text) if token.type == "$END" else token.start_pos
+    span = text.part(at or 0, (at or 0) + length)
+    what = f"`{span.text}` does not fit here" if span.text else "the expression ends too early"
+    return Diagnostic(
+        Code.BAD_EXPRESSION,
+        what,
+        span,
+        help="write such as `min_range < 5 cm`, `abs(v) < 0.01 m/s and ready for 200 ms`",
+    )

@@ -1,0 +1,245 @@
+"""The tables `[interceptor]` and `[assume]` of `bindings.toml`."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from fretish import units
+from fretish.bindings.declarations import Assumed, Form, Interception, Planner, Requests
+from fretish.bindings.fields import Fields
+from fretish.diagnostics.diagnostic import Code
+from fretish.reading.toml_text import as_key
+
+TABLE = """\
+[interceptor]
+stop         = "/stop"              # std_msgs/Bool: true requests a stop
+command      = "/cmd_vel"           # geometry_msgs/Twist: what the planner wants
+output       = "/cmd_vel_filtered"  # geometry_msgs/Twist: what the wheels hear
+scan         = "/scan"              # sensor_msgs/LaserScan: only that it comes counts
+period       = "50 ms"              # of the interceptor's timer
+hold         = "200 ms"             # zero after a request, whatever is heard meanwhile
+stop_timeout = "500 ms"             # silence of the safety function for so long halts
+scan_timeout = "500 ms"             # and that of the sensor
+"""
+"""What a user may begin with."""
+
+_TOPICS = ("stop", "command", "output", "scan")
+_TIMES = ("hold", "stop_timeout", "scan_timeout", "command_timeout")
+_OPTIONAL = (*_TIMES, "heartbeat")
+_INTERCEPTOR = (*_TOPICS, "period", *_TIMES, "form", "latching", "ros")
+_ASSUME = ("stands", "latency", "lost", "requests", "heartbeat", "planner", "braking")
+_TOPIC = re.compile(r"(?:/?[A-Za-z_]\w*|~)(?:/[A-Za-z_]\w*)*", re.ASCII)
+"""A name of ROS; no part begins with a digit."""
+
+
+class Loop(Fields):
+    """Reads the two tables."""
+
+    def interceptor(self) -> Interception | None:
+        """`[interceptor]`; None where it is not there, or has mistakes, which are told."""
+        table = self._table("interceptor")
+        if table is None:
+            return None
+        before = len(self.wrong)
+        self._known(table, _INTERCEPTOR, "[interceptor]", "interceptor")
+        topics = {key: self._topic(table, key) for key in _TOPICS}
+        at = ("interceptor", "form")
+        form = self._choice(table, at, Form, Form.TIMER)
+        times = {
+            key: self._duration(table, ("interceptor", key)) or 0 for key in ("period", *_TIMES)
+        }
+        latching = self._field(table, ("interceptor", "latching"), bool, "true or false")
+        ros = self._ros(table)
+        self._check_topics(topics)
+        self._check_times(table, form, times)
+        if len(self.wrong) > before:
+            return None
+        stop, command, output = (topics[key] or "" for key in ("stop", "command", "output"))
+        span = self.tables.place("interceptor")
+        return Interception(
+            stop,
+            command,
+            output,
+            topics["scan"],
+            **times,
+            form=form,
+            latching=bool(latching),
+            ros=ros,
+            span=span,
+        )
+
+    def assumed(self, propositions: Sequence[str]) -> Assumed | None:
+        """`[assume]`; None where it is not there, or has mistakes, which are told.
+
+        Args:
+            propositions: the names that are bound.
+        """
+        table = self._table("assume")
+        if table is None:
+            return None
+        before = len(self.wrong)
+        self._known(table, _ASSUME, "[assume]", "assume")
+        stands = self._stands(table, propositions)
+        latency = self._needed(table, "latency", "100 ms")
+        braking = self._needed(table, "braking", "200 ms")
+        requests = self._choice(table, ("assume", "requests"), Requests, Requests.LEVEL)
+        heartbeat = self._heartbeat(table, requests)
+        planner = self._choice(table, ("assume", "planner"), Planner, Planner.ANY)
+        lost = self._lost(table)
+        if len(self.wrong) > before:
+            return None
+        span = self.tables.place("assume")
+        return Assumed(stands, latency, braking, lost, requests, planner, heartbeat, span)
+
+    def _table(self, name: str) -> Mapping[str, Any] | None:
+        table = self.tables.data.get(name)
+        if table is None or isinstance(table, dict):
+            return table
+        self._say(
+            Code.BAD_BINDING_FIELD,
+            f"`{name}` must be a table",
+            self.tables.place(name),
+            f"write `[{name}]`, and its fields below it",
+        )
+        return None
+
+    def _absent(self, table: str, key: str, mend: str) -> None:
+        self._say(
+            Code.BAD_BINDING_FIELD,
+            f"`[{table}]` has no `{key}`",
+            self.tables.place(table),
+            f"add `{key} = {mend}`",
+        )
+
+    def _duration(
+        self, table: Mapping[str, Any], at: tuple[str, ...], *, least: int = 1
+    ) -> int | None:
+        """Nanoseconds; None where it is not there or is wrong, which is told."""
+        key = at[-1]
+        if key not in table:
+            return None
+        text = table[key]
+        found = units.nanoseconds(text) if isinstance(text, str) else None
+        if found is not None and found >= least:
+            return found
+        above = " above 0" if least else ""
+        self._say(
+            Code.BAD_BINDING_FIELD,
+            f"`{key}` must be a duration{above}",
+            self.tables.value(*at),
+            f'write `{key} = "100 ms"`' + ("; leave it out for none" if key in _OPTIONAL else ""),
+        )
+        return None
+
+    # [interceptor]
+
+    def _topic(self, table: Mapping[str, Any], key: str) -> str | None:
+        value = table.get(key)
+        if value is None:
+            if key != "scan":
+                self._absent("interceptor", key, '"/TOPIC"')
+            return None
+        if isinstance(value, str) and _TOPIC.fullmatch(value):
+            return value
+        self._say(
+            Code.BAD_BINDING_FIELD,
+            f"`{key}` must be a topic",
+            self.tables.value("interceptor", key),
+            f'write `{key} = "/name"`: letters, digits, `_` and `/`',
+        )
+        return None
+
+    def _check_topics(self, topics: Mapping[str, str | None]) -> None:
+        """F320: the wheels would hear what they must not, or the node itself."""
+        seen: dict[str, str] = {}
+        for key, topic in topics.items():
+            if topic is None:
+                continue
+            name = topic if topic.startswith(("/", "~")) else f"/{topic}"
+            if name in seen:
+                self._say(
+                    Code.SAME_TOPIC,
+                    f"`{key}` is the same topic as `{seen[name]}`",
+                    self.tables.value("interceptor", key),
+                    "name another topic; what the planner says must reach the wheels only "
+                    "through the interceptor",
+                )
+            seen.setdefault(name, key)
+
+    def _check_times(self, table: Mapping[str, Any], form: Form, times: Mapping[str, int]) -> None:
+        if form is Form.EVENT:
+            for key in ("period", *_TIMES):
+                if key in table:
+                    self._without_timer(key)
+            return
+        if "period" not in table:
+            self._absent("interceptor", "period", '"50 ms"')
+        for key in _TIMES:
+            if 0 < times[key] < times["period"]:
+                self._say(
+                    Code.BELOW_PERIOD,
+                    f"`{key}` is shorter than `period`",
+                    self.tables.value("interceptor", key),
+                    "the timer cannot measure it; make `period` shorter, or this longer",
+                )
+        if "scan_timeout" in table and "scan" not in table:
+            self._absent("interceptor", "scan", '"/scan"')
+
+    def _without_timer(self, key: str) -> None:
+        """F322: the paper's node has no clock."""
+        self._say(
+            Code.NO_TIMER,
+            f'`{key}` needs a timer, and `form = "event"` has none',
+            self.tables.value("interceptor", key),
+            f'write `form = "timer"`, or leave `{key}` out',
+        )
+
+    def _ros(self, table: Mapping[str, Any]) -> int:
+        value = self._field(table, ("interceptor", "ros"), int, "1 or 2")
+        if value is not None and value not in (1, 2):
+            place = self.tables.value("interceptor", "ros")
+            self._say(Code.BAD_BINDING_FIELD, f"there is no ROS {value}", place, "write 1 or 2")
+        return 2 if value is None else value
+
+    # [assume]
+
+    def _needed(self, table: Mapping[str, Any], key: str, example: str) -> int:
+        if key not in table:
+            self._absent("assume", key, f'"{example}"')
+        return self._duration(table, ("assume", key), least=0) or 0
+
+    def _stands(self, table: Mapping[str, Any], propositions: Sequence[str]) -> str:
+        name = self._field(table, ("assume", "stands"), str, "the name of a proposition in quotes")
+        if "stands" not in table:
+            self._absent("assume", "stands", '"PROPOSITION"')
+        if name is None or name in propositions:
+            return name or ""
+        self._say(
+            Code.UNKNOWN_NAME,
+            f"`stands` names `{name}`, which is no bound proposition",
+            self.tables.value("assume", "stands"),
+            f"declare `[proposition.{as_key(name)}]`",
+        )
+        return name
+
+    def _heartbeat(self, table: Mapping[str, Any], requests: Requests) -> int:
+        """Nanoseconds; 0: a request is sent on change only, or at every tick."""
+        found = self._duration(table, ("assume", "heartbeat")) or 0
+        if found and requests is Requests.LEVEL and table.get("requests", "level") == "level":
+            self._say(
+                Code.BAD_BINDING_FIELD,
+                '`heartbeat` is of no use with `requests = "level"`, which repeats at every tick',
+                self.tables.value("assume", "heartbeat"),
+                'write `requests = "edge"` if the safety function speaks on change and after a '
+                "silence; else leave `heartbeat` out",
+            )
+        return found
+
+    def _lost(self, table: Mapping[str, Any]) -> int:
+        value = self._field(table, ("assume", "lost"), int, "a whole number of messages")
+        if value is not None and value < 0:
+            place = self.tables.value("assume", "lost")
+            self._say(Code.BAD_BINDING_FIELD, "`lost` cannot be below 0", place, "write `lost = 0`")
+        return value or 0

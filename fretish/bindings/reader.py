@@ -1,0 +1,515 @@
+"""Read `bindings.toml`: every field is checked, every mistake has its place."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterable, Mapping
+from math import isfinite
+from typing import Any, TypeVar
+
+from fretish import expressions as e
+from fretish import units
+from fretish.bindings import expressions as binding
+from fretish.bindings.declarations import (
+    REP_117,
+    Aggregate,
+    Assumed,
+    Declarations,
+    Default,
+    Invalid,
+    Modality,
+    Part,
+    Path,
+    Proposition,
+    Reading,
+    Reduce,
+    Role,
+    Signal,
+    Variable,
+    path,
+)
+from fretish.bindings.fields import Fields
+from fretish.bindings.interceptor import Loop
+from fretish.clock import Clock, End, Rounding, TimeSource
+from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.diagnostics.source import Source, Span
+from fretish.reading.limits import within
+from fretish.reading.toml_text import Tables, read
+
+_TABLES = ("clock", "signal", "proposition", "variable", "interceptor", "assume")
+_TOPIC = re.compile(r"[A-Za-z_~/]\S*")
+"""A topic, and no duration: a duration begins with a digit."""
+_CLOCK = ("time", "tick", "phase", "end", "rounding")
+_SIGNAL = (
+    "path", "type", "reduce", "unit", "valid", "invalid", "max_age", "footprint", "sensor",
+)  # fmt: skip
+_PROPOSITION = ("text", "expr", "role", "agg", "on_unknown", "kind", "modality", "action")
+_INVALID = {
+    "nan": "nan",
+    "+inf": "positive_infinity",
+    "-inf": "negative_infinity",
+    "other": "other",
+}
+_KINDS = ("belief", "command", "physical")
+T = TypeVar("T", Signal, Proposition)
+
+
+def read_bindings(source: Source) -> tuple[Declarations | None, tuple[Diagnostic, ...]]:
+    """Read the text of a `bindings.toml`.
+
+    Returns:
+        The declarations, and all that there is to say. A mistake in the table of a signal or a
+        proposition is among the `mistakes` of the declarations; with any other error there are
+        none.
+    """
+    found = within(len(source.text), source.span(0, 0), lambda: _read(source))
+    return (None, (found,)) if isinstance(found, Diagnostic) else found
+
+
+def _read(source: Source) -> tuple[Declarations | None, tuple[Diagnostic, ...]]:
+    tables = read(source.span(), Code.BAD_BINDINGS, "the bindings file")
+    if isinstance(tables, Diagnostic):
+        return None, (tables,)
+    reader = _Reader(tables)
+    declarations = reader.declarations()
+    return (declarations if reader.is_usable else None), tuple(reader.wrong)
+
+
+class _Reader(Fields):
+    """Walks the tables once and keeps every mistake it meets."""
+
+    def __init__(self, tables: Tables) -> None:
+        super().__init__(tables)
+        self.defaults: list[Default] = []
+        self.told: set[str] = set()
+        self.mistakes: dict[Part, tuple[Diagnostic, ...]] = {}
+        self.errors_of_parts = 0
+        self.units: dict[str, units.Unit] = {}
+        """Of every signal whose unit is known, whatever else is wrong with it."""
+
+    @property
+    def is_usable(self) -> bool:
+        """Whether every error is in the table of a signal or a proposition."""
+        return sum(each.is_error for each in self.wrong) == self.errors_of_parts
+
+    def declarations(self) -> Declarations:
+        data = self.tables.data
+        self._known(data, _TABLES, "the bindings")
+        signals = self._parts("signal", self._signal)
+        propositions = self._parts("proposition", self._proposition)
+        loop = Loop(self.tables, self.wrong)
+        return Declarations(
+            self.tables.text.source,
+            self._clock(),
+            signals,
+            propositions,
+            {name: self._variable(name, f) for name, f in self._tables("variable").items()},
+            tuple(each for each in self.defaults if each.part not in self.mistakes),
+            loop.interceptor(),
+            self._assumed(loop),
+            self.mistakes,
+        )
+
+    def _parts(self, kind: str, read: Callable[[str, Mapping[str, Any]], T | None]) -> dict[str, T]:
+        """Those without a mistake; the mistakes of the others are kept."""
+        found = {}
+        for name, table in self._tables(kind).items():
+            before = len(self.wrong)
+            part = read(name, table)
+            own = [each for each in self.wrong[before:] if each.is_error]
+            self.errors_of_parts += len(own)
+            self._keep((kind, name), own)
+            if (kind, name) not in self.mistakes:
+                assert part is not None, name
+                found[name] = part
+        return found
+
+    def _keep(self, part: Part, mistakes: Iterable[Diagnostic]) -> None:
+        known = tuple(dict.fromkeys((*self.mistakes.get(part, ()), *mistakes)))
+        if known:
+            self.mistakes[part] = known
+
+    def _assumed(self, loop: Loop) -> Assumed | None:
+        """None, too, where it is not known what the proposition that it names means."""
+        found = loop.assumed(tuple(self._tables("proposition")))
+        broken = found is not None and ("proposition", found.stands) in self.mistakes
+        return None if broken else found
+
+    # Fields
+
+    def _tables(self, kind: str) -> dict[str, Mapping[str, Any]]:
+        tables = self.tables.data.get(kind, {})
+        if not isinstance(tables, dict) or not all(isinstance(t, dict) for t in tables.values()):
+            if kind in self.told:
+                return {}
+            self.told.add(kind)
+            self._say(
+                Code.BAD_BINDING_FIELD,
+                f"`{kind}` must hold tables",
+                self.tables.place(kind),
+                f"write `[{kind}.NAME]`",
+            )
+            return {}
+        return tables
+
+    def _expression(self, table: Mapping[str, Any], at: tuple[str, ...]) -> e.Expression | None:
+        text = self._field(table, at, str, 'an expression in quotes: `"min_range < 5 cm"`')
+        if text is None:
+            return None
+        parsed = binding.parse(self._inside(at, text))
+        if isinstance(parsed, Diagnostic):
+            self.wrong.append(parsed)
+            return None
+        return parsed
+
+    def _inside(self, at: tuple[str, ...], text: str) -> Span:
+        """The characters between the quotes, so that mistakes point into the file."""
+        value = self.tables.value(*at)
+        start = value.text.find(text)
+        if start < 0:  # written with escapes: the text stands for itself
+            return Source(f"{value.source.name} ({'.'.join(at)})", text).span()
+        return value.part(start, start + len(text))
+
+    # Clock
+
+    def _clock(self) -> Clock:
+        table = self.tables.data.get("clock")
+        if table is None and not self.tables.data.keys() & {"signal", "proposition"}:
+            return Clock(None)
+        if not isinstance(table, dict):
+            self._say(
+                Code.BAD_BINDING_FIELD,
+                "the bindings declare no clock",
+                self.tables.text.part(0, 0),
+                'add `[clock]` with `tick = "100 ms"`',
+            )
+            return Clock(10**9)
+        self._known(table, _CLOCK, "[clock]", "clock")
+        for name, default in (("time", TimeSource.LOG_TIME), ("end", End.INCONCLUSIVE)):
+            if table.get(name, default) == default:
+                text = f"clock: {name} is {default}, the default"
+                self.defaults.append(Default(("clock", ""), text, name in table))
+        period, topic = self._tick(table)
+        return Clock(
+            period,
+            topic,
+            self._choice(table, ("clock", "time"), TimeSource, TimeSource.LOG_TIME),
+            self._choice(table, ("clock", "end"), End, End.INCONCLUSIVE),
+            self._choice(table, ("clock", "rounding"), Rounding, Rounding.EXACT),
+            self._phase(table, period),
+        )
+
+    def _tick(self, table: Mapping[str, Any]) -> tuple[int | None, str | None]:
+        tick = table.get("tick")
+        if isinstance(tick, str) and _TOPIC.fullmatch(tick):
+            return None, tick
+        period = units.nanoseconds(tick) if isinstance(tick, str) else None
+        if not period:
+            self._say(
+                Code.BAD_BINDING_FIELD,
+                "`tick` must be a duration above 0, or a topic",
+                self.tables.value("clock", "tick"),
+                'write `tick = "100 ms"`, or `tick = "/scan"` for a tick with each message',
+            )
+            return 10**9, None
+        return period, None
+
+    def _phase(self, table: Mapping[str, Any], period: int | None) -> int:
+        written = table.get("phase", "0 ns")
+        phase = units.nanoseconds(written) if isinstance(written, str) else None
+        if period is None and "phase" in table:
+            wrong, mend = "a clock that ticks by message has no `phase`", "take it out"
+        elif phase is None or (period is not None and not 0 <= phase < period):
+            wrong = "`phase` must be a duration from 0 on, and less than a tick"
+            mend = 'half a tick of 100 ms is `phase = "50 ms"`'
+        else:
+            return phase
+        self._say(Code.BAD_PHASE, wrong, self.tables.value("clock", "phase"), mend)
+        return 0
+
+    # Signals
+
+    def _signal(self, name: str, table: Mapping[str, Any]) -> Signal | None:
+        at = ("signal", name)
+        self._known(table, _SIGNAL, f"[signal.{name}]", *at)
+        where = self._path(table, (*at, "path"))
+        unit_name = self._field(table, (*at, "unit"), str, "a unit in quotes")
+        if unit_name is None and "unit" not in table:
+            unit_name = "1"
+        unit = units.unit(unit_name) if unit_name is not None else None
+        if unit is None and unit_name is not None:
+            self.wrong.append(binding.unknown_unit(unit_name, self.tables.value(*at, "unit")))
+        if unit is not None:
+            self.units[name] = unit
+        reduce = self._reduce(table, at, where)
+        valid = self._valid(table, (*at, "valid"))
+        footprint = self._footprint(table, at, reduce)
+        if where is None or unit is None or unit_name is None:
+            return None
+        type_ = self._field(table, (*at, "type"), str, "a message type in quotes")
+        return Signal(
+            name,
+            where,
+            unit,
+            "" if unit_name == "1" else unit_name,
+            type=type_,
+            reduce=reduce,
+            valid=valid,
+            invalid=self._invalid(table, at, type_),
+            max_age=self._max_age(table, at),
+            footprint=footprint,
+            sensor=self._sensor(table, at),
+            span=self.tables.value(*at, "path"),
+        )
+
+    def _valid(self, table: Mapping[str, Any], at: tuple[str, ...]) -> e.Expression | None:
+        valid = self._expression(table, at)
+        if valid is None or binding.is_truth(valid):
+            return valid
+        self._say(
+            Code.BAD_EXPRESSION,
+            "`valid` must be true or false, and this is a number",
+            self.tables.value(*at),
+            "compare the reading: `range_min <= x and x <= range_max`",
+        )
+        return None
+
+    def _path(self, table: Mapping[str, Any], at: tuple[str, ...]) -> Path | None:
+        text = table.get("path")
+        read = path(text) if isinstance(text, str) else None
+        if read is None:
+            self._say(
+                Code.BAD_BINDING_FIELD,
+                "`path` must name a topic and a field" if text else "the signal has no `path`",
+                self.tables.value(*at),
+                'write `path = "/scan.ranges[:]"` or `path = "/odom.twist.twist.linear.x"`',
+            )
+        return read
+
+    def _reduce(
+        self, table: Mapping[str, Any], at: tuple[str, ...], where: Path | None
+    ) -> Reduce | None:
+        each = where is not None and where.each
+        if "reduce" in table and not each and where is not None:
+            self._say(
+                Code.BAD_BINDING_FIELD,
+                "`reduce` needs a path that ends with `[:]`",
+                self.tables.value(*at, "reduce"),
+            )
+        if "reduce" not in table and each:
+            self._say(
+                Code.BAD_BINDING_FIELD,
+                "a path that ends with `[:]` needs `reduce`",
+                self.tables.value(*at, "path"),
+                'add `reduce = "min"`',
+            )
+        if "reduce" not in table:
+            return None
+        return self._choice(table, (*at, "reduce"), Reduce, Reduce.MIN)
+
+    def _invalid(self, table: Mapping[str, Any], at: tuple[str, ...], type_: str | None) -> Invalid:
+        scan = type_ is not None and type_.endswith("/LaserScan")
+        default = REP_117 if scan else Invalid()
+        fields = self._field(table, (*at, "invalid"), dict, "a table of readings")
+        words = "as REP 117 says" if scan else "unknown"
+        text = f"signal {at[1]}: readings that are no measurement are {words}"
+        if fields is None:
+            self.defaults.append(Default((at[0], at[1]), text))
+            return default
+        self._known(fields, (*_INVALID, "empty"), "`invalid`", *at, "invalid")
+        place = (*at, "invalid")
+        if fields.get("empty", "unknown") != "unknown":
+            self._say(
+                Code.BAD_BINDING_FIELD,
+                "`empty` can only be `unknown`: no reading is no evidence",
+                self.tables.value(*place, "empty"),
+            )
+        values = {
+            attribute: self._choice(fields, (*place, key), Reading, getattr(default, attribute))
+            for key, attribute in _INVALID.items()
+        }
+        invalid = Invalid(**values)
+        if invalid == default:
+            self.defaults.append(Default((at[0], at[1]), text, stated=True))
+        return invalid
+
+    def _max_age(self, table: Mapping[str, Any], at: tuple[str, ...]) -> int | None:
+        text = self._field(table, (*at, "max_age"), str, 'a duration: `"300 ms"`')
+        if "max_age" not in table:
+            old = f"signal {at[1]}: a sample never grows too old (no max_age)"
+            self.defaults.append(Default((at[0], at[1]), old))
+        age = units.nanoseconds(text) if text is not None else None
+        if text is not None and not age:
+            self._say(
+                Code.BAD_BINDING_FIELD,
+                "`max_age` must be a duration above 0",
+                self.tables.value(*at, "max_age"),
+                'write `max_age = "300 ms"`',
+            )
+        return age
+
+    def _footprint(
+        self, table: Mapping[str, Any], at: tuple[str, ...], reduce: Reduce | None
+    ) -> tuple[tuple[float, float], ...]:
+        corners = table.get("footprint", [])
+        good = isinstance(corners, list) and all(_is_numbers(c, 2) for c in corners)
+        if reduce is Reduce.OUTLINE and (not good or len(corners) < 3):
+            self._say(
+                Code.BAD_BINDING_FIELD,
+                '`reduce = "outline"` needs `footprint`: three corners or more, in metres',
+                self.tables.value(*at, "footprint"),
+                "write `footprint = [[0.3, 0.3], [-0.3, 0.3], [-0.3, -0.3], [0.3, -0.3]]`",
+            )
+            return ()
+        return tuple((float(x), float(y)) for x, y in corners) if good else ()
+
+    def _sensor(self, table: Mapping[str, Any], at: tuple[str, ...]) -> tuple[float, float, float]:
+        pose = table.get("sensor", [0.0, 0.0, 0.0])
+        if not _is_numbers(pose, 3):
+            self._say(
+                Code.BAD_BINDING_FIELD,
+                "`sensor` must be the sensor's pose: x and y in metres, yaw in radians",
+                self.tables.value(*at, "sensor"),
+                "write `sensor = [0.0, 0.0, 0.0]`",
+            )
+            return 0.0, 0.0, 0.0
+        return float(pose[0]), float(pose[1]), float(pose[2])
+
+    # Propositions
+
+    def _proposition(self, name: str, table: Mapping[str, Any]) -> Proposition | None:
+        at = ("proposition", name)
+        self._known(table, _PROPOSITION, f"[proposition.{name}]", *at)
+        if "expr" not in table:
+            self._say(
+                Code.BAD_BINDING_FIELD,
+                f"the proposition `{name}` has no `expr`",
+                self.tables.place(*at),
+                'add `expr = "min_range < 5 cm"`',
+            )
+        expression = self._expression(table, (*at, "expr"))
+        if expression is None:
+            return None
+        signals = dict.fromkeys(name.id for name in e.names(expression))
+        self._keep(at, [m for name in signals for m in self.mistakes.get(("signal", name), ())])
+        if not self._is_truth(expression, at):
+            return None
+        if table.get("agg", Aggregate.LAST) == Aggregate.LAST:
+            last = f"proposition {name}: the last sample of a tick counts"
+            self.defaults.append(Default(("proposition", name), last, "agg" in table))
+        return Proposition(
+            name,
+            expression,
+            text=self._field(table, (*at, "text"), str, "a text in quotes") or "",
+            role=self._choice(table, (*at, "role"), Role, Role.INTERNAL),
+            kind=self._kind(table, at),
+            aggregate=self._choice(table, (*at, "agg"), Aggregate, Aggregate.LAST),
+            on_unknown=self._on_unknown(table, at),
+            modality=self._modality(table, at),
+            action=self._action(table, at),
+            span=self.tables.value(*at, "expr"),
+        )
+
+    def _is_truth(self, expression: e.Expression, at: tuple[str, ...]) -> bool:
+        place = self.tables.value(*at, "expr")
+        unknown = self._tables("signal").keys() - self.units.keys()
+        if any(name.id in unknown for name in e.names(expression)):
+            return False  # the signal's own mistake has been told
+        kinds = {name: unit.dimension for name, unit in self.units.items()}
+        kind = binding.dimension(expression, kinds, place)
+        if isinstance(kind, Diagnostic):
+            self.wrong.append(kind)
+        elif kind is not None:
+            self._say(
+                Code.BAD_EXPRESSION,
+                "a proposition must be true or false, and this is a number",
+                place,
+                "compare it: `min_range < 5 cm`",
+            )
+        else:
+            percents = {name for name, unit in self.units.items() if unit == units.PERCENT}
+            self.wrong.extend(binding.plain_percents(expression, percents, place))
+        return kind is None
+
+    # Variables that are not bound
+
+    def _variable(self, name: str, table: Mapping[str, Any]) -> Variable:
+        at = ("variable", name)
+        self._known(table, _VARIABLE, f"[variable.{name}]", *at)
+        texts = {
+            key: self._field(table, (*at, key), str, "a text in quotes") or ""
+            for key in ("component", "type", "role", "text")
+        }
+        kept = self._field(table, (*at, "fret"), dict, "a table of texts") or {}
+        return Variable(
+            name,
+            **texts,
+            fret=kept,
+            modality=self._modality(table, at),
+            action=self._action(table, at),
+        )
+
+    def _modality(self, table: Mapping[str, Any], at: tuple[str, ...]) -> Modality:
+        if table.get("modality") != "P":
+            return self._choice(table, (*at, "modality"), Modality, Modality.BELIEF)
+        self._say(
+            Code.BAD_MODALITY,
+            f"`{at[1]}` cannot be a percept (`P`): AJPF takes a percept for absent once the agent "
+            "has read it",
+            self.tables.value(*at, "modality"),
+            'say what the agent believes: `modality = "B"`',
+        )
+        return Modality.BELIEF
+
+    def _action(self, table: Mapping[str, Any], at: tuple[str, ...]) -> str:
+        action = table.get("action", "")
+        if action == "" or (isinstance(action, str) and _ACTION.fullmatch(action)):
+            return str(action)
+        self._say(
+            Code.BAD_BINDING_FIELD,
+            "`action` must be a name of Gwendolen: a small letter, then letters, digits and `_`",
+            self.tables.value(*at, "action"),
+            'write `action = "stop_moving"`',
+        )
+        return ""
+
+    def _kind(self, table: Mapping[str, Any], at: tuple[str, ...]) -> str:
+        kind = table.get("kind", "")
+        if kind not in (*_KINDS, ""):
+            self._say(
+                Code.BAD_BINDING_FIELD,
+                f"`kind` cannot be `{kind}`",
+                self.tables.value(*at, "kind"),
+                f"it may be {', '.join(_KINDS)}",
+            )
+        return str(kind)
+
+    def _on_unknown(self, table: Mapping[str, Any], at: tuple[str, ...]) -> bool | None:
+        value = table.get("on_unknown", "unknown")
+        if value == "unknown":
+            return None
+        if isinstance(value, bool):
+            text = (
+                f"proposition {at[1]}: where its signals are unknown it counts as "
+                f"{str(value).lower()}, as the bindings declare"
+            )
+            self.defaults.append(Default((at[0], at[1]), text))
+            return value
+        self._say(
+            Code.BAD_BINDING_FIELD,
+            "`on_unknown` must be true, false or `unknown`",
+            self.tables.value(*at, "on_unknown"),
+        )
+        return None
+
+
+_VARIABLE = ("component", "type", "role", "text", "fret", "modality", "action")
+_ACTION = re.compile(r"[a-z][A-Za-z0-9_]*")
+
+
+def _is_numbers(value: object, count: int) -> bool:
+    return (
+        isinstance(value, list)
+        and len(value) == count
+        and all(isinstance(n, int | float) and isfinite(n) for n in value)
+    )

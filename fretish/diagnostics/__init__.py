@@ -1,0 +1,1 @@
+"""Source text with positions, diagnostics with codes, and how they are rendered."""

@@ -1,0 +1,238 @@
+"""Everything fretc can say about its input: a code, a place, a way out.
+
+A user's mistake is a `Diagnostic`, returned. One function per message lives beside the check
+that needs it; the codes live here, because a number is for life: never moved, never reused.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from difflib import get_close_matches
+from enum import Enum, StrEnum
+
+from fretish.diagnostics.source import Span
+
+
+class Severity(StrEnum):
+    """An error stops the command with exit status 2; a warning and a note do not."""
+
+    ERROR = "error"
+    WARNING = "warning"
+    NOTE = "note"
+
+
+class Code(Enum):
+    """Every message that fretc can give: its stable number and what it is about.
+
+    F1 syntax, F2 meaning, F3 bindings, units and clock, F4 logs, F5 traceability,
+    F6 targets, F9 use of the command.
+    """
+
+    NOT_FRETISH = ("F101", "the sentence is not FRETish")
+    BAD_HEADER = ("F102", "the header is not TOML")
+    UNKNOWN_FIELD = ("F103", "the header has a field that fretc does not know")
+    MISSING_SATISFY = ("F104", "`satisfy` is missing before the response")
+    BAD_FIELD = ("F105", "a header field has a value of the wrong kind")
+    NO_SENTENCE = ("F106", "there is no sentence")
+    MISSPELT = ("F107", "a key word of FRETish is misspelt")
+    BAD_DURATION = ("F108", "a duration is not a whole number of a known unit")
+    RESERVED = ("F109", "a reserved word stands where a name should")
+    BAD_PROBABILITY = ("F110", "the probability is out of range")
+    MISSING_COMPONENT = ("F111", "the component is missing")
+    WRONG_KIND = ("F112", "a number stands where a truth value should, or the other way round")
+    UNCLOSED_HEADER = ("F113", "the header has no closing `+++`")
+    TOO_DEEP = ("F115", "the sentence is nested too deep")
+    NAME_CLASH = ("F116", "two names become one in formulas")
+    FREE_TEXT = ("F114", "free text is kept and not formalized")
+
+    DUPLICATE_ID = ("F201", "two requirements have the same id")
+    PREDICATE_NOT_FORMALIZED = (
+        "F202",
+        "a temporal predicate looks one way in time only",
+    )
+    EDGE_TRIGGER = ("F204", "`when` and `if` trigger where the condition becomes true")
+    NO_TIMING = ("F205", "no timing means eventually")
+    SHORT_SCOPE = ("F206", "a deadline behind the end of its scope requires nothing")
+    FIRST_RUN_ONLY = ("F207", "`after` looks at the first stretch of its mode only")
+    BEFORE_NOTHING = ("F208", "`before` requires nothing when its mode holds at the start")
+    NEVER_DECIDED = ("F203", "no run can ever decide the requirement")
+    OWN_TRIGGER = ("F209", "a requirement is triggered by what its component commands")
+
+    BAD_BINDINGS = ("F301", "the bindings are not TOML")
+    UNKNOWN_BINDING_FIELD = ("F302", "the bindings have a field that fretc does not know")
+    BAD_BINDING_FIELD = ("F303", "a field of the bindings has a value of the wrong kind")
+    UNBOUND = ("F304", "a proposition of the sentence has no binding")
+    UNIT_MISMATCH = ("F305", "two quantities have different dimensions")
+    UNKNOWN_UNIT = ("F306", "the unit is not known")
+    INEXACT_DURATION = ("F307", "the duration is not a whole number of ticks")
+    BAD_EXPRESSION = ("F308", "the expression of a binding cannot be read")
+    UNKNOWN_NAME = ("F309", "an expression names something that is not declared")
+    PARAMETER_DRIFT = ("F310", "the requirement and its binding state different numbers")
+    BLIND_ZONE = ("F311", "the bound lies where the sensor cannot see")
+    NO_CLOCK = ("F312", "the sentence names a unit of time, but no clock says what a tick is")
+    MESSAGE_CLOCK = ("F313", "a clock that ticks by message cannot count seconds")
+    NEVER_CHANGED = ("F314", "a proposition never changed in the logs")
+    SLOW_TOPIC = ("F315", "a topic comes less often than the bindings need it")
+    BAD_MODALITY = ("F316", "the modality of a proposition cannot be emitted")
+
+    SAME_TOPIC = ("F320", "two ends of the interceptor are one topic")
+    BELOW_PERIOD = ("F321", "a duration is shorter than a tick of the interceptor's timer")
+    NO_TIMER = ("F322", "an interceptor without a timer is asked to measure time")
+    NO_INTERCEPTOR = ("F323", "the bindings declare no interceptor")
+
+    BAD_PHASE = ("F337", "the phase of the clock is not within a tick")
+    PLAIN_PERCENT = ("F338", "a plain number stands beside a signal in percent")
+    AMBIGUOUS_UNIT = ("F339", "a part of a unit is the name of a signal too")
+
+    UNREADABLE_LOG = ("F401", "the log cannot be read")
+    NOT_A_LOG = ("F402", "the file is not an MCAP log")
+    TRUNCATED_LOG = ("F403", "the log ends in the middle")
+    DAMAGED_CHUNK = ("F404", "a part of the log is damaged")
+    NO_TOPIC = ("F405", "a topic of the bindings is not in the log")
+    NO_FIELD = ("F406", "a field of the bindings is not in the message")
+    EMPTY_LOG = ("F407", "the log holds no message")
+    UNKNOWN_ENCODING = ("F408", "the encoding of a topic cannot be read")
+    WRONG_TYPE = ("F409", "a topic has another type than the bindings say")
+    COUNT_MISMATCH = ("F410", "the log holds another number of messages than it states")
+    OUT_OF_ORDER = ("F411", "the messages of a topic are not in order of time")
+    BAD_MESSAGE = ("F412", "a message cannot be decoded")
+    SPLIT_LOG = ("F413", "a run in several files cannot be read, or is not read, as one")
+    LOST_PART = ("F414", "a file of a run in several files is lost")
+    BAG_FORMAT = ("F415", "the format of the log cannot show what MCAP shows")
+    ZERO_STAMP = ("F416", "messages of a topic have a zero for a time")
+    CLOCK_JUMP = ("F417", "the clock of a topic jumps")
+    MIXED_CLOCKS = ("F418", "the stamps of two topics are of different clocks")
+    PROCESS_KILLED = ("F419", "the process that audited the log was killed")
+    STILL_CLOCK = ("F420", "the clock of a topic stands still")
+    SEVERAL_TYPES = ("F421", "a topic has messages of several types")
+    REINDEXED = ("F422", "a bag was reindexed, and has lost what was being written")
+
+    PHASE_DEPENDENT = ("F425", "a verdict depends on where the grid of ticks begins")
+    PHASES_NOT_JUDGED = ("F426", "a verdict was not computed for all phases of the ticks")
+    PHASE_PROPOSED = ("F427", "another phase of the ticks keeps its verdicts more firmly")
+
+    UNKNOWN_PARENT = ("F501", "a parent is not declared")
+    BAD_HAZARDS = ("F502", "the hazards cannot be read")
+    BAD_EVIDENCE = ("F503", "the evidence cannot be read")
+    BAD_EXPORT = ("F505", "the requirements of another tool cannot be read")
+    STALE_EVIDENCE = ("F504", "the evidence is about another requirement, binding or log")
+    FEW_RUNS = ("F506", "a probability is estimated from few runs")
+    BAD_LOCK = ("F510", "the lock cannot be read")
+    ORPHANED_REVIEW = ("F511", "a review is of a requirement that is not there")
+    CHANGED_SINCE_REVIEW = ("F512", "something has changed since it was reviewed")
+    BAD_WAIVER = ("F513", "the waivers cannot be read")
+    EXPIRED_WAIVER = ("F514", "a waiver has expired")
+    BAD_SETTINGS = ("F520", "the settings of the project cannot be read")
+    BAD_PARENTS = ("F521", "a document with parents of requirements cannot be read")
+    UNCOVERED_HAZARD = ("F522", "no requirement is there for a hazard")
+    NO_PARENT = ("F523", "a requirement is there for no reason that is named")
+    NUMBER_DRIFT = ("F524", "a comparison of the sentence is bound to another one")
+    UNREACHABLE_PLAN = ("F525", "a planned method can give no result")
+    PARENTS_IN_A_CIRCLE = ("F526", "parents of requirements lead in a circle")
+    REACHES_NO_HAZARD = ("F527", "the parents of a requirement lead to no hazard")
+    MISSPELT_METHOD = ("F528", "a planned method is misspelt")
+    UNREVIEWED_VIOLATION = ("F529", "a lock would accept a violation that nobody has named")
+    MERGED_VARIABLE = ("F530", "two variables of an export become one")
+    RENAMED = ("F531", "a requirement of an export has another id now")
+    RETIRED_SINCE_REVIEW = ("F540", "a requirement was retired since its review")
+    OUTDATED_RESULT = ("F541", "a lock would accept a result about something else")
+    UNKNOWN_LOG = ("F542", "a lock would accept a verdict on a log that nothing identifies")
+    IDLE_WAIVER = ("F543", "a waiver covers nothing")
+    NOT_REVIEWED = ("F544", "a requirement was never reviewed, and others were")
+    BAD_MANIFEST = ("F545", "the manifest cannot be read")
+    BAD_SIGNERS = ("F548", "the list of signers cannot be read")
+    BAD_SIGNATURES = ("F556", "signatures cannot be read")
+    BROKEN_SIGNATURE = ("F557", "a signature does not verify")
+    NOT_SIGNED = ("F558", "something is not signed by the key that is asked for")
+    IDLE_SIGNATURE = ("F559", "a signature does not count for what it is about")
+    SEVERAL_VERDICTS = ("F555", "audits of one log have several verdicts of a requirement")
+    NO_SUCH_REQUIREMENT = ("F515", "no requirement and no diagnostic has that name")
+
+    NOT_EXPRESSIBLE = ("F601", "the target cannot express the requirement")
+    BAD_MONITOR = ("F602", "the file is no generated monitor")
+    BAD_PROPERTY = ("F603", "AJPF would read a property in another way than it is written")
+    NOT_PROVED = ("F604", "the form for AJPF is not proved equal to the requirement")
+    WEAKENED = ("F605", "what is emitted says less than the requirement")
+    NO_TIME_TO_REACT = ("F606", "no agent that takes time to react satisfies the property")
+    STATE_ZERO = ("F607", "the property demands something of the first state")
+    BAD_AGENT = ("F610", "MCAPL would read an agent in another way than it is written")
+    BEYOND_MODEL = ("F611", "the agent uses what the model of agents does not have")
+    OTHER_AGENT = ("F612", "a property speaks of another agent than the one that is given")
+    BAD_PERCEPT = ("F613", "a percept cannot be drawn by the environment")
+    NOT_KEPT = ("F614", "the agent that would be generated does not keep the requirement")
+    OVER_RESPONDS = ("F615", "the agent that is generated responds more often than is demanded")
+    BAD_AJPF_RESULT = ("F616", "a result of AJPF cannot be read")
+    FOREIGN_AJPF_RESULT = ("F617", "a result of AJPF is about no requirement that is there")
+    TOO_LARGE = ("F670", "what would be made is too large")
+
+    SHORT_HOLD = ("F630", "the interceptor holds zero no longer than messages may be lost")
+    UNWATCHED = ("F631", "the interceptor does not notice that a channel is silent")
+    EVENT_DRIVEN = ("F632", "the interceptor speaks only when a command comes")
+    LATCHING = ("F633", "the interceptor's first stop is for ever")
+
+    NO_SUCH_FILE = ("F901", "there is no such file")
+    IS_A_DIRECTORY = ("F902", "the file is a directory")
+    UNREADABLE = ("F903", "the file cannot be read")
+    NOT_TEXT = ("F904", "the file is not UTF-8 text")
+    NOT_WRITTEN = ("F905", "the output cannot be written")
+    UNKNOWN_COMMAND = ("F906", "there is no such command")
+    BAD_USAGE = ("F907", "the command is used in a wrong way")
+    MISSING_EXTRA = ("F908", "an optional part of fretc is not installed")
+    NOTHING_TO_DO = ("F909", "nothing was given to work on")
+    NO_FLEET = ("F910", "the fleet cannot be reached")
+    OTHER_EDITION = ("F911", "a machine of the fleet has no fretc, or another one")
+    BUSY = ("F912", "another audit writes the same evidence")
+    BAD_QUERY = ("F913", "the query cannot be answered")
+    BAD_SCENARIO = ("F914", "the scenario of a simulation cannot be run")
+    NO_KEY = ("F920", "the user has no key, so nothing is kept of a stopped audit")
+    FOREIGN_PLACE = ("F921", "evidence names a log in a place that is not looked into")
+    TOO_COSTLY = ("F930", "what is read takes more time or memory than it may")
+    BAD_KEY = ("F931", "a key cannot be used")
+    INTERNAL = ("F999", "fretc itself is at fault")
+
+    @property
+    def number(self) -> str:
+        """`F104`: stable for life."""
+        return str(self.value[0])
+
+    @property
+    def summary(self) -> str:
+        """What the code is about, in one phrase."""
+        return str(self.value[1])
+
+
+@dataclass(frozen=True, slots=True)
+class Diagnostic:
+    """One thing to say: what is wrong, where, and what to do."""
+
+    code: Code
+    message: str
+    span: Span | None = None
+    help: str | None = None
+    severity: Severity = Severity.ERROR
+    paste: str = ""
+    """Lines to put into a file as they are, which `help` speaks of."""
+
+    @property
+    def is_error(self) -> bool:
+        """Whether it stops the command."""
+        return self.severity is Severity.ERROR
+
+
+def has_errors(diagnostics: Iterable[Diagnostic]) -> bool:
+    """Whether any of them is an error."""
+    return any(diagnostic.is_error for diagnostic in diagnostics)
+
+
+def suggestion(word: str, known: Iterable[str], cutoff: float = 0.6) -> str | None:
+    """The known word that is nearest to a misspelt one, if one is near.
+
+    Args:
+        word: what was written.
+        known: what may be written.
+        cutoff: how near, from 0 (anything) to 1 (equal), as `difflib` measures it.
+    """
+    by_folded = {name.casefold(): name for name in known}
+    near = get_close_matches(word.casefold(), by_folded, n=1, cutoff=cutoff)
+    return by_folded[near[0]] if near else None

@@ -1,0 +1,79 @@
+"""Diagnostics as text for a person and as JSON for a program."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from fretish.diagnostics.diagnostic import Diagnostic, Severity
+from fretish.diagnostics.source import Span
+
+_TAB = " " * 4
+_WIDTH = 160
+"""A longer line is shown from a little before the caret on."""
+
+
+def render(diagnostic: Diagnostic) -> str:
+    """Several lines: code and message, place, the line with a caret, and the mend."""
+    kind = "" if diagnostic.severity is Severity.ERROR else f" {diagnostic.severity.value}:"
+    lines = [f"{diagnostic.code.number}{kind} {visible(diagnostic.message)}"]
+    if diagnostic.span is not None:
+        lines.extend(_place(diagnostic.span))
+    if diagnostic.help:
+        lines.append(f"help: {visible(diagnostic.help)}")
+    if diagnostic.paste:
+        lines += ["", *map(visible, diagnostic.paste.rstrip("\n").split("\n"))]
+    return "\n".join(lines)
+
+
+def render_all(diagnostics: Sequence[Diagnostic]) -> str:
+    """One block each, with an empty line between."""
+    return "\n\n".join(render(diagnostic) for diagnostic in diagnostics)
+
+
+def as_json(diagnostic: Diagnostic) -> dict[str, Any]:
+    """`{code, severity, message, file, line, column, help}`; absent places are null.
+
+    `help` ends with what is to be pasted.
+    """
+    span = diagnostic.span
+    help_ = "\n\n".join(text for text in (diagnostic.help, diagnostic.paste) if text)
+    return {
+        "code": diagnostic.code.number,
+        "severity": diagnostic.severity.value,
+        "message": diagnostic.message,
+        "file": span.source.name if span else None,
+        "line": span.line if span else None,
+        "column": span.column if span else None,
+        "help": help_ or None,
+    }
+
+
+def _place(span: Span) -> list[str]:
+    name = visible(span.source.name)
+    if not span.source.text:
+        return [f"  --> {name}"]
+    line, column = span.line_text, span.column
+    width = max(1, min(span.end, span.start + len(line) - column + 1) - span.start)
+    start = 0 if column <= _WIDTH - 40 else column - 60
+    shown = line[start : start + _WIDTH]
+    before = visible(shown[: column - 1 - start])
+    under = visible(shown[column - 1 - start : column - 1 - start + width])
+    after = visible(shown[column - 1 - start + width :])
+    return [
+        f"  --> {name}:{span.line}:{column}",
+        f"   | {before}{under}{after}".rstrip(),
+        f"   | {' ' * len(before)}{'^' * max(1, len(under))}",
+    ]
+
+
+def visible(text: str) -> str:
+    """Control characters would move the caret or the user's terminal: show them as escapes."""
+    return "".join(
+        _TAB if character == "\t" else character if character.isprintable() else _escape(character)
+        for character in text
+    )
+
+
+def _escape(character: str) -> str:
+    return character.encode("unicode_escape").decode("ascii")

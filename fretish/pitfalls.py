@@ -1,0 +1,72 @@
+"""Warnings where FRETish means something else than many readers take it to mean."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from fretish import syntax as s
+from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
+from fretish.diagnostics.source import Span
+from fretish.printer import expression
+
+_ENDS = (
+    s.ScopeKind.IN,
+    s.ScopeKind.NOT_IN,
+    s.ScopeKind.BEFORE,
+)
+"""Scopes whose intervals end before the run does, and that do not negate the timing."""
+
+
+def surprises(sentence: s.Sentence) -> Iterator[Diagnostic]:
+    """F204-F208, each with what is meant and how to say the other thing."""
+    yield from _edge(sentence.condition)
+    if isinstance(sentence.timing, s.Eventually) and not sentence.timing.written:
+        yield _warning(
+            Code.NO_TIMING,
+            "without a timing the response is required at some time, however late",
+            sentence.component_span,
+            "write `eventually` if that is meant, or `immediately`, `always`, `within N seconds`",
+        )
+    scope = sentence.scope
+    if scope is None:
+        return
+    m = expression(scope.mode)
+    if isinstance(sentence.timing, s.Within) and scope.kind in _ENDS:
+        yield _warning(
+            Code.SHORT_SCOPE,
+            f"where `{m}` ends the scope before the deadline, nothing is required",
+            sentence.timing_span,
+            "the response is demanded only where the whole duration fits into the scope",
+        )
+    if scope.kind in (s.ScopeKind.AFTER, s.ScopeKind.ONLY_AFTER):
+        yield _warning(
+            Code.FIRST_RUN_ONLY,
+            f"only the first stretch of `{m}` counts; later ones change nothing",
+            scope.span,
+            f"use a condition, `upon !({m})`, to begin anew each time",
+        )
+    if scope.kind is s.ScopeKind.BEFORE:
+        yield _warning(
+            Code.BEFORE_NOTHING,
+            f"where `{m}` holds at the first tick, nothing is required",
+            scope.span,
+            f"state what must hold at the start apart, if `{m}` can hold there",
+        )
+
+
+def _edge(condition: s.Condition | None) -> Iterator[Diagnostic]:
+    if condition is None or condition.word not in ("when", "if", "where", "unless"):
+        return
+    if condition.kind is not s.ConditionKind.TRIGGER:
+        return
+    p = expression(condition.expression)
+    yield _warning(
+        Code.EDGE_TRIGGER,
+        f"`{condition.word}` triggers only at the ticks at which `{p}` becomes true",
+        condition.span,
+        f"write `whenever {p}` if it must trigger as long as that is true, or `upon {p}` if not",
+    )
+
+
+def _warning(code: Code, message: str, span: Span | None, mend: str) -> Diagnostic:
+    return Diagnostic(code, message, span, help=mend, severity=Severity.WARNING)

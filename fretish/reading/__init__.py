@@ -1,0 +1,1 @@
+"""Texts of strangers read within bounds: TOML, YAML, encodings, cost, depth."""

@@ -1,0 +1,137 @@
+"""What reading may cost: processor time and memory, by the size of what is read.
+
+Files come from strangers, and a small one may ask for hours or for all the memory there is. A
+clock of the process's own time looks in while something is read, and ends it where it has taken
+more than a text or a log of its size ever needs. What one call of a library may take at once is
+bounded where it is called; this is for all that is slow or grows step by step.
+"""
+
+from __future__ import annotations
+
+import os
+import signal
+import threading
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from types import FrameType
+from typing import TypeVar
+
+from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.diagnostics.source import Span
+
+SECONDS = 3.0
+"""Of a processor, for whatever is read."""
+_BYTES_A_SECOND = 200_000
+"""What is longer may take a second more for each so many bytes."""
+MEMORY = 300 * 2**20
+"""Bytes that reading may add to what the process has, whatever is read."""
+_MEMORY_A_BYTE = 100
+"""And so many more for each byte that is read."""
+_LOOK = 0.05
+"""Seconds of a processor between two looks."""
+
+R = TypeVar("R")
+
+
+class ExceededError(BaseException):
+    """Reading has taken more than it may; the text says of what.
+
+    No `Exception`: where a library may raise anything, this is not to be taken for its own.
+    """
+
+
+@dataclass(slots=True)
+class _Budget:
+    """What is left to be used: absolute, of the process."""
+
+    seconds: float
+    memory: int
+
+
+_budgets: list[_Budget] = []
+"""The one that counts now, if there is one."""
+
+
+@contextmanager
+def budget(size: int) -> Iterator[None]:
+    """Whatever is done within takes no more than is due to so many bytes.
+
+    Within another one its bytes are added to that. Only the main thread can be interrupted: in any
+    other nothing is counted.
+
+    Raises:
+        ExceededError: it takes more.
+    """
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    if _budgets:
+        grant(size)
+        yield
+        return
+    _budgets.append(_Budget(time.process_time() + SECONDS, _resident() + MEMORY))
+    grant(size)
+    signal.signal(signal.SIGPROF, _look)  # stays: a signal that comes late finds no budget
+    signal.siginterrupt(signal.SIGPROF, False)
+    signal.setitimer(signal.ITIMER_PROF, _LOOK, _LOOK)
+    try:
+        yield
+    finally:
+        signal.setitimer(signal.ITIMER_PROF, 0)
+        _budgets.clear()
+
+
+def grant(size: int) -> None:
+    """So many bytes more are read within the present budget, if there is one."""
+    for current in _budgets:
+        current.seconds += size / _BYTES_A_SECOND
+        current.memory += size * _MEMORY_A_BYTE
+
+
+def within(size: int, place: Span, reading: Callable[[], R]) -> R | Diagnostic:
+    """What the call gives; F930 where it takes more than is due to so many bytes.
+
+    Args:
+        size: bytes that are read.
+        place: what is read, as the user knows it.
+        reading: the call.
+    """
+    inner = bool(_budgets)
+    try:
+        with budget(size):
+            return reading()
+    except ExceededError as error:
+        if inner:  # whoever has set the budget says so
+            raise
+        return exceeded(error, place)
+    except MemoryError:
+        return exceeded(ExceededError("more memory than there is"), place)
+
+
+def exceeded(error: ExceededError, place: Span | None = None) -> Diagnostic:
+    """F930."""
+    return Diagnostic(
+        Code.TOO_COSTLY,
+        f"it would take {error}: far more than anything of its size needs",
+        place,
+        help="it was written to be costly, or is damaged; divide it if it is not",
+    )
+
+
+def _look(_number: int, _frame: FrameType | None) -> None:
+    for current in _budgets:
+        if time.process_time() > current.seconds:
+            raise ExceededError(f"more than {SECONDS:g} seconds of a processor")
+        if _resident() > current.memory:
+            raise ExceededError(f"more than {MEMORY // 2**20} MiB of memory")
+
+
+_PAGE = os.sysconf("SC_PAGE_SIZE")
+
+
+def _resident() -> int:
+    """Bytes of memory that the process has now."""
+    return int(Path("/proc/self/statm").read_bytes().split()[1]) * _PAGE

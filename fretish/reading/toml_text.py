@@ -1,0 +1,135 @@
+"""TOML with places: what `tomllib` reads, and where each key stands."""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import tomli_w
+
+from fretish.diagnostics.diagnostic import Code, Diagnostic, suggestion
+from fretish.diagnostics.source import Span
+from fretish.reading.limits import within
+
+_VALUE = re.compile(
+    r"""["']?[ \t]*=[ \t]*(?P<value>
+        "(?:[^"\\\n]|\\.)*"            # a text
+      | '[^'\n]*'
+      | \{[^}\n]*\}                    # an inline table
+      | \[[^\]\n]*\][^#\n]*          # a list, perhaps of lists
+      | [^#\n]*                       # anything else on the line
+    )""",
+    re.VERBOSE | re.MULTILINE,
+)
+
+_ANY_HEADER = re.compile(r"^[ \t]*\[", re.MULTILINE)
+
+
+@dataclass(frozen=True, slots=True)
+class Tables:
+    """A TOML text and its values; `place` finds a key again."""
+
+    text: Span
+    data: Mapping[str, Any]
+
+    def place(self, *path: str) -> Span:
+        """Where the last key of the path stands; the whole text's start where it is not found."""
+        *tables, key = path
+        start, end = self._table(tables) or self._inline(tables)
+        match = _key(key).search(self.text.text, start, end)
+        if match is None:
+            match = _header(path).search(self.text.text)
+        if match is None and tables:
+            return self.place(*tables)
+        return self.text.part(*match.span("key")) if match else self.text.part(0, 0)
+
+    def value(self, *path: str) -> Span:
+        """Where the value behind the last key of the path stands, up to the end of its line."""
+        key = self.place(*path)
+        rest = self.text.source.text[key.end : self.text.end]
+        match = _VALUE.match(rest)
+        if match is None:
+            return key
+        start, end = match.start("value"), match.start("value") + len(match["value"].rstrip())
+        return Span(key.source, key.end + start, key.end + end)
+
+    def _inline(self, tables: list[str]) -> tuple[int, int]:
+        """Where the braces of an inline table stand."""
+        span = self.value(*tables)
+        if not span.text.startswith("{"):
+            return 0, 0
+        return span.start - self.text.start, span.end - self.text.start
+
+    def _table(self, tables: Iterable[str]) -> tuple[int, int] | None:
+        path = tuple(tables)
+        if not path:
+            first = _ANY_HEADER.search(self.text.text)
+            return 0, first.start() if first else len(self.text.text)
+        header = _header(path).search(self.text.text)
+        if header is None:
+            return None
+        following = _ANY_HEADER.search(self.text.text, header.end())
+        return header.end(), following.start() if following else len(self.text.text)
+
+
+def _header(path: Iterable[str]) -> re.Pattern[str]:
+    name = r"[ \t]*\.[ \t]*".join(f"[\"']?{re.escape(part)}[\"']?" for part in path)
+    return re.compile(rf"^[ \t]*\[[ \t]*(?P<key>{name})[ \t]*[\].]", re.MULTILINE)
+
+
+def _key(key: str) -> re.Pattern[str]:
+    return re.compile(
+        rf"(?:^|[{{,])[ \t]*[\"']?(?P<key>{re.escape(key)})[\"']?[ \t]*=", re.MULTILINE
+    )
+
+
+def read(text: Span, code: Code, what: str) -> Tables | Diagnostic:
+    """Read TOML.
+
+    Args:
+        text: the TOML, somewhere in a source.
+        code: what to give where it is not TOML.
+        what: the name of the thing for the message: `the header`.
+    """
+    return within(len(text.text), text.part(0, 0), lambda: _read(text, code, what))
+
+
+def _read(text: Span, code: Code, what: str) -> Tables | Diagnostic:
+    try:
+        return Tables(text, tomllib.loads(text.text.replace("\r\n", "\n")))
+    except (ValueError, RecursionError) as error:  # TOML, or a number or nesting beyond Python's
+        match = re.search(r"\(at line (\d+), column (\d+)\)", str(error))
+        at = _offset(text.text, int(match[1]), int(match[2])) if match else len(text.text)
+        reason = re.sub(r" \(at [^)]*\)", "", str(error))
+        return Diagnostic(
+            code,
+            f"{what} is not TOML: {reason[:1].lower()}{reason[1:]}",
+            text.part(at, min(at + 1, len(text.text))),
+            help='write `key = "value"`, one a line',
+        )
+
+
+def _offset(text: str, line: int, column: int) -> int:
+    lines = text.split("\n")
+    before = sum(len(part) + 1 for part in lines[: line - 1])
+    return min(before + column - 1, len(text))
+
+
+def as_key(name: str) -> str:
+    """The name as a key of TOML: in quotes where it needs them."""
+    return tomli_w.dumps({name: 0}).removesuffix(" = 0\n")
+
+
+def unknown_key(code: Code, key: str, known: Iterable[str], span: Span, where: str) -> Diagnostic:
+    """The key is not known: with the nearest one, or all of them."""
+    names = tuple(known)
+    near = suggestion(key, names)
+    return Diagnostic(
+        code,
+        f"`{key}` is no field of {where}",
+        span,
+        help=f"did you mean `{near}`?" if near else f"it may have {', '.join(names)}",
+    )

@@ -1,0 +1,1 @@
+"""The parts that hear and say messages."""

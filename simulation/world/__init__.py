@@ -1,0 +1,1 @@
+"""The robot and the room, and what goes wrong in a scenario."""

@@ -1,0 +1,55 @@
+"""What each trigger asks for, against the meaning written down directly."""
+
+from itertools import product
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from compiler.explanation.windows import Need, Part, Window, intervals, kept, window
+from compiler.formalization.reference import Template as Counted
+from compiler.formalization.reference import template as counted_of
+from fretish import syntax as s
+from fretish.diagnostics.source import Source
+from fretish.parser import parse
+from tests import meaning
+from tests.strategies import Template, templates, traces
+
+
+def counted(drawn: Template) -> Counted:
+    sentence = parse(Source("r.fret", drawn.sentence).span())
+    assert isinstance(sentence, s.Sentence)
+    return counted_of(sentence, drawn.n)
+
+
+@pytest.mark.parametrize("scope", meaning.SCOPES)
+def test_the_intervals_are_those_of_the_definition(scope: str) -> None:
+    kind = None if scope == "null" else s.ScopeKind(scope)
+    for length in range(1, 8):
+        for m in product((False, True), repeat=length):
+            assert intervals(kind, m) == list(meaning.intervals(scope, m))
+
+
+def test_every_short_trace_is_judged_as_fretish_means_it() -> None:
+    for drawn in templates((0, 1, 2)):
+        rule, names = counted(drawn), drawn.columns
+        for length in range(1, 4 if len(names) < 4 else 3):
+            for values in product((False, True), repeat=len(names) * length):
+                columns = {n: list(values[i :: len(names)]) for i, n in enumerate(names)}
+                m, p, q, stop = (columns.get(name, columns["q"]) for name in "mpqs")
+                assert kept(rule, m, p, q, stop) is drawn.satisfied(columns), (drawn, columns)
+
+
+@given(st.sampled_from([*templates((0, 1, 2, 3, 5))]), traces("m", "p", "q", "s", max_size=14))
+def test_long_traces_are_judged_as_fretish_means_them(
+    drawn: Template, rows: list[dict[str, bool]]
+) -> None:
+    columns = {name: [row[name] for row in rows] for name in "mpqs"}
+    expected = drawn.satisfied(columns)
+    assert kept(counted(drawn), *(columns[name] for name in "mpqs")) is expected
+
+
+def test_after_asks_twice() -> None:
+    rule = Counted(None, s.ConditionKind.HOLDING, s.After, 2)
+    parts = (Part(1, 3, Need.NONE), Part(4, 4, Need.ALL))
+    assert window(rule, 1, 9, [False] * 10) == Window(1, 9, parts)

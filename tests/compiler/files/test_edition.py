@@ -1,0 +1,47 @@
+"""One edition for one text of the program, and another for any other."""
+
+import shutil
+from pathlib import Path
+
+import pytest
+
+from compiler.files import edition as module
+from compiler.files.edition import edition
+
+ROOT = Path(__file__).parents[3]
+
+
+@pytest.fixture
+def copy(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A copy of the program, of which the edition is told."""
+    for room in ("fretish", "monitors", "compiler", "fretc"):
+        shutil.copytree(ROOT / room, tmp_path / room)
+    monkeypatch.setattr(module, "files", lambda room: tmp_path / room)
+    return tmp_path
+
+
+def told() -> str:
+    return edition.__wrapped__()
+
+
+def test_a_copy_is_the_same_edition(copy: Path) -> None:
+    assert told() == edition()
+
+
+@pytest.mark.parametrize(
+    "name", ["fretish/grammar.lark", "monitors/kernel/columns.py", "fretc/audit/many_logs.py"]
+)
+def test_a_changed_text_is_another_edition(copy: Path, name: str) -> None:
+    (copy / name).write_text((copy / name).read_text("utf-8") + "\n", "utf-8")
+    assert told() != edition()
+
+
+def test_a_file_more_is_another_edition(copy: Path) -> None:
+    (copy / "monitors/more.py").touch()
+    assert told() != edition()
+
+
+def test_another_library_is_another_edition(monkeypatch: pytest.MonkeyPatch) -> None:
+    before = told()
+    monkeypatch.setattr(module, "version", lambda library: "0")
+    assert told() != before

@@ -1,0 +1,144 @@
+"""Shorter formulas: equivalent, never longer, and no bound is unrolled."""
+
+from collections.abc import Iterator
+from itertools import product
+
+import pytest
+
+from compiler.formalization.formalize import formalize
+from compiler.logic import formula as f
+from compiler.logic import printing
+from compiler.logic.spot import equivalent, same_language, simplified
+from fretish.diagnostics.source import Source
+from fretish.documents import requirements
+
+a, b = f.Atom("a"), f.Atom("b")
+SCOPES = ("", "in m", "unless in m", "before m", "after m")
+ONLY_SCOPES = ("only in m", "only before m", "only after m")
+CONDITIONS = ("", "upon p", "whenever p")
+TIMINGS = (
+    *("", "immediately", "at the next timepoint", "finally", "eventually", "always", "never"),
+    *("within 2 ticks", "for 2 ticks", "after 2 ticks", "until s", "before s"),
+)
+
+
+def sentences(scopes: tuple[str, ...]) -> Iterator[str]:
+    for scope, condition, timing in product(scopes, CONDITIONS, TIMINGS):
+        yield f"{scope} {condition} the sw shall {timing} satisfy q"
+
+
+def formulas(sentence: str) -> tuple[f.Formula, f.Formula]:
+    """On infinite and on finite traces."""
+    ((requirement,), _) = requirements(Source("r.fret", sentence))
+    rule, said = formalize(requirement, None)
+    assert rule is not None, said
+    return rule.ft_infinite, rule.ft_finite
+
+
+def steps(text: str) -> int:
+    """How many operators look at the next tick."""
+    return text.replace("(", " ").replace("!", " ").split().count("X")
+
+
+# Equivalence ----------------------------------------------------------------------------------
+
+
+def test_the_same_language_in_other_words_is_the_same() -> None:
+    assert same_language("G(a -> F b)", "!F(a & G !b)")
+    assert not same_language("G(a -> F b)", "G(a -> X F b)")
+
+
+def test_what_is_no_formula_is_told() -> None:
+    with pytest.raises(SyntaxError):
+        same_language("G(a ->", "a")
+
+
+def test_bounds_are_whole_ticks() -> None:
+    bounded = f.Eventually(a, f.Interval(1, 2))
+    assert equivalent(bounded, f.Or((f.Next(a), f.Next(f.Next(a)))))
+    assert not equivalent(bounded, f.Eventually(a, f.Interval(0, 2)))
+
+
+def test_the_last_tick_is_free_on_infinite_traces() -> None:
+    assert not equivalent(f.LAST, f.FALSE)
+
+
+# Simplification -------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("sentence", [*sentences(SCOPES), *sentences(ONLY_SCOPES)])
+def test_a_simplified_formula_says_the_same_in_fewer_characters(sentence: str) -> None:
+    for formula in formulas(sentence):
+        text = simplified(formula)
+        if text is not None:
+            assert same_language(text, printing.future(formula))
+            assert len(text) < len(printing.text(formula, printing.SPOT))
+
+
+def test_many_templates_do_have_a_shorter_formula() -> None:
+    found = [simplified(formulas(sentence)[0]) for sentence in sentences(SCOPES)]
+    assert sum(text is not None for text in found) > 30
+
+
+def test_a_formula_that_is_short_already_has_none() -> None:
+    assert simplified(f.Until(a, b)) is None
+
+
+@pytest.mark.parametrize(
+    ("formula", "text"),
+    [
+        (f.And((f.Globally(a, f.EVER), f.Globally(b, f.EVER))), "G(a & b)"),
+        (f.Or((a, f.Next(f.Eventually(a, f.EVER)))), "Fa"),
+        (f.Until(f.TRUE, f.Until(a, b)), "Fb"),
+        (f.Globally(f.Globally(f.Eventually(a, f.EVER), f.EVER), f.EVER), "GFa"),
+        (f.And((f.Eventually(a, f.Interval(0, 2)), f.Or((f.TRUE, b)))), "(F[0:2] a)"),
+    ],
+)
+def test_a_formula_becomes_shorter(formula: f.Formula, text: str) -> None:
+    assert simplified(formula) == text
+
+
+# Bounds ---------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("scope", SCOPES)
+@pytest.mark.parametrize("timing", ["within", "for", "after"])
+def test_a_long_bound_stays_one_operator(scope: str, timing: str) -> None:
+    """3 000 operators would take Spot for ever: that this test ends is half of it."""
+    for formula in formulas(f"{scope} upon p the sw shall {timing} 3000 ticks satisfy q"):
+        text = simplified(formula) or printing.text(formula, printing.SPOT)
+        assert ":3000]" in text
+        assert len(text) < 1000
+        assert steps(text) <= steps(printing.text(formula, printing.SPOT))
+
+
+def twice_always(formula: f.Formula) -> f.Formula:
+    """Something that Spot has a shorter word for."""
+    return f.Globally(f.Globally(formula, f.EVER), f.EVER)
+
+
+def test_the_same_long_bound_is_seen_to_be_the_same() -> None:
+    soon = f.Eventually(a, f.Interval(0, 3000))
+    assert simplified(f.And((soon, f.Or((soon, b))))) == "(F[0:3000] a)"
+
+
+def test_a_long_bound_within_another_stays() -> None:
+    inner = f.Globally(a, f.Interval(5, 4000))
+    outer = f.Eventually(f.Or((inner, b)), f.Interval(0, 3000))
+    text = simplified(f.And((outer, f.Globally(outer, f.EVER))))
+    assert text == "G(F[0:3000]((G[5:4000] a) | b))"
+
+
+def test_different_bounds_are_not_taken_for_each_other() -> None:
+    sooner, later = (f.Eventually(a, f.Interval(0, n)) for n in (2000, 3000))
+    text = simplified(f.And((twice_always(sooner), twice_always(later))))
+    assert text == "G((F[0:2000] a) & (F[0:3000] a))"
+
+
+def test_more_than_ten_bounds_keep_their_own() -> None:
+    """The eleventh is not taken for the first with a digit more."""
+    bounded = [f.Eventually(a, f.Interval(0, n)) for n in range(3000, 3012)]
+    text = simplified(f.And(tuple(map(twice_always, bounded))))
+    assert text is not None
+    for n in range(3000, 3012):
+        assert text.count(f"F[0:{n}] a") == 1

@@ -1,0 +1,64 @@
+"""`fretc sbom`: what the installed tool consists of."""
+
+import json
+from importlib.metadata import distribution
+
+import pytest
+from cyclonedx.schema import OutputFormat, SchemaVersion
+from cyclonedx.validation import make_schemabased_validator
+
+from fretc.attestation import sbom
+from fretc.attestation.sbom import closure
+from tests.command import Fretc
+
+
+def test_the_bill_fits_the_schema_of_cyclonedx(fretc: Fretc) -> None:
+    run = fretc("sbom")
+    assert (run.status, run.err) == (0, "")
+    validator = make_schemabased_validator(OutputFormat.JSON, SchemaVersion.V1_6)
+    assert validator.validate_str(run.out) is None
+    told = json.loads(run.out)
+    assert told["specVersion"] == "1.6"
+    assert told["metadata"]["component"]["name"] == "fretc"
+    assert told["metadata"]["component"]["licenses"] == [{"license": {"id": "GPL-3.0-or-later"}}]
+
+
+def test_it_names_each_library_that_is_needed_with_its_version_and_no_tool_of_developers(
+    fretc: Fretc,
+) -> None:
+    told = json.loads(fretc("sbom").out)
+    found = {one["name"]: one["version"] for one in told["components"]}
+    for name in ("click", "numpy", "spottl", "mcap", "markupsafe", "cryptography"):
+        assert found[name] == distribution(name).version
+    assert not found.keys() & {"pytest", "mypy", "ruff", "hypothesis", "fretc"}
+    listed = {one["ref"]: one.get("dependsOn", []) for one in told["dependencies"]}
+    by_name = {one["name"]: one["bom-ref"] for one in told["components"]}
+    assert by_name["markupsafe"] in listed[by_name["jinja2"]]
+
+
+def test_the_closure_is_closed_and_reached_from_the_root() -> None:
+    needs = closure()
+    assert all(set(needed) <= needs.keys() for needed in needs.values())
+    reached, waiting = set(), ["fretc"]
+    while waiting:
+        name = waiting.pop()
+        if name not in reached:
+            reached.add(name)
+            waiting.extend(needs[name])
+    assert reached == needs.keys()
+
+
+def test_the_same_installation_gives_the_same_bytes(
+    fretc: Fretc, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("SOURCE_DATE_EPOCH", "1790000000")
+    assert fretc("sbom").out == fretc("sbom").out
+
+
+def test_without_its_library_it_says_what_to_install(
+    fretc: Fretc, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(sbom, "find_spec", lambda name: None)
+    run = fretc("sbom")
+    assert run.status == 2
+    assert run.err.startswith("F908 a bill of materials needs `cyclonedx` and `packaging`\n")

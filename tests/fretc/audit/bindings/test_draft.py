@@ -1,0 +1,174 @@
+"""Drafts of bindings: read back by the reader of bindings, for logs of any kind."""
+
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+import pytest
+
+from compiler.project.folder import load
+from fretc.audit.bindings.draft import Wanted, draft, wanted
+from fretc.logs.reader import look, read
+from fretc.logs.signals.samples import Recording
+from fretish.bindings.declarations import Declarations
+from fretish.bindings.reader import read_bindings
+from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.diagnostics.source import Source
+from tests.command import write as put
+from tests.fretc.logs.logs import MS, S, Sent, number, payload, scan, write
+
+ROOT = Path(__file__).parents[4]
+LOGS = sorted((ROOT / "traces").glob("*.mcap"))
+
+
+def drafted(path: Path, needs: Sequence[Wanted] = ()) -> str:
+    overview = look(str(path))
+    assert not isinstance(overview, Diagnostic), overview
+    return draft(overview, needs)
+
+
+def declared(text: str) -> Declarations:
+    declarations, wrong = read_bindings(Source("bindings.toml", text))
+    assert declarations is not None, wrong
+    return declarations
+
+
+def every(period: int, count: int, topic: str = "/x", start: int = 1000 * S) -> list[Sent]:
+    return [number(float(i), start + i * period, topic) for i in range(count)]
+
+
+def named(topic: str, type_: str, data: bytes, at: int = 1000 * S) -> Sent:
+    return Sent(topic, type_, data, at)
+
+
+def test_a_whole_draft(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, golden: Callable[[str, str], None]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    sent = [scan([1.0, 2.0], 1000 * S + i * 100 * MS) for i in range(12)]
+    sent += every(20 * MS, 51, "/battery level")
+    sent += every(S, 3, "/mode")
+    sent.append(named("/name", "std_msgs/msg/String", payload("std_msgs/String", data="a")))
+    write(Path("run.mcap"), sorted(sent, key=lambda message: message.time))
+    needs = [Wanted("near", ("R1", "R2"), "input", "any")]
+    golden("bindings/draft.toml", drafted(Path("run.mcap"), needs))
+
+
+@pytest.mark.parametrize("path", LOGS, ids=lambda path: path.stem)
+def test_a_draft_without_open_propositions_is_read_and_finds_no_fault_with_its_log(
+    path: Path,
+) -> None:
+    declarations = declared(drafted(path))
+    assert len(declarations.signals) > 10
+    recording = read(str(path), declarations, list(declarations.signals))
+    assert isinstance(recording, Recording)
+    assert recording.findings == ()
+    assert all(len(samples.times) for samples in recording.samples.values())
+
+
+def test_a_signal_is_known_between_two_messages_of_its_topic(tmp_path: Path) -> None:
+    declarations = declared(drafted(write(tmp_path / "a.mcap", every(100 * MS, 20))))
+    assert declarations.signals["x"].max_age == 300 * MS
+    assert declarations.clock.period == 100 * MS
+
+
+def test_bursts_do_not_make_a_sample_old_at_once(tmp_path: Path) -> None:
+    """Three messages within 2 ms, every 100 ms: most steps are short."""
+    sent = [m for i in range(20) for m in every(MS, 3, start=1000 * S + i * 100 * MS)]
+    age = declared(drafted(write(tmp_path / "a.mcap", sent))).signals["x"].max_age
+    assert age is not None
+    assert 98 * MS <= age <= 300 * MS
+
+
+def test_the_tick_is_that_of_the_slowest_topic_that_is_fast(tmp_path: Path) -> None:
+    sent = [*every(10 * MS, 300), *every(40 * MS, 80, "/y"), *every(S, 11, "/slow")]
+    sent.sort(key=lambda message: message.time)
+    assert declared(drafted(write(tmp_path / "a.mcap", sent))).clock.period == 40 * MS
+    late = declared(drafted(write(tmp_path / "c.mcap", every(101 * MS, 20))))
+    assert late.clock.period == 100 * MS  # a little late is no other rate
+    alone = declared(drafted(write(tmp_path / "b.mcap", every(S, 11, "/slow"))))
+    assert alone.clock.period == S
+
+
+def test_events_have_no_rate(tmp_path: Path) -> None:
+    text = drafted(write(tmp_path / "a.mcap", every(S, 2)))
+    assert declared(text).signals["x"].max_age is None
+    assert declared(text).clock.period == 100 * MS
+    assert '# max_age = "1 s"' in text
+
+
+def test_names_are_ones_that_expressions_can_use(tmp_path: Path) -> None:
+    topics = ["/a/b", "/a_b", "/min", "/9", "/A-c", "not"]
+    text = drafted(write(tmp_path / "a.mcap", [m for t in topics for m in every(MS, 1, t)]))
+    declarations = declared(text)
+    assert set(declarations.signals) == {"a_b", "a_b_2", "min_2", "a_c", "not_2"}
+    assert "# no path can name a topic that is called so" in text  # /9
+    expr = " + ".join(declarations.signals)
+    declared(f'{text}\n[proposition.p]\nexpr = "{expr} > 0"\n')
+
+
+def test_what_a_log_calls_its_topics_and_types_cannot_leave_a_comment(tmp_path: Path) -> None:
+    evil = '/x"\n[signal.y]\npath = "/z.data'
+    message = number(1.0, S, topic=evil)
+    text = drafted(write(tmp_path / "a.mcap", [message, *every(MS, 1)]))
+    assert set(declared(text).signals) == {"x"}
+
+
+def test_other_numbers_are_there_as_comments(tmp_path: Path) -> None:
+    text = drafted(write(tmp_path / "a.mcap", [scan([1.0], S + i * 100 * MS) for i in range(12)]))
+    lines = text.splitlines()
+    for field in ("angle_min", "range_max", "intensities[:]"):
+        assert f'# path = "/scan.{field}"' in lines
+    assert "header" not in text.replace("header.stamp: when", "")
+
+
+def test_a_proposition_that_is_to_be_filled_in_is_an_error_until_it_is(tmp_path: Path) -> None:
+    path = write(tmp_path / "a.mcap", every(100 * MS, 12))
+    text = drafted(path, [Wanted("near", ("R1",), "input", "any")])
+    declarations, wrong = read_bindings(Source("bindings.toml", text))
+    assert declarations is not None
+    (diagnostic,) = wrong
+    assert declarations.mistakes == {("proposition", "near"): wrong}
+    assert diagnostic.code is Code.BAD_EXPRESSION
+    assert diagnostic.span is not None
+    line = diagnostic.span.source.text.splitlines()[diagnostic.span.line - 1]
+    assert line == 'expr = "TODO: when is it true? As in: x < 0.5"'
+    filled = declared(text.replace(line, 'expr = "x < 0.5"'))
+    assert filled.propositions["near"].role == "input"
+
+
+# What requirements still need
+
+
+def needed(folder: Path, *sentences: str, bindings: str = "") -> list[Wanted]:
+    files = [
+        put(str(folder / f"r{i}.fret"), f'+++\nid = "R{i}"\n+++\n{sentence}\n')
+        for i, sentence in enumerate(sentences, 1)
+    ]
+    return list(wanted(load(files, put(str(folder / "bindings.toml"), bindings))))
+
+
+def test_each_name_is_wanted_once_with_the_role_that_its_place_gives_it(tmp_path: Path) -> None:
+    found = needed(
+        tmp_path,
+        "in m mode, whenever near the rover shall within 3 ticks satisfy still",
+        "whenever near the rover shall until done satisfy slow",
+        "whenever still the rover shall immediately satisfy quiet",
+    )
+    assert {(each.name, each.requirements, each.role, each.aggregate) for each in found} == {
+        ("m", ("R1",), "mode", "last"),
+        ("near", ("R1", "R2"), "input", "any"),
+        ("still", ("R1", "R3"), "internal", "last"),
+        ("done", ("R2",), "internal", "last"),
+        ("slow", ("R2",), "output", "last"),
+        ("quiet", ("R3",), "output", "last"),
+    }
+
+
+def test_what_is_bound_is_not_wanted(tmp_path: Path) -> None:
+    bindings = (
+        '[clock]\ntick = "1 s"\n[signal.x]\npath = "/x.data"\n[proposition.near]\nexpr = "x < 1"\n'
+    )
+    found = needed(
+        tmp_path, "whenever near the rover shall immediately satisfy still", bindings=bindings
+    )
+    assert [each.name for each in found] == ["still"]

@@ -1,0 +1,669 @@
+"""What has changed: single changes of a project, with and without a new audit.
+
+`python -m tests.fretc.audit.evidence.test_basis` prints them as a table: what a change touches,
+whose evidence is then of something else, and whose review no longer stands. What each command has
+to say is computed from the links below, which are written down here, and nowhere taken from the
+program.
+"""
+
+import json
+import re
+import shutil
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import pytest
+from mcap.writer import Writer
+
+from compiler.project.folder import whole
+from fretc.report.make import make
+from fretc.report.traceability.lock import Lock
+from fretc.report.traceability.lock import read as read_lock
+from fretc.report.traceability.lock import text as lock_text
+from fretish.diagnostics.diagnostic import Diagnostic
+from tests.command import Fretc, write
+
+MS, START = 10**6, 10**9
+IDS = ("R1", "R2", "R3")
+FILES = {
+    "requirements/r1.fret": """\
++++
+id = "R1"
+title = "Answer"
+parents = ["HAZ-1"]
+text = "It must answer."
+rationale = "It would fall."
+status = "draft"
+verify = ["audit", "desk"]
+params = { p = "1 m" }
++++
+whenever p the sw shall within 300 milliseconds satisfy q
+""",
+    "requirements/r2.fret": """\
++++
+id = "R2"
+title = "Stay"
+parents = ["R1"]
+status = "approved"
++++
+the sw shall always satisfy ok
+""",
+    "requirements/r3.fret": """\
++++
+id = "R3"
+title = "Keep"
+parents = ["HAZ-2"]
+status = "approved"
++++
+the sw shall always satisfy fine
+""",
+    "requirements/hazards.toml": """\
+[HAZ-1]
+title = "It falls"
+text = "From the table."
+severity = "minor"
+source = "workshop"
+
+[HAZ-2]
+title = "It burns"
+""",
+    "requirements/bindings.toml": """\
+[clock]
+tick = "100 ms"
+
+[signal.x]
+path = "/a.x"
+unit = "m"
+max_age = "300 ms"
+
+[signal.y]
+path = "/b.y"
+unit = "m"
+
+[signal.z]
+path = "/a.z"
+unit = "m"
+
+[proposition.p]
+text = "it is far"
+expr = "x > 1 m for 100 ms"
+role = "input"
+
+[proposition.q]
+expr = "y > 50 cm"
+
+[proposition.ok]
+expr = "z < 9 m"
+
+[proposition.fine]
+expr = "y < 9 m"
+""",
+}
+R1, R2, R3, HAZARDS, BINDINGS = FILES
+LOGS = ("logs/a.mcap", "logs/b.mcap")
+BY = ("--reviewer", "A", "--role", "b", "--comment", "c", "--date", "2026-01-02")
+
+
+# What a requirement is made of ------------------------------------------------------------------
+
+
+def links() -> Iterator[tuple[str, str]]:
+    """What follows from what, from hazards to reviews."""
+    yield from (("HAZ-1", "text R1"), ("text R1", "text R2"), ("HAZ-2", "text R3"))
+    for id in IDS:
+        for above in ("sentence", "params", "bindings", "monitor", "record"):
+            yield f"{above} {id}", f"verdict {id}"
+        for above in ("clock", "topics", "fretc", "log"):
+            yield above, f"verdict {id}"
+        for above in ("text", "words", "plan", "artefact", "verdict"):
+            yield f"{above} {id}", f"review {id}"
+
+
+def reached(things: set[str]) -> set[str]:
+    """Everything downstream, the things themselves included."""
+    found, more = set(things), True
+    while more:
+        next_ones = {below for above, below in links() if above in found} - found
+        found |= next_ones
+        more = bool(next_ones)
+    return found
+
+
+def ids(things: set[str], kind: str) -> set[str]:
+    return {id for id in IDS if f"{kind} {id}" in things}
+
+
+@dataclass(frozen=True)
+class Change:
+    """One change, and what it changes of what requirements are made of."""
+
+    name: str
+    make: Callable[[], None]
+    touches: frozenset[str] = frozenset()
+    of_audit: bool = False
+    """It is undone by a new audit."""
+
+    def stale(self, audited: bool) -> set[str]:
+        """Requirements whose evidence is about something else than what is here."""
+        direct = {thing for thing in self.touches if not thing.startswith(("verdict", "log"))}
+        return set() if audited else ids(reached(direct), "verdict")
+
+    def suspect(self, audited: bool) -> set[str]:
+        """Requirements whose review no longer stands on what was reviewed."""
+        if self.of_audit and audited:
+            return set()
+        seen = {thing for thing in self.touches if audited or thing != "log"}
+        return ids(reached(seen), "review")
+
+    def differs(self, audited: bool) -> set[str]:
+        """Requirements whose evidence comes out otherwise when it is made again.
+
+        Another log than the reviewed one stays another one, whatever it is audited with.
+        """
+        return ids(reached({t for t in self.touches if not audited or t == "log"}), "verdict")
+
+
+# The changes ------------------------------------------------------------------------------------
+
+
+def put(file: str, old: str, new: str) -> Callable[[], None]:
+    def make() -> None:
+        text = Path(file).read_text()
+        assert old in text, (file, old)
+        Path(file).write_text(text.replace(old, new, 1))
+
+    return make
+
+
+def after(file: str, table: str, line: str) -> Callable[[], None]:
+    return put(file, f"{table}\n", f"{table}\n{line}\n")
+
+
+def append(file: str, text: str) -> Callable[[], None]:
+    def make() -> None:
+        Path(file).write_text(Path(file).read_text() + text)
+
+    return make
+
+
+def changed(name: str, make: Callable[[], None], *touches: str, of_audit: bool = False) -> Change:
+    return Change(name, make, frozenset(touches), of_audit)
+
+
+def evidence(edit: Callable[[dict[str, object]], None], id: str = "R1") -> Callable[[], None]:
+    """Edit each result of a requirement."""
+
+    def make() -> None:
+        file = Path("build/evidence.json")
+        known = json.loads(file.read_text())
+        for result in known["results"]:
+            if result["requirement"] == id:
+                edit(result)
+        file.write_text(json.dumps(known))
+
+    return make
+
+
+def hashed(kind: str, value: str | None) -> Callable[[], None]:
+    def edit(result: dict[str, object]) -> None:
+        hashes = result["hashes"]
+        assert isinstance(hashes, dict)
+        hashes.pop(kind)
+        if value is not None:
+            hashes[kind] = value
+
+    return evidence(edit)
+
+
+SENTENCES = [
+    changed("a scope", put(R1, "whenever p the", "while q, whenever p the"), "sentence R1"),
+    changed("another scope", put(R2, "the sw", "after ok, the sw"), "sentence R2"),
+    changed("another condition", put(R1, "whenever p", "whenever q"), "sentence R1"),
+    changed("when for whenever", put(R1, "whenever p", "when p"), "sentence R1"),
+    changed("no condition", put(R1, "whenever p the", "the"), "sentence R1"),
+    changed("another component", put(R1, "the sw", "the hw"), "sentence R1"),
+    changed("another deadline", put(R1, "within 300", "within 400"), "sentence R1"),
+    changed("ticks for time", put(R1, "300 milliseconds", "3 ticks"), "sentence R1"),
+    changed("another timing", put(R1, "within 300", "for 300"), "sentence R1"),
+    changed("never for always", put(R2, "always", "never"), "sentence R2"),
+    changed("eventually for always", put(R3, "always", "eventually"), "sentence R3"),
+    changed("another response", put(R1, "satisfy q", "satisfy !q"), "sentence R1"),
+    changed("more in the response", put(R2, "satisfy ok", "satisfy ok & ok"), "sentence R2"),
+    changed("a name for another", put(R3, "satisfy fine", "satisfy q"), "sentence R3"),
+    changed("a line break", put(R1, "shall within", "shall\n    within")),
+    changed("more white space", put(R1, "satisfy q", "satisfy   q")),
+    # Monitors quote their sentence as it is written.
+    changed("no article", put(R1, "p the sw", "p sw"), "monitor R1"),
+    changed("an empty line at the end", append(R1, "\n\n")),
+]
+HEADERS = [
+    changed("title", put(R1, '"Answer"', '"Reply"'), "text R1"),
+    changed("title of the last", put(R3, '"Keep"', '"Hold"'), "text R3"),
+    changed("text", put(R1, '"It must answer."', '"It may answer."'), "text R1"),
+    changed("no text", put(R1, 'text = "It must answer."\n', ""), "text R1"),
+    changed("rationale", put(R1, "would fall", "would burn"), "text R1"),
+    changed("a parent more", put(R3, '["HAZ-2"]', '["HAZ-2", "HAZ-1"]'), "text R3"),
+    changed("another parent", put(R3, '["HAZ-2"]', '["HAZ-1"]'), "text R3"),
+    changed("no parent", put(R2, 'parents = ["R1"]\n', ""), "text R2"),
+    changed("another number", put(R1, '"1 m"', '"2 m"'), "params R1"),
+    changed("a number more", put(R1, '"1 m" }', '"1 m", q = "50 cm" }'), "params R1"),
+    changed("no number", put(R1, 'params = { p = "1 m" }\n', ""), "params R1"),
+    changed("a number for another name", put(R1, "{ p =", "{ q ="), "params R1"),
+    changed("a planned method is taken out", put(R1, '["audit", "desk"]', '["audit"]'), "plan R1"),
+    changed("no plan", put(R1, 'verify = ["audit", "desk"]\n', ""), "plan R1"),
+    changed("the number in another unit", put(R1, '"1 m"', '"100 cm"')),
+    changed("the number with more digits", put(R1, '"1 m"', '"1.00 m"')),
+    changed("approved", put(R1, '"draft"', '"approved"')),
+    changed("a planned method", put(R1, '"desk"]', '"desk", "verify"]')),
+    changed("a planned target", put(R1, '"desk"]', '"desk", "smv"]')),
+    changed("what FRET keeps", put(R1, "+++\nwhenever", 'fret = { project = "x" }\n+++\nwhenever')),
+    changed("white space in the title", put(R1, '"Answer"', '" Answer "')),
+    changed("a comment", put(R1, '"Answer"', '"Answer"  # or not')),
+    changed("another order", put(R1, 'id = "R1"\ntitle = "Answer"', 'title = "Answer"\nid = "R1"')),
+    changed("plans in another order", put(R1, '["audit", "desk"]', '["desk", "audit"]')),
+]
+HAZARD = [
+    changed("its title", put(HAZARDS, "It falls", "It flies"), "HAZ-1"),
+    changed("its text", put(HAZARDS, "the table", "the roof"), "HAZ-1"),
+    changed("its severity", put(HAZARDS, "minor", "major"), "HAZ-1"),
+    changed("its source", put(HAZARDS, "workshop", "meeting"), "HAZ-1"),
+    changed("the other title", put(HAZARDS, "It burns", "It melts"), "HAZ-2"),
+    changed("a text", append(HAZARDS, 'text = "Away."\n'), "HAZ-2"),
+    changed("a comment", append(HAZARDS, "# nothing\n")),
+    changed("another hazard", append(HAZARDS, '\n[HAZ-3]\ntitle = "It sinks"\n')),
+]
+CLOCK = [
+    changed("tick", put(BINDINGS, '"100 ms"', '"50 ms"'), "clock"),
+    changed("time", after(BINDINGS, "[clock]", 'time = "publish_time"'), "clock"),
+    changed("end", after(BINDINGS, "[clock]", 'end = "violated"'), "clock"),
+    changed("phase", after(BINDINGS, "[clock]", 'phase = "10 ms"'), "clock"),
+    changed("the tick in seconds", put(BINDINGS, '"100 ms"', '"0.1 s"')),
+    changed("the default of time", after(BINDINGS, "[clock]", 'time = "log_time"')),
+    changed("the default of end", after(BINDINGS, "[clock]", 'end = "inconclusive"')),
+    changed("the default of phase", after(BINDINGS, "[clock]", 'phase = "0 ns"')),
+    changed("the default of rounding", after(BINDINGS, "[clock]", 'rounding = "exact"')),
+    changed("rounding of none", after(BINDINGS, "[clock]", 'rounding = "conservative"')),
+]
+X, Y, P, Q = "[signal.x]", "[signal.y]", "[proposition.p]", "[proposition.q]"
+SIGNALS = [
+    changed("another field", put(BINDINGS, "/a.x", "/a.z"), "bindings R1"),
+    changed("another topic", put(BINDINGS, "/a.x", "/c.x"), "bindings R1", "topics"),
+    changed("the other topic", put(BINDINGS, "/a.z", "/b.y"), "bindings R2"),
+    changed("another unit", put(BINDINGS, 'x"\nunit = "m"', 'x"\nunit = "cm"'), "bindings R1"),
+    changed("max_age", put(BINDINGS, '"300 ms"', '"400 ms"'), "bindings R1"),
+    changed("no max_age", put(BINDINGS, 'max_age = "300 ms"\n', ""), "bindings R1"),
+    changed("a type", after(BINDINGS, X, 'type = "S"'), "bindings R1"),
+    changed("valid", after(BINDINGS, X, 'valid = "x < 99"'), "bindings R1"),
+    changed("invalid", after(BINDINGS, X, 'invalid = { nan = "drop" }'), "bindings R1"),
+    changed("of two", after(BINDINGS, Y, 'max_age = "9 s"'), "bindings R1", "bindings R3"),
+    changed("valid of two", after(BINDINGS, Y, 'valid = "x < 99"'), "bindings R1", "bindings R3"),
+    changed("max_age in seconds", put(BINDINGS, '"300 ms"', '"0.3 s"')),
+    changed("the default of invalid", after(BINDINGS, X, 'invalid = { nan = "unknown" }')),
+    changed("a unit spelt otherwise", put(BINDINGS, 'x"\nunit = "m"', 'x"\nunit = "m*1"')),
+    changed("unused, of a topic that is read", append(BINDINGS, '\n[signal.u]\npath = "/a.u"\n')),
+    changed("unused, of another topic", append(BINDINGS, '\n[signal.u]\npath = "/c.x"\n')),
+    changed("a comment above all", put(BINDINGS, "[clock]", "# what is meant\n\n[clock]")),
+]
+PROPOSITIONS = [
+    changed("another bound", put(BINDINGS, "x > 1 m", "x > 2 m"), "bindings R1"),
+    changed("another operator", put(BINDINGS, "x > 1 m", "x >= 1 m"), "bindings R1"),
+    changed("another bound of R2", put(BINDINGS, "z < 9 m", "z < 8 m"), "bindings R2"),
+    changed("another bound of R3", put(BINDINGS, "y < 9 m", "y < 8 m"), "bindings R3"),
+    changed("longer", put(BINDINGS, "for 100 ms", "for 200 ms"), "bindings R1"),
+    changed("at once", put(BINDINGS, " for 100 ms", ""), "bindings R1"),
+    changed("negated", put(BINDINGS, '"y > 50 cm"', '"not (y > 50 cm)"'), "bindings R1"),
+    changed("agg", after(BINDINGS, P, 'agg = "any"'), "bindings R1"),
+    changed("on_unknown", after(BINDINGS, P, "on_unknown = true"), "bindings R1"),
+    changed("its text", put(BINDINGS, "it is far", "it is near"), "words R1"),
+    changed("a text", after(BINDINGS, Q, 'text = "y"'), "words R1"),
+    changed("its role", put(BINDINGS, '"input"', '"internal"'), "words R1"),
+    changed("its kind", after(BINDINGS, Q, 'kind = "belief"'), "words R1"),
+    changed("its modality", after(BINDINGS, "[proposition.fine]", 'modality = "G"'), "artefact R3"),
+    changed("the bound in metres", put(BINDINGS, "50 cm", "0.5 m")),
+    changed("the bound in km", put(BINDINGS, "50 cm", "0.0005 km")),
+    changed("the bound as a sum", put(BINDINGS, "50 cm", "500 mm")),
+    changed("more digits", put(BINDINGS, "1 m for", "1.00 m for")),
+    changed("seconds", put(BINDINGS, "for 100 ms", "for 0.1 s")),
+    changed("the default of agg", after(BINDINGS, P, 'agg = "last"')),
+    changed("the default of on_unknown", after(BINDINGS, P, 'on_unknown = "unknown"')),
+    changed("the default of role", after(BINDINGS, Q, 'role = "internal"')),
+    changed("white space", put(BINDINGS, "y > 50 cm", "y  >  50 cm")),
+    changed("parentheses", put(BINDINGS, '"y > 50 cm"', '"(y > 50 cm)"')),
+    changed("unused", append(BINDINGS, '\n[proposition.u]\nexpr = "x > 3 m"\n')),
+    changed("a variable", append(BINDINGS, '\n[variable.v]\nrole = "input"\n')),
+]
+
+
+def log(path: str, *values: float) -> None:
+    """x, y and z as they are, 100 ms apart, on three topics."""
+    Path(path).parent.mkdir(exist_ok=True)
+    with Path(path).open("wb") as file:
+        writer = Writer(file)
+        writer.start()
+        schema = writer.register_schema("S", "jsonschema", b"{}")
+        channels = {t: writer.register_channel(t, "json", schema) for t in ("/a", "/b", "/c")}
+        for i, value in enumerate(values):
+            time = START + i * 100 * MS
+            for topic, told in (
+                ("/a", {"x": value, "z": 1, "u": 0}),
+                ("/b", {"y": value}),
+                ("/c", {"x": value}),
+            ):
+                writer.add_message(channels[topic], time, json.dumps(told).encode(), time)
+        writer.finish()  # type: ignore[no-untyped-call]
+
+
+def logged(path: str, *values: float) -> Callable[[], None]:
+    return lambda: log(path, *values)
+
+
+def fretc_of_then() -> None:
+    file = Path("build/evidence.json")
+    file.write_text(json.dumps(json.loads(file.read_text()) | {"fretc": "0.0.1"}))
+
+
+def verdict(result: dict[str, object]) -> None:
+    result["verdict"] = "inconclusive"
+
+
+EVIDENCE = [
+    changed("another fretc", fretc_of_then, "fretc", of_audit=True),
+    changed("a sentence", hashed("sentence", "0" * 64), "sentence R1", of_audit=True),
+    changed("numbers", hashed("params", "0" * 64), "params R1", of_audit=True),
+    changed("a clock", hashed("clock", "0" * 64), "record R1", of_audit=True),
+    changed("topics", hashed("topics", "0" * 64), "record R1", of_audit=True),
+    changed("bindings", hashed("bindings", "0" * 64), "bindings R1", of_audit=True),
+    changed("a monitor", hashed("monitor", "0" * 64), "record R1", of_audit=True),
+    changed("of before the clock", hashed("clock", None), "record R1", of_audit=True),
+    changed("a verdict by hand", evidence(verdict), "verdict R1", of_audit=True),
+    changed("another log", logged(LOGS[0], 0, 2, 3, 3, 2, 1, 0), "log"),
+    changed("a log of the same length", logged(LOGS[0], 0, 3, 3, 3, 1, 1, 0), "log"),
+    changed("the same log again", logged(LOGS[0], 0, 2, 3, 3, 1, 1, 0)),
+    changed("a log more", logged("logs/c.mcap", 0, 2, 2, 2, 1, 1, 0)),
+]
+CHANGES = {
+    f"{kind}: {change.name}": change
+    for kind, changes in (
+        ("sentence", SENTENCES),
+        ("header", HEADERS),
+        ("hazard", HAZARD),
+        ("clock", CLOCK),
+        ("signal", SIGNALS),
+        ("proposition", PROPOSITIONS),
+        ("evidence", EVIDENCE),
+    )
+    for change in changes
+}
+
+
+# What is said -----------------------------------------------------------------------------------
+
+
+@pytest.fixture(scope="module")
+def _base(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return tmp_path_factory.mktemp("base")
+
+
+@pytest.fixture
+def reviewed(fretc: Fretc, _base: Path) -> Fretc:
+    """The project in the present folder: audited, and reviewed."""
+    if not any(_base.iterdir()):
+        for name, text in FILES.items():
+            write(name, text)
+        for path, values in zip(LOGS, ((0, 2, 3, 3, 1, 1, 0), (0, 2, 2, 2, 2, 1, 0)), strict=True):
+            log(path, *values)
+        assert fretc("audit", "logs").status == 0
+        assert fretc("lock", *BY).status == 0
+        shutil.copytree(".", _base, dirs_exist_ok=True)
+    shutil.copytree(_base, ".", dirs_exist_ok=True)
+    return fretc
+
+
+@dataclass(frozen=True)
+class Said:
+    """What the four commands say, each as sets of requirements."""
+
+    stale: dict[str, set[str]]
+    suspect: dict[str, set[str]]
+    differs: set[str]
+
+
+def older(result: dict[str, Any]) -> bool:
+    """Whether a result is of something else; that its review no longer stands is another reason."""
+    return any("since the review of" not in reason for reason in result["suspicions"])
+
+
+def asked(fretc: Fretc) -> Said:
+    diff = json.loads(fretc("diff", "--format", "json").out)
+    check = fretc("check").err
+    known = whole("requirements")
+    assert not isinstance(known, Diagnostic)
+    made = make(known, "build/evidence.json", lock="requirements/fretc.lock")
+    report = json.loads(made.json or "")["requirements"]
+    verify = fretc("verify-evidence", "--format", "json").out
+    again = [one for one in json.loads(verify)["results"] if one["finding"] == "differs"]
+    everywhere = any("this is fretc" in reason for one in again for reason in one["reasons"])
+    return Said(
+        {
+            "check": set(re.findall(r"F504 warning: the evidence of (\S+) is suspect", check)),
+            "report": {v["id"] for v in report if any(map(older, v["results"]))},
+        },
+        {
+            "diff": {one["requirement"] for one in diff if one["suspect_links"]},
+            "check": set(re.findall(r"F512 warning: (\S+) was reviewed", check)),
+            "report": {v["id"] for v in report if v["review"]["mark"]["word"] != "reviewed"},
+        },
+        set(IDS) if everywhere else {one["requirement"] for one in again} - {""},
+    )
+
+
+@pytest.mark.parametrize("name", CHANGES)
+def test_a_change_reaches_what_is_made_of_it_and_nothing_else(reviewed: Fretc, name: str) -> None:
+    change = CHANGES[name]
+    change.make()
+    for audited in (False, True):
+        if audited:
+            reviewed("audit", "logs")
+        said = asked(reviewed)
+        assert said.stale == dict.fromkeys(("check", "report"), change.stale(audited))
+        assert said.suspect == dict.fromkeys(("diff", "check", "report"), change.suspect(audited))
+        assert said.differs == change.differs(audited)
+
+
+def test_there_are_more_changes_than_were_once_tried_by_hand() -> None:
+    assert len(CHANGES) >= 82
+
+
+def test_evidence_of_what_has_come_back_is_still_of_something_else(reviewed: Fretc) -> None:
+    before = Path(BINDINGS).read_text()
+    put(BINDINGS, "x > 1 m", "x > 2 m")()
+    reviewed("audit", "logs")
+    Path(BINDINGS).write_text(before)
+    said = asked(reviewed)
+    assert list(said.stale.values()) == [{"R1"}] * 2
+    assert list(said.suspect.values()) == [{"R1"}] * 3
+    assert said.differs == {"R1"}
+
+
+def test_evidence_of_something_else_is_not_accepted(reviewed: Fretc) -> None:
+    put(BINDINGS, "x > 1 m", "x > 2 m")()
+    before = Path("requirements/fretc.lock").read_text()
+    run = reviewed("lock", *BY)
+    assert run.status == 2
+    told = "F541 what was shown of R1 is about something else than what is here now: bindings R1\n"
+    assert told in run.err
+    assert Path("requirements/fretc.lock").read_text() == before
+    assert reviewed("lock", "R2", *BY).status == 0, "of the others nothing is asked"
+    reviewed("audit", "logs")
+    assert reviewed("lock", *BY, "--accept-violations").status == 0
+    assert reviewed("diff").status == 0
+
+
+def test_a_log_that_nothing_identifies_is_not_accepted(reviewed: Fretc) -> None:
+    shutil.rmtree("logs")
+    hashed("log", None)()
+    run = reviewed("lock", *BY)
+    assert run.status == 2
+    assert "F542 nothing tells the log `logs/a.mcap` of R1 from another one: there is no" in run.err
+
+
+@pytest.mark.parametrize("audited", [False, True])
+def test_a_log_that_is_gone_is_told(reviewed: Fretc, audited: bool) -> None:
+    Path(LOGS[1]).unlink()
+    if audited:
+        reviewed("audit", "logs")
+        told = json.loads(reviewed("diff", "--format", "json").out)
+        assert {one["requirement"] for one in told if one["suspect_links"]} == set(IDS)
+    else:
+        assert reviewed("verify-evidence").status == 3
+
+
+# What is claimed no more ------------------------------------------------------------------------
+
+
+def removed() -> None:
+    Path(R3).unlink()
+
+
+def renamed() -> None:
+    put(R3, '"R3"', '"R3b"')()
+
+
+def split() -> None:
+    text = Path(R3).read_text()
+    removed()
+    for part in "ab":
+        write(f"requirements/r3{part}.fret", text.replace('"R3"', f'"R3{part}"'))
+
+
+def retired() -> None:
+    put(R3, '"approved"', '"retired"')()
+
+
+def all_retired() -> None:
+    retired()
+    put(R2, '"approved"', '"retired"')()
+    put(R1, '"draft"', '"retired"')()
+
+
+WITHDRAWN = {
+    "removed": (removed, {"R3"}),
+    "renamed": (renamed, {"R3"}),
+    "split": (split, {"R3"}),
+    "retired": (retired, {"R3"}),
+    "all retired": (all_retired, set(IDS)),
+}
+
+
+@pytest.mark.parametrize("audited", [False, True])
+@pytest.mark.parametrize("name", WITHDRAWN)
+def test_what_was_claimed_and_is_not_any_more_is_never_lost(
+    reviewed: Fretc, name: str, audited: bool
+) -> None:
+    make_it, gone = WITHDRAWN[name]
+    make_it()
+    if audited:
+        reviewed("audit", "logs")
+    diff = json.loads(reviewed("diff", "--format", "json").out)
+    found = {one["requirement"] for one in diff if one["suspect_links"] or one["state"] == "gone"}
+    assert found == gone
+    assert set(re.findall(r"F5(?:11|40) warning: (\S+) was", reviewed("check").err)) == gone
+    run = reviewed("report", "--strict", "--json", "r.json", "--junit", "r.xml")
+    report = json.loads(Path("r.json").read_text())
+    assert run.status == 1
+    assert {one["requirement"] for one in report["withdrawn"]} == gone
+    assert report["overall"]["headline"] != "Everything that was claimed is shown."
+    assert all(any(id in said for said in report["overall"]["sentences"]) for id in gone)
+    cases = re.findall(r'name="(\w+)[^"]*"[^>]*>\s*<failure message="withdrawn: ', _xml("r.xml"))
+    assert set(cases) == gone
+    if not audited:
+        again = json.loads(reviewed("verify-evidence", "--format", "json").out or '{"results": []}')
+        told = {r["requirement"] for r in again["results"] if r["finding"] == "differs"} - {""}
+        new = {"renamed": {"R3b"}, "split": {"R3a", "R3b"}}.get(name, set())
+        assert told == (gone | new if name != "all retired" else set())
+
+
+def _xml(path: str) -> str:
+    return Path(path).read_text()
+
+
+@pytest.mark.parametrize("name", WITHDRAWN)
+def test_who_accepts_that_something_is_claimed_no_more_hears_of_it_no_more(
+    reviewed: Fretc, name: str
+) -> None:
+    make_it, gone = WITHDRAWN[name]
+    make_it()
+    if name != "all retired":
+        reviewed("audit", "logs")
+        assert reviewed("lock", "R1", *BY).status == 0
+        assert reviewed("report", "--strict").status == 1, "R3 is still to be accepted"
+        assert reviewed("lock", *sorted(gone), *BY).status == 0
+        assert json.loads(reviewed("diff", "--format", "json").out)[-1]["state"] != "gone"
+        assert "was reviewed" not in reviewed("check").err
+
+
+def test_what_was_renamed_is_found_by_its_sentence(reviewed: Fretc) -> None:
+    renamed()
+    assert (
+        "F511 warning: R3 was reviewed (satisfied in 2 runs) and is not among the requirements "
+        "any more; R3b has its sentence\n"
+    ) in reviewed("check").err
+
+
+def test_a_requirement_without_a_review_is_told_where_others_have_one(reviewed: Fretc) -> None:
+    renamed()
+    assert "F544 warning: R3b was never reviewed\n" in reviewed("check").err
+
+
+def test_a_project_in_which_all_is_retired_shows_nothing(reviewed: Fretc) -> None:
+    all_retired()
+    Path("requirements/fretc.lock").unlink()
+    assert reviewed("report", "--strict").status == 3
+
+
+# What nobody can have reviewed ------------------------------------------------------------------
+
+LOCK = "requirements/fretc.lock"
+LOCKS: dict[str, Callable[[], None]] = {
+    "reviewer": put(LOCK, 'reviewer = "A"', 'reviewer = "B"'),
+    "verdict": put(LOCK, '"logs/a.mcap" = "satisfied"', '"logs/a.mcap" = "violated"'),
+    "date": put(LOCK, 'date = "2026-01-02"', 'date = "2026-01-01"'),
+    "form": put(LOCK, '"fretc-lock-2"', '"fretc-lock-1"'),
+    "a review under another name": put(LOCK, "[review.R3]", "[review.R4]"),
+    "in the year 3000": lambda: _dated("3000-01-01"),
+}
+
+
+def _dated(day: str) -> None:
+    known = read_lock(LOCK)
+    assert isinstance(known, Lock)
+    text = lock_text(Lock({id: replace(one, date=day) for id, one in known.reviews.items()}))
+    Path(LOCK).write_text(text)
+
+
+@pytest.mark.parametrize("name", LOCKS)
+def test_a_lock_that_nobody_can_have_written_is_refused_by_all(reviewed: Fretc, name: str) -> None:
+    LOCKS[name]()
+    for command in (("diff",), ("check",), ("report",), ("lock", *BY), ("verify-evidence",)):
+        run = reviewed(*command)
+        assert run.status == 2
+        assert "F510 " in run.err
+
+
+def test_nobody_reviews_on_a_day_to_come(reviewed: Fretc) -> None:
+    run = reviewed("lock", *BY[:-1], "3000-01-01")
+    assert (run.status, run.err.splitlines()[0]) == (
+        2,
+        "F907 `3000-01-01` is still to come, and nobody can have reviewed then",
+    )
+
+
+# The table --------------------------------------------------------------------------------------
+
+if __name__ == "__main__":
+    for name, change in CHANGES.items():
+        told = [*sorted(change.touches)] or ["nothing"]
+        stale, suspect = sorted(change.stale(False)), sorted(change.suspect(True))
+        print(f"{name:<44} {', '.join(told):<24} {' '.join(stale):<10} {' '.join(suspect)}")

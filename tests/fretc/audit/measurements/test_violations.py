@@ -1,0 +1,213 @@
+"""What surrounds a violation; the verdicts themselves are the kernel's."""
+
+from collections.abc import Sequence
+
+import numpy as np
+import pytest
+
+from fretc.audit.evidence.writer import as_record
+from fretc.audit.expected_response import demand
+from fretc.audit.measurements.violations import (
+    MOST_SAMPLES,
+    MOST_WINDOWS,
+    Demand,
+    Moment,
+    Violation,
+    violations,
+)
+from fretc.logs.signals.samples import Recording, Samples
+from monitors.kernel import VIOLATED, Outcome
+from tests.fretc.audit.test_one_log import FAR, MOVING, NEAR, STILL, audited, recorded
+from tests.monitoring import rule
+
+S = 10**9
+NAN, INF = float("nan"), float("inf")
+NO_DEADLINE = Demand()
+WITHIN = "whenever near the rover shall within 2 ticks satisfy still"
+
+
+def told(
+    outcome: Outcome, horizon: int | None = None, wanted: Demand = NO_DEADLINE
+) -> list[Violation]:
+    log = recorded([FAR] * outcome.ticks, [MOVING] * outcome.ticks)
+    return list(
+        violations(outcome, wanted, horizon, lambda t: Moment(t, t * S, float(t)), log, ["d"])
+    )
+
+
+def outcome(
+    runs: Sequence[tuple[int, int]],
+    triggers: Sequence[int],
+    answers: Sequence[tuple[int, int]] = (),
+    open_: Sequence[tuple[int, int | None]] = (),
+    ticks: int = 20,
+) -> Outcome:
+    return Outcome(
+        "R1", ticks, VIOLATED, False, 0, tuple(runs), (), tuple(triggers), tuple(answers),
+        tuple(open_),
+    )  # fmt: skip
+
+
+def triggers_of(found: Sequence[Violation]) -> list[int | None]:
+    return [violation.trigger.tick if violation.trigger else None for violation in found]
+
+
+def test_the_trigger_is_the_oldest_whose_deadline_has_passed() -> None:
+    evidence = audited(WITHIN, recorded([FAR, NEAR, NEAR, NEAR, FAR, FAR], [MOVING] * 6))
+    (violation,) = evidence.violations
+    assert violation.first.tick == 3
+    assert violation.trigger == Moment(1, S, 1.0)
+    assert evidence.reason == "broken from 3.0 s to 5.0 s, triggered at 1.0 s"
+
+
+def test_one_that_was_answered_is_not_to_blame() -> None:
+    found = told(outcome([(9, 9)], [5, 7, 8], answers=[(5, 6)]), horizon=4)
+    assert triggers_of(found) == [7]
+
+
+def test_without_a_deadline_it_is_the_last_trigger_and_at_the_end_the_oldest_open() -> None:
+    assert triggers_of(told(outcome([(9, 9)], [3, 5, 12]))) == [5]
+    assert triggers_of(told(outcome([(9, 9)], []))) == [None]
+    ended = outcome([(19, 19)], [3, 5, 12], answers=[(3, 4)], open_=[(5, None), (12, None)])
+    assert triggers_of(told(ended)) == [5]
+
+
+def test_the_deadline_is_told_where_there_is_one_within_the_run() -> None:
+    one = outcome([(9, 9)], [5])
+    (violation,) = told(one, horizon=4, wanted=Demand("still", 4))
+    assert violation.deadline == Moment(9, 9 * S, 9.0)
+    assert violation.missing == "still"
+    (none,) = told(one, horizon=4, wanted=Demand("still"))
+    assert none.deadline is None
+    (later,) = told(outcome([(9, 9)], [5], ticks=10), horizon=6, wanted=Demand("still", 6))
+    assert later.deadline is None
+
+
+@pytest.mark.parametrize(
+    ("timing", "expected"),
+    [
+        ("immediately", Demand("q", 0)),
+        ("at the next timepoint", Demand("q", 1)),
+        ("within 3 ticks", Demand("q", 3)),
+        ("for 3 ticks", Demand("q")),
+        ("after 3 ticks", Demand("after 3 ticks satisfy q", 4)),
+        ("eventually", Demand("q")),
+        ("always", Demand("q")),
+        ("never", Demand("!q")),
+        ("until r", Demand("until r satisfy q")),
+        ("before r", Demand("before r satisfy q")),
+    ],
+)
+def test_what_each_timing_demands(timing: str, expected: Demand) -> None:
+    assert demand(rule(f"whenever p the sw shall {timing} satisfy q")) == expected
+
+
+def test_an_only_scope_demands_that_it_is_not_so() -> None:
+    assert demand(rule("only in m mode, the sw shall within 3 ticks satisfy q & r")) == Demand(
+        "not (within 3 ticks satisfy q & r)"
+    )
+
+
+# Signals around it
+
+
+def test_the_window_goes_from_a_second_before_the_trigger_to_a_second_after_the_deadline() -> None:
+    log = recorded([FAR] * 5 + [NEAR] + [FAR] * 9, [MOVING] * 8 + [NAN, INF] + [MOVING] * 5)
+    (violation,) = as_record(audited(WITHIN, log))["violations"]
+    assert violation["window"]["start_ns"] == 4 * S
+    assert violation["window"]["end_ns"] == 8 * S
+    assert violation["window"]["samples"] == {
+        "d": {
+            "times_ns": [4 * S, 5 * S, 6 * S, 7 * S, 8 * S],
+            "values": [1.0, 0.01, 1.0, 1.0, 1.0],
+        },
+        "v": {
+            "times_ns": [4 * S, 5 * S, 6 * S, 7 * S, 8 * S],
+            "values": [0.4, 0.4, 0.4, 0.4, None],
+        },
+    }
+
+
+def test_an_infinite_sample_is_told_as_a_text() -> None:
+    log = recorded([INF, NEAR, -INF, FAR, FAR], [MOVING] * 5)
+    (violation,) = as_record(audited(WITHIN, log))["violations"]
+    assert violation["window"]["samples"]["d"]["values"] == ["+inf", 0.01, "-inf", 1.0, 1.0]
+
+
+def test_the_sample_in_force_at_the_start_is_told_however_old_it_is() -> None:
+    one = Samples(np.array([0], np.int64), np.array([0.5]))
+    log = Recording("a", "", 1, 0, 20 * S, {"d": one}, np.array([], np.int64), (), {}, {}, (), True)
+    (violation,) = violations(
+        outcome([(9, 9)], [9]), Demand(), 0, lambda t: Moment(t, t * S, float(t)), log, ["d"]
+    )
+    assert violation.window is not None
+    assert violation.window.samples["d"].times.tolist() == [0]
+
+
+def test_many_samples_are_thinned_evenly_with_the_least_and_the_greatest() -> None:
+    times = np.arange(0, 20 * S, S // 1000)
+    values = np.sin(times / S)
+    values[9_123], values[9_876], values[9_500] = -7.0, 7.0, NAN
+    many = Samples(times, values)
+    log = Recording(
+        "a", "", 1, 0, 20 * S, {"d": many}, np.array([], np.int64), (), {}, {}, (), True
+    )
+    (violation,) = violations(
+        outcome([(9, 9)], [9]), Demand(), 0, lambda t: Moment(t, t * S, float(t)), log, ["d"]
+    )
+    assert violation.window is not None
+    kept = violation.window.samples["d"]
+    assert len(kept.times) <= MOST_SAMPLES
+    assert {-7.0, 7.0} <= set(kept.values.tolist())
+    assert (kept.times[0], kept.times[-1]) == (8 * S, 10 * S)
+    assert np.diff(kept.times).max() < 50 * S // 1000
+    unknown = Samples(times, np.full(len(times), NAN))
+    (violation,) = violations(
+        outcome([(9, 9)], [9]), Demand(), 0, lambda t: Moment(t, t * S, float(t)),
+        Recording("a", "", 1, 0, 1, {"d": unknown}, np.array([], np.int64), (), {}, {}, (), True),
+        ["d"],
+    )  # fmt: skip
+    assert violation.window is not None
+    assert len(violation.window.samples["d"].times) <= MOST_SAMPLES
+
+
+@pytest.mark.parametrize("broken", [8, 9])
+def test_the_last_sample_at_the_broken_tick_is_kept_exactly(broken: int) -> None:
+    """Its age is told: the signal falls silent 0.437 s before that tick."""
+    silent = broken * S - 437 * S // 1000
+    times = np.concatenate([np.arange(0, silent + 1, S // 1000), np.arange(10, 12) * S])
+    log = Recording(
+        "a", "", 1, 0, 20 * S, {"d": Samples(times, np.sin(times / S))}, np.array([], np.int64),
+        (), {}, {}, (), True,
+    )  # fmt: skip
+    (violation,) = violations(
+        outcome([(broken, 12)], [4]), Demand(), 20, lambda t: Moment(t, t * S, float(t)), log, ["d"]
+    )
+    assert violation.window is not None
+    kept = violation.window.samples["d"].times
+    assert len(kept) <= MOST_SAMPLES
+    assert kept[kept <= broken * S][-1] == silent
+
+
+def test_only_the_first_violations_carry_their_samples() -> None:
+    runs = [(2 * i, 2 * i) for i in range(MOST_WINDOWS + 5)]
+    found = told(outcome(runs, [], ticks=300))
+    assert [v.window is not None for v in found] == [True] * MOST_WINDOWS + [False] * 5
+
+
+def test_a_satisfied_requirement_names_its_least_margin() -> None:
+    always = "the rover shall always satisfy !near"
+    evidence = audited(always, recorded([FAR, 0.08, FAR], [STILL] * 3))
+    assert evidence.reason.endswith(", least margin 0.03 m (d < 5 cm)")
+    record = as_record(evidence)
+    assert record["thresholds"][0]["nearest"] == {"ns": S, "seconds": 1.0}
+    assert record["propositions"] == {"near": {"true": 0, "false": 3, "unknown": 0, "changes": 0}}
+
+
+def test_the_exercise_is_counted() -> None:
+    log = recorded([FAR, NEAR, FAR, NEAR, FAR], [MOVING, MOVING, STILL, STILL, STILL])
+    record = as_record(audited(WITHIN, log))
+    assert record["exercised"] == 2
+    assert (record["latency_median_s"], record["latency_max_s"]) == (0.5, 1.0)
+    idle = as_record(audited(WITHIN, recorded([FAR] * 3, [MOVING] * 3)))
+    assert (idle["exercised"], idle["latency_median_s"], idle["latency_max_s"]) == (0, None, None)

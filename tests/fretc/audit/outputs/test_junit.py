@@ -1,0 +1,105 @@
+"""Results as JUnit XML and as annotations of GitHub Actions."""
+
+import unicodedata
+from typing import Any
+from xml.etree import ElementTree
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from fretc.audit.outputs.junit import github, junit
+from tests.fretc.logs.logs import declare
+from tests.fretc.report.junit_schema import MAY, complaints
+from tests.monitoring import rule
+
+
+def result(verdict: str, run: str = "a.mcap", id: str = "R1", **more: Any) -> dict[str, Any]:
+    return {
+        "run": run,
+        "requirement": id,
+        "verdict": verdict,
+        "reason": "why",
+        "start_ns": 10**9,
+        "end_ns": 3 * 10**9,
+        "violations": [],
+        "units": {"x": "m/s", "y": ""},
+        "thresholds": [],
+        **more,
+    }
+
+
+ALL = [
+    result("satisfied"),
+    result("violated", id="R2"),
+    result("inconclusive", id="R3"),
+    result("vacuous", id="R4"),
+    result("no data", id="R5", start_ns=None, end_ns=None),
+    result("satisfied", run="b.mcap"),
+]
+
+
+def test_each_run_is_a_suite_and_each_requirement_a_case() -> None:
+    root = ElementTree.fromstring(junit(ALL))
+    first, second = root
+    assert (first.get("name"), second.get("name")) == ("a.mcap", "b.mcap")
+    counts = [first.get(name) for name in ("tests", "failures", "errors", "skipped")]
+    assert counts == ["5", "1", "1", "2"]
+    kinds = [[child.tag for child in case] for case in first]
+    assert kinds == [[], ["failure"], ["skipped"], ["skipped"], ["error"]]
+    assert [case.get("time") for case in first] == ["2.000"] * 4 + ["0.000"]
+    assert first[1][0].get("message") == "violated: why"
+
+
+def test_the_elements_are_those_of_the_schema_that_jenkins_has() -> None:
+    broken = {"start_s": 1.5, "end_s": 2.0, "values": {"x": 0.25}}
+    root = ElementTree.fromstring(junit([*ALL, result("violated", violations=[broken])]))
+    assert list(complaints(root)) == []
+    assert {element.tag for element in root.iter()} == set(MAY)
+
+
+def test_a_violation_is_told_with_its_time_and_its_values() -> None:
+    broken = {"start_s": 1.5, "end_s": 2.0, "values": {"x": 0.25, "y": None}}
+    root = ElementTree.fromstring(junit([result("violated", violations=[broken])]))
+    assert root[0][0][0].text == "1.500 s to 2.000 s: x = 0.25 m/s, y = unknown"
+
+
+def test_values_are_in_the_units_that_the_bindings_declare() -> None:
+    told = '[signal.x]\npath = "/a.x"\nunit = "km/h"\n[signal.y]\npath = "/a.y"\n'
+    bound = declare(f'[clock]\ntick = "1 s"\n{told}')
+    broken = {"start_s": 1.5, "end_s": 2.0, "values": {"x": 5 / 3.6, "y": 2.0}}
+    near = [{"signal": "abs(y)", "bound": 2.0000001}]
+    case = result("violated", violations=[broken], thresholds=near)
+    text = junit([case], signals=bound.signals)
+    assert ElementTree.fromstring(text)[0][0][0].text == "1.500 s to 2.000 s: x = 5 km/h, y = 2"
+
+
+@given(st.text())
+def test_any_text_gives_xml_that_can_be_read(text: str) -> None:
+    written = junit([result("violated", run=text, reason=text, id=text)])
+    assert len(ElementTree.fromstring(written)[0]) == 1
+    assert not {c for c in written if unicodedata.category(c) == "Cc"} - {"\n", "\t", "\r"}
+
+
+@pytest.mark.parametrize(
+    ("verdict", "level"),
+    [
+        ("satisfied", "notice"),
+        ("violated", "error"),
+        ("inconclusive", "warning"),
+        ("vacuous", "warning"),
+        ("no data", "warning"),
+    ],
+)
+def test_an_annotation_stands_at_the_sentence(verdict: str, level: str) -> None:
+    found = github([result(verdict)], [rule("the sw shall always satisfy q").requirement])
+    assert found == f"::{level} file=r.fret,line=1,title=R1 {verdict}::a.mcap: why\n"
+
+
+@given(st.text())
+def test_nothing_in_a_result_makes_another_annotation_or_moves_the_cursor(text: str) -> None:
+    evil = result("violated", run=f"a\n::error::{text}", reason=f"100%\r\n{text}")
+    found = github([evil], [rule("the sw shall always satisfy q").requirement])
+    assert found[:-1].isprintable()
+    assert found.startswith("::error file=r.fret,line=1,title=R1 violated::a\\n::error::")
+    assert "100%25\\r\\n" in found

@@ -1,0 +1,232 @@
+"""Results as SARIF: by the schema of OASIS, and with what code scanning on GitHub asks for."""
+
+import json
+import shutil
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import jsonschema  # type: ignore[import-untyped]
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from compiler.formalization.rule import Rule
+from fretc.audit.outputs.sarif import sarif
+from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
+from fretish.diagnostics.source import Source
+from tests.command import Fretc
+from tests.fretc.report.sarif_schema import SARIF
+from tests.monitoring import rule
+
+ROOT = Path(__file__).parents[4]
+RULES = [rule(f"the sw shall\n always satisfy q{i}", f"R{i}") for i in range(1, 6)]
+
+
+def result(verdict: str, id: str = "R1", run: str = "a.mcap", **more: Any) -> dict[str, Any]:
+    return {
+        "run": run,
+        "requirement": id,
+        "verdict": verdict,
+        "reason": "why",
+        "hashes": {"log": "ab" * 32, "sentence": "cd" * 32},
+        "health": {"size": 1000},
+        **more,
+    }
+
+
+ALL = [
+    result("satisfied"),
+    result("violated", "R2"),
+    result("inconclusive", "R3"),
+    result("vacuous", "R4"),
+    result("no data", "R5", hashes={}, health={"size": None}),
+    result("violated", run="folder/b c.mcap"),
+]
+
+
+def read(
+    results: Sequence[Mapping[str, Any]],
+    rules: Sequence[Rule] = RULES,
+    diagnostics: Sequence[Diagnostic] = (),
+) -> Any:
+    """The only run of the file, which fits the schema."""
+    content = json.loads(sarif(results, rules, diagnostics))
+    format_checker = jsonschema.Draft4Validator.FORMAT_CHECKER
+    jsonschema.Draft4Validator(SARIF, format_checker=format_checker).validate(content)
+    (run,) = content["runs"]
+    accepted_by_code_scanning(run)
+    return run
+
+
+def accepted_by_code_scanning(run: Any) -> None:
+    """What GitHub demands beyond the schema.
+
+    Source: GitHub documentation, SARIF support for code scanning.
+    """
+    rules = run["tool"]["driver"]["rules"]
+    assert run["tool"]["driver"]["name"]
+    for one in rules:
+        assert one["id"]
+        assert len(one["shortDescription"]["text"]) <= 1024
+        assert len(one["fullDescription"]["text"]) <= 1024
+        assert one["help"]["text"]
+    for one in run["results"]:
+        assert one["message"]["text"]
+        assert rules[one["ruleIndex"]]["id"] == one["ruleId"]
+        (location,) = one["locations"]
+        place = location["physicalLocation"]
+        assert not place["artifactLocation"]["uri"].startswith("..")
+        region = place["region"]
+        assert (region["startLine"], region["startColumn"]) <= (
+            region["endLine"],
+            region["endColumn"],
+        )
+        assert one["partialFingerprints"]["primaryLocationLineHash"]
+    prints = [one["partialFingerprints"]["primaryLocationLineHash"] for one in run["results"]]
+    assert len(set(prints)) == len(prints)
+
+
+def test_the_schema_refuses_what_is_wrong() -> None:
+    content = json.loads(sarif(ALL, RULES))
+    mistakes: list[dict[str, Any]] = [
+        {"level": "bad"},
+        {"colour": "red"},
+        {"message": {}},
+        {"ruleIndex": -2},
+    ]
+    for wrong in mistakes:
+        content["runs"][0]["results"][0] |= wrong
+        with pytest.raises(jsonschema.ValidationError):
+            jsonschema.Draft4Validator(SARIF).validate(content)
+        content = json.loads(sarif(ALL, RULES))
+
+
+def test_each_verdict_has_its_kind_and_level() -> None:
+    found = [(one["kind"], one["level"]) for one in read(ALL)["results"]]
+    assert found == [
+        ("pass", "none"),
+        ("fail", "error"),
+        ("fail", "warning"),
+        ("fail", "warning"),
+        ("fail", "warning"),
+        ("fail", "error"),
+    ]
+
+
+def test_a_result_stands_at_its_sentence_and_names_its_run() -> None:
+    one = read(ALL)["results"][1]
+    assert one["message"]["text"] == "a.mcap: violated: why"
+    (location,) = one["locations"]
+    assert location["physicalLocation"] == {
+        "artifactLocation": {"uri": "r.fret", "uriBaseId": "%SRCROOT%", "index": 2},
+        "region": {"startLine": 1, "startColumn": 1, "endLine": 2, "endColumn": 19},
+    }
+    assert one["properties"]["verdict"] == "violated"
+
+
+def test_a_log_is_an_artifact_with_its_hash() -> None:
+    run = read(ALL)
+    assert run["artifacts"][0] == {
+        "location": {"uri": "a.mcap", "uriBaseId": "%SRCROOT%"},
+        "roles": ["analysisTarget"],
+        "length": 1000,
+        "hashes": {"sha-256": "ab" * 32},
+    }
+    assert [one["location"]["uri"] for one in run["artifacts"]] == [
+        "a.mcap",
+        "folder/b%20c.mcap",
+        "r.fret",
+    ]
+    for one in run["results"]:
+        target = one["analysisTarget"]
+        assert run["artifacts"][target["index"]]["location"]["uri"] == target["uri"]
+
+
+def test_a_requirement_is_a_rule_with_its_sentence_and_its_fingerprint() -> None:
+    first, *_ = read(ALL)["tool"]["driver"]["rules"]
+    assert first["id"] == "R1"
+    assert first["fullDescription"]["text"] == "the sw shall always satisfy q1"
+    assert first["help"]["text"] == (
+        "Over the whole run: from its first tick on, `q1` must be true at that tick and at every "
+        "later one until the run ends."
+    )
+    assert first["properties"]["sha256"] == RULES[0].fingerprint
+
+
+def test_a_fingerprint_depends_on_the_requirement_and_the_run_and_on_nothing_else() -> None:
+    def prints(*results: dict[str, Any]) -> list[Any]:
+        return [one["partialFingerprints"] for one in read(results)["results"]]
+
+    later = result("satisfied", reason="other", hashes={"log": "00" * 32})
+    assert prints(result("violated")) == prints(later)
+    one, other, third = prints(
+        result("violated"), result("violated", "R2"), result("no data", run="b")
+    )
+    assert one != other != third != one
+
+
+def test_what_there_is_to_say_of_a_log_is_a_notification() -> None:
+    log = Source("a.mcap", "").span()
+    cut = Diagnostic(Code.TRUNCATED_LOG, "it breaks off", log, severity=Severity.WARNING)
+    placed = Diagnostic(Code.NO_TOPIC, "no /x", Source("b.toml", "[x]\npath").span(4, 8))
+    run = read(ALL, RULES, [cut, placed])
+    (invocation,) = run["invocations"]
+    assert not invocation["executionSuccessful"]
+    first, second = invocation["toolExecutionNotifications"]
+    assert (first["descriptor"]["id"], first["level"]) == ("F403", "warning")
+    assert second["locations"][0]["physicalLocation"]["region"] == {
+        "startLine": 2,
+        "startColumn": 1,
+        "endLine": 2,
+        "endColumn": 5,
+    }
+    assert [one["id"] for one in run["tool"]["driver"]["notifications"]] == ["F403", "F405"]
+    assert read(ALL, RULES, [cut])["invocations"][0]["executionSuccessful"]
+
+
+@given(
+    st.text(),
+    st.text(st.characters(exclude_characters="\0", exclude_categories=["Cs"]), min_size=1),
+)
+def test_any_text_gives_a_file_that_fits(reason: str, run: str) -> None:
+    (one,) = read([result("violated", run=run, reason=reason)])["results"]
+    assert one["message"]["text"] == f"{run}: violated: {reason}"
+
+
+def test_a_path_elsewhere_is_absolute(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "here").mkdir()
+    monkeypatch.chdir(tmp_path / "here")
+    run = read([result("violated", run="../x.mcap"), result("violated", run=str(tmp_path / "y"))])
+    uris = [one["analysisTarget"]["uri"] for one in run["results"]]
+    assert uris == [(tmp_path / "x.mcap").as_uri(), (tmp_path / "y").as_uri()]
+    assert (
+        read([result("vacuous", run=str(tmp_path / "here" / "z"))])["artifacts"][0]["location"][
+            "uri"
+        ]
+        == "z"
+    )
+
+
+def test_an_address_on_the_web_stays_as_it_is() -> None:
+    (one,) = read([result("violated", run="https://a.b/c%20d.mcap?x=1&y=z e")])["results"]
+    assert one["analysisTarget"] == {"uri": "https://a.b/c%20d.mcap?x=1&y=z%20e", "index": 0}
+
+
+def test_the_command_prints_it(fretc: Fretc) -> None:
+    shutil.copytree(ROOT / "requirements", "requirements")
+    shutil.copy(ROOT / "traces/mission-seed15.mcap", "run.mcap")
+    found = fretc("audit", "run.mcap", "--format", "sarif")
+    assert found.status == 0
+    run = json.loads(found.out)["runs"][0]
+    accepted_by_code_scanning(run)
+    assert run["results"][0]["kind"] == "pass"
+    place = run["results"][0]["locations"][0]["physicalLocation"]
+    line = Path("requirements/r1.fret").read_text("utf-8").splitlines()
+    region = place["region"]
+    assert place["artifactLocation"]["uri"] == "requirements/r1.fret"
+    assert line[region["startLine"] - 1][region["startColumn"] - 1 : region["endColumn"] - 1] == (
+        "whenever too_close agilex_agent shall eventually satisfy stopped"
+    )
+    again = fretc("audit", "run.mcap", "--format", "sarif")
+    assert again.out == found.out

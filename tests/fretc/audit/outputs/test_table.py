@@ -1,0 +1,180 @@
+"""Runs as rows: what a table says of them, and what is taken for a table."""
+
+import json
+from pathlib import Path
+from typing import Any
+
+import pyarrow
+import pytest
+from pyarrow import parquet as files
+
+from fretc.audit.outputs import table
+from fretc.audit.outputs.table import parquet, read
+from fretish.diagnostics.diagnostic import Diagnostic
+from tests.command import Fretc
+from tests.fretc.report.cases import LOG, evidence, moment, project, result, violation
+
+
+@pytest.fixture(autouse=True)
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+
+
+def rows(*results: dict[str, Any]) -> list[dict[str, Any]]:
+    """What is read of a table with these results."""
+    Path("runs.parquet").write_bytes(parquet(results, "1.2.3"))
+    found = read(["runs.parquet"])
+    assert not isinstance(found, Diagnostic), found.message
+    return [dict(row) for row in found.to_pylist()]
+
+
+def code(*paths: str) -> tuple[str, str]:
+    found = read(paths)
+    assert isinstance(found, Diagnostic)
+    return found.code.number, found.message
+
+
+def test_a_row_has_the_numbers_of_its_run() -> None:
+    known = project(Path("known"))
+    made = result(
+        known,
+        "violated",
+        reason="broken",
+        finite=False,
+        triggers=[moment(3), moment(40)],
+        violations=[violation(41, 44, 40), violation(60, 60)],
+        unknown=[[0, 1], [70, 70]],
+        open=[moment(99)],
+        latencies_s=[0.4, 0.1, 0.2],
+    )
+    (row,) = rows(made)
+    hashes = made["hashes"]
+    assert row == {
+        "run": "logs/a.mcap",
+        "requirement": "R1",
+        "verdict": "violated",
+        "finite": False,
+        "reason": "broken",
+        "clock": made["clock"],
+        "ticks": 100,
+        "start_ns": made["start_ns"],
+        "end_ns": made["end_ns"],
+        "triggers": 2,
+        "violations": 2,
+        "violated_ticks": 5,
+        "first_violation_ns": 5_100_000_000,
+        "first_violation_s": 4.1,
+        "unknown_ticks": 3,
+        "open": 1,
+        "answers": 3,
+        "latency_median_s": 0.2,
+        "latency_max_s": 0.4,
+        "intact": True,
+        "size": 1234567,
+        "gaps": 0,
+        "findings": 0,
+        "log_sha256": LOG,
+        "sentence_sha256": hashes["sentence"],
+        "bindings_sha256": hashes["bindings"],
+        "monitor_sha256": hashes["monitor"],
+        "fretc": "1.2.3",
+        "log_summary_sha256": None,
+    }
+
+
+def test_what_a_run_does_not_have_is_null() -> None:
+    known = project(Path("known"))
+    made = result(known, "no data", finite=None, start_ns=None, end_ns=None)
+    del made["hashes"]["log"]
+    (row,) = rows(made | {"health": made["health"] | {"size": None, "intact": False}})
+    absent = {name for name, value in row.items() if value is None}
+    assert absent >= {
+        "finite", "start_ns", "end_ns", "first_violation_ns", "first_violation_s", "size",
+        "log_sha256",
+        "log_summary_sha256",
+    }  # fmt: skip
+    assert row["intact"] is False
+
+
+def test_a_time_beyond_a_column_is_null_and_no_failure() -> None:
+    known = project(Path("known"))
+    (row,) = rows(result(known, "no data", start_ns=0, end_ns=2**64 - 1))
+    assert (row["start_ns"], row["end_ns"]) == (0, None)
+
+
+def test_a_table_without_the_last_column_is_read_as_well() -> None:
+    (row,) = rows(result(project(Path("known")), "satisfied", hashes={"log_summary": "1" * 64}))
+    assert row["log_summary_sha256"] == "1" * 64
+    whole = files.read_table("runs.parquet")
+    older = whole.drop_columns(["log_summary_sha256"])
+    older = older.replace_schema_metadata({"schema": "fretc-table-1"})
+    files.write_table(older, "older.parquet")
+    found = read(["older.parquet", "runs.parquet"])
+    assert not isinstance(found, Diagnostic), found.message
+    assert found.to_pylist() == [{**row, "log_summary_sha256": None}, row]
+    files.write_table(older.replace_schema_metadata({"schema": "fretc-table-2"}), "odd.parquet")
+    assert code("odd.parquet")[0] == "F503"
+
+
+def test_fields_that_a_table_does_not_know_stay_in_the_evidence() -> None:
+    known = project(Path("known"))
+    assert rows(result(known, "satisfied") | {"margin": {"worst": 0.1}}) == rows(
+        result(known, "satisfied")
+    )
+
+
+def test_no_run_is_a_table_too() -> None:
+    assert rows() == []
+
+
+def test_the_same_results_give_the_same_bytes() -> None:
+    results = [result(project(Path("known")), "satisfied", run=f"{i}.mcap") for i in range(50)]
+    assert parquet(results, "1") == parquet(results, "1")
+
+
+def test_evidence_is_read_as_the_table_of_it() -> None:
+    known = project(Path("known"))
+    results = [result(known, "satisfied"), result(known, "violated", run="b.mcap")]
+    content = evidence(known, *results)
+    Path("evidence.json").write_text(json.dumps(content), "utf-8")
+    Path("runs.parquet").write_bytes(parquet(results, content["fretc"]))
+    found, other = read(["evidence.json"]), read(["runs.parquet"])
+    assert not isinstance(found, Diagnostic)
+    assert not isinstance(other, Diagnostic)
+    assert found.equals(other)
+    both = read(["evidence.json", "runs.parquet"])
+    assert not isinstance(both, Diagnostic)
+    assert both.num_rows == 4
+
+
+def test_what_is_no_table_is_told() -> None:
+    assert code("no.parquet") == ("F901", "there is no file `no.parquet`")
+    Path("log.mcap").write_bytes(b"\x89MCAP0\r\n")
+    assert code("log.mcap") == ("F503", "`log.mcap` is neither a table nor evidence")
+    Path("empty").write_bytes(b"")
+    assert code("empty") == ("F503", "`empty` is neither a table nor evidence")
+    Path("other.json").write_text('{"schema": "x"}')
+    assert code("other.json")[0] == "F503"
+    Path("folder").mkdir()
+    assert code("folder")[0] == "F902"
+
+
+def test_a_damaged_or_foreign_parquet_file_is_told() -> None:
+    good = parquet([result(project(Path("known")), "satisfied")], "1")
+    for part in (4, 100, len(good) - 1):
+        Path("cut.parquet").write_bytes(good[:part])
+        assert code("cut.parquet")[0] == "F503"
+    files.write_table(pyarrow.table({"run": ["a"]}), "other.parquet")
+    assert code("other.parquet") == ("F503", "`other.parquet` is no table of `fretc-table-2`")
+
+
+@pytest.mark.parametrize("options", [["--summary"], ["--query", "SELECT 1"]])
+def test_without_the_extra_the_line_that_installs_it_is_told(
+    fretc: Fretc, monkeypatch: pytest.MonkeyPatch, options: list[str]
+) -> None:
+    monkeypatch.setattr(table, "find_spec", lambda name: None)
+    run = fretc("audit", "runs.parquet", *options)
+    assert run.status == 2
+    assert run.err.startswith("F908 a table of runs needs `pyarrow` and `duckdb`\n")
+    assert "pip install 'fretc[fleet]'" in run.err
+    assert fretc("audit", "run.mcap", "--parquet", "x.parquet").err == run.err

@@ -1,0 +1,273 @@
+"""For which phases of the ticks each verdict holds, against audits at every nanosecond."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from functools import cache
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from hypothesis import example, given
+from hypothesis import strategies as st
+
+from compiler.formalization.formalize import formalize
+from compiler.targets.python.monitor import text
+from fretc.audit.measurements.judgement import judged
+from fretc.audit.phases.by_shift import Phases, Stretch, phases
+from fretc.logs.signals.samples import Recording, Samples, Topic
+from fretc.logs.signals.traces import trace
+from fretish.bindings.declarations import Declarations
+from fretish.bindings.reader import read_bindings
+from fretish.diagnostics.source import Source
+from fretish.documents import requirements
+from monitors import kernel
+from monitors.kernel import Monitor
+from monitors.loading import load
+
+BINDINGS = """
+[clock]
+tick = "12 ns"
+[signal.x]
+path = "/x.data"
+[signal.y]
+path = "/y.data"
+max_age = "17 ns"
+[proposition.p]
+expr = "{p}"
+agg = "{p_agg}"
+{p_unknown}
+[proposition.q]
+expr = "{q}"
+agg = "{q_agg}"
+"""
+SENTENCES = (
+    "the r shall always satisfy p",
+    "the r shall never satisfy p & q",
+    "when p the r shall immediately satisfy q",
+    "when p the r shall within 2 ticks satisfy q",
+    "whenever p the r shall within 1 tick satisfy q",
+    "whenever p the r shall eventually satisfy q",
+    "upon p the r shall at the next timepoint satisfy q",
+    "whenever p the r shall for 1 tick satisfy q",
+    "whenever p the r shall until q satisfy !q | p",
+    "while p the r shall finally satisfy q",
+    "whenever persisted(1, p) the r shall within 2 ticks satisfy q",
+    "whenever persisted(2, p) the r shall within 2 ticks satisfy q",
+)
+
+
+@cache
+def monitor(sentence: str) -> Monitor:
+    ((requirement,), _) = requirements(Source("R1.fret", sentence))
+    rule, said = formalize(requirement, declared())
+    assert rule is not None, said
+    return load("monitor", text(rule))
+
+
+def declared(
+    p: str = "x < 5",
+    q: str = "y < 5",
+    p_agg: str = "last",
+    q_agg: str = "last",
+    p_unknown: str = "",
+    end: str = "inconclusive",
+) -> Declarations:
+    told = BINDINGS.format(p=p, q=q, p_agg=p_agg, q_agg=q_agg, p_unknown=p_unknown)
+    told = told.replace("[clock]", f'[clock]\nend = "{end}"')
+    declarations, wrong = read_bindings(Source("bindings.toml", told))
+    assert declarations is not None, wrong
+    return declarations
+
+
+Pairs = Sequence[tuple[int, float]]
+
+
+def samples(pairs: Pairs) -> Samples:
+    ordered = sorted(pairs, key=lambda pair: pair[0])
+    times, values = [time for time, _ in ordered], [value for _, value in ordered]
+    return Samples(np.array(times, np.int64), np.array(values, np.float64))
+
+
+def recorded(
+    x: Pairs, y: Pairs, end: int, gaps: tuple[tuple[int, int], ...] = (), start: int = 0
+) -> Recording:
+    """The log of both; each topic begins with its first sample."""
+    signals = {"x": samples(x), "y": samples(y)}
+    topics = {
+        f"/{name}": Topic(f"/{name}", "", "", len(found.times), int(found.times[0]), end, 0, 0, 0)
+        for name, found in signals.items()
+        if len(found.times)
+    }
+    none = np.array([], np.int64)
+    return Recording("log", "", 0, start, end, signals, none, gaps, topics, {}, (), intact=not gaps)
+
+
+def at(phase: int, declarations: Declarations, log: Recording, watching: Monitor) -> str:
+    """The verdict of an audit whose clock declares the phase, step by step."""
+    clock = replace(declarations.clock, phase=phase)
+    shifted = replace(declarations, clock=clock)
+    seen = trace(shifted, log, watching.PROPOSITIONS)
+    return judged(
+        watching,
+        {name: seen.columns[name] for name in watching.PROPOSITIONS},
+        seen.cut,
+        len(seen.timeline.times),
+        intact=log.intact,
+        end=str(clock.end),
+        engine=kernel.stepped,
+    ).verdict
+
+
+def found(declarations: Declarations, log: Recording, watching: Monitor) -> Phases:
+    (told,) = phases(declarations, log, [watching]).values()
+    return told
+
+
+def each(told: Phases) -> list[str | None]:
+    """The verdict at each phase, by the stretches, which must follow each other."""
+    verdicts = [s.verdict for s in told.stretches for _ in range(s.first, s.last + 1)]
+    assert [s.first for s in told.stretches] == [
+        0,
+        *(stretch.last + 1 for stretch in told.stretches[:-1]),
+    ]
+    assert all(a.verdict != b.verdict for a, b in pairwise(told.stretches))
+    return verdicts
+
+
+values = st.sampled_from([1.0, 9.0, 9.0, 1.0, float("nan")])
+
+
+def pairs(last: int) -> st.SearchStrategy[list[tuple[int, float]]]:
+    return st.lists(st.tuples(st.integers(0, last), values), max_size=12)
+
+
+declarations_ = st.builds(
+    declared,
+    p=st.sampled_from(["x < 5", "x < 5 for 9 ns", "x < 5 or y < 5", "not (x < 5)"]),
+    q=st.sampled_from(["y < 5", "y < 5 for 14 ns", "x > 5"]),
+    p_agg=st.sampled_from(["any", "all", "last"]),
+    q_agg=st.sampled_from(["any", "all", "last"]),
+    p_unknown=st.sampled_from(["", "on_unknown = true", "on_unknown = false"]),
+    end=st.sampled_from(["inconclusive", "violated"]),
+)
+
+
+@st.composite
+def logs(draw: st.DrawFn) -> Recording:
+    length = draw(st.sampled_from([10, 30, 100]))  # short ones: what is near the end decides
+    x, y = draw(pairs(length)), draw(pairs(length))
+    times = [time for time, _ in (*x, *y)]
+    start = min(times, default=0)
+    last = max(times, default=0)
+    gaps = draw(st.sampled_from([(), (), (), ((30, 41),), ((5, 5),)]))
+    gaps = tuple(gap for gap in gaps if start <= gap[0] and gap[1] <= last)
+    return recorded(x, y, last, gaps, start)
+
+
+LAST_TICK_CHANGES = recorded(
+    [(0, 9.0), (26, 1.0)], [(0, 1.0), (10, 1.0), (20, 1.0), (30, 1.0), (32, 9.0), (40, 9.0)], 40
+)
+"""From 32 on the last tick sees what the cut one sees, which then takes nothing back."""
+CUT_TICK_DEPENDS = recorded(
+    [(0, 9.0), (20, 1.0)], [(0, 1.0), (10, 1.0), (20, 1.0), (28, 1.0), (40, 9.0)], 40
+)
+"""What the cut tick asks for depends on a tick before the last one."""
+
+
+@example(declared(), LAST_TICK_CHANGES, SENTENCES[-2], 0)
+@example(declared(), CUT_TICK_DEPENDS, SENTENCES[-1], 0)
+@given(declarations_, logs(), st.sampled_from(SENTENCES), st.integers(0, 11))
+def test_each_phase_has_the_verdict_of_an_audit_that_declares_it(
+    declarations: Declarations, log: Recording, sentence: str, phase: int
+) -> None:
+    watching = monitor(sentence)
+    declarations = replace(declarations, clock=replace(declarations.clock, phase=phase))
+    told = found(declarations, log, watching)
+    assert told.exact
+    assert each(told) == [at(s, declarations, log, watching) for s in range(12)]
+    assert told.verdict == each(told)[phase]
+
+
+def test_a_last_tick_that_changes_divides_the_phases() -> None:
+    told = found(declared(), LAST_TICK_CHANGES, monitor(SENTENCES[-2]))
+    assert each(told)[5:] == ["inconclusive"] * 3 + ["vacuous"] * 4
+
+
+def test_a_cut_tick_whose_demand_depends_on_the_phase_divides_them() -> None:
+    told = found(declared(), CUT_TICK_DEPENDS, monitor(SENTENCES[-1]))
+    assert each(told)[5:] == ["vacuous"] * 3 + ["inconclusive"] * 4
+
+
+# Where not all phases are judged
+
+
+@pytest.fixture
+def few(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("fretc.audit.phases.by_shift.MOST", 0)
+    monkeypatch.setattr("fretc.audit.phases.by_shift.FEWEST", 3)
+
+
+BUSY = recorded(
+    [(t, 1.0 if t % 7 < 3 else 9.0) for t in range(0, 200, 2)],
+    [(t, 1.0 if t % 5 < 3 else 9.0) for t in range(0, 200, 3)],
+    199,
+)
+
+
+@pytest.mark.usefixtures("few")
+@pytest.mark.parametrize("phase", range(12))
+@pytest.mark.parametrize("sentence", SENTENCES)
+def test_what_is_not_judged_is_left_out_and_the_rest_is_right(sentence: str, phase: int) -> None:
+    clock = replace(declared().clock, phase=phase)
+    declarations = replace(declared(), clock=clock)
+    told = found(declarations, BUSY, monitor(sentence))
+    expected = [at(s, declarations, BUSY, monitor(sentence)) for s in range(12)]
+    assert each(told)[phase] == told.verdict == expected[phase]
+    for one, other in zip(each(told), expected, strict=True):
+        assert one in (other, None)
+
+
+@pytest.mark.usefixtures("few")
+def test_a_search_that_ends_early_says_so() -> None:
+    told = found(declared(), BUSY, monitor(SENTENCES[2]))
+    assert not told.exact
+    assert "not computed at " in told.text
+    assert "no change within " in told.text
+    assert "nearest change" not in told.text
+
+
+# What is told
+
+
+def told_of(*stretches: Stretch, declared: int = 0, period: int = 100) -> Phases:
+    return Phases(period, declared, stretches)
+
+
+def test_one_verdict_at_all_phases_is_not_told() -> None:
+    told = told_of(Stretch(0, 99, "satisfied"))
+    assert (told.text, told.nearest, told.exact, told.varies) == ("", None, True, False)
+
+
+def test_the_nearest_change_is_found_around_the_end_of_the_tick() -> None:
+    stretches = Stretch(0, 39, "satisfied"), Stretch(40, 90, "violated"), Stretch(91, 99, "vacuous")
+    assert [told_of(*stretches, declared=d).nearest for d in (0, 8, 20, 39, 90, 91)] == [
+        1, 9, 20, 1, 1, 1,
+    ]  # fmt: skip
+
+
+def test_a_share_is_never_rounded_to_nothing_or_to_all() -> None:
+    told = told_of(Stretch(0, 0, "violated"), Stretch(1, 999, "satisfied"), period=1000)
+    assert told.text == (
+        "by phase of the ticks violated at less than 1 %, satisfied at 99 %, the nearest change is "
+        "1 ns away"
+    )
+
+
+def test_a_clock_that_ticks_by_message_has_no_phases() -> None:
+    clock = replace(declared().clock, period=None, topic="/x")
+    assert phases(replace(declared(), clock=clock), BUSY, [monitor(SENTENCES[0])]) == {}
+
+
+def test_a_log_shorter_than_a_tick_has_no_tick_at_the_later_phases() -> None:
+    told = found(declared(), recorded([(0, 1.0)], [(0, 1.0)], 4), monitor(SENTENCES[0]))
+    assert told.stretches == (Stretch(0, 4, "satisfied"), Stretch(5, 11, "no data"))

@@ -1,0 +1,45 @@
+from fretc.audit.constancy import never_changed, tallies_of
+from fretc.audit.measurements.tallies import Tally
+from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.diagnostics.source import Source
+from tests.fretc.logs.logs import X
+
+
+def told(*tallies: Tally) -> list[str]:
+    return [finding.message for finding in never_changed({"low": tallies}, X)]
+
+
+def test_what_changed_in_one_log_is_not_told() -> None:
+    assert told(Tally(5, 0, 0, 0), Tally(3, 2, 0, 1)) == []
+
+
+def test_what_changed_in_none_is_told_once_with_what_it_was() -> None:
+    assert told(Tally(0, 7, 0, 0)) == ["`low` never changed in the log: it was false at 7 ticks"]
+    assert told(Tally(5, 0, 1, 0), Tally(0, 1, 0, 0), Tally(0, 0, 0, 0)) == [
+        "`low` never changed in any of 3 logs: it was true at 5 ticks, false at 1 tick, "
+        "unknown at 1 tick"
+    ]
+
+
+def test_nothing_is_told_of_logs_without_a_tick() -> None:
+    assert told(Tally(0, 0, 0, 0)) == []
+    assert told() == []
+
+
+def test_a_proposition_of_two_requirements_counts_once_in_each_run() -> None:
+    low = {"low": {"true": 1, "false": 2, "unknown": 3, "changes": 0}}
+    results = [
+        {"run": "a", "requirement": "R1", "propositions": low},
+        {"run": "a", "requirement": "R2", "propositions": low},
+        {"run": "b", "requirement": "R1", "propositions": {}},
+    ]
+    assert tallies_of(results) == {"low": [Tally(1, 2, 3, 0)]}
+
+
+def test_what_an_error_in_the_bindings_explains_is_not_told_again() -> None:
+    unknown, low = {"low": [Tally(0, 0, 7, 0)]}, {"low": [Tally(0, 7, 1, 0)]}
+    missing = Diagnostic(Code.NO_TOPIC, "the topic `/y` is not in the log", X.source.span())
+    elsewhere = Diagnostic(Code.NO_SUCH_FILE, "there is no such file", Source("a", "").span())
+    assert [*never_changed(unknown, X, [missing])] == []
+    assert len([*never_changed(low, X, [missing])]) == 1
+    assert len([*never_changed(unknown, X, [elsewhere])]) == 1

@@ -1,0 +1,262 @@
+"""The same audit on Dask: a real cluster of two processes, one of which is killed."""
+
+import os
+import shutil
+import signal
+import socket
+import subprocess
+import sys
+import time
+import urllib.request
+import warnings
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from compiler.project.folder import beside, load, requirement_files
+from fretc.audit import fleet
+from fretc.audit.many_logs import Audit, Audited, Engine, audit_logs
+from fretc.audit.plan import Plan, packed, planned, unpacked
+from fretish.diagnostics.diagnostic import Diagnostic
+from tests.command import Fretc
+
+ROOT = Path(__file__).parents[3]
+LOGS = [f"{number:02}.mcap" for number in range(12)]
+
+with warnings.catch_warnings():
+    warnings.simplefilter("ignore")
+    from distributed import LocalCluster
+
+pytestmark = pytest.mark.filterwarnings("ignore")  # Dask's own
+
+
+@pytest.fixture(scope="module")
+def cluster() -> Iterator[Any]:
+    with LocalCluster(
+        n_workers=2, threads_per_worker=2, dashboard_address="127.0.0.1:0", silence_logs=60
+    ) as found:
+        yield found
+
+
+@pytest.fixture
+def fretc(fretc: Fretc) -> Fretc:
+    """Run the command in a folder with requirements and twelve logs, one of them damaged."""
+    shutil.copytree(ROOT / "requirements", "requirements")
+    whole = (ROOT / "traces/mission-seed15.mcap").read_bytes()
+    Path(LOGS[0]).write_bytes(whole)
+    for log in LOGS[1:]:
+        os.link(LOGS[0], log)
+    Path(LOGS[5]).unlink()
+    Path(LOGS[5]).write_bytes(whole[:900_000])
+    return fretc
+
+
+def plan() -> Plan:
+    files = requirement_files("requirements")
+    assert not isinstance(files, Diagnostic)
+    found = planned(load(files, beside("requirements", "bindings.toml")))
+    assert isinstance(found, Plan)
+    return found
+
+
+def engine(cluster: Any) -> Engine:
+    found = fleet.engine(cluster.scheduler_address.replace("tcp", "dask"), 2)
+    assert not isinstance(found, Diagnostic)
+    return found
+
+
+def kill(cluster: Any) -> None:
+    """Kill one worker; its nanny starts another."""
+    os.kill(next(iter(cluster.workers.values())).pid, signal.SIGKILL)
+
+
+def deadly(plan: bytes, log: str, folder: str, wanted: str) -> Audited | str:
+    """What a worker does, which knows of no patch: one log kills it."""
+    if log == LOGS[3]:
+        os.kill(os.getpid(), signal.SIGKILL)
+    return fleet._work(plan, log, folder, wanted)
+
+
+def test_a_plan_is_the_same_after_a_journey(fretc: Fretc) -> None:
+    there = unpacked(packed(plan()))
+    assert there == plan()
+    assert there.declarations == plan().declarations
+
+
+def test_the_command_gives_the_same_on_a_fleet(fretc: Fretc, cluster: Any) -> None:
+    here = fretc("audit", *LOGS)
+    evidence = Path("build/evidence.json").read_bytes()
+    Path("build/evidence.json").unlink()
+    address = cluster.scheduler_address.replace("tcp", "dask")
+    assert fretc("audit", *LOGS, "--engine", address) == here
+    assert Path("build/evidence.json").read_bytes() == evidence
+    assert not Path("build/evidence.json.journal").exists()
+
+
+def test_a_worker_that_is_killed_loses_nothing_and_counts_nothing_twice(
+    fretc: Fretc, cluster: Any
+) -> None:
+    here = audit_logs(plan(), LOGS)
+    told: list[str] = []
+
+    def tell(log: str, audited: Audited) -> None:
+        if not told:
+            kill(cluster)
+        told.append(log)
+
+    there = audit_logs(plan(), LOGS, engine(cluster), tell=tell)
+    assert there == here
+    assert sorted(told) == LOGS
+
+
+def test_a_log_that_kills_its_workers_is_told_and_the_others_are_audited(
+    fretc: Fretc, cluster: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    here = audit_logs(plan(), LOGS[:5])
+    monkeypatch.setattr(fleet, "_work", deadly)
+    monkeypatch.setattr(cluster.scheduler, "allowed_failures", 1)
+    there = audit_logs(plan(), LOGS[:5], engine(cluster))
+    assert isinstance(here, Audit)
+    assert isinstance(there, Audit)
+    assert [r for r in there.results if r["run"] != LOGS[3]] == [
+        r for r in here.results if r["run"] != LOGS[3]
+    ]
+    (lost,) = [r for r in there.results if r["run"] == LOGS[3]]
+    assert lost["verdict"] == "no data"
+    assert lost["hashes"] == here.results[3]["hashes"]
+    (finding,) = lost["health"]["findings"]
+    assert (finding["code"], finding["message"]) == (
+        "F419",
+        f"the process that audited `{LOGS[3]}` was killed, and again when it ran alone: "
+        "all workers of Dask that tried it died",
+    )
+
+
+def test_a_worker_with_another_fretc_is_refused(
+    fretc: Fretc, cluster: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(fleet, "edition", lambda: "another")
+    found = audit_logs(plan(), LOGS[:2], engine(cluster))
+    assert isinstance(found, Diagnostic)
+    assert found.code.number == "F911"
+    assert found.message.startswith("the worker tcp://127.0.0.1:")
+
+
+def test_a_worker_without_fretc_is_refused(
+    fretc: Fretc, cluster: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def work(*_: object) -> None:
+        raise ModuleNotFoundError("No module named 'compiler'")
+
+    monkeypatch.setattr(fleet, "_work", work)
+    found = audit_logs(plan(), LOGS[:2], engine(cluster))
+    assert isinstance(found, Diagnostic)
+    assert (found.code.number, found.message) == (
+        "F911",
+        "a worker has no fretc, or another one: No module named 'compiler'",
+    )
+
+
+def test_a_scheduler_that_is_not_there_is_told(
+    fretc: Fretc, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(fleet, "PATIENCE", 1)
+    with socket.socket() as free:
+        free.bind(("127.0.0.1", 0))
+        address = f"dask://127.0.0.1:{free.getsockname()[1]}"
+    run = fretc("audit", *LOGS, "--engine", address)
+    assert (run.status, run.out) == (2, "")
+    assert run.err.startswith(
+        f"F910 the fleet at `{address}` cannot be reached: no scheduler of Dask answers\n"
+    )
+    assert not Path("build").exists()
+
+
+def test_a_scheduler_without_workers_is_told(fretc: Fretc, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(fleet, "PATIENCE", 1)
+    with LocalCluster(n_workers=0, dashboard_address="127.0.0.1:0", silence_logs=60) as empty:
+        run = fretc(
+            "audit", *LOGS, "--engine", empty.scheduler_address.replace("tcp", "dask")
+        )  # fmt: skip
+    assert run.status == 2
+    assert run.err.splitlines()[0].endswith("cannot be reached: the scheduler has no worker")
+
+
+@pytest.mark.parametrize("name", ["", "ray", "dask:", "dask://", "dask://host", "dask://h:x", "D"])
+def test_an_engine_that_is_none_is_told(fretc: Fretc, name: str) -> None:
+    run = fretc("audit", *LOGS, "--engine", name)
+    assert (run.status, run.out) == (2, "")
+    assert run.err == (
+        f"F907 `{name}` is no engine\nhelp: it is `local`, `dask`, or `dask://HOST:PORT`\n"
+    )
+
+
+def test_the_former_meaning_of_engine_is_told_its_new_name(fretc: Fretc) -> None:
+    run = fretc("audit", *LOGS, "--engine", "online")
+    assert run.err == "F907 `online` is no engine\nhelp: write `--evaluation online`\n"
+
+
+def test_without_the_extra_the_line_that_installs_it_is_told(
+    fretc: Fretc, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(fleet, "find_spec", lambda name: None)
+    run = fretc("audit", *LOGS, "--engine", "dask")
+    assert run.status == 2
+    assert run.err.startswith("F908 a fleet needs `distributed`\nhelp: install the extra: pip ")
+
+
+def test_a_cluster_of_its_own_is_stopped_and_goes_on(fretc: Fretc) -> None:
+    fretc("audit", *LOGS)
+    evidence = Path("build/evidence.json").read_bytes()
+    Path("build/evidence.json").unlink()
+    journal = Path("build/evidence.json.journal")
+    command = [sys.executable, "-c", "from fretc.cli import main; main()", "audit", *LOGS]
+    run = subprocess.Popen(
+        [*command, "--engine", "dask", "--jobs", "2"],
+        env={**os.environ, "PYTHONPATH": str(ROOT)},
+        stderr=subprocess.PIPE,
+        text=True,
+        start_new_session=True,
+    )
+    deadline = time.monotonic() + 60
+    while not (journal.exists() and journal.read_bytes().count(b"\n") > 1):
+        assert time.monotonic() < deadline
+        time.sleep(0.01)
+    os.killpg(run.pid, signal.SIGINT)  # as Ctrl-C does: all processes of the terminal
+    _, said = run.communicate(timeout=60)
+    kept = journal.read_bytes().count(b"\n") - 1
+    words = f"stopped: {kept} of 12 logs are kept, `--resume` goes on from there\n"
+    assert (run.returncode, said) == (130, words)
+    assert fretc("audit", *LOGS, "--resume").err.startswith(f"{kept} of 12 logs are audited")
+    assert Path("build/evidence.json").read_bytes() == evidence
+
+
+def test_nobody_else_on_the_machine_is_let_into_a_cluster_of_its_own() -> None:
+    """Who can connect can execute code as the one who audits."""
+    from distributed import Client, Security
+
+    with fleet._own_cluster(1) as client:
+        address = client.scheduler.address
+        assert address.startswith("tls://127.0.0.1:")
+        plain = address.replace("tls", "tcp")
+        for place, security in (
+            (plain, None),
+            (address, None),
+            (address, Security.temporary()),
+            (address, Security(require_encryption=True)),
+        ):
+            with pytest.raises((OSError, TypeError, ValueError, RuntimeError)):
+                Client(place, security=security, timeout=3, set_as_default=False)
+        assert client.submit(int, "7").result() == 7
+        (worker,) = client.scheduler_info()["workers"]
+        assert worker.startswith("tls://127.0.0.1:")
+
+
+def test_a_cluster_of_its_own_has_no_pages() -> None:
+    with fleet._own_cluster(1) as client:
+        port = client.scheduler_info()["services"].get("dashboard")
+        for path in ("/info/main/workers.html", "/json/counts.json", "/metrics", "/health"):
+            with pytest.raises(OSError, match="404"):
+                urllib.request.urlopen(f"http://127.0.0.1:{port}{path}", timeout=5)

@@ -1,0 +1,174 @@
+"""From a recording and a generated monitor to a verdict with its reason."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from compiler.formalization.formalize import formalize
+from compiler.targets.python.monitor import text
+from fretc.audit.evidence.writer import Evidence, as_record
+from fretc.audit.one_log import Watched, audit, signals_of
+from fretc.logs.signals.samples import Recording, Samples
+from fretish.bindings.declarations import Declarations
+from fretish.bindings.reader import read_bindings
+from fretish.diagnostics.source import Source
+from fretish.documents import requirements
+from monitors.loading import load
+
+S = 10**9
+BINDINGS = """
+[clock]
+tick = "1 s"
+[signal.d]
+path = "/scan.d"
+unit = "m"
+[signal.v]
+path = "/odom.v"
+unit = "m/s"
+max_age = "3 s"
+[proposition.near]
+expr = "d < 5 cm"
+agg = "any"
+[proposition.still]
+expr = "abs(v) < 0.01 m/s"
+"""
+FAR, NEAR, STILL, MOVING = 1.0, 0.01, 0.0, 0.4
+
+
+def declared(text: str = BINDINGS) -> Declarations:
+    declarations, wrong = read_bindings(Source("bindings.toml", text))
+    assert declarations is not None, wrong
+    return declarations
+
+
+def recorded(
+    distances: Sequence[float], speeds: Sequence[float], end: float | None = None
+) -> Recording:
+    """One sample a second of each, from second 0 on; the log ends at second `end`."""
+
+    def samples(values: Sequence[float]) -> Samples:
+        return Samples(
+            np.arange(len(values), dtype=np.int64) * S, np.array(values, dtype=np.float64)
+        )
+
+    last = int((len(distances) - 1 if end is None else end) * S)
+    signals = {"d": samples(distances), "v": samples(speeds)}
+    none = np.array([], np.int64)
+    return Recording("run.mcap", "ab", 1, 0, last, signals, none, (), {}, {}, (), True)
+
+
+def audited(
+    sentence: str, recording: Recording, declarations: Declarations | None = None
+) -> Evidence:
+    known = declarations or declared()
+    ((requirement,), _) = requirements(Source("R1.fret", sentence))
+    rule, said = formalize(requirement, known)
+    assert rule is not None, said
+    watched = Watched(load("monitor", text(rule)), {"sentence": rule.fingerprint})
+    (evidence,) = audit(recording, known, [watched])
+    return evidence
+
+
+EVENTUALLY = "whenever near the rover shall eventually satisfy still"
+WITHIN = "whenever near the rover shall within 2 seconds satisfy still"
+
+
+def test_a_demand_that_is_answered_is_satisfied_with_its_latency() -> None:
+    evidence = audited(EVENTUALLY, recorded([FAR, NEAR, FAR, FAR], [MOVING, MOVING, MOVING, STILL]))
+    assert (evidence.verdict, evidence.latencies) == ("satisfied", (2.0,))
+    assert evidence.reason == (
+        "held, 1 trigger, answered after 2.00 s (median), 2.00 s (longest); by phase of the ticks "
+        "satisfied at less than 1 %, inconclusive at 99 %, the nearest change is 1 ns away"
+    )
+    assert [moment.seconds for moment in evidence.triggers] == [1.0]
+
+
+def test_a_deadline_that_passes_is_a_violation_with_its_time_trigger_and_signals() -> None:
+    evidence = audited(WITHIN, recorded([FAR, NEAR, FAR, FAR, FAR], [MOVING] * 4 + [STILL]))
+    (violation,) = evidence.violations
+    assert evidence.verdict == "violated"
+    assert (violation.first.seconds, violation.last.seconds) == (3.0, 3.0)
+    assert violation.trigger is not None
+    assert violation.trigger.seconds == 1.0
+    assert violation.values == {"d": FAR, "v": MOVING}
+    assert evidence.units == {"d": "m", "v": "m/s"}
+    assert evidence.reason == "broken from 3.0 s to 3.0 s, triggered at 1.0 s"
+
+
+def test_a_demand_that_is_open_at_the_end_is_inconclusive() -> None:
+    evidence = audited(EVENTUALLY, recorded([FAR, FAR, NEAR], [MOVING] * 3))
+    assert (evidence.verdict, evidence.outcome.finite) == ("inconclusive", False)
+    assert evidence.reason == "1 demand open at the end of the log since 2.0 s"
+
+
+def test_the_clock_can_make_an_open_demand_a_violation() -> None:
+    strict = declared(BINDINGS.replace("[clock]", '[clock]\nend = "violated"'))
+    evidence = audited(EVENTUALLY, recorded([FAR, FAR, NEAR], [MOVING] * 3), strict)
+    assert evidence.verdict == "violated"
+
+
+def test_what_never_triggers_is_vacuous() -> None:
+    evidence = audited(EVENTUALLY, recorded([FAR] * 3, [MOVING] * 3))
+    assert (evidence.verdict, evidence.reason) == ("vacuous", "never triggered in 3 ticks")
+
+
+def test_an_unknown_trigger_is_no_data() -> None:
+    evidence = audited(EVENTUALLY, recorded([FAR, float("nan"), FAR], [MOVING, MOVING, STILL]))
+    assert evidence.verdict == "no data"
+    assert evidence.reason == "unknown where it matters: `near` at 1 tick"
+
+
+def test_a_stale_response_is_no_data_and_never_a_pass() -> None:
+    speeds = [STILL]  # one sample: known up to second 3
+    sentence = "whenever near the rover shall immediately satisfy still"
+    evidence = audited(sentence, recorded([FAR] * 5 + [NEAR], speeds))
+    assert evidence.verdict == "no data"
+    assert evidence.reason.startswith("unknown at 1 tick, first at tick 5; by phase")
+
+
+def test_a_damaged_log_shows_no_pass_but_a_violation() -> None:
+    good = recorded([FAR, NEAR, FAR, FAR], [MOVING, MOVING, MOVING, STILL])
+    bad = recorded([FAR, NEAR, FAR, FAR, FAR], [MOVING] * 5)
+    assert audited(EVENTUALLY, replace(good, intact=False)).verdict == "no data"
+    assert audited(WITHIN, replace(bad, intact=False)).verdict == "violated"
+
+
+def test_ticks_in_a_gap_are_unknown() -> None:
+    whole = recorded([FAR, NEAR, FAR, FAR], [MOVING, STILL, STILL, STILL])
+    assert audited(WITHIN, whole).verdict == "satisfied"
+    assert audited(WITHIN, replace(whole, gaps=((S, 2 * S),))).verdict == "no data"
+
+
+@pytest.mark.parametrize(
+    ("sentence", "verdict"),
+    [
+        ("whenever near the rover shall within 3 seconds satisfy still", "inconclusive"),
+        ("whenever near the rover shall after 2 seconds satisfy still", "inconclusive"),
+        ("whenever near the rover shall for 3 seconds satisfy !still", "inconclusive"),
+    ],
+)
+def test_a_log_that_ends_before_the_deadline_decides_nothing(sentence: str, verdict: str) -> None:
+    log = recorded([FAR, NEAR, FAR, FAR], [MOVING] * 4, end=3.1)
+    assert audited(sentence, log).verdict == verdict
+
+
+def test_a_trigger_after_the_last_whole_tick_leaves_the_run_open() -> None:
+    log = recorded([FAR] * 3, [MOVING] * 3, end=2.5)
+    late = Samples(np.append(log.samples["d"].times, int(2.4 * S)), np.array([FAR] * 3 + [NEAR]))
+    evidence = audited(EVENTUALLY, replace(log, samples={**log.samples, "d": late}))
+    assert evidence.verdict == "inconclusive"
+    assert evidence.reason == "what came after the last whole tick leaves it open"
+
+
+def test_the_record_is_plain_json_with_times_in_nanoseconds() -> None:
+    record = as_record(audited(WITHIN, recorded([FAR, NEAR, FAR, FAR], [MOVING] * 4)))
+    (violation,) = record["violations"]
+    assert (violation["start_ns"], violation["end_ns"]) == (3 * S, 3 * S)
+    assert record["triggers"] == [{"tick": 1, "ns": S, "seconds": 1.0}]
+    assert record["hashes"]["log"] == "ab"
+
+
+def test_the_signals_of_propositions_are_named_once_in_order() -> None:
+    assert signals_of(declared(), ["still", "near", "still"]) == ("v", "d")

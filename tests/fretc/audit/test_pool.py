@@ -1,0 +1,88 @@
+"""Several processes share things; what is lost with one of them is one thing."""
+
+import os
+import signal
+import time
+from contextlib import closing
+from multiprocessing import active_children
+from pathlib import Path
+
+import pytest
+
+from fretc.audit.pool import Killed, each
+
+
+@pytest.mark.parametrize("jobs", [1, 2, 5])
+def test_each_thing_has_its_result_once(jobs: int) -> None:
+    found = list(each(lambda thing: thing * thing, range(40), jobs))
+    assert sorted(found, key=lambda done: done[0]) == [(i, i * i) for i in range(40)]
+    assert not active_children()
+
+
+@pytest.mark.parametrize("jobs", [1, 3])
+def test_a_mistake_in_the_work_is_raised(jobs: int) -> None:
+    with pytest.raises(ZeroDivisionError):
+        list(each(lambda thing: 1 // thing, [2, 1, 0, 3], jobs))
+    assert not active_children()
+
+
+def test_a_mistake_that_cannot_be_sent_is_raised_in_words() -> None:
+    class LocalError(Exception):
+        pass
+
+    def work(thing: int) -> None:
+        raise LocalError(f"of {thing}")
+
+    with pytest.raises(RuntimeError, match=r"LocalError: of \d"):
+        list(each(work, [0, 1], 2))
+
+
+def test_a_result_comes_when_it_is_done() -> None:
+    def wait(seconds: float) -> float:
+        time.sleep(seconds)
+        return seconds
+
+    assert [place for place, _ in each(wait, [0.5, 0.0], 2)] == [1, 0]
+
+
+@pytest.mark.parametrize("jobs", [1, 2, 3])
+def test_a_thing_that_kills_its_process_twice_is_told_and_the_others_are_done(jobs: int) -> None:
+    def work(thing: int) -> int:
+        if thing == 3:
+            os.kill(os.getpid(), signal.SIGKILL)
+        return -thing
+
+    found = dict(each(work, range(8), jobs))
+    assert found.pop(3) == Killed(-signal.SIGKILL)
+    assert found == {i: -i for i in range(8) if i != 3}
+    assert not active_children()
+
+
+def test_a_thing_whose_process_is_killed_once_is_done_the_second_time(tmp_path: Path) -> None:
+    def work(thing: int) -> str:
+        mark = tmp_path / "mark"
+        if thing == 1 and not mark.exists():
+            mark.touch()
+            os._exit(7)
+        return f"done {thing}"
+
+    assert dict(each(work, range(3), 2)) == {i: f"done {i}" for i in range(3)}
+
+
+def test_how_a_process_ended_is_told_in_words() -> None:
+    assert (str(Killed(-9)), str(Killed(7))) == ("signal 9", "exit status 7")
+
+
+def test_a_result_that_is_larger_than_a_pipe_comes_whole() -> None:
+    assert dict(each(lambda thing: bytes(10**7 + thing), [0, 1], 2)) == {
+        0: bytes(10**7),
+        1: bytes(10**7 + 1),
+    }
+
+
+def test_closing_ends_the_work_at_once() -> None:
+    with closing(each(lambda thing: time.sleep(thing), [0, 60, 60], 2)) as results:
+        assert next(results) == (0, None)
+        start = time.monotonic()
+    assert time.monotonic() - start < 10
+    assert not active_children()

@@ -1,0 +1,222 @@
+"""An audit judges every requirement that it can, and loses sight of no other one."""
+
+import json
+from pathlib import Path
+from xml.etree import ElementTree
+
+import jsonschema  # type: ignore[import-untyped]
+import pytest
+from mcap.writer import Writer
+
+from tests.command import Fretc, write
+
+ROOT = Path(__file__).parents[3]
+SCHEMA = json.loads((ROOT / "templates/json/evidence.schema.json").read_text("utf-8"))
+MS = 10**6
+BINDINGS = """\
+[clock]
+tick = "100 ms"
+[signal.x]
+path = "/a.x"
+[proposition.p]
+expr = "x > 0"
+"""
+REFUSED = {
+    "an unbound proposition": ("the sw shall always satisfy nowhere", "", "", "F304"),
+    "another comparison": (
+        "the sw shall always satisfy speed <= 1.5",
+        "",
+        '[proposition."(speed <= 1.5)"]\nexpr = "x <= 15"\n',
+        "F524",
+    ),
+    "a mistake in a proposition": (
+        "the sw shall always satisfy q",
+        "",
+        '[proposition.q]\nexpr = "x >"\n',
+        "F308",
+    ),
+    "a mistake in a signal": (
+        "the sw shall always satisfy p & q",
+        "",
+        '[signal.y]\npath = "/a.y"\nunit = "parsec"\n[proposition.q]\nexpr = "y > 0"\n',
+        "F306",
+    ),
+    "no FRETish": ("the sw must satisfy p", "", "", "F107"),
+    "a bad header": ("the sw shall always satisfy p", 'status = "aproved"\n', "", "F105"),
+    "a header that is no TOML": ("the sw shall always satisfy p", "status = \n", "", "F102"),
+    "an unknown field": ("the sw shall always satisfy p", 'titel = "a"\n', "", "F103"),
+    "params without a binding": (
+        "the sw shall always satisfy p",
+        'params = { q = "5 cm" }\n',
+        "",
+        "F309",
+    ),
+    "a look ahead": ("the sw shall always satisfy persists(2, p)", "", "", "F601"),
+    "half a tick": ("the sw shall within 50 milliseconds satisfy p", "", "", "F307"),
+}  # fmt: skip
+
+
+def log(path: str, values: list[float]) -> str:
+    """A value of `/a.x` every 100 ms."""
+    with Path(path).open("wb") as file:
+        writer = Writer(file)
+        writer.start()
+        schema = writer.register_schema("A", "jsonschema", b"{}")
+        channel = writer.register_channel("/a", "json", schema)
+        for number, value in enumerate(values):
+            time = 10**9 + number * 100 * MS
+            writer.add_message(channel, time, json.dumps({"x": value}).encode(), time)
+        writer.finish()  # type: ignore[no-untyped-call]
+    return path
+
+
+def project(sentence: str, header: str, bindings: str) -> None:
+    """R1, which can be judged, and R2."""
+    write("requirements/r1.fret", '+++\nid = "R1"\n+++\nthe sw shall always satisfy p\n')
+    write("requirements/r2.fret", f'+++\nid = "R2"\n{header}+++\n{sentence}\n')
+    write("requirements/bindings.toml", BINDINGS + bindings)
+
+
+def rows(out: str) -> dict[str, str]:
+    return {row["requirement"]: row["verdict"] for row in json.loads(out)}
+
+
+@pytest.mark.parametrize("kind", REFUSED)
+@pytest.mark.parametrize(("values", "verdict"), [([1, 1, 1], "satisfied"), ([1, 0, 1], "violated")])
+def test_what_cannot_be_judged_is_no_data_beside_what_can(
+    fretc: Fretc, kind: str, values: list[float], verdict: str
+) -> None:
+    sentence, header, bindings, code = REFUSED[kind]
+    project(sentence, header, bindings)
+    run = fretc("audit", log("l.mcap", values), "--format", "json")
+    assert (run.status, rows(run.out)) == (2, {"R1": verdict, "R2": "no data"})
+    assert f"{code} " in run.err
+    evidence = json.loads(Path("build/evidence.json").read_text())
+    jsonschema.validate(evidence, SCHEMA)
+    assert [each["id"] for each in evidence["requirements"]] == ["R1", "R2"]
+    (row,) = (row for row in evidence["results"] if row["requirement"] == "R2")
+    assert row["reason"].startswith(f"not judged: {code} ")
+    assert row["health"]["intact"], "the log itself is whole"
+    check = fretc("check")
+    assert (check.status, f"{code} " in check.err) == (2, True)
+
+
+@pytest.mark.parametrize("kind", REFUSED)
+def test_no_form_of_the_audit_and_of_the_report_loses_it(fretc: Fretc, kind: str) -> None:
+    sentence, header, bindings, code = REFUSED[kind]
+    project(sentence, header, bindings)
+    log("l.mcap", [1, 1])
+    suite = ElementTree.fromstring(fretc("audit", "l.mcap", "--format", "junit").out)[0]
+    assert [(case.get("name"), [child.tag for child in case]) for case in suite] == [
+        ("R1", []),
+        ("R2", ["error"]),
+    ]
+    assert (
+        "title=R2 no data::l.mcap: not judged" in fretc("audit", "l.mcap", "--format", "github").out
+    )
+    (told,) = json.loads(fretc("audit", "l.mcap", "--format", "sarif").out)["runs"]
+    assert [result["ruleId"] for result in told["results"]] == ["R1", "R2"]
+    assert not told["invocations"][0]["executionSuccessful"]
+    notes = told["invocations"][0]["toolExecutionNotifications"]
+    assert code in [note["descriptor"]["id"] for note in notes]
+    assert fretc("audit", "l.mcap", "--annotate", "--parquet", "t.parquet").status == 2
+    assert "R2" in fretc("audit", "t.parquet", "--summary").out
+    made = fretc("report", "--junit", "j.xml", "--sarif", "s.sarif", "--csv", "c.csv", "--strict")
+    assert made.status in (2, 3)
+    cases = ElementTree.parse("j.xml").getroot()[0]
+    assert [(case.get("name"), [child.tag for child in case]) for case in cases] == [
+        ("R1", []),
+        ("R2", ["error"]),
+    ]
+    for name in ("s.sarif", "c.csv", "build/report.html"):
+        assert "R2" in Path(name).read_text("utf-8")
+
+
+def test_a_run_that_cannot_be_read_has_a_row_for_it_too(fretc: Fretc) -> None:
+    project("the sw shall always satisfy nowhere", "", "")
+    log("l.mcap", [1])
+    run = fretc("audit", "l.mcap", write("broken.mcap", "x"), "--format", "json")
+    told = [(row["run"], row["requirement"], row["verdict"]) for row in json.loads(run.out)]
+    assert told == [
+        ("l.mcap", "R1", "satisfied"),
+        ("l.mcap", "R2", "no data"),
+        ("broken.mcap", "R1", "no data"),
+        ("broken.mcap", "R2", "no data"),
+    ]
+
+
+def test_two_requirements_of_one_id_are_one_row_without_a_verdict(fretc: Fretc) -> None:
+    project("the sw shall always satisfy p", "", "")
+    write("requirements/r3.fret", '+++\nid = "R2"\n+++\nthe sw shall never satisfy p\n')
+    run = fretc("audit", log("l.mcap", [1]), "--format", "json")
+    assert (run.status, rows(run.out)) == (2, {"R1": "satisfied", "R2": "no data"})
+    assert len(json.loads(run.out)) == 2
+
+
+@pytest.mark.parametrize(
+    ("text", "id"),
+    [
+        ("+++\nid = R7\n+++\nthe sw shall always satisfy p\n", "r2"),
+        ("+++\ntitle = 3\n+++\nthe sw shall always satisfy p\n", "r2"),
+        ('+++\nid = "R7"\nthe sw shall always satisfy p\n', "r2"),
+        ("the sw shall satisfy p\n+++\nid = 7\n+++\nthe sw shall satisfy p\n", "r2-line-5"),
+    ],
+)
+def test_a_requirement_whose_id_cannot_be_read_is_called_by_its_file(
+    fretc: Fretc, text: str, id: str
+) -> None:
+    project("the sw shall always satisfy p", "", "")
+    write("requirements/r2.fret", text)
+    run = fretc("audit", log("l.mcap", [1]), "--format", "json")
+    assert run.status == 2
+    assert rows(run.out)["R1"] == "satisfied"
+    assert rows(run.out)[id] == "no data"
+
+
+def test_a_retired_requirement_is_not_missed(fretc: Fretc) -> None:
+    project("the sw shall always satisfy nowhere", 'status = "retired"\n', "")
+    run = fretc("audit", log("l.mcap", [1]), "--format", "json")
+    assert (run.status, rows(run.out)) == (0, {"R1": "satisfied"})
+    assert fretc("check").status == 0
+
+
+def test_where_nothing_can_be_judged_the_evidence_of_before_stays(fretc: Fretc) -> None:
+    project("the sw shall always satisfy p", "", "")
+    log("l.mcap", [1])
+    assert fretc("audit", "l.mcap").status == 0
+    before = Path("build/evidence.json").read_bytes()
+    for bindings in (
+        BINDINGS.replace("x > 0", "x >"),
+        BINDINGS.replace("proposition.p", "proposition.q"),
+    ):
+        write("requirements/bindings.toml", bindings)
+        assert fretc("audit", "l.mcap").status == 2
+        assert Path("build/evidence.json").read_bytes() == before
+
+
+def test_bindings_that_are_not_there_are_told_once(fretc: Fretc) -> None:
+    project("the sw shall always satisfy p", "", "")
+    Path("requirements/bindings.toml").unlink()
+    check, audit = fretc("check"), fretc("audit", log("l.mcap", [1]))
+    assert (check.status, audit.status) == (2, 2)
+    assert check.err.count("no bindings say") == audit.err.count("no bindings say") == 1
+
+
+def test_evidence_is_not_verified_by_a_project_that_cannot_be_judged(fretc: Fretc) -> None:
+    project("the sw shall always satisfy nowhere", "", "")
+    log("l.mcap", [1])
+    assert fretc("audit", "l.mcap").status == 2
+    assert fretc("verify-evidence").status == 2
+
+
+@pytest.mark.parametrize("name", ["p_near", "(p >= 3)", "P", "pp", "q"])
+def test_no_other_proposition_is_proposed(fretc: Fretc, name: str) -> None:
+    """`too_near` for `too_far` would be another safety claim, `(p >= 3)` for `(p >= 2)` too."""
+    bound = f"[proposition.'{name}']\nexpr = \"x >= 3\"\n"
+    sentence = "the sw shall always satisfy p_neat & pq & p >= 2"
+    project(sentence, 'params = { pq = "5 cm" }\n', bound)
+    run = fretc("check")
+    assert run.status == 2
+    assert "did you mean" not in run.err
+    assert name == "q" or f"[proposition.{name}]" not in run.err
+    assert '`[proposition."(p >= 2)"]`' in run.err

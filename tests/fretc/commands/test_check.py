@@ -1,0 +1,196 @@
+"""`fretc check`: what is wrong or missing in a project, before any run."""
+
+from pathlib import Path
+
+import pytest
+
+from tests.command import Fretc, write
+from tests.fretc.report import cases
+
+GOOD = cases.R1.replace("shall eventually", "shall within 300 milliseconds")
+BY = ("--reviewer", "A", "--role", "B", "--comment", "c", "--date", "2026-01-01")
+
+
+@pytest.fixture
+def good(fretc: Fretc) -> Fretc:
+    """A project with nothing to be said of it."""
+    write("requirements/r1.fret", GOOD)
+    write("requirements/bindings.toml", cases.BINDINGS)
+    write("requirements/hazards.toml", cases.HAZARDS)
+    return fretc
+
+
+def edited(name: str, old: str, new: str) -> None:
+    path = Path("requirements") / name
+    text = path.read_text()
+    assert old in text
+    path.write_text(text.replace(old, new))
+
+
+def test_a_sound_project_is_said_to_be_sound(good: Fretc) -> None:
+    run = good("check")
+    assert (run.status, run.out, run.err) == (0, "", "1 requirement: 0 mistakes, 0 warnings\n")
+
+
+def test_a_trigger_that_the_component_itself_commands_is_told(good: Fretc) -> None:
+    edited("bindings.toml", 'role = "input"\nkind = "belief"', 'role = "output"\nkind = "command"')
+    run = good("check")
+    assert run.status == 3
+    assert run.err == (
+        "F209 warning: R1 is triggered by `near`, which robot itself commands: it holds where "
+        "nothing is ever commanded\n"
+        "  --> requirements/r1.fret:10:10\n"
+        "   | whenever near the robot shall within 300 milliseconds satisfy stopped\n"
+        "   |          ^^^^\n"
+        "help: trigger it by what the sensors see, or say `role` and `kind` of the proposition\n"
+        "\n"
+        "1 requirement: 0 mistakes, 1 warning\n"
+    )
+
+
+def test_a_plan_that_can_give_no_result_is_told(good: Fretc) -> None:
+    edited("r1.fret", '["audit"]', '["audit", "ajpf"]')
+    run = good("check")
+    assert run.status == 3
+    assert "F525 warning: R1 plans `ajpf`, and there can be no result: AJPF cannot" in run.err
+
+
+def test_a_remark_of_a_planned_method_is_told(good: Fretc) -> None:
+    edited("r1.fret", "within 300 milliseconds", "eventually")
+    run = good("check")
+    assert (run.status, "F203 warning" in run.err) == (3, True)
+
+
+def test_missing_links_are_told_in_both_directions(good: Fretc) -> None:
+    edited("r1.fret", 'parents = ["HAZ-1"]\n', "")
+    run = good("check")
+    assert run.status == 3
+    assert "F522 warning: no requirement in force names HAZ-1 (The robot hits something)" in run.err
+    assert "F523 warning: R1 names no parent" in run.err
+
+
+def test_a_retired_requirement_covers_no_hazard_and_is_not_looked_at(good: Fretc) -> None:
+    edited("r1.fret", '"approved"', '"retired"')
+    edited("r1.fret", '["audit"]', '["ajpf"]')
+    run = good("check")
+    assert run.status == 3
+    assert "F522" in run.err
+    assert "F525" not in run.err
+
+
+def test_what_changed_since_its_review_is_told(good: Fretc) -> None:
+    assert good("lock", *BY).status == 0
+    assert good("check").status == 0
+    edited("r1.fret", "300 milliseconds", "400 milliseconds")
+    run = good("check")
+    assert run.status == 3
+    assert (
+        "F512 warning: R1 was reviewed on 2026-01-01, and since then sentence R1 changed" in run.err
+    )
+
+
+def test_a_review_of_what_is_gone_is_told(good: Fretc) -> None:
+    assert good("lock", *BY).status == 0
+    edited("r1.fret", 'id = "R1"', 'id = "R2"')
+    run = good("check")
+    assert run.status == 3
+    assert (
+        "F511 warning: R1 was reviewed (no run of it was audited) and is not among the" in run.err
+    )
+
+
+def test_mistakes_win_over_warnings(good: Fretc) -> None:
+    write("requirements/waivers.toml", "[R9]\n")
+    run = good("check")
+    assert run.status == 2
+    assert "F513 R9 is waived, and is not among the requirements" in run.err
+
+
+def test_a_lock_that_cannot_be_read_is_a_mistake(good: Fretc) -> None:
+    write("requirements/fretc.lock", "x")
+    assert good("check").status == 2
+
+
+@pytest.mark.parametrize(
+    ("parents", "way"),
+    [
+        ({"R1": ["R1"]}, "R1 → R1"),
+        ({"R1": ["R2"], "R2": ["R3", "HAZ-1"], "R3": ["R1"]}, "R1 → R2 → R3 → R1"),
+    ],
+)
+def test_parents_in_a_circle_are_a_mistake(
+    good: Fretc, parents: dict[str, list[str]], way: str
+) -> None:
+    for id, above in parents.items():
+        text = GOOD.replace('"R1"', f'"{id}"').replace('["HAZ-1"]', str(above).replace("'", '"'))
+        write(f"requirements/{id.lower()}.fret", text)
+    run = good("check")
+    assert run.status == 2
+    assert f"F526 R1 is its own ancestor: {way}\n" in run.err
+    assert run.err.count("F526") == 1
+
+
+@pytest.mark.parametrize(
+    ("status", "above", "told"),
+    [
+        ("approved", "HAZ-1", False),
+        ("retired", "HAZ-1", True),
+        ("approved", "R1", False),
+        ("approved", "GONE", True),
+    ],
+)
+def test_a_requirement_that_reaches_no_hazard_is_told(
+    good: Fretc, status: str, above: str, told: bool
+) -> None:
+    low = GOOD.replace('"R1"', '"R3"').replace("HAZ-1", "R2")
+    high = GOOD.replace('"R1"', '"R2"').replace("HAZ-1", above).replace("approved", status)
+    write("requirements/r2.fret", high)
+    write("requirements/r3.fret", low)
+    run = good("check")
+    assert run.status == (3 if told else 0)
+    assert ("F527 warning: the parents of R3 lead to no hazard" in run.err) == told
+
+
+def test_hazards_that_cannot_be_read_are_one_message(good: Fretc) -> None:
+    write("requirements/r2.fret", GOOD.replace('"R1"', '"R2"'))
+    write("requirements/hazards.toml", "[HAZ-1\n")
+    run = good("check")
+    assert (run.status, run.err.count("F502"), "F501" in run.err) == (2, 1, False)
+    run = good("check", "--hazards", "gone.toml")
+    assert (run.status, run.err.count("F901"), "F501" in run.err) == (2, 1, False)
+
+
+def test_hazards_that_are_nowhere_are_one_message(good: Fretc) -> None:
+    write("requirements/r2.fret", GOOD.replace('"R1"', '"R2"'))
+    Path("requirements/hazards.toml").unlink()
+    run = good("check")
+    assert run.status == 3
+    assert run.err.count("F501") == 1
+    assert "the parent `HAZ-1` of R1 is declared nowhere (1 more parent is, too)" in run.err
+
+
+@pytest.mark.parametrize(
+    ("method", "near"),
+    [
+        ("auditt", "audit"),
+        ("adit", "audit"),
+        ("monitr", "monitor"),
+        ("proofs", "proof"),
+        ("dafni", "dafny"),
+        ("ajfp", "ajpf"),
+    ],
+)
+def test_a_misspelt_method_gets_a_suggestion(good: Fretc, method: str, near: str) -> None:
+    edited("r1.fret", '["audit"]', f'["{method}"]')
+    run = good("check")
+    assert run.status == 3
+    assert f"F528 warning: R1 plans `{method}`" in run.err
+    assert f"help: did you mean `{near}`?" in run.err
+
+
+@pytest.mark.parametrize(
+    "method", ["review", "inspection", "test", "analysis", "simulation", "field trial", "audit"]
+)
+def test_a_method_of_ones_own_is_no_mistake(good: Fretc, method: str) -> None:
+    edited("r1.fret", '["audit"]', f'["{method}"]')
+    assert good("check").status == 0

@@ -1,0 +1,199 @@
+import json
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+from mcap.reader import make_reader
+
+ROOT = Path(__file__).parents[3]
+
+
+def fretc(folder: Path, *words: str) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(
+        [sys.executable, "-c", "from fretc.cli import main; main()", "simulate", *words],
+        cwd=folder,
+        env={"PYTHONPATH": str(ROOT), "PATH": "/usr/bin:/bin"},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+
+
+def test_a_mission_is_recorded_and_drawn(tmp_path: Path) -> None:
+    words = (
+        "walker",
+        "--seed",
+        "3",
+        "--duration",
+        "2",
+        "--out",
+        "a.mcap",
+        "--png",
+        "a.png",
+        "--gif",
+        "a.gif",
+    )
+    ran = fretc(tmp_path, *words)
+    assert ran.returncode == 0, ran.stderr
+    assert ran.stderr == "wrote a.mcap\nwrote a.png\nwrote a.gif\n"
+    assert ran.stdout.startswith("walker, seed 3: 2.0 s, 0 of 4 goals, 0 stops, 0 contacts, least ")
+    assert (tmp_path / "a.png").read_bytes().startswith(b"\x89PNG")
+    assert (tmp_path / "a.gif").read_bytes().startswith(b"GIF89a")
+    with (tmp_path / "a.mcap").open("rb") as stream:
+        reader = make_reader(stream)
+        assert reader.get_header().profile == "ros2"
+        (about,) = (entry.metadata for entry in reader.iter_metadata())
+    assert (about["scenario"], about["seed"], about["max_seconds"]) == ("walker", "3", "2.0")
+    assert about["fretc"]
+
+
+def test_folders_that_are_missing_are_made(tmp_path: Path) -> None:
+    ran = fretc(tmp_path, "--duration", "1", "--out", "a/b/c.mcap", "--png", "d/e.png")
+    assert ran.returncode == 0, ran.stderr
+    assert (tmp_path / "a/b/c.mcap").is_file()
+    assert (tmp_path / "d/e.png").is_file()
+
+
+def test_a_mission_can_be_a_log_of_ros_1(tmp_path: Path) -> None:
+    ran = fretc(tmp_path, "--duration", "1", "--encoding", "ros1", "--out", "a.mcap")
+    assert ran.returncode == 0, ran.stderr
+    with (tmp_path / "a.mcap").open("rb") as stream:
+        assert make_reader(stream).get_header().profile == "ros1"
+
+
+def test_the_scenarios_are_named(tmp_path: Path) -> None:
+    ran = fretc(tmp_path, "--list")
+    assert ran.returncode == 0
+    assert "\nnominal          Nominal mission\n" in ran.stdout
+    assert len(ran.stdout.splitlines()) == 19
+
+
+def test_a_campaign_ends_in_a_table_and_tells_what_is_not_as_stated(tmp_path: Path) -> None:
+    (tmp_path / "mine.toml").write_text(
+        'title = "Mine"\nduration = 3\n[expect]\ninconclusive = ["R12"]\n', encoding="utf-8"
+    )
+    ran = fretc(tmp_path, "mine.toml", "--campaign", "2", "--jobs", "2")
+    assert ran.returncode == 0, ran.stderr
+    assert ran.stdout.splitlines()[1].startswith("mine      2/2        0/2 ")
+    (tmp_path / "mine.toml").write_text(
+        'title = "Mine"\nduration = 3\n[expect]\nsatisfied = ["R12"]\n', encoding="utf-8"
+    )
+    ran = fretc(tmp_path, "mine.toml", "--campaign", "1", "--format", "json")
+    assert ran.returncode == 1
+    (run,) = json.loads(ran.stdout)
+    assert run["wrong"] == {"R12": "satisfied"}
+    assert run["verdicts"]["R12"] == "inconclusive"
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        ((), "F907 missing option '--out'"),
+        (("nominal",), "F907 missing option '--out'"),
+        (("nominul", "--out", "a.mcap"), "F914 the scenario `nominul` cannot be run: there is no"),
+        (("no.toml", "--out", "a.mcap"), "F914 the scenario `no.toml` cannot be run: No such file"),
+        (("bad.toml", "--out", "a.mcap"), "F914 the scenario `bad.toml` cannot be run: `title` is"),
+        (("ghost.toml", "--out", "a.mcap"), "cannot be run: the store has no obstacle `ghost`"),
+        (("walker", "nominal", "--out", "a.mcap"), "F907 several scenarios need --campaign"),
+        (("--out", "bad.toml/a.mcap"), "F905 `bad.toml/a.mcap` cannot be written: File exists"),
+        (("--out", "-"), "F905 `-` cannot be written"),
+        (("--out", "."), "F905 `.` cannot be written: it is no regular file"),
+        (("--out", "a.x", "--png", "a.x"), "F905 `a.x` cannot be written: two outputs"),
+        (("--out", "a.mcap", "--png", "bad.toml/a.png"), "F905 `bad.toml/a.png` cannot be written"),
+        (("--out", "a.mcap", "--duration", "inf"), "F905 `a.mcap` cannot be written: a mission"),
+        (("--campaign", "1", "--png", "a.png"), "F907 a campaign takes no --png"),
+        (("walker", "walker", "--campaign", "1"), "F907 two of the scenarios have the same name"),
+        (
+            ("--campaign", "1", "--out", "bad.toml"),
+            "F905 `bad.toml` cannot be written: File exists",
+        ),
+    ],
+)
+def test_what_cannot_be_done_is_refused_and_leaves_nothing(
+    tmp_path: Path, words: tuple[str, ...], said: str
+) -> None:
+    (tmp_path / "bad.toml").write_text("", encoding="utf-8")
+    (tmp_path / "ghost.toml").write_text(
+        'title = "a"\n[store.moved]\nghost = [1, 1]\n', encoding="utf-8"
+    )
+    ran = fretc(tmp_path, *words)
+    assert ran.returncode == 2
+    assert said in ran.stderr
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["bad.toml", "ghost.toml"]
+
+
+@pytest.mark.parametrize(
+    ("text", "why", "shown"),
+    [
+        (
+            "[safety]\nlate = -1\n",
+            "`safety.late` must not be below 0\n",
+            "  --> bad.toml:3:1\n   | late = -1\n   | ^^^^\n",
+        ),
+        (
+            '[expect]\nviolated = ["R99"]\n',
+            "`expect.violated` names `R99`, which is no requirement; there are R1, ",
+            '  --> bad.toml:3:1\n   | violated = ["R99"]\n   | ^^^^^^^^\n',
+        ),
+    ],
+)
+def test_what_is_wrong_in_a_scenario_is_shown(
+    tmp_path: Path, text: str, why: str, shown: str
+) -> None:
+    (tmp_path / "bad.toml").write_text(f'title = "a"\n{text}', encoding="utf-8")
+    ran = fretc(tmp_path, "bad.toml", "--out", "a.mcap")
+    assert (ran.returncode, ran.stdout) == (2, "")
+    assert ran.stderr.startswith(f"F914 the scenario `bad.toml` cannot be run: {why}")
+    assert shown in ran.stderr
+
+
+def test_a_campaign_that_is_stopped_leaves_nothing_half_written(tmp_path: Path) -> None:
+    (tmp_path / "logs").mkdir()
+    (tmp_path / "temporary").mkdir()
+    for where in (["--out", "logs"], []):
+        words = ["simulate", "nominal", "walker", "--campaign", "4", "--jobs", "2", *where]
+        process = subprocess.Popen(
+            [sys.executable, "-c", "from fretc.cli import main; main()", *words],
+            cwd=tmp_path,
+            env={"PYTHONPATH": str(ROOT), "TMPDIR": str(tmp_path / "temporary")},
+            stderr=subprocess.PIPE,
+            text=True,
+        )
+        folders = (tmp_path / "logs", tmp_path / "temporary")
+        while not any([*path.rglob(".*.partial")] for path in folders):
+            assert process.poll() is None
+            time.sleep(0.05)
+        process.send_signal(signal.SIGINT)
+        _, said = process.communicate(timeout=30)
+        assert (process.returncode, said) == (130, "stopped\n")
+        assert [*tmp_path.rglob(".*.partial")] == []
+        assert [*(tmp_path / "temporary").iterdir()] == []
+
+
+def test_without_the_extra_the_scenarios_are_named_and_a_mission_tells_what_to_install(
+    tmp_path: Path,
+) -> None:
+    program = (
+        "import simulation; simulation.missing = lambda: ('mujoco', 'scipy'); "
+        "import sys; sys.modules['mujoco'] = sys.modules['rosbags'] = sys.modules['scipy'] = None; "
+        "from fretc.cli import main; main()"
+    )
+    for words, status in ((("--list",), 0), (("--out", "a.mcap"), 2), (("--campaign", "1"), 2)):
+        ran = subprocess.run(
+            [sys.executable, "-c", program, "simulate", *words],
+            cwd=tmp_path,
+            env={"PYTHONPATH": str(ROOT)},
+            capture_output=True,
+            text=True,
+            check=False,
+        )
+        assert ran.returncode == status
+        if status:
+            assert ran.stderr == (
+                "F908 the simulated robot needs `mujoco` and `scipy`\n"
+                "help: install the extra: pip install 'fretc[sim]' "
+                "(in a checkout: .venv/bin/pip install '.[sim]')\n"
+            )

@@ -1,0 +1,664 @@
+"""`fretc verify`: what it prints, and what it exits with."""
+
+import csv
+import json
+import shutil
+import subprocess
+import sys
+from collections.abc import Callable
+from importlib.util import find_spec
+from pathlib import Path
+from typing import Any
+
+import jsonschema  # type: ignore[import-untyped]
+import pytest
+
+from compiler.files.templating import template_root
+from compiler.logic.claims import Evidence
+from fretc.verification import verify as layers
+from fretc.verification.engines import programs as external
+from fretc.verification.engines import provers
+from fretc.verification.engines import sandbox as confined
+from fretc.verification.engines.programs import Ran
+from tests.command import Fretc, Run, write
+
+R1 = "whenever p the sw shall within 2 ticks satisfy q"
+LOOKS_BACK = "whenever occurred(2, p) the sw shall always satisfy q"
+CLAIM = "the monitor means what the sentence says"
+PROVED = (
+    f"proved: {CLAIM}; the same at every tick of every trace (4 states, 16 steps); "
+    "columns agree on 1160 drawn ticks\n"
+)
+WROTE = "wrote build/verification.json\n"
+
+
+@pytest.fixture(autouse=True)
+def in_this_process(monkeypatch: pytest.MonkeyPatch, request: pytest.FixtureRequest) -> None:
+    """A new process takes a quarter of a second; that calls can be sent, some tests show."""
+
+    def direct(limits: object, function: Callable[..., Any], *args: Any) -> Any:
+        return function(*args)
+
+    if "confined" not in request.keywords:
+        monkeypatch.setattr(confined, "confined", direct)
+
+
+@pytest.fixture
+def r1(fretc: Fretc) -> str:
+    """The file of a requirement, in the folder of the run."""
+    return write("r1.fret", R1)
+
+
+def edited(path: str, old: str, new: str) -> str:
+    text = Path(path).read_text(encoding="utf-8")
+    assert old in text
+    return write(path, text.replace(old, new))
+
+
+@pytest.fixture
+def made(fretc: Fretc, r1: str) -> str:
+    """The monitor that was made of it."""
+    assert fretc(r1, "--emit", "monitor", "-o", ".").status == 0
+    return "r1_monitor.py"
+
+
+# Proved ---------------------------------------------------------------------------------------
+
+
+def test_a_monitor_that_is_made_is_proved(fretc: Fretc, r1: str) -> None:
+    assert fretc("verify", "--monitor", r1) == Run(0, f"✔ r1  monitor  {PROVED}", WROTE)
+
+
+def test_a_monitor_that_was_made_before_is_proved(fretc: Fretc, r1: str, made: str) -> None:
+    assert fretc("verify", "--file", made, r1) == Run(0, f"✔ r1  monitor  {PROVED}", WROTE)
+
+
+def test_a_file_with_several_monitors_is_proved_for_each_requirement(fretc: Fretc) -> None:
+    path = write("two.fret", f'+++\nid = "A"\n+++\n{R1}\n+++\nid = "BB"\n+++\n{R1}\n')
+    assert fretc(path, "--emit", "monitor", "--one-file", "-o", ".").status == 0
+    run = fretc("verify", "--file", "monitors.py", path)
+    assert (run.status, run.out) == (
+        0,
+        f"✔ A   monitor  {PROVED}✔ BB  monitor  {PROVED}",
+    )
+
+
+def test_the_names_of_a_folder_stand_in_one_column(fretc: Fretc) -> None:
+    write("all/a.fret", R1)
+    write("all/longer.fret", R1)
+    assert fretc("verify", "--monitor", "all") == Run(
+        0, f"✔ a       monitor  {PROVED}✔ longer  monitor  {PROVED}", WROTE
+    )
+
+
+def test_the_bound_is_counted_by_the_clock(fretc: Fretc) -> None:
+    path = write("s.fret", R1.replace("2 ticks", "2 seconds"))
+    write("bindings.toml", '[clock]\ntick = "20 ms"\n')
+    run = fretc("verify", "--monitor", path)
+    assert run.status == 0
+    assert "(102 states, 408 steps)" in run.out
+
+
+# Refuted --------------------------------------------------------------------------------------
+
+
+def test_a_refutation_shows_a_shortest_trace(fretc: Fretc, r1: str, made: str) -> None:
+    edited(made, "oldest_1 >= 2", "oldest_1 >= 3")
+    assert fretc("verify", "--file", made, r1) == Run(
+        1,
+        f"✘ r1  monitor  counterexample: not true that {CLAIM}; the shortest trace that shows it "
+        "has 3 ticks; after it, pending (true if it ended there), and should be violated (false if "
+        "it ended there)\n"
+        "    tick  p  q\n"
+        "       0  1  0\n"
+        "    1..2  0  0\n",
+        WROTE,
+    )
+
+
+def test_a_monitor_of_the_sentence_as_it_was_is_refuted(fretc: Fretc, r1: str, made: str) -> None:
+    write(r1, R1.replace("whenever", "upon"))
+    run = fretc("verify", "--file", made, r1)
+    assert run.status == 1
+    assert "; the shortest trace that shows it has 4 ticks;" in run.out
+
+
+def test_programs_that_differ_are_refuted(fretc: Fretc, r1: str, made: str) -> None:
+    edited(made, "trigger=p,", "trigger=not_q,")
+    run = fretc("verify", "--file", made, r1)
+    first, *trace = run.out.splitlines()
+    assert (run.status, first) == (
+        1,
+        f"✘ r1  monitor  counterexample: not true that {CLAIM}; its column program and its steps "
+        "differ on a trace",
+    )
+    assert trace[-1].endswith(("  0  0", "  1  1"))
+
+
+def test_a_trace_may_have_unknown_values(fretc: Fretc, r1: str, made: str) -> None:
+    edited(made, "elif p and not_q:", "elif p and not q:")
+    run = fretc("verify", "--file", made, r1)
+    assert run.status == 1
+    assert run.out.splitlines()[-1].endswith("  1  ?")
+    (record,) = told(fretc("verify", "--file", made, r1, "--format", "json"))
+    assert record["trace"]["rows"][-1] == [True, None]
+
+
+# Not checked ----------------------------------------------------------------------------------
+
+
+def test_what_cannot_be_checked_is_told(fretc: Fretc) -> None:
+    run = fretc("verify", "--monitor", write("r1.fret", LOOKS_BACK))
+    assert (run.status, run.out) == (
+        3,
+        f"? r1  monitor  not checked: {CLAIM}; `occurred` speaks of other ticks, and the automaton "
+        "knows one\n",
+    )
+
+
+def test_a_step_that_looks_at_the_tick_is_not_checked(fretc: Fretc, r1: str, made: str) -> None:
+    edited(made, "since_1 = oldest_1 >= 2", "since_1 = oldest_1 >= 2 or tick == 5000")
+    assert fretc("verify", "--file", made, r1) == Run(
+        3, f"? r1  monitor  not checked: {CLAIM}; what it does at a tick depends on `tick`\n", WROTE
+    )
+
+
+def test_a_monitor_of_another_requirement_is_not_checked(fretc: Fretc, r1: str, made: str) -> None:
+    write("r2.fret", R1)
+    run = fretc("verify", "--file", made, r1, "r2.fret")
+    reason = "the monitor is of other requirements"
+    told = f"✔ r1  monitor  {PROVED}? r2  monitor  not checked: {CLAIM}; {reason}\n"
+    assert run == Run(3, told, WROTE)
+
+
+def test_the_worst_of_several_is_the_exit_status(fretc: Fretc, r1: str, made: str) -> None:
+    write("r2.fret", R1)
+    edited(made, "oldest_1 >= 2", "oldest_1 >= 3")
+    run = fretc("verify", "--file", made, r1, "r2.fret")
+    assert run.status == 1
+    assert [line[0] for line in run.out.splitlines() if line[0] != " "] == ["✘", "?"]
+
+
+# JSON -----------------------------------------------------------------------------------------
+
+
+def told(run: Run) -> list[dict[str, Any]]:
+    """The evidence on standard output, which fits the schema."""
+    content = json.loads(run.out)
+    schema = json.loads((template_root() / "json/verification.schema.json").read_text())
+    jsonschema.validate(content, schema)
+    assert list(content) == ["schema", "fretc", "evidence"]
+    evidence: list[dict[str, Any]] = content["evidence"]
+    return evidence
+
+
+def test_a_proof_as_json(fretc: Fretc, r1: str) -> None:
+    run = fretc("verify", "--monitor", r1, "--format", "json")
+    (record,) = told(run)
+    assert len(record["artefacts"].pop("r1_monitor.py")) == 64
+    assert (run.status, record) == (
+        0,
+        {
+            "requirement": "r1",
+            "layer": "monitor",
+            "claim": CLAIM,
+            "result": "proved",
+            "detail": PROVED.partition("; ")[2].strip(),
+            "assumptions": [],
+            "engine": "fretc, lock step with the counter automaton of the sentence",
+            "artefacts": {},
+        },
+    )
+
+
+def test_the_evidence_is_what_is_printed_as_json(fretc: Fretc, r1: str) -> None:
+    printed = fretc("verify", "--monitor", r1, "--format", "json").out
+    assert Path("build/verification.json").read_text() == printed
+    assert fretc("verify", "--monitor", r1, "-o", "-") == Run(0, printed, "")
+
+
+def test_a_refutation_as_json(fretc: Fretc, r1: str, made: str) -> None:
+    edited(made, "oldest_1 >= 2", "oldest_1 >= 1")
+    run = fretc("verify", "--file", made, r1, "--format", "json")
+    (record,) = told(run)
+    assert (run.status, record["result"], record["trace"]) == (
+        1,
+        "counterexample",
+        {
+            "names": ["p", "q"],
+            "rows": [[True, False], [False, False]],
+            "actions": [],
+            "cycle": None,
+        },
+    )
+    assert record["detail"].endswith(
+        "violated (false if it ended there), and should be pending (true if it ended there)"
+    )
+
+
+def test_what_is_not_checked_as_json(fretc: Fretc, r1: str, made: str) -> None:
+    edited(made, "import argparse\n", "import argparse  # as it was\nimport array\n")
+    run = fretc("verify", "--file", made, r1, "--format", "json")
+    (record,) = told(run)
+    assert (run.status, record["result"], record["detail"]) == (
+        3,
+        "not checked",
+        "the run time in it is not the one of this version of fretc",
+    )
+
+
+# The closed loop ------------------------------------------------------------------------------
+
+BINDINGS = """\
+[clock]
+tick = "100 ms"
+
+[signal.d]
+path = "/d.data"
+unit = "m"
+
+[signal.v]
+path = "/v.data"
+unit = "m/s"
+
+[proposition.near]
+expr = "d < 5 cm"
+
+[proposition.stopped]
+expr = "abs(v) < 0.01 m/s"
+
+[interceptor]
+stop = "/stop"
+command = "/cmd_vel"
+output = "/wheels"
+period = "50 ms"
+hold = "200 ms"
+stop_timeout = "1200 ms"
+
+[assume]
+stands = "stopped"
+latency = "100 ms"
+lost = 1
+braking = "170 ms"
+"""
+NEAR = "whenever near the sw shall within {} milliseconds satisfy stopped"
+ASSUMPTIONS = """\
+assumptions
+   1  the safety function steps at every tick of 100 ms and sends its request every time \
+(`requests`, [assume])
+   2  stop messages are heard in the order of sending, each within 100 ms (`latency`, [assume])
+   3  never are more than 1 stop messages lost in a row (`lost`, [assume])
+   4  `stopped` is false while the wheels are told to move, and true once they have had zero for \
+170 ms (`braking`, [assume]), or earlier
+   5  the wheels have at once what was published last, and keep it while nothing is published
+   6  at the first tick the robot stands, and nothing has been heard yet
+   7  the node around the interceptor's step hands on every message, and publishes what it gives
+   8  the interceptor's timer rings once in each 50 ms (`period`, [interceptor])
+   9  `braking` of 170 ms counts as 200 ms, whole cells of the model
+"""
+
+
+@pytest.fixture
+def loop(fretc: Fretc) -> Callable[..., str]:
+    """Write a requirement and its bindings, some of them changed; the path of the requirement."""
+
+    def make(bound: int, *edits: tuple[str, str]) -> str:
+        text = BINDINGS
+        for old, new in edits:
+            assert text.count(old) == 1, old
+            text = text.replace(old, new)
+        write("bindings.toml", text)
+        return write("r1.fret", NEAR.format(bound))
+
+    return make
+
+
+@pytest.mark.confined
+def test_a_loop_that_keeps_its_requirement(fretc: Fretc, loop: Callable[..., str]) -> None:
+    run = fretc("verify", "--layer", "loop", loop(400))
+    kept, released, rest = run.out.split("\n", 2)
+    assert kept.startswith(
+        "✔ r1  loop  proved under (1-9): monitor, interceptor and any environment together keep "
+        "the requirement; "
+    )
+    assert released == (
+        "✔ r1  loop  proved under (1-9): the stop is released once no demand begins any more; "
+        "Spot finds no endless run that violates it"
+    )
+    assert (run.status, rest, run.err) == (0, ASSUMPTIONS, WROTE)
+
+
+def test_the_stop_of_r1_is_released(fretc: Fretc) -> None:
+    """Its safety function speaks on change; a watchdog that hears nothing halts it for good."""
+    shutil.copytree(template_root().parent / "requirements", "requirements")
+    bindings = Path("requirements/bindings.toml")
+    run = fretc("verify", "requirements/r1.fret", "--layer", "loop")
+    assert (run.status, [line[0] for line in run.out.splitlines()[:2]]) == (0, ["✔", "✔"])
+    lines = bindings.read_text().splitlines(keepends=True)
+    bindings.write_text("".join(line for line in lines if not line.startswith("heartbeat")))
+    run = fretc("verify", "requirements/r1.fret", "--layer", "loop")
+    assert (run.status, [line[0] for line in run.out.splitlines()[:2]]) == (3, ["✔", "✘"])
+
+
+def test_a_heartbeat_is_an_assumption(fretc: Fretc, loop: Callable[..., str]) -> None:
+    beating = ("lost = 1\n", 'requests = "edge"\nheartbeat = "250 ms"\n')
+    run = fretc("verify", "--layer", "loop", loop(300, beating))
+    assert (run.status, [line[0] for line in run.out.splitlines()[:2]]) == (0, ["✔", "✔"])
+    lines = [line[4:].strip() for line in run.out.splitlines()[3:]]
+    assert lines[0] == (
+        "the safety function steps at every tick of 100 ms and sends its request where it changes, "
+        "and again once it has been silent for 250 ms, or earlier (`requests` and `heartbeat`, "
+        "[assume])"
+    )
+    assert lines[-1] == "`heartbeat` of 250 ms counts as 300 ms, whole ticks of the clock"
+
+
+def test_a_loop_that_does_not_shows_a_run(fretc: Fretc, loop: Callable[..., str]) -> None:
+    run = fretc("verify", "--layer", "loop", loop(200, ("lost = 1\n", "")))
+    first, *table = run.out.splitlines()[:5]
+    assert run.status == 1
+    assert first == (
+        "✘ r1  loop  counterexample under (1-9): not true that monitor, interceptor and any "
+        "environment together keep the requirement; violated at tick 3; no shorter run shows it"
+    )
+    assert table == [
+        "    tick  near  stopped  request  delivered  halt  wheels",
+        "       0     0        1        0          0     0       1  no stop is requested, and the "
+        "message is sent; a command to move is heard; `false` is heard",
+        "       1     1        0        1          1     1       0  a stop is requested, and the "
+        "message is sent; `true` is heard",
+        "    2..3     0        0        1          1     1       0  a stop is requested, and the "
+        "message is sent; `true` is heard",
+    ]
+
+
+def test_a_run_is_replayed_by_the_monitor_itself(fretc: Fretc, loop: Callable[..., str]) -> None:
+    path = loop(200)
+    assert fretc(path, "--emit", "monitor", "-o", ".").status == 0
+    run = fretc("verify", "--layer", "loop", path, "--traces", "runs")
+    assert run.err == "wrote build/verification.json\nwrote runs/r1_loop_1.csv\n"
+    with Path("runs/r1_loop_1.csv").open() as file:
+        rows = [*csv.reader(file)]
+    assert rows[0] == ["near", "stopped"]
+    replay = [sys.executable, "r1_monitor.py", "runs/r1_loop_1.csv"]
+    assert subprocess.run(replay, capture_output=True, check=False).returncode == 1
+
+
+@pytest.mark.confined
+def test_the_least_bound_is_told(fretc: Fretc, loop: Callable[..., str]) -> None:
+    run = fretc("verify", "--layer", "bounds", loop(400))
+    answered, enough = run.out.splitlines()[:2]
+    assert answered.startswith(
+        "✔ r1  bounds  proved under (1-8): every demand is answered within `lost` ticks and as "
+        "many more, at least one, as `latency` and `braking` fill together; by an inductive "
+    )
+    assert enough == (
+        "✔ r1  bounds  proved under (1, 5-12): the bound of 4 ticks is enough; the least that is "
+        "kept is 4 ticks (400 ms); with one tick less a run of 5 ticks violates it"
+    )
+    assert run.status == 0
+
+
+def test_bounds_are_of_the_monitor_that_fretc_writes(
+    fretc: Fretc, loop: Callable[..., str]
+) -> None:
+    """At longer times than those that are looked at, another one may ask for no stop."""
+    path = loop(400)
+    assert fretc(path, "--emit", "monitor", "-o", ".").status == 0
+    edited("r1_monitor.py", "oldest_1 >= 4\n", "oldest_1 >= 5\n")
+    run = fretc("verify", "--layer", "bounds", path, "--file", "r1_monitor.py")
+    assert run.status == 3
+    assert run.out.count("the monitor is not the one that fretc writes for it") == 2
+
+
+def test_a_stop_that_stays_is_no_violation(fretc: Fretc, loop: Callable[..., str]) -> None:
+    path = loop(400, ("[assume]", "latching = true\n\n[assume]"))
+    run = fretc("verify", "--layer", "loop", path)
+    assert (run.status, [line[0] for line in run.out.splitlines()[:2]]) == (3, ["✔", "✘"])
+
+
+@pytest.mark.parametrize(
+    ("sentence", "edits", "reason"),
+    [
+        (
+            "whenever stopped the sw shall within 200 milliseconds satisfy near",
+            [],
+            "its response does not speak of `stopped`, which is what the loop decides",
+        ),
+        (
+            NEAR.format(200),
+            [(BINDINGS[BINDINGS.index("[assume]") :], "")],
+            "the bindings assume nothing of the loop (`[assume]`)",
+        ),
+        (
+            NEAR.format(200),
+            [('period = "50 ms"', 'period = "70 ms"')],
+            "a tick of the clock, 100 ms, is no whole number of periods of the interceptor's "
+            "timer, 70 ms",
+        ),
+    ],
+)
+def test_what_is_no_loop_is_not_checked(
+    fretc: Fretc,
+    loop: Callable[..., str],
+    sentence: str,
+    edits: list[tuple[str, str]],
+    reason: str,
+) -> None:
+    path = loop(200, *edits)
+    write(path, sentence)
+    run = fretc("verify", "--layer", "loop", path)
+    assert run.status == 3
+    assert [line.endswith(f"; {reason}") for line in run.out.splitlines()] == [True, True]
+
+
+def test_without_bindings_there_is_no_loop(fretc: Fretc, r1: str) -> None:
+    run = fretc("verify", "--layer", "loop", "--layer", "bounds", r1)
+    assert run.status == 3
+    reason = "the bindings declare no interceptor (`[interceptor]`)"
+    assert [line.endswith(f"; {reason}") for line in run.out.splitlines()] == [True] * 4
+
+
+def test_an_interceptor_of_other_bindings_is_not_checked(
+    fretc: Fretc, loop: Callable[..., str]
+) -> None:
+    path = loop(400)
+    assert fretc(path, "--emit", "interceptor", "-o", ".").status == 0
+    assert fretc("verify", "--layer", "loop", path, "--interceptor", "interceptor.py").status == 0
+    edited("interceptor.py", "hold=4,", "hold=3,")
+    run = fretc("verify", "--layer", "loop", path, "--interceptor", "interceptor.py")
+    assert run.status == 3
+    assert "its options are not those that the bindings declare" in run.out
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "reason"),
+    [
+        ("PERIOD = ", "PERIOD = 10 * ", "its node is not one that fretc writes for these bindings"),
+        (
+            "velocity[:3]",
+            "velocity[:2]",
+            "its node is not one that fretc writes for these bindings",
+        ),
+        ("hold=4,", "hold=3,", "its options are not those that the bindings declare"),
+        ("    wz: float = 0.0\n", "", "its core is not as fretc can read it: `class Velocity"),
+        (
+            "def halted(",
+            "def isfinite(age: int) -> bool:\n    return age > 0\n\n\ndef halted(",
+            "its core is not as fretc can read it: `def isfinite(age: int) -> bool:`",
+        ),
+    ],
+)
+def test_nothing_is_proved_of_an_interceptor_that_flies_otherwise(
+    fretc: Fretc, loop: Callable[..., str], old: str, new: str, reason: str
+) -> None:
+    path = loop(400)
+    assert fretc(path, "--emit", "interceptor", "-o", ".").status == 0
+    verify = ("verify", "--layer", "interceptor", path, "--interceptor", "interceptor.py")
+    assert fretc(*verify).status == 0
+    edited("interceptor.py", old, new)
+    run = fretc(*verify)
+    assert run.status == 3
+    assert "proved" not in run.out.replace("not checked", "")
+    assert reason in run.out
+
+
+def test_all_five_layers_have_a_line(fretc: Fretc, loop: Callable[..., str]) -> None:
+    run = fretc("verify", loop(400), "--format", "json")
+    assert {record["layer"] for record in told(run)} == {
+        "monitor",
+        "interceptor",
+        "loop",
+        "bounds",
+        "agent",
+    }
+    assert run.status == 3, "no agent is named"
+
+
+# Other provers --------------------------------------------------------------------------------
+
+
+@pytest.fixture
+def node(fretc: Fretc, loop: Callable[..., str]) -> tuple[str, str]:
+    """The requirement, and the interceptor that was made for it."""
+    path = loop(400)
+    assert fretc(path, "--emit", "interceptor", "-o", ".").status == 0
+    return path, "interceptor.py"
+
+
+@pytest.mark.skipif(find_spec("crosshair") is None, reason="CrossHair is not installed")
+def test_crosshair_is_given_the_core_and_the_limit(
+    fretc: Fretc, node: tuple[str, str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """With the node beside it every number of a velocity is a case of its own, and there is no end.
+
+    The contracts of one function are looked at, so that it takes seconds.
+    """
+    path, made = node
+    every = provers._contracts
+    monkeypatch.setattr(
+        provers, "_contracts", lambda text: [c for c in every(text) if c.function == "halted"]
+    )
+    limits: list[float] = []
+    asked = external.run
+
+    def run(*args: Any, seconds: float, memory: int) -> Ran:
+        limits.append(seconds)
+        return asked(*args, seconds=seconds, memory=memory)
+
+    monkeypatch.setattr(provers, "run", run)
+    options = ("--layer", "interceptor", "--with", "crosshair", "--limit", "20")
+    found = told(fretc("verify", *options, "--interceptor", made, path, "--format", "json"))[-2:]
+    assert limits == [50], "20 s, and half a minute to begin"
+    assert [(one["claim"], one["result"]) for one in found] == [
+        ("`halted` keeps `__return__ or not state.stop`", "proved"),
+        ("`halted` keeps `__return__ or state.held <= 0`", "proved"),
+    ]
+    assert list(found[0]["artefacts"]) == ["interceptor.py"]
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "reason"),
+    [
+        ("ZERO = Velocity()", "ZERO = print()", "its core is not as fretc can read it: "),
+        ("\n\nclass Gate:", "\n\nstep = print\n\nclass Gate:", "the node below it"),
+        ("post: __return__ or state.held", "post: print() or state.held", "are not those of fretc"),
+        ("    post: __return__ or not state.stop\n", "", "are not those of fretc"),
+    ],
+)
+def test_crosshair_does_not_execute_what_may_not_be_pure(
+    fretc: Fretc,
+    node: tuple[str, str],
+    monkeypatch: pytest.MonkeyPatch,
+    old: str,
+    new: str,
+    reason: str,
+) -> None:
+    monkeypatch.setattr(layers, "with_crosshair", None)
+    path, made = node
+    edited(made, old, new)
+    options = ("--layer", "interceptor", "--with", "crosshair", "--interceptor", made)
+    run = fretc("verify", *options, path, "--format", "json")
+    last = told(run)[-1]
+    assert (run.status, last["result"]) == (3, "not checked")
+    assert last["claim"] == "CrossHair confirms the contracts in the text"
+    assert reason in last["detail"]
+
+
+def test_dafny_is_given_the_limit(
+    fretc: Fretc, node: tuple[str, str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    seen: list[float] = []
+
+    def dafny(*_: object, seconds: float) -> tuple[Evidence, ...]:
+        seen.append(seconds)
+        return ()
+
+    monkeypatch.setattr(layers, "with_dafny", dafny)
+    fretc("verify", "--layer", "interceptor", "--with", "dafny", "--limit", "7", node[0])
+    assert seen == [7]
+
+
+# Bad use --------------------------------------------------------------------------------------
+
+
+def first(run: Run) -> tuple[int, str, str]:
+    return run.status, run.out, run.err.splitlines()[0]
+
+
+def test_a_layer_must_be_one_of_five(fretc: Fretc, r1: str) -> None:
+    status, out, line = first(fretc("verify", "--layer", "lop", r1))
+    assert (status, out, line[:4]) == (2, "", "F907")
+
+
+def test_an_agent_needs_its_properties(fretc: Fretc, r1: str) -> None:
+    assert fretc("verify", r1, "--agent", "SIF.gwen") == Run(
+        2,
+        "",
+        "F907 `--agent` is of no use without `--properties`\n"
+        "help: name both: `--agent FILE.gwen --properties FILE.psl`\n",
+    )
+
+
+def test_a_requirement_is_not_written_over(fretc: Fretc, r1: str) -> None:
+    run = fretc("verify", "--monitor", r1, "-o", r1)
+    assert run.status == 2
+    assert run.err.startswith("F905 `r1.fret` cannot be written")
+
+
+def test_files_must_be_named_and_be_there(fretc: Fretc, r1: str) -> None:
+    assert first(fretc("verify", "--monitor")) == (2, "", "F907 missing argument 'FILE...'")
+    assert first(fretc("verify", "--monitor", "no.fret")) == (
+        2,
+        "",
+        "F901 there is no file `no.fret`",
+    )
+    assert first(fretc("verify", "--file", "no.py", r1)) == (2, "", "F901 there is no file `no.py`")
+    Path("empty").mkdir()
+    assert first(fretc("verify", "--monitor", "empty"))[:2] == (2, "")
+
+
+@pytest.mark.parametrize(
+    ("text", "why"),
+    [
+        ("x = 1\n", "it names no `MONITOR`"),
+        ("x = (\n", "it is no Python"),
+        ("raise SystemExit(0)\n", "it names no `MONITOR`"),
+    ],
+)
+def test_a_file_that_is_no_monitor_is_told(fretc: Fretc, r1: str, text: str, why: str) -> None:
+    run = fretc("verify", "--file", write("x.py", text), r1)
+    assert (run.status, run.out) == (2, "")
+    assert run.err.startswith(f"F602 `x.py` is no generated monitor: {why}")
+    assert run.err.endswith("help: name a file that `--emit monitor` wrote\n")
+
+
+def test_a_sentence_that_is_wrong_is_told(fretc: Fretc) -> None:
+    run = fretc("verify", "--monitor", write("bad.fret", "the sw shall satisfy"))
+    assert first(run) == (2, "", "F101 the sentence ends too early")
+
+
+def test_what_has_no_monitor_has_no_proof(fretc: Fretc) -> None:
+    run = fretc("verify", "--monitor", write("s.fret", R1.replace("ticks", "seconds")))
+    assert (run.status, run.out) == (2, "")
+    assert "F312 no clock says how many ticks the duration of s is" in run.err

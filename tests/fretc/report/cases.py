@@ -1,0 +1,271 @@
+"""Small projects and hand-made evidence about them."""
+
+import json
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from compiler.formalization.record import wording
+from compiler.project.folder import Project, load
+from fretc.audit.evidence.basis import BINDINGS as BINDINGS_PART
+from fretc.audit.evidence.basis import KINDS, of_all
+from fretc.audit.plan import bases
+from fretc.report.make import Made, make
+
+BINDINGS = """\
+[clock]
+time = "log_time"
+tick = "100 ms"
+end = "inconclusive"
+
+[signal.clearance]
+path = "/scan.ranges[:]"
+type = "sensor_msgs/LaserScan"
+reduce = "min"
+unit = "m"
+max_age = "300 ms"
+
+[signal.vx]
+path = "/odom.twist.twist.linear.x"
+type = "nav_msgs/Odometry"
+unit = "m/s"
+invalid = { nan = "unknown" }
+max_age = "100 ms"
+
+[proposition.near]
+text = "an obstacle is near"
+expr = "clearance < 5 cm"
+role = "input"
+kind = "belief"
+agg = "any"
+
+[proposition.stopped]
+text = "the robot does not move"
+expr = "abs(vx) < 0.01 m/s for 200 ms"
+role = "output"
+kind = "physical"
+agg = "last"
+"""
+
+HAZARDS = """\
+[HAZ-1]
+title = "The robot hits something"
+text = "A drum can break."
+severity = "catastrophic"
+source = "hazard analysis"
+"""
+
+R1 = """\
++++
+id = "R1"
+title = "Stop when something is near"
+parents = ["HAZ-1"]
+text = "The robot must stop."
+rationale = "It would hit a drum."
+status = "approved"
+verify = ["audit"]
++++
+whenever near the robot shall eventually satisfy stopped
+"""
+
+LOG = "ab" * 32
+
+
+def requirement(id: str, sentence: str, **fields: object) -> str:
+    """A `.fret` text with one requirement; fields as in its header."""
+    header = {"id": id, "title": f"Title of {id}", "parents": ["HAZ-1"], "status": "approved"}
+    lines = (f"{key} = {_toml(value)}" for key, value in {**header, **fields}.items())
+    return "\n".join(["+++", *lines, "+++", sentence, ""])
+
+
+def _toml(value: object) -> str:
+    if isinstance(value, dict):
+        return f"{{ {', '.join(f'{key} = {json.dumps(v)}' for key, v in value.items())} }}"
+    return json.dumps(value)
+
+
+def project(
+    folder: Path, *texts: str, bindings: str | None = BINDINGS, hazards: str | None = HAZARDS
+) -> Project:
+    """A project from the texts of its files; without texts, the requirement R1 alone."""
+    folder.mkdir(parents=True, exist_ok=True)
+    paths = []
+    for number, text in enumerate(texts or (R1,), 1):
+        paths.append(folder / f"r{number}.fret")
+        paths[-1].write_text(text, encoding="utf-8")
+    for name, content in (("bindings.toml", bindings), ("hazards.toml", hazards)):
+        if content is not None:
+            (folder / name).write_text(content, encoding="utf-8")
+    return load(
+        [str(path) for path in paths],
+        str(folder / "bindings.toml") if bindings is not None else None,
+        str(folder / "hazards.toml") if hazards is not None else None,
+    )
+
+
+def moment(tick: int) -> dict[str, Any]:
+    return {"tick": tick, "ns": 10**9 + tick * 10**8, "seconds": tick / 10}
+
+
+def violation(first: int, last: int, trigger: int | None = None) -> dict[str, Any]:
+    return {
+        "first_tick": first,
+        "last_tick": last,
+        "start_ns": 10**9 + first * 10**8,
+        "end_ns": 10**9 + last * 10**8,
+        "start_s": first / 10,
+        "end_s": last / 10,
+        "trigger": None if trigger is None else moment(trigger),
+        "deadline": None if trigger is None else moment(first),
+        "missing": "stopped",
+        "values": {"clearance": 0.0318, "vx": None},
+        "window": WINDOW,
+    }
+
+
+WINDOW = {
+    "start_ns": 10**9,
+    "end_ns": 3 * 10**9,
+    "samples": {"clearance": {"times_ns": [10**9, 2 * 10**9], "values": [0.0318, "+inf"]}},
+}
+THRESHOLDS = [
+    {
+        "proposition": "near",
+        "signal": "clearance",
+        "operator": "<",
+        "bound": 0.05,
+        "unit": "m",
+        "least": 0.0318,
+        "greatest": "+inf",
+        "comparison": "crossed",
+        "margin": None,
+        "nearest": {"ns": 10**9, "seconds": 0.0},
+    },
+    {
+        "proposition": "stopped",
+        "signal": "abs(vx)",
+        "operator": "<",
+        "bound": 0.01,
+        "unit": "m/s",
+        "least": 0.0,
+        "greatest": 0.0075,
+        "comparison": "true",
+        "margin": 0.0025,
+        "nearest": {"ns": 9 * 10**8, "seconds": -0.1},
+    },
+]
+
+
+def result(
+    known: Project, verdict: str, id: str = "R1", run: str = "logs/a.mcap", **changes: Any
+) -> dict[str, Any]:
+    """What an audit of 100 ticks of 100 ms would write, with the present hashes.
+
+    `changes` replace fields; those of `hashes` and `health` are put into the present ones.
+    """
+    assert known.declarations is not None
+    made = {"log": LOG, **basis(known, id)}
+    health = {
+        "intact": True,
+        "size": 1234567,
+        "checked": {
+            "by_index": True,
+            "chunks": 9,
+            "crc_checked": 4,
+            "crc_unchecked": 2,
+            "without_crc": 0,
+            "skipped": 3,
+        },
+        "gaps": [],
+        "findings": [],
+        "topics": {"/odom": {**ODOM}},
+    }
+    return {
+        "run": run,
+        "requirement": id,
+        "verdict": verdict,
+        "finite": None,
+        "reason": f"reason of {id}",
+        "clock": "100 ms, by log_time",
+        "ticks": 100,
+        "start_ns": 10**9,
+        "end_ns": 11 * 10**9,
+        "states": [],
+        "answers": [],
+        "triggers": [moment(tick) for tick in (10, 11, 40)],
+        "violations": [],
+        "unknown": [],
+        "open": [],
+        "latencies_s": [2.5, 2.4, 0.0],
+        "exercised": 3,
+        "latency_median_s": 2.4,
+        "latency_max_s": 2.5,
+        "propositions": {"near": {"true": 3, "false": 97, "unknown": 0, "changes": 4}},
+        "thresholds": THRESHOLDS,
+        "units": {"clearance": "m", "vx": "m/s"},
+        "assumptions": [],
+        **changes,
+        "hashes": {**made, **changes.get("hashes", {})},
+        "health": {**health, **changes.get("health", {})},
+    }
+
+
+def basis(known: Project, name: str) -> Mapping[str, str]:
+    """What an audit would record of a requirement now."""
+    found = bases(known)
+    mine = next((each for each in known.requirements if each.id == name), None)
+    return found[id(mine)] if mine is not None else dict.fromkeys(KINDS, "0" * 64)
+
+
+ODOM = {
+    "type": "nav_msgs/msg/Odometry",
+    "count": 501,
+    "first_ns": 10**9,
+    "last_ns": 11 * 10**9,
+    "longest_gap_ns": 40_000_000,
+    "median_period_ns": 20_000_000,
+    "out_of_order": 3,
+    "equal_stamps": 0,
+    "unstamped": 0,
+    "zero_stamps": 0,
+    "clock_jumps": 0,
+}
+
+
+def evidence(known: Project, *results: Mapping[str, Any]) -> dict[str, Any]:
+    """A whole evidence file."""
+    bound = {rule.id: basis(known, rule.id)[BINDINGS_PART] for rule in known.rules}
+    return {
+        "schema": "fretc-evidence-1",
+        "fretc": "0.1.0",
+        "bindings": {"file": "bindings.toml", "sha256": of_all(bound)},
+        "requirements": [
+            {"id": rule.id, "sentence": wording(rule.requirement), "sha256": rule.fingerprint}
+            for rule in known.rules
+        ],
+        "results": list(results),
+    }
+
+
+def made(known: Project, folder: Path, *results: Mapping[str, Any]) -> Made:
+    """The report about these results."""
+    file = folder / "evidence.json"
+    file.write_text(json.dumps(evidence(known, *results)), encoding="utf-8")
+    return make(known, str(file))
+
+
+def said(report: Made) -> dict[str, Any]:
+    """What the report says, as plain data."""
+    assert report.json is not None
+    content: dict[str, Any] = json.loads(report.json)
+    return content
+
+
+def words(marks: Sequence[Mapping[str, Any]]) -> list[str]:
+    """The verdicts of views that have one, each with its currency where it is suspect."""
+    return [word(each["mark"]) for each in marks]
+
+
+def word(mark: Mapping[str, Any]) -> str:
+    """`violated`, or `violated, suspect`."""
+    return f"{mark['word']}, suspect" if mark["suspect"] else str(mark["word"])

@@ -1,0 +1,274 @@
+"""The report in the forms of other tools."""
+
+import csv
+import io
+import json
+import re
+from pathlib import Path
+from typing import Any
+from xml.etree import ElementTree
+
+import jsonschema  # type: ignore[import-untyped]
+import pytest
+import yaml
+
+from tests.command import Fretc, write
+from tests.fretc.report import junit_schema
+from tests.fretc.report.cases import evidence, project, requirement, result, violation
+from tests.fretc.report.sarif_schema import SARIF
+
+HOSTILE = "=cmd|' /C calc'!A0 <script>alert(1)</script> | * _x_ @team \u202e [a](b)"
+TEXTS = (
+    requirement("R1", "whenever near the robot shall eventually satisfy stopped"),
+    requirement("R2", "the robot shall always satisfy stopped", title=HOSTILE),
+    requirement("R3", "whenever near the robot shall satisfy stopped", parents=[]),
+    requirement("R4", "whenever near the robot shal satisfy stopped"),
+    requirement("R5", "the robot shall never satisfy near", status="retired"),
+)
+WAIVER = (
+    '[R3]\nverdict = "not exercised"\nreason = "later"\nby = "A"\nrole = "B"\n'
+    'granted = "2000-01-01"\nexpires = "2099-01-01"\n'
+)
+
+
+@pytest.fixture
+def reported(fretc: Fretc) -> Fretc:
+    """Four requirements and a retired one: satisfied, violated, waived, not FRETish."""
+    known = project(Path("requirements"), *TEXTS)
+    write("requirements/waivers.toml", WAIVER)
+    results = [
+        result(known, "satisfied", "R1"),
+        result(known, "satisfied", "R1", run="logs/b.mcap", hashes={"log": "cd" * 32}),
+        result(known, "violated", "R2", violations=[violation(14, 20, 11)]),
+    ]
+    write("build/evidence.json", json.dumps(evidence(known, *results)))
+    return fretc
+
+
+def form(fretc: Fretc, name: str, *options: str) -> str:
+    run = fretc("report", f"--{name}", f"out.{name}", *options)
+    assert run.status == 2  # R4 is an error, and the report tells it
+    return Path(f"out.{name}").read_text(encoding="utf-8")
+
+
+def test_csv_has_a_row_for_each_requirement_and_run(reported: Fretc) -> None:
+    rows = list(csv.DictReader(io.StringIO(form(reported, "csv"))))
+    found = [(row["requirement"], row["verdict"], row["run"], row["run_verdict"]) for row in rows]
+    assert found == [
+        ("R1", "satisfied", "logs/a.mcap", "satisfied"),
+        ("R1", "satisfied", "logs/b.mcap", "satisfied"),
+        ("R2", "violated", "logs/a.mcap", "violated"),
+        ("R3", "waived", "", ""),
+        ("R4", "unformalized", "", ""),
+        ("R5", "retired", "", ""),
+    ]
+    assert rows[0]["hazards"] == "HAZ-1"
+    assert rows[0]["log_sha256"] == "ab" * 32
+    assert rows[2]["violations"] == "1"
+
+
+def test_no_cell_is_a_formula_for_a_spreadsheet(reported: Fretc) -> None:
+    rows = list(csv.reader(io.StringIO(form(reported, "csv"))))
+    cells = [cell for row in rows for cell in row]
+    assert any(cell.startswith("'=cmd") for cell in cells)
+    assert not [cell for cell in cells if cell[:1] in ("=", "+", "-", "@")]
+
+
+def test_markdown_names_the_worst_first_and_takes_texts_as_text(reported: Fretc) -> None:
+    text = form(reported, "markdown")
+    assert text.startswith("## ✘ R2 is violated\\.\n") or text.startswith("## ✘ R2 is violated.\n")
+    table = [line for line in text.splitlines() if line.startswith("| **")]
+    assert [re.sub(r"\W", "", line.split("**")[1]) for line in table] == [
+        "R2",
+        "R4",
+        "R3",
+        "R1",
+        "R5",
+    ]
+    assert all(len(re.findall(r"(?<!\\)\|", line)) == 6 for line in table), (
+        "a table of five columns"
+    )
+    assert "<script>" not in text
+    assert not re.search(r"(?<!\\)@team", text)
+
+
+JUNIT = {"tests": "5", "failures": "1", "errors": "1", "skipped": "2"}
+
+
+def test_junit_has_a_case_for_each_requirement(reported: Fretc) -> None:
+    suite = ElementTree.fromstring(form(reported, "junit"))[0]
+    assert {name: suite.attrib[name] for name in JUNIT} == JUNIT
+    kinds = [(case.attrib["name"][:2], [child.tag for child in case]) for case in suite]
+    assert kinds == [
+        ("R1", []),
+        ("R2", ["failure"]),
+        ("R3", ["skipped"]),
+        ("R4", ["error"]),
+        ("R5", ["skipped"]),
+    ]
+
+
+def test_junit_has_the_elements_of_the_schema_that_jenkins_has(reported: Fretc) -> None:
+    root = ElementTree.fromstring(form(reported, "junit"))
+    assert list(junit_schema.complaints(root)) == []
+    assert {element.tag for element in root.iter()} == set(junit_schema.MAY)
+
+
+def test_a_suspect_requirement_fails_whatever_its_verdict(reported: Fretc) -> None:
+    path = Path("requirements/bindings.toml")
+    path.write_text(path.read_text().replace("< 0.01 m/s", "< 0.02 m/s"))
+    suite = ElementTree.fromstring(form(reported, "junit"))[0]
+    told = [(child.tag, child.attrib["message"]) for case in suite for child in case]
+    why = "reason of R{}; suspect, because the bindings have changed since the audit"
+    assert told[:2] == [
+        ("failure", f"satisfied, suspect: Run 1: satisfied, {why.format(1)}"),
+        ("failure", f"violated, suspect: Run 1: violated, {why.format(2)}"),
+    ]
+
+
+def test_sarif_tells_suspect_evidence_as_such(reported: Fretc) -> None:
+    log = json.loads(form(reported, "sarif"))
+    jsonschema.validate(log, SARIF)
+    levels = [(one["ruleId"], one["level"]) for one in log["runs"][0]["results"]]
+    assert levels == [("R1", "none"), ("R1", "none"), ("R2", "error")]
+    path = Path("requirements/bindings.toml")
+    path.write_text(path.read_text().replace("< 0.01 m/s", "< 0.02 m/s"))
+    log = json.loads(form(reported, "sarif"))
+    jsonschema.validate(log, SARIF)
+    first = log["runs"][0]["results"][0]
+    assert (first["ruleId"], first["level"]) == ("R1", "warning")
+    assert first["properties"]["verdict"] == "satisfied"
+    assert first["properties"]["currency"] == "suspect"
+    red = log["runs"][0]["results"][2]
+    assert (red["ruleId"], red["level"]) == ("R2", "error")
+    assert red["properties"]["currency"] == "suspect"
+    assert "the bindings have changed since the audit" in first["message"]["text"]
+
+
+# GSN, by the rules that gsn2x states ----------------------------------------------------------
+
+PREFIXES = ("CSn", "Sn", "G", "A", "J", "S", "C")
+"""Of an id, the longest first: `CSn` is a counter-solution, `Sn` no strategy."""
+SUPPORTS, AROUND = ("G", "Sn", "S"), ("J", "A", "C")
+
+
+def kind(id: str) -> str:
+    return next((prefix for prefix in PREFIXES if id.startswith(prefix)), "")
+
+
+def complaints(elements: dict[str, dict[str, Any]]) -> list[str]:
+    """V01 to V06 and V10 of gsn2x, C01 to C04, and goals that nobody refers to."""
+    found = []
+    known = {"text", "supportedBy", "inContextOf", "undeveloped", "challenges", "defeated"}
+    challenged = [e["challenges"] for e in elements.values() if "challenges" in e]
+    for id, element in elements.items():
+        below, around = element.get("supportedBy", []), element.get("inContextOf", [])
+        if not kind(id) or not element["text"] or element.keys() - known:
+            found.append(id)
+        if (below or around) and kind(id) not in ("S", "G"):
+            found.append(f"{id} refers")
+        found += [f"{id} {n}" for n in below if kind(n) not in SUPPORTS or n not in elements]
+        found += [f"{id} {n}" for n in around if kind(n) not in AROUND or n not in elements]
+        if len({*below, *around}) < len(below) + len(around) or id in (*below, *around):
+            found.append(f"{id} twice")
+        developed = bool(below) or kind(id) not in ("S", "G")
+        if developed == element.get("undeveloped", False):
+            found.append(f"{id} undeveloped")
+        if (kind(id) == "CSn") != (element.get("challenges", id) in elements.keys() - {id}):
+            found.append(f"{id} challenges")
+        if element.get("defeated") and id not in challenged:
+            found.append(f"{id} defeated")
+    referred = {
+        n for e in elements.values() for k in ("supportedBy", "inContextOf") for n in e.get(k, [])
+    }
+    alone = {id for id in elements if kind(id) != "CSn"} - referred
+    found += [f"{id} alone" for id in alone - {"G_top"}]
+    below = {id: element.get("supportedBy", []) for id, element in elements.items()}
+    found += [f"{id} in a circle" for id in below if id in _reached(below, id)]
+    return found
+
+
+def _reached(below: dict[str, list[str]], id: str) -> set[str]:
+    seen: set[str] = set()
+    waiting = list(below[id])
+    while waiting:
+        if (found := waiting.pop()) not in seen:
+            seen.add(found)
+            waiting += below.get(found, [])
+    return seen
+
+
+@pytest.mark.parametrize(
+    ("wrong", "complaint"),
+    [
+        ({"X1": {"text": "x"}}, "X1"),
+        ({"G_top": {"text": "g"}}, "G_top undeveloped"),
+        ({"G_top": {"text": "g", "supportedBy": ["Sn"], "undeveloped": True}}, "G_top undeveloped"),
+        ({"G_top": {"text": "g", "supportedBy": ["C"]}}, "G_top C"),
+        ({"G_top": {"text": "g", "supportedBy": ["Sn", "Sn"]}}, "G_top twice"),
+        ({"G_top": {"text": "g", "supportedBy": ["G_top"]}}, "G_top in a circle"),
+        ({"G_top": {"text": "g", "supportedBy": ["Sn"], "defeated": True}}, "G_top defeated"),
+        ({"CSn1": {"text": "x", "challenges": "G_none"}}, "CSn1 challenges"),
+    ],
+)
+def test_each_rule_finds_what_it_is_about(wrong: dict[str, dict[str, Any]], complaint: str) -> None:
+    right: dict[str, dict[str, Any]] = {
+        "G_top": {"text": "g", "supportedBy": ["Sn"], "inContextOf": ["C"]},
+        "Sn": {"text": "s"},
+        "C": {"text": "c"},
+    }
+    assert complaints(right) == []
+    assert complaint in complaints({**right, **wrong})
+
+
+def test_gsn_is_an_argument_that_gsn2x_takes(reported: Fretc) -> None:
+    elements = yaml.safe_load(form(reported, "gsn"))
+    assert complaints(elements) == []
+    assert elements["G_hazard_HAZ_2d_1"]["supportedBy"] == [
+        "G_req_2d_R1",
+        "G_req_2d_R2",
+        "G_req_2d_R4",
+        "G_req_2d_R5",
+    ]
+    assert elements["S_others"]["supportedBy"] == ["G_req_2d_R3"]
+
+
+def test_gsn_claims_no_more_than_is_shown(reported: Fretc) -> None:
+    elements = yaml.safe_load(form(reported, "gsn"))
+    shown = {id: element.get("supportedBy") for id, element in elements.items() if "req" in id}
+    goals = {id: below for id, below in shown.items() if id.startswith("G")}
+    assert goals["G_req_2d_R1"] == ["Sn_req_2d_R1"]
+    assert [goals[f"G_req_2d_R{n}"] for n in (2, 3, 4, 5)] == [None] * 4
+    defeated = [id for id, element in elements.items() if element.get("defeated")]
+    assert defeated == ["G_req_2d_R2"]
+    assert elements["CSn_req_2d_R2"] == {
+        "text": "R2 is violated in 1 of 1 audited run: Run 1, logs/a.mcap: reason of R2",
+        "challenges": "G_req_2d_R2",
+    }
+    assert elements["J_req_2d_R3"]["text"].startswith("Waived until 2099-01-01 by A, B")
+
+
+def test_a_form_never_goes_where_another_goes(reported: Fretc) -> None:
+    run = reported("report", "--csv", "x", "--gsn", "x")
+    assert run.status == 2
+    assert "F905 `x` cannot be written: two outputs would go there" in run.err
+    assert not Path("x").exists()
+
+
+@pytest.mark.parametrize(
+    ("verdict", "status"), [("satisfied", 0), ("violated", 1), ("vacuous", 3), (None, 3)]
+)
+def test_strict_exits_as_the_report_says(fretc: Fretc, verdict: str | None, status: int) -> None:
+    known = project(Path("requirements"))
+    results = [result(known, verdict)] if verdict else []
+    write("build/evidence.json", json.dumps(evidence(known, *results)))
+    assert fretc("report").status == 0
+    assert fretc("report", "--strict").status == status
+
+
+def test_no_form_goes_where_a_log_is(reported: Fretc) -> None:
+    write("logs/a.mcap", "a log")
+    run = reported("report", "--html", "logs/a.mcap")
+    assert run.status == 2
+    assert "F905 `logs/a.mcap` cannot be written: it is `logs/a.mcap`, which is read" in run.err
+    assert Path("logs/a.mcap").read_text() == "a log"

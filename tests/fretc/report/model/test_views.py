@@ -1,0 +1,90 @@
+"""The JSON form of the report says what its schema says, field by field."""
+
+import json
+from collections.abc import Iterator, Mapping
+from dataclasses import fields, is_dataclass
+from pathlib import Path
+from types import NoneType
+from typing import Any, get_args, get_origin, get_type_hints
+
+import pytest
+
+from fretc.report.model import views
+
+ROOT = Path(__file__).parents[4]
+SCHEMA = json.loads((ROOT / "templates/json/report.schema.json").read_text("utf-8"))
+
+
+def within(view: Any) -> Iterator[Any]:
+    """Every dataclass of a field, whatever module it is in."""
+    for hint in get_type_hints(view).values():
+        waiting = [hint]
+        for each in waiting:  # grows while it is read
+            waiting += get_args(each)
+            if is_dataclass(each):
+                yield each
+
+
+def reached() -> list[Any]:
+    """The report and all that is in it."""
+    found: dict[Any, None] = {views.Report: None}
+    for view in (waiting := [views.Report]):
+        for each in within(view):
+            if each not in found:
+                found[each] = None
+                waiting.append(each)
+    return sorted(found, key=lambda view: str(view.__name__))
+
+
+VIEWS = reached()
+PLAIN = {str: "string", int: "integer", float: "number", bool: "boolean", NoneType: "null"}
+
+
+@pytest.mark.parametrize("view", VIEWS, ids=lambda view: str(view.__name__))
+def test_the_schema_has_each_field_of_each_view_and_demands_it(view: Any) -> None:
+    told = SCHEMA if view is views.Report else SCHEMA["$defs"][view.__name__]
+    names = sorted(field.name for field in fields(view))
+    assert sorted(told["properties"]) == names
+    assert sorted(told["required"]) == names
+    assert told["additionalProperties"] is False
+
+
+def test_the_schema_has_no_more_than_the_views() -> None:
+    assert {*SCHEMA["$defs"], "Report"} == {view.__name__ for view in VIEWS}
+    assert SCHEMA["$id"] == SCHEMA["properties"]["schema"]["const"] == views.SCHEMA
+
+
+def shapes(told: Any) -> set[str]:
+    """What a value may be: a type of JSON, or the name of a view."""
+    if "$ref" in told:
+        return {told["$ref"].removeprefix("#/$defs/")}
+    if "const" in told or "enum" in told:
+        known = [told["const"]] if "const" in told else told["enum"]
+        return {PLAIN[type(value)] for value in known}
+    if "anyOf" in told or "oneOf" in told:
+        return {shape for each in told.get("anyOf", told.get("oneOf")) for shape in shapes(each)}
+    types = told["type"]
+    return set(types) if isinstance(types, list) else {types}
+
+
+def meant(hint: Any) -> set[str]:
+    """The same, of a field."""
+    origin = get_origin(hint)
+    if origin is tuple:
+        return {"array"}
+    if origin is Mapping:
+        return {"object"}
+    if origin is not None:
+        return {shape for each in get_args(hint) for shape in meant(each)}
+    return {PLAIN.get(hint, getattr(hint, "__name__", ""))}
+
+
+@pytest.mark.parametrize("view", VIEWS, ids=lambda view: str(view.__name__))
+def test_the_schema_gives_each_field_its_type(view: Any) -> None:
+    told = SCHEMA if view is views.Report else SCHEMA["$defs"][view.__name__]
+    for name, hint in get_type_hints(view).items():
+        shape = told["properties"][name]
+        assert shapes(shape) == meant(hint), name
+        element = next(iter(get_args(hint)), None)
+        if get_origin(hint) is tuple and get_args(hint)[1:] == (...,):
+            assert shapes(shape["items"]) == meant(element), name

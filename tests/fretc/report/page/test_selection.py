@@ -1,0 +1,91 @@
+import json
+import re
+from pathlib import Path
+
+import pytest
+
+from benchmarks.report import evidence, project
+from fretc.report.make import make
+from fretc.report.model.views import Report
+from fretc.report.page import selection as choosing
+from fretc.report.page.selection import DETAILED, PICTURES, selection
+from tests.fretc.report.cases import made, result
+from tests.fretc.report.cases import project as small_project
+
+
+def reported(folder: Path, requirements: int, runs: int, share: float) -> tuple[Report, str]:
+    known = project(folder, requirements)
+    path = folder / "evidence.json"
+    path.write_text(json.dumps(evidence(known, runs, share)), encoding="utf-8")
+    made = make(known, str(path))
+    assert made.report is not None
+    assert made.html is not None
+    return made.report, made.html
+
+
+def test_fifty_requirements_in_twenty_runs_are_at_most_two_megabytes(tmp_path: Path) -> None:
+    report, html = reported(tmp_path, 50, 20, 0.05)
+    assert len(html.encode()) <= 2_000_000
+    chosen = selection(report)
+    assert all(len(shown.rows) == 20 for shown in chosen.by_anchor.values())
+    violated = {r.anchor for view in report.requirements for r in view.results if r.violations}
+    assert {r.anchor for shown in chosen.by_anchor.values() for r in shown.details} == violated
+
+
+def test_when_all_is_violated_each_requirement_gets_a_share_of_the_details(tmp_path: Path) -> None:
+    report, html = reported(tmp_path, 12, 10, 1.0)
+    chosen = selection(report)
+    counts = [len(shown.details) for shown in chosen.by_anchor.values()]
+    assert sum(counts) == DETAILED
+    assert max(counts) - min(counts) <= 1
+    pictures = [len(r.timelines) for s in chosen.by_anchor.values() for r in s.details]
+    assert sum(pictures) == PICTURES
+    assert "Details below: of 8 of 10 runs that are not satisfied." in html
+
+
+def test_a_few_satisfied_runs_can_be_opened_in_the_page(tmp_path: Path) -> None:
+    report, html = reported(tmp_path, 2, 3, 0.0)
+    chosen = selection(report)
+    assert [len(shown.folded) for shown in chosen.by_anchor.values()] == [3, 3]
+    assert html.count("<summary>Details of runs that satisfy") == 2
+
+
+def test_a_compact_page_lists_what_is_not_satisfied_and_says_so(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(choosing, "COMPACT", 50)
+    monkeypatch.setattr(choosing, "_TOLD_RUNS", 9)
+    report, html = reported(tmp_path, 3, 20, 0.5)
+    chosen = selection(report)
+    assert chosen.is_compact
+    rows = [row for shown in chosen.by_anchor.values() for row in shown.rows]
+    assert {row.mark.word for row in rows} == {"violated"}
+    assert len(rows) < sum(len(view.results) for view in report.requirements)
+    assert "This page is compact, because 60 results are more than 50" in html
+    assert "Left out here: 11 runs without a row. The evidence file has them all." in html
+    links = set(re.findall(r'href="#([^"]+)"', html))
+    assert links <= set(re.findall(r'id="([^"]+)"', html))
+
+
+def test_with_very_many_requirements_their_sections_are_short(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(choosing, "COMPACT", 5)
+    monkeypatch.setattr(choosing, "_WHOLE", 1)
+    _, html = reported(tmp_path, 2, 3, 0.5)
+    assert "<h4>Formulas</h4>" not in html
+    assert "With more than 1 requirements, their formulas" in html
+
+
+def test_the_worst_run_of_a_requirement_gets_its_details_first(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(choosing, "DETAILED", 1)
+    known = small_project(tmp_path)
+    verdicts = ("satisfied", "inconclusive", "violated")
+    results = [result(known, word, run=f"{word}.mcap") for word in verdicts]
+    report = made(known, tmp_path, *results).report
+    assert report is not None
+    (shown,) = selection(report).by_anchor.values()
+    assert [each.run_file for each in shown.details] == ["violated.mcap"]
+    assert [row.has_details for row in shown.rows] == [True, False, True]

@@ -1,0 +1,109 @@
+import re
+from dataclasses import replace
+
+from fretc.audit.evidence.reader import Health, Moment, Result, Violation
+from fretc.report.model.pictures import SpanMark
+from fretc.report.pictures.timeline import DETAIL, answered, timelines
+
+EMPTY = Result(
+    run="a.mcap",
+    requirement="R1",
+    verdict="satisfied",
+    finite=True,
+    reason="",
+    clock="100 ms, by log_time",
+    ticks=100,
+    start_ns=0,
+    end_ns=10**10,
+    triggers=(),
+    violations=(),
+    unknown=(),
+    open=(),
+    latencies=(),
+    thresholds=(),
+    units={},
+    hashes={},
+    health=Health(True, 1, None, (), (), ()),
+    assumptions=(),
+)
+
+
+def at(*ticks: int) -> tuple[Moment, ...]:
+    return tuple(Moment(tick, tick / 10) for tick in ticks)
+
+
+def test_a_run_without_violation_is_one_picture() -> None:
+    result = replace(EMPTY, triggers=at(10, 11, 40), latencies=(2.5, 2.4, 0.0), unknown=((5, 6),))
+    (picture,) = timelines(result, 0.1)
+    assert (picture.title, picture.start, picture.end) == ("The whole run", 0.0, 10.0)
+    assert {lane.name: lane.marks for lane in picture.lanes} == {
+        "triggered": (SpanMark(1.0, 1.2, 2), SpanMark(4.0, 4.1, 1)),
+        "waiting": (SpanMark(1.0, 3.5, 2),),
+        "unknown": (SpanMark(0.5, 0.7, 1),),
+    }
+    assert picture.text == (
+        "From 0 s to 10 s: 3 ticks with a trigger (1 s to 1.2 s and 4 s to 4.1 s), "
+        "2 triggers waiting for their response (1 s to 3.5 s) and "
+        "1 stretch of unknown ticks (0.5 s to 0.7 s)."
+    )
+
+
+def test_a_violation_is_shown_with_its_trigger_and_some_ticks_around() -> None:
+    broken = Violation(Moment(50, 5.0), Moment(59, 5.9), Moment(40, 4.0), None, "stopped", {})
+    result = replace(EMPTY, verdict="violated", triggers=at(5, 40), violations=(broken,))
+    (picture,) = timelines(result, 0.1)
+    assert (picture.title, picture.start, picture.end) == ("Violation 1", 3.0, 7.0)
+    assert {lane.name: lane.marks for lane in picture.lanes} == {
+        "triggered": (SpanMark(4.0, 4.1, 1),),
+        "violated": (SpanMark(5.0, 6.0, 1),),
+    }
+
+
+def test_an_open_demand_reaches_to_the_end() -> None:
+    (picture,) = timelines(replace(EMPTY, triggers=at(90), open=at(90)), 0.1)
+    assert picture.lanes[-1].name == "open at end"
+    assert picture.lanes[-1].marks == (SpanMark(9.0, 10.0, 1),)
+
+
+def test_a_run_without_ticks_has_no_picture() -> None:
+    assert timelines(replace(EMPTY, ticks=0), 0.1) == ()
+
+
+def test_a_run_without_trigger_says_so() -> None:
+    (picture,) = timelines(EMPTY, 0.1)
+    assert picture.text == "From 0 s to 10 s: no tick with a trigger."
+
+
+def test_a_hundred_thousand_triggers_are_few_marks_and_all_counted() -> None:
+    ticks = range(0, 1_000_000, 10)
+    result = replace(EMPTY, ticks=1_000_000, triggers=at(*ticks))
+    (picture,) = timelines(result, 0.1)
+    (lane,) = picture.lanes
+    assert len(lane.marks) <= DETAIL
+    assert sum(mark.count for mark in lane.marks) == 100_000
+    assert len(picture.text) < 200
+
+
+def test_marks_that_stand_apart_stay_apart() -> None:
+    ticks = range(0, 1_000_000, 10_000)
+    (picture,) = timelines(replace(EMPTY, ticks=1_000_000, triggers=at(*ticks)), 0.1)
+    assert len(picture.lanes[0].marks) == 100
+
+
+def test_only_the_first_violations_get_a_picture() -> None:
+    broken = tuple(
+        Violation(moment, moment, None, None, "stopped", {}) for moment in at(*range(90))
+    )
+    pictures = timelines(replace(EMPTY, violations=broken), 0.1)
+    assert [re.sub(r"\D", "", picture.title) for picture in pictures] == [
+        str(number) for number in range(1, 7)
+    ]
+
+
+def test_latencies_belong_to_the_triggers_that_are_not_open() -> None:
+    result = replace(EMPTY, triggers=at(1, 2, 3), open=at(2), latencies=(0.5, 0.1))
+    assert answered(result) == [(Moment(1, 0.1), 0.5), (Moment(3, 0.3), 0.1)]
+
+
+def test_latencies_that_fit_no_triggers_belong_to_none() -> None:
+    assert answered(replace(EMPTY, triggers=at(1, 2), latencies=(0.5,))) == []

@@ -1,0 +1,226 @@
+import json
+from pathlib import Path
+from typing import Any
+from xml.etree import ElementTree
+
+import pytest
+from click.testing import CliRunner
+
+from compiler.files.text_files import sha256
+from compiler.project.folder import Project
+from compiler.targets.python import monitor
+from fretc.cli import cli
+from fretc.report.forms.junit import junit
+from fretc.report.make import Made, make
+from fretc.report.sections.argument import Kind, argument
+from fretish.diagnostics.diagnostic import Code
+from tests.command import Fretc, write
+from tests.fretc.report.cases import (
+    BINDINGS,
+    HAZARDS,
+    evidence,
+    project,
+    requirement,
+    result,
+    said,
+    words,
+)
+from tests.fretc.report.test_make import validate
+
+SENTENCE = "whenever near the robot shall within 30 ticks satisfy stopped"
+
+
+def proof(known: Project, found: str = "proved", **changes: Any) -> dict[str, Any]:
+    """A line of `fretc verify` about the monitor of R1 as it is made now."""
+    return {
+        "requirement": "R1",
+        "layer": "monitor",
+        "claim": "the monitor means what the sentence says",
+        "result": found,
+        "detail": "12 states",
+        "assumptions": [],
+        "engine": "fretc",
+        "artefacts": {"r1_monitor.py": sha256(monitor.text(known.rules[0]))},
+        **changes,
+    }
+
+
+def reported(folder: Path, *lines: dict[str, Any], verify: list[str]) -> Made:
+    """The report about R1, satisfied in one run, and what was proved of it."""
+    known = project(folder, requirement("R1", SENTENCE, verify=verify))
+    path, proofs = folder / "evidence.json", folder / "verification.json"
+    audited = evidence(known, result(known, "satisfied", latencies_s=[]))
+    path.write_text(json.dumps(audited), encoding="utf-8")
+    document = {"schema": "fretc-verification-1", "fretc": "0.1.0"}
+    written = [proof(known, **line) for line in lines]
+    proofs.write_text(json.dumps({**document, "evidence": written}), encoding="utf-8")
+    return make(known, str(path), verification=str(proofs))
+
+
+def plan(report: Made) -> tuple[str, bool, bool]:
+    (found,) = said(report)["planned"]
+    return found["result"], found["has_result"], found["refuted"]
+
+
+@pytest.mark.parametrize("method", ["verify", "proof", "monitor"])
+def test_a_proof_is_the_result_of_its_method(tmp_path: Path, method: str) -> None:
+    report = reported(tmp_path, {}, verify=[method])
+    assert plan(report) == ("1 claim proved", True, False)
+    content = said(report)
+    assert content["overall"]["headline"] == "Everything that was claimed is shown."
+    assert content["manifest"][-2]["kind"] == "verification"
+    validate("report.schema.json", content)
+    assert report.html is not None
+    assert "<h4>What was proved</h4>" in report.html
+
+
+def test_the_worst_claim_decides(tmp_path: Path) -> None:
+    lines = [{}, {"layer": "loop", "claim": "it keeps R1", "found": "counterexample"}]
+    report = reported(tmp_path, *lines, verify=["verify"])
+    assert plan(report) == ("counterexample: it keeps R1 (12 states)", True, True)
+    overall = said(report)["overall"]
+    assert overall["mark"]["word"] == "not all shown"
+    assert overall["headline"] == "What was audited held; verification found counterexamples."
+    assert overall["sentences"][1] == (
+        "Verification found a counterexample to R1; part 4 has the claim."
+    )
+
+
+def test_the_argument_rests_on_proofs_and_on_nothing_that_is_refuted(tmp_path: Path) -> None:
+    report = reported(tmp_path, {}, {"layer": "loop"}, verify=[]).report
+    assert report is not None
+    claim = "the monitor means what the sentence says (by fretc)"
+    assert [each.text for each in argument(report) if each.kind is Kind.SOLUTION] == [
+        "R1 is satisfied in 1 audited run",
+        f"Proved: {claim}",
+        f"Proved: {claim}",
+    ]
+    refuted = reported(tmp_path, {"found": "counterexample"}, verify=[]).report
+    assert refuted is not None
+    (goal,) = [each for each in argument(refuted) if each.undeveloped]
+    assert goal.text == "The monitor of R1 decides it as its sentence means"
+    assert goal.defeated
+
+
+def test_a_counterexample_counts_also_where_no_method_was_planned(tmp_path: Path) -> None:
+    report = reported(tmp_path, {"found": "counterexample"}, verify=[])
+    assert said(report)["overall"]["mark"]["word"] == "not all shown"
+    assert report.report is not None
+    (case,) = ElementTree.fromstring(junit(report.report))[0]
+    assert [(child.tag, child.get("message")) for child in case] == [
+        ("failure", "satisfied: monitor: counterexample: the monitor means what the sentence says")
+    ]
+
+
+@pytest.mark.parametrize("found", ["vacuous", "not checked"])
+def test_what_says_nothing_is_no_result(tmp_path: Path, found: str) -> None:
+    report = reported(tmp_path, {"found": found}, verify=["monitor"])
+    assert plan(report)[1:] == (False, False)
+    assert said(report)["overall"]["mark"]["word"] == "not all shown"
+
+
+@pytest.mark.parametrize(
+    ("artefacts", "why"),
+    [
+        ({"r1_monitor.py": "0" * 64}, "r1_monitor.py is not made like that any more"),
+        ({"mine.py": "0" * 64}, "it is about another monitor than the one that is made now"),
+    ],
+)
+def test_a_proof_of_another_text_is_suspect(
+    tmp_path: Path, artefacts: dict[str, str], why: str
+) -> None:
+    report = reported(tmp_path, {"artefacts": artefacts}, verify=["verify"])
+    (shown,) = said(report)["requirements"][0]["proofs"]
+    assert words([shown]) == ["proved, suspect"]
+    assert shown["suspicions"][0] == why
+    assert plan(report)[1:] == (False, False)
+
+
+def test_a_prover_is_found_by_its_engine(tmp_path: Path) -> None:
+    line = {"engine": "Dafny 4.9", "layer": "interceptor", "requirement": "interceptor"}
+    report = reported(tmp_path, line, verify=["dafny"])
+    assert plan(report) == ("1 claim proved", True, False)
+    assert [each["layer"] for each in said(report)["proofs"]] == ["interceptor"]
+    assert said(report)["requirements"][0]["proofs"] == []
+
+
+def test_a_file_that_is_not_there_is_told(tmp_path: Path) -> None:
+    report = make(project(tmp_path), str(tmp_path / "e"), verification=str(tmp_path / "no.json"))
+    assert report.report is None
+    assert [found.code for found in report.diagnostics] == [Code.NO_SUCH_FILE]
+
+
+def test_without_a_file_nothing_was_proved(tmp_path: Path) -> None:
+    content = said(make(project(tmp_path), str(tmp_path / "none.json")))
+    assert (content["verification"], content["proofs"]) == ("", [])
+
+
+def test_the_command_takes_the_file_at_its_usual_place_and_exits_as_it_says(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    reported(tmp_path, {"found": "counterexample"}, verify=[])
+    (tmp_path / "build").mkdir()
+    command = ["report", "--requirements", str(tmp_path), "--evidence", "evidence.json", "--strict"]
+    assert CliRunner().invoke(cli, command).exit_code == 0
+    (tmp_path / "verification.json").rename("build/verification.json")
+    assert CliRunner().invoke(cli, command).exit_code == 1
+    assert "What was proved" in Path("build/report.html").read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("{", "is not JSON: expecting property name enclosed in double quotes"),
+        ('{"schema": "x"}', "`schema` must be `fretc-verification-1`, and is `x`"),
+        (
+            '{"schema": "fretc-verification-1", "fretc": "0", "evidence": [{"artefacts": []}]}',
+            "`evidence[0].artefacts` must be an object, and is an array",
+        ),
+    ],
+)
+def test_a_file_of_another_shape_is_told_and_no_report_is_made(
+    tmp_path: Path, text: str, message: str
+) -> None:
+    (tmp_path / "verification.json").write_text(text, encoding="utf-8")
+    report = make(
+        project(tmp_path), str(tmp_path / "e"), verification=str(tmp_path / "verification.json")
+    )
+    assert report.report is None
+    (found,) = report.diagnostics
+    assert found.code is Code.BAD_EVIDENCE
+    assert message in found.message
+
+
+ASSUMING = """
+[interceptor]
+stop = "/stop"
+command = "/cmd_vel"
+output = "/wheels"
+period = "50 ms"
+hold = "200 ms"
+
+[assume]
+stands = "stopped"
+latency = "100 ms"
+braking = "200 ms"
+"""
+
+
+@pytest.mark.confined
+def test_another_assumption_makes_what_was_proved_of_the_loop_suspect(fretc: Fretc) -> None:
+    write("requirements/r1.fret", requirement("R1", SENTENCE, verify=["loop"]))
+    bindings = write("requirements/bindings.toml", BINDINGS + ASSUMING)
+    write("requirements/hazards.toml", HAZARDS)
+    assert fretc("verify", "requirements/r1.fret", "--layer", "loop").status == 0
+    assert marks(fretc) == {"proved"}
+    write(bindings, (BINDINGS + ASSUMING).replace('"100 ms"\nbraking', '"100 ms" # still\nbraking'))
+    assert marks(fretc) == {"proved"}, "a comment is no change"
+    write(bindings, (BINDINGS + ASSUMING).replace('braking = "200 ms"', 'braking = "900 ms"'))
+    assert marks(fretc) == {"proved, suspect"}
+
+
+def marks(fretc: Fretc) -> set[str]:
+    fretc("report", "--json", "report.json")
+    (view,) = json.loads(Path("report.json").read_text())["requirements"]
+    return set(words(view["proofs"]))

@@ -1,0 +1,226 @@
+"""What the report says of reviews, changes, waivers, and how far each requirement has come."""
+
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from compiler.project.folder import Project
+from fretc.audit.evidence import reader as reading
+from fretc.report.make import make
+from fretc.report.traceability.chain import chains
+from fretc.report.traceability.lock import Lock, accepted, text
+from fretish.diagnostics.diagnostic import Code, Diagnostic
+from tests.fretc.report.cases import (
+    BINDINGS,
+    R1,
+    evidence,
+    project,
+    requirement,
+    result,
+    said,
+    violation,
+)
+
+WAIVER = """\
+[R1]
+verdict = "violated"
+reason = "the brake is being replaced"
+by = "A. Meier"
+role = "safety engineer"
+granted = "2026-01-01"
+expires = "2026-12-31"
+"""
+
+
+@pytest.fixture(autouse=True)
+def _day(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("SOURCE_DATE_EPOCH", "1790000000")  # 2026-09-21
+
+
+def lock(known: Project, folder: Path) -> None:
+    """Everything as it is now, accepted; the evidence is in the folder."""
+    audited = reading.read(str(folder / "evidence.json"))
+    assert not isinstance(audited, Diagnostic)
+    found = {
+        c.requirement: accepted(c, "A", "B", "2026-09-01", "c") for c in chains(known, audited)
+    }
+    (folder / "fretc.lock").write_text(text(Lock(found)), encoding="utf-8")
+
+
+def reported(known: Project, folder: Path, *results: dict[str, Any]) -> dict[str, Any]:
+    """The report about these results, with the lock and the waivers of the folder."""
+    (folder / "evidence.json").write_text(json.dumps(evidence(known, *results)), encoding="utf-8")
+    paths = [folder / name for name in ("fretc.lock", "waivers.toml")]
+    locked, waived = [str(path) if path.exists() else None for path in paths]
+    return said(make(known, str(folder / "evidence.json"), lock=locked, waivers=waived))
+
+
+def only(report: dict[str, Any]) -> dict[str, Any]:
+    (found,) = report["requirements"]
+    assert isinstance(found, dict)
+    return found
+
+
+def test_a_review_that_stands_is_named(tmp_path: Path) -> None:
+    known = project(tmp_path)
+    reported(known, tmp_path, result(known, "satisfied"))
+    lock(known, tmp_path)
+    report = reported(known, tmp_path, result(known, "satisfied"))
+    assert report["reviewed"] == (
+        "1 of 1 requirement reviewed, and all stand. 1 of 1 is unauthenticated."
+    )
+    assert only(report)["review"] == {
+        "mark": {"word": "reviewed", "glyph": "◔", "kind": "inconclusive", "suspect": False},
+        "by": "A, B, 2026-09-01",
+        "comment": "c",
+        "changes": [],
+        "signature": {
+            "mark": {
+                "word": "unauthenticated",
+                "glyph": "◔",
+                "kind": "inconclusive",
+                "suspect": False,
+            },
+            "text": "nobody signed it",
+            "is_good": False,
+        },
+    }
+    assert report["changes"] == []
+    assert only(report)["coverage"] == "exercised, pass"
+
+
+def test_what_changed_since_the_review_makes_the_requirement_suspect(tmp_path: Path) -> None:
+    known = project(tmp_path)
+    reported(known, tmp_path, result(known, "satisfied"))
+    lock(known, tmp_path)
+    now = project(tmp_path, bindings=BINDINGS.replace("clearance < 5 cm", "clearance < 90 cm"))
+    report = reported(now, tmp_path, result(now, "satisfied"))  # audited again after the change
+    found = only(report)
+    assert (found["mark"]["word"], found["mark"]["suspect"]) == ("satisfied", True)
+    assert found["coverage"] == "suspect"
+    why = "bindings R1 changed since the review of 2026-09-01"
+    assert found["suspicions"] == found["results"][0]["suspicions"] == found["reasons"] == [why]
+    assert report["matrix"][0]["cells"][0]["mark"]["suspect"]
+    assert [c["results"] for c in report["counts"] if c["mark"]["word"] == "satisfied"] == [1, 0]
+    assert found["review"]["changes"] == ["bindings R1"]
+    (change,) = report["changes"]
+    assert change["lines"] == ["changed: bindings R1"]
+    assert change["links"]["lines"][0] == (
+        "bindings R1 → verdict R1 logs/a.mcap, because of bindings R1"
+    )
+    assert report["overall"]["mark"]["word"] == "nothing shown"
+
+
+def test_a_run_after_the_review_is_told_and_makes_nothing_suspect(tmp_path: Path) -> None:
+    known = project(tmp_path)
+    reported(known, tmp_path, result(known, "satisfied"))
+    lock(known, tmp_path)
+    later = result(known, "satisfied", run="logs/b.mcap", hashes={"log": "cd" * 32})
+    report = reported(known, tmp_path, result(known, "satisfied"), later)
+    assert only(report)["mark"]["word"] == "satisfied"
+    assert "R1 was audited against 1 run after its review." in report["reservations"]
+
+
+def test_a_violation_is_told_whatever_the_review_says(tmp_path: Path) -> None:
+    known = project(tmp_path)
+    reported(known, tmp_path, result(known, "satisfied"))
+    lock(known, tmp_path)
+    broken = result(known, "violated", violations=[violation(14, 20, 11)])
+    report = reported(known, tmp_path, broken)
+    assert only(report)["mark"]["word"] == "violated"
+    (change,) = report["changes"]
+    assert change["verdicts"] == [["logs/a.mcap", "satisfied", "violated"]]
+
+
+def test_a_waiver_covers_a_verdict_and_does_not_hide_it(tmp_path: Path) -> None:
+    known = project(tmp_path)
+    (tmp_path / "waivers.toml").write_text(WAIVER)
+    broken = result(known, "violated", violations=[violation(14, 20, 11)])
+    report = reported(known, tmp_path, broken)
+    found = only(report)
+    assert (found["mark"]["word"], found["coverage"]) == ("waived", "waived")
+    assert found["waiver"]["covers"]["word"] == "violated"
+    assert found["waiver"]["by"] == "A. Meier, safety engineer, 2026-01-01"
+    assert report["waivers"] == [found["waiver"]]
+    assert "R1 (violated) is waived, and not shown." in report["overall"]["sentences"]
+    assert report["overall"]["mark"]["word"] == "nothing shown"
+
+
+def test_a_waiver_of_what_is_shown_covers_nothing(tmp_path: Path) -> None:
+    known = project(tmp_path)
+    (tmp_path / "waivers.toml").write_text(WAIVER)
+    assert (
+        only(reported(known, tmp_path, result(known, "satisfied")))["mark"]["word"] == "satisfied"
+    )
+
+
+@pytest.mark.parametrize("verdict", ["no data", "inconclusive", "vacuous", "violated"])
+@pytest.mark.parametrize("waived", ["no data", "inconclusive", "vacuous", "violated"])
+def test_a_waiver_covers_the_verdict_that_it_names_and_no_other(
+    tmp_path: Path, verdict: str, waived: str
+) -> None:
+    known = project(tmp_path)
+    (tmp_path / "waivers.toml").write_text(WAIVER.replace("violated", waived))
+    broken = [violation(14, 20, 11)] if verdict == "violated" else []
+    (tmp_path / "evidence.json").write_text(
+        json.dumps(evidence(known, result(known, verdict, violations=broken)))
+    )
+    made = make(known, str(tmp_path / "evidence.json"), waivers=str(tmp_path / "waivers.toml"))
+    idle = [d.message for d in made.diagnostics if d.code is Code.IDLE_WAIVER]
+    if verdict == waived:
+        assert (only(said(made))["mark"]["word"], idle) == ("waived", [])
+    else:
+        assert only(said(made))["mark"]["word"] == verdict
+        assert idle == [
+            f"the waiver of R1 is for `{waived}`, and the verdict is `{verdict}`: it covers nothing"
+        ]
+
+
+def test_a_waiver_that_has_ended_covers_nothing(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("SOURCE_DATE_EPOCH", "1800000000")  # 2027-01-15
+    known = project(tmp_path)
+    (tmp_path / "waivers.toml").write_text(WAIVER)
+    assert only(reported(known, tmp_path, result(known, "vacuous")))["mark"]["word"] == "vacuous"
+
+
+@pytest.mark.parametrize(
+    ("text", "verdict", "state"),
+    [
+        (R1, "satisfied", "exercised, pass"),
+        (R1, "violated", "exercised, fail"),
+        (R1, "vacuous", "not exercised"),
+        (R1, "inconclusive", "exercised, open"),
+        (R1, "no data", "exercised, open"),
+        (R1, None, "not exercised"),
+        (R1.replace("eventually satisfy stopped", "eventually satisfy gone"), None, "unbound"),
+        (R1.replace("shall eventually", "shal eventually"), None, "unformalized"),
+        (R1.replace('"approved"', '"retired"'), None, "retired"),
+        (
+            requirement("R1", f"whenever {70 * '!'}near the robot shall satisfy stopped"),
+            None,
+            "not generated",
+        ),
+    ],
+)
+def test_how_far_a_requirement_has_come(
+    tmp_path: Path, text: str, verdict: str | None, state: str
+) -> None:
+    known = project(tmp_path, text)
+    broken = [violation(14, 20, 11)] if verdict == "violated" else []
+    asked: dict[str, Any] = {"triggers": [], "latencies_s": []} if verdict == "vacuous" else {}
+    results = [result(known, verdict, violations=broken, **asked)] if verdict else []
+    assert only(reported(known, tmp_path, *results))["coverage"] == state
+
+
+def test_two_reports_of_one_state_are_the_same_bytes(tmp_path: Path) -> None:
+    known = project(tmp_path)
+    (tmp_path / "waivers.toml").write_text(WAIVER)
+    reported(known, tmp_path, result(known, "vacuous"))
+    lock(known, tmp_path)
+    path = str(tmp_path / "evidence.json")
+    first, second = (make(known, path, lock=str(tmp_path / "fretc.lock")) for _ in range(2))
+    assert (first.html, first.json) == (second.html, second.json)

@@ -1,0 +1,274 @@
+"""Whatever an audit may have found, there is a report, and it never says more or less than that."""
+
+import csv
+import io
+import json
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+from xml.etree import ElementTree
+
+import pytest
+import yaml
+from hypothesis import HealthCheck, Phase, given, settings
+from hypothesis import strategies as st
+
+from compiler.project.folder import Project
+from fretc.audit.evidence.verdicts import VERDICTS
+from fretc.commands.report import _status
+from fretc.report.forms.csv_rows import csv_text
+from fretc.report.forms.gsn import gsn
+from fretc.report.forms.junit import junit
+from fretc.report.forms.markdown import markdown
+from fretc.report.forms.sarif import sarif
+from fretc.report.make import Made
+from tests.fretc.report.cases import R1, moment, project, requirement, result
+from tests.fretc.report.cases import made as reported
+from tests.fretc.report.test_make import validate
+
+pytestmark = pytest.mark.filterwarnings("ignore:Generating overly large repr")
+
+IDS = ("R1", "R2")
+PAIRS = [(run, id) for run in ("a.mcap", "b.mcap") for id in IDS]
+WORDS = ("violated", "no data", "inconclusive", "vacuous", "satisfied")
+CHANGED = {"bindings": {"bindings": "0" * 64}, "sentence": {"sentence": "0" * 64}, "": {}}
+
+_BRIEFLY = settings(
+    deadline=None,
+    max_examples=25,
+    phases=(Phase.generate,),
+    suppress_health_check=[HealthCheck.too_slow],
+)
+
+# Everything that JSON can hold: the least, the greatest, nothing, and what rounds to nothing.
+_SIGNALS = ("clearance", "vx", "gone")
+_EXTREME = [0.0, -0.0, 5e-324, -5e-324, 1.7976931348623157e308, -1.7976931348623157e308]
+bounds = st.one_of(
+    st.floats(allow_nan=False, allow_infinity=False),
+    st.sampled_from([*_EXTREME, 0.05, 0.050000001, 0.01, 3.0]),
+)
+finite = st.none() | bounds
+numbers = finite | st.sampled_from(["+inf", "-inf"])
+ticks = st.integers(0, 120)
+
+
+@st.composite
+def samples(draw: st.DrawFn) -> dict[str, Any]:
+    """Of none, one, or many times, before, in, and after the window; several at one time."""
+    pairs = st.tuples(st.integers(-(10**9), 14 * 10**9), numbers)
+    several = draw(st.just([]) | st.lists(pairs, max_size=3))
+    times, values = [time for time, _ in several], [value for _, value in several]
+    often = draw(st.sampled_from([1, 1, 17]))
+    return {"times_ns": sorted(times * often), "values": values * often}
+
+
+@st.composite
+def windows(draw: st.DrawFn) -> dict[str, Any]:
+    start, end = sorted(draw(st.tuples(*[st.integers(-(10**9), 14 * 10**9)] * 2)))
+    named = {name: draw(samples()) for name in draw(st.sampled_from([("vx",), _SIGNALS]))}
+    return {"start_ns": start, "end_ns": end, "samples": named}
+
+
+@st.composite
+def violations(draw: st.DrawFn) -> dict[str, Any]:
+    first, last = sorted(draw(st.tuples(ticks, ticks)))
+    return {
+        "first_tick": first,
+        "last_tick": last,
+        "start_ns": 10**9 + first * 10**8,
+        "end_ns": 10**9 + last * 10**8,
+        "start_s": first / 10,
+        "end_s": last / 10,
+        "trigger": draw(st.none() | ticks.map(moment)),
+        "deadline": draw(st.none() | ticks.map(moment)),
+        "missing": draw(st.sampled_from(["", "stopped"])),
+        "values": draw(st.dictionaries(st.sampled_from(["clearance", "vx", "gone"]), finite)),
+        "window": draw(windows() | st.none()),
+    }
+
+
+@st.composite
+def thresholds(draw: st.DrawFn) -> dict[str, Any]:
+    return {
+        "proposition": draw(st.sampled_from(["near", "stopped"])),
+        "signal": draw(st.sampled_from(["clearance", "abs(vx)", "vx", "gone"])),
+        "operator": draw(st.sampled_from(["<", "<=", ">", ">="])),
+        "bound": draw(bounds),
+        "unit": draw(st.sampled_from(["m", "m/s", ""])),
+        "least": draw(numbers),
+        "greatest": draw(numbers),
+        "comparison": draw(st.sampled_from([None, "true", "false", "crossed"])),
+        "margin": draw(finite.map(lambda value: value and abs(value))),
+        "nearest": draw(st.none() | st.just({"ns": 10**9, "seconds": -0.1})),
+    }
+
+
+@st.composite
+def audits(draw: st.DrawFn) -> list[dict[str, Any]]:
+    """Some runs of some requirements, each result current or of something else."""
+    chosen = draw(st.lists(st.booleans(), min_size=len(PAIRS), max_size=len(PAIRS)))
+    return [
+        {"run": run, "id": id, **draw(outcomes())}
+        for (run, id), is_there in zip(PAIRS, chosen, strict=True)
+        if is_there
+    ]
+
+
+@st.composite
+def outcomes(draw: st.DrawFn) -> dict[str, Any]:
+    verdict = draw(st.sampled_from([*WORDS, "violated", "violated"]))
+    is_red = verdict == "violated"
+    size = draw(st.sampled_from([100, 1, 0]))
+    return {
+        "verdict": verdict,
+        "violations": draw(st.lists(violations(), min_size=int(is_red), max_size=3 * is_red)),
+        "ticks": size,
+        "start_ns": draw(st.sampled_from([None, 10**9])),
+        "triggers": draw(st.lists(ticks.map(moment), max_size=3)),
+        "open": draw(st.lists(ticks.map(moment), max_size=3)),
+        "latencies_s": draw(st.lists(st.floats(0, 1e9), max_size=3)),
+        "unknown": draw(st.lists(st.tuples(ticks, ticks).map(sorted), max_size=2)),
+        "thresholds": draw(st.lists(thresholds(), max_size=3)),
+        "hashes": draw(st.sampled_from([*CHANGED.values()])),
+        "health": {"intact": draw(st.booleans())},
+    }
+
+
+TEXTS = (R1, requirement("R2", "whenever near the robot shall within 3 ticks satisfy stopped"))
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return tmp_path_factory.mktemp("any")
+
+
+@pytest.fixture(scope="module")
+def known(folder: Path) -> Project:
+    return project(folder, *TEXTS)
+
+
+@given(drawn=audits())
+@_BRIEFLY
+def test_any_evidence_gives_a_report_that_fits_its_schema(
+    drawn: list[dict[str, Any]], known: Project, folder: Path
+) -> None:
+    report = reported(known, folder, *(result(known, **each) for each in drawn))
+    assert report.report is not None
+    assert report.json is not None
+    validate("report.schema.json", json.loads(report.json))
+    assert report.html is not None
+
+
+# One model ---------------------------------------------------------------------------------------
+
+
+def told(results: Sequence[Mapping[str, Any]], known: Project, id: str) -> tuple[str, bool]:
+    """Verdict and currency of a requirement, written down from what they mean.
+
+    Violated if any run violates it, and that is current if any such run is. Else the worst of the
+    runs, which is current only if all of them are.
+    """
+    mine = [(r["verdict"], is_suspect(r, known)) for r in results if r["requirement"] == id]
+    red = [suspect for verdict, suspect in mine if verdict == "violated"]
+    if red:
+        return "violated", all(red)
+    word = min((verdict for verdict, _ in mine), key=WORDS.index, default="not exercised")
+    return word, any(suspect for _, suspect in mine)
+
+
+def is_suspect(one: Mapping[str, Any], known: Project) -> bool:
+    """Whether something else was audited, or a damaged log is said to show that it held."""
+    now = result(known, "satisfied", one["requirement"])["hashes"]
+    changed = any(one["hashes"][name] != now[name] for name in ("sentence", "bindings"))
+    damaged = not one["health"]["intact"] and one["verdict"] in ("satisfied", "vacuous")
+    return changed or damaged
+
+
+def forms(made: Made, results: Sequence[dict[str, Any]], known: Project) -> dict[str, Any]:
+    assert made.report is not None
+    whole = made.report
+    suite = ElementTree.fromstring(junit(whole))[0]
+    log = json.loads(sarif(whole, results, known.rules, []))["runs"][0]["results"]
+    return {
+        "marks": {v.id: (v.mark.word, v.mark.suspect) for v in whole.requirements},
+        "status": _status(whole),
+        "junit": {case.attrib["name"][:2]: [c.tag for c in case] for case in suite},
+        "messages": {c.attrib["name"][:2]: [m.attrib["message"] for m in c] for c in suite},
+        "sarif": [(one["ruleId"], one["level"]) for one in log],
+        "csv": list(csv.DictReader(io.StringIO(csv_text(whole)))),
+        "markdown": markdown(whole),
+        "gsn": yaml.safe_load(gsn(whole)),
+    }
+
+
+@given(drawn=audits())
+@_BRIEFLY
+def test_all_forms_follow_one_model_of_verdict_and_currency(
+    drawn: list[dict[str, Any]], known: Project, folder: Path
+) -> None:
+    results = [result(known, **each) for each in drawn]
+    made = reported(known, folder, *results)
+    said = forms(made, results, known)
+    right = {id: told(results, known, id) for id in IDS}
+    shown = {id: mark == ("satisfied", False) for id, mark in right.items()}
+    red = [id for id, (word, _) in right.items() if word == "violated"]
+    assert said["marks"] == right
+    fails = any(word == "violated" or suspect for word, suspect in right.values())
+    assert said["status"] == (1 if fails else 0 if all(shown.values()) else 3)
+    first = said["markdown"].splitlines()[0]
+    for id, (word, suspect) in right.items():
+        (kind, *more) = said["junit"][id] or [""]
+        assert not more
+        assert (kind == "") == shown[id]
+        if word == "violated":
+            assert kind == "failure"
+            assert id in first
+            assert f"{id} is violated" not in first or not suspect
+        if word == "no data":
+            assert kind == "error"
+        rows = [row for row in said["csv"] if row["requirement"] == id]
+        currency = "suspect" if suspect else "current"
+        assert {(row["verdict"], row["currency"]) for row in rows} == {(word, currency)}
+        goal = said["gsn"][f"G_req_2d_{id}"]
+        assert bool(goal.get("undeveloped")) is not shown[id]
+    assert ("violated" in first) is bool(red)
+    levels = {
+        (r["requirement"], "error" if r["verdict"] == "violated" else level(r, known))
+        for r in results
+    }
+    assert set(said["sarif"]) == levels
+
+
+def level(one: Mapping[str, Any], known: Project) -> str:
+    """Of a result that violates nothing: nothing to tell only where it shows its requirement."""
+    return "none" if one["verdict"] == "satisfied" and not is_suspect(one, known) else "warning"
+
+
+@given(drawn=audits())
+@_BRIEFLY
+def test_reasons_come_by_severity_everywhere(
+    drawn: list[dict[str, Any]], known: Project, folder: Path
+) -> None:
+    results = [result(known, **each) for each in drawn]
+    made = reported(known, folder, *results)
+    report = made.report
+    assert report is not None
+    ranks = list(VERDICTS)
+    for view in report.requirements:
+        words = [
+            reason.split(": ", 1)[1].split(",")[0] for reason in view.reasons if "Run" in reason
+        ]
+        if not any(r.mark.suspect for r in view.results):
+            assert [ranks.index(word) for word in words] == sorted(map(ranks.index, words))
+        if view.mark.word == "violated":
+            assert "violated" in view.reasons[0]
+            said = forms(made, results, known)
+            assert said["messages"][view.id][0].split(": ", 1)[1] == view.reasons[0]
+            assert "violated" in _row(said["markdown"], view.id)
+    order = [ranks.index(each.mark.word) for each in report.not_shown if not each.mark.suspect]
+    assert order == sorted(order)
+
+
+def _row(text: str, id: str) -> str:
+    (line,) = [line for line in text.splitlines() if line.startswith(f"| **{id}**")]
+    return line.split("|")[5]

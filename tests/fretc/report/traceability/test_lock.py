@@ -1,0 +1,141 @@
+import pytest
+
+from fretc.report.traceability.chain import Node
+from fretc.report.traceability.lock import Lock, Review, read, text
+from fretish.diagnostics.diagnostic import Code, Diagnostic
+from tests.command import write
+
+SHA = "ab" * 32
+REVIEW = Review(
+    "R-1.a",
+    'A. "Quoted" Meier',
+    "safety engineer",
+    "2026-11-22",
+    "näher\nals 5 cm",
+    {Node("sentence", "R-1.a"): SHA, Node("verdict", "R-1.a runs/a b.mcap"): SHA},
+    {"runs/a b.mcap": "violated"},
+)
+
+
+@pytest.fixture(autouse=True)
+def _here(tmp_path: object, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(str(tmp_path))
+
+
+def test_a_lock_that_is_written_is_read_as_it_was() -> None:
+    lock = Lock({"R-1.a": REVIEW})
+    assert read(write("fretc.lock", text(lock))) == lock
+
+
+def test_a_lock_is_sorted_whatever_the_order_of_its_reviews() -> None:
+    other = Review("A", "r", "s", "2026-01-02", "c", {}, {})
+    one, two = Lock({"R-1.a": REVIEW, "A": other}), Lock({"A": other, "R-1.a": REVIEW})
+    assert text(one) == text(two)
+    assert text(one).index("[review.A]") < text(one).index("R-1.a")
+
+
+def test_no_lock_is_a_note() -> None:
+    found = read("fretc.lock")
+    assert isinstance(found, Diagnostic)
+    assert (found.code, found.is_error) == (Code.NO_SUCH_FILE, False)
+
+
+GOOD = text(Lock({"R1": Review("R1", "r", "s", "2026-01-02", "c", {Node("text", "R1"): SHA}, {})}))
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        ('"fretc-lock-2"', '"fretc-lock-9"', "the lock is not of the form `fretc-lock-2`"),
+        ('reviewer = "r"', "", "the review of R1 has no `reviewer`"),
+        ('reviewer = "r"', "reviewer = 1", "the review of R1 has no `reviewer`"),
+        ('"2026-01-02"', '"2026-13-02"', "`2026-13-02` is no date"),
+        (SHA, "xy", "`text:R1` of R1 is no fingerprint"),
+        ('"text:R1"', '"text"', "`text` of R1 is no fingerprint"),
+        (
+            "[review.R1.verdicts]",
+            "[review.R1.verdicts]\na = 1",
+            "`verdicts` of R1 must be a table of texts",
+        ),
+        ("schema", "R2 = 1\nschema", "`R2` is no part of a lock"),
+        ("[review.R1]", "[review]\nR2 = 1\n[review.R1]", "`R2` is no review"),
+        (
+            "[review.R1]",
+            "[review.R1",
+            "the lock is not TOML: expected ']' at the end of a table declaration",
+        ),
+    ],
+)
+def test_a_lock_that_was_changed_by_hand_is_told(old: str, new: str, message: str) -> None:
+    assert old in GOOD
+    found = read(write("fretc.lock", GOOD.replace(old, new, 1)))
+    assert isinstance(found, Diagnostic)
+    assert found.code is Code.BAD_LOCK
+    assert found.message == message
+    assert found.span is not None
+
+
+EDITS = [
+    ('reviewer = "r"', 'reviewer = "somebody else"'),
+    ('role = "s"', 'role = "t"'),
+    ('date = "2026-01-02"', 'date = "2026-01-03"'),
+    ('comment = "c"', 'comment = "d"'),
+    ('"a.mcap" = "violated"', '"a.mcap" = "satisfied"'),
+    ('"a.mcap" = "violated"', '"b.mcap" = "violated"'),
+    ('"a.mcap" = "violated"', ""),
+    (SHA, SHA[::-1]),
+    ("text:R1", "text:R2"),
+    ("[review.R1]", "[review.R2]"),
+]
+
+
+@pytest.mark.parametrize(("old", "new"), EDITS)
+def test_a_review_that_was_edited_by_hand_does_not_count(old: str, new: str) -> None:
+    prints = {Node("text", "R1"): SHA}
+    known = text(
+        Lock({"R1": Review("R1", "r", "s", "2026-01-02", "c", prints, {"a.mcap": "violated"})})
+    )
+    assert old in known
+    changed = known.replace(old, new)
+    changed = changed.replace("[review.R1.", "[review.R2.") if "R2]" in new else changed
+    found = read(write("fretc.lock", changed))
+    assert isinstance(found, Diagnostic)
+    assert found.code is Code.BAD_LOCK
+    assert found.message.endswith("is not as `fretc lock` wrote it: somebody has edited it")
+
+
+@pytest.mark.parametrize(
+    ("day", "counts"),
+    [("2023-11-14", True), ("2023-11-15", True), ("2023-11-16", False), ("2123-01-01", False)],
+)
+def test_a_review_of_a_day_to_come_does_not_count(
+    monkeypatch: pytest.MonkeyPatch, day: str, counts: bool
+) -> None:
+    monkeypatch.setenv("SOURCE_DATE_EPOCH", "1700000000")  # 2023-11-14, 22:13: the 15th in the east
+    found = read(write("fretc.lock", text(Lock({"R1": Review("R1", "r", "s", day, "c", {}, {})}))))
+    if counts:
+        assert isinstance(found, Lock)
+    else:
+        assert isinstance(found, Diagnostic)
+        assert found.message == f"the review of R1 is of {day}, a day that is still to come"
+
+
+@pytest.mark.parametrize("id", ["schema", "review", "fingerprints", "verdicts", "seal", "date"])
+def test_a_requirement_may_have_any_id(id: str) -> None:
+    review = Review(id, "r", "s", "2026-01-02", "c", {Node("text", id): SHA}, {})
+    lock = Lock({id: review, "R1": Review("R1", "r", "s", "2026-01-02", "c", {}, {})})
+    assert read(write("fretc.lock", text(lock))) == lock
+
+
+@pytest.mark.parametrize("first", ['schema = "fretc-lock-1"', "[schema]"])
+def test_a_lock_of_an_earlier_version_is_told_with_what_to_do(first: str) -> None:
+    """There a review of a requirement called `schema` stood in the place of the form."""
+    found = read(write("fretc.lock", f'{first}\n\n[R1]\nreviewer = "r"\n'))
+    assert isinstance(found, Diagnostic)
+    assert (found.code, found.message) == (
+        Code.BAD_LOCK,
+        "the lock was written by an earlier version of fretc, whose fingerprints are others",
+    )
+    assert found.help == (
+        "keep it under another name, look at what was accepted, and review anew: `fretc lock`"
+    )

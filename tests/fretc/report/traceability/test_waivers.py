@@ -1,0 +1,88 @@
+import pytest
+
+from compiler.files.dates import today
+from fretc.audit.evidence import verdicts
+from fretc.report.traceability.waivers import VERDICTS, Waiver, read
+from fretish.diagnostics.rendering import render
+from tests.command import write
+
+GOOD = """\
+[R1]
+verdict = "no data"
+reason  = "the lidar is being replaced"
+by      = "A. Meier"
+role    = "safety engineer"
+granted = "2026-11-01"
+expires = "2026-12-31"
+"""
+
+
+@pytest.fixture(autouse=True)
+def _here(tmp_path: object, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(str(tmp_path))
+
+
+def test_a_waiver_counts_from_its_first_to_its_last_day() -> None:
+    waivers, said = read(write("waivers.toml", GOOD), ["R1"], "2026-11-22")
+    assert said == ()
+    assert waivers == {
+        "R1": Waiver(
+            "R1",
+            "no data",
+            "the lidar is being replaced",
+            "A. Meier",
+            "safety engineer",
+            "2026-11-01",
+            "2026-12-31",
+        )
+    }
+    days = ("2026-10-31", "2026-11-01", "2026-12-31", "2027-01-01")
+    assert [waivers["R1"].covers(day) for day in days] == [False, True, True, False]
+
+
+def test_a_waiver_that_has_ended_is_told() -> None:
+    _, (said,) = read(write("waivers.toml", GOOD), ["R1"], "2027-01-01")
+    assert render(said) == (
+        "F514 warning: the waiver of R1 counts from 2026-11-01 to 2026-12-31 only\n"
+        "  --> waivers.toml:7:11\n"
+        '   | expires = "2026-12-31"\n'
+        "   |           ^^^^^^^^^^^^\n"
+        "help: show the requirement, or have the waiver granted anew"
+    )
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        ("[R1]", "[R2]", "R2 is waived, and is not among the requirements"),
+        ('by      = "A. Meier"\n', "", "the waiver of R1 needs `by`"),
+        ('"A. Meier"', '" "', "the waiver of R1 needs `by`"),
+        ('"2026-12-31"', '"31.12.2026"', "`31.12.2026` is no date"),
+        ('verdict = "no data"\n', "", "the waiver of R1 does not say which verdict it covers"),
+        ('"no data"', '"nodata"', "`nodata` is no verdict that can be waived"),
+        ('"no data"', '"satisfied"', "`satisfied` is no verdict that can be waived"),
+        ('"no data"', '"suspect"', "`suspect` is no verdict that can be waived"),
+        ('"no data"', "7", "`7` is no verdict that can be waived"),
+        ("reason", "raeson", "`raeson` is no field of [R1]"),
+    ],
+)
+def test_a_waiver_with_a_mistake_waives_nothing(old: str, new: str, message: str) -> None:
+    waivers, said = read(write("waivers.toml", GOOD.replace(old, new)), ["R1"], "2026-11-22")
+    assert waivers == {}
+    assert message in [d.message for d in said]
+
+
+def test_the_day_is_that_of_source_date_epoch(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("SOURCE_DATE_EPOCH", "1700000000")
+    assert today() == "2023-11-14"
+
+
+def test_what_a_waiver_may_cover_is_what_does_not_show_a_requirement() -> None:
+    shown = {"satisfied", "supported", "retired", "waived", "suspect"}
+    assert set(VERDICTS) == {word for word in verdicts.VERDICTS if word not in shown}
+
+
+def test_an_older_waiver_is_told_with_its_mend() -> None:
+    _, (said,) = read(write("waivers.toml", GOOD.replace('verdict = "no data"\n', "")), ["R1"], "")
+    assert said.help is not None
+    assert said.help.startswith('add `verdict = "no data"`; it may be `violated`, `refuted`, ')

@@ -1,0 +1,54 @@
+"""Manifests of runs that are folders: each of their files is named."""
+
+import hashlib
+from pathlib import Path
+
+import pytest
+
+from fretc.logs.storage.folders import of_all
+from fretc.reproduction.manifest import Manifest, matches, read
+from tests.fretc.logs.storage.test_folders import run
+
+
+def listed(folder: Path) -> dict[str, str]:
+    return {
+        f"logs/{folder.name}/{path.name}": hashlib.sha256(path.read_bytes()).hexdigest()
+        for path in sorted(folder.iterdir())
+    }
+
+
+def wrong(folder: Path, logs: dict[str, str]) -> list[str]:
+    hashes = {path.name: listed(folder)[f"logs/run/{path.name}"] for path in folder.glob("*.mcap")}
+    whole = {
+        "results": [{"run": "logs/run", "hashes": {"log": of_all(dict(sorted(hashes.items())))}}]
+    }
+    file = folder.parent / "manifest"
+    file.write_text("".join(f"{sha}  {path}\n" for path, sha in logs.items()))
+    manifest = read(str(file))
+    assert isinstance(manifest, Manifest)
+    found = matches(whole, manifest, {"logs/run": str(folder)})
+    return [reason for match in found for one in match.wrong for reason in one.reasons]
+
+
+def test_a_manifest_of_all_files_of_a_folder_is_matched(tmp_path: Path) -> None:
+    folder = run(tmp_path)
+    logs = listed(folder)
+    assert wrong(folder, logs) == []
+    assert wrong(folder, {path: logs[path] for path in logs if path.endswith(".mcap")}) == []
+
+
+@pytest.mark.parametrize("name", ["run_0.mcap", "metadata.yaml"])
+def test_another_file_in_a_folder_is_found(tmp_path: Path, name: str) -> None:
+    folder = run(tmp_path)
+    said = wrong(folder, {**listed(folder), f"logs/run/{name}": "0" * 64})
+    assert said == [f"the manifest has another hash for `logs/run/{name}`"]
+
+
+def test_a_file_of_a_folder_that_is_not_named_is_found(tmp_path: Path) -> None:
+    folder = run(tmp_path)
+    logs = listed(folder)
+    del logs["logs/run/run_1.mcap"]
+    assert wrong(folder, logs) == ["the manifest does not name `logs/run/run_1.mcap`"]
+    assert wrong(folder, {**listed(folder), "logs/run/run_9.mcap": "0" * 64}) == [
+        "the manifest names it and the evidence has no result of it"
+    ]

@@ -1,0 +1,295 @@
+"""No single change to evidence, or to proofs, is certified by `fretc verify-evidence`.
+
+The logs are audited once for each integrity, and every change is compared with that.
+"""
+
+import json
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import closing
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from compiler.logic.claims import (
+    RESULTS,
+    Counterexample,
+    Evidence,
+    Layer,
+    Proved,
+    Trace,
+    Vacuous,
+)
+from compiler.logic.claims import document as proofs_document
+from compiler.project.folder import Project, whole
+from fretc.audit.evidence.reader import document, read
+from fretc.audit.many_logs import IN_TURN, Audited, Found, audit_logs
+from fretc.audit.plan import Plan, planned
+from fretc.report.traceability.chain import chains
+from fretc.report.traceability.lock import Lock, accepted
+from fretc.reproduction import proofs as reproving
+from fretc.reproduction.completeness import Scope
+from fretc.reproduction.manifest import Manifest
+from fretc.reproduction.manifest import read as read_manifest
+from fretc.reproduction.outcome import Finding, Rechecked
+from fretc.reproduction.results import rechecked
+from fretc.verification import reader as proven
+from fretc.verification.engines.sandbox import Limits
+from fretish.diagnostics.diagnostic import Diagnostic
+from tests.command import write
+from tests.fretc.commands.test_verify_evidence import BINDINGS, log, manifested
+
+Step = str | int
+Place = tuple[Step, ...]
+
+REQUIREMENTS = {
+    "r1": "whenever p the sw shall within 2 ticks satisfy q",
+    "r2": "the sw shall always satisfy q | !p",
+    "r7": "whenever p the sw shall with probability >= 0.5 within 2 ticks satisfy q",
+}
+FREE: Mapping[tuple[str, ...], str] = {
+    ("bindings", "file"): "a place: what the bindings say is compared by its hash",
+    ("requirements", "*", "sentence"): "another wording of one meaning is the same sentence",
+    ("results", "*", "assumptions", "*"): "a default may be taken, or written out",
+    ("probabilities", "*", "confidence"): "all that is said with it is made again with it",
+    ("results", "*", "health", "findings", "*", "line"): "a comment above moves it",
+    ("results", "*", "health", "findings", "*", "column"): "a comment above moves it",
+}
+"""What may be otherwise, and why."""
+STRUCTURE = ("taken out", "a key more", "twice", "one more")
+
+
+# Changes --------------------------------------------------------------------------------------
+
+
+MARK = "written twice: "
+
+
+def written(value: Any) -> str:
+    """JSON, with keys that are there twice where one of them has the mark."""
+    return json.dumps(value).replace(MARK, "")
+
+
+def places(value: Any, at: Place = ()) -> Iterator[Place]:
+    """Everywhere in a value; of a list only the first, and of the outermost lists the last, too."""
+    yield at
+    match value:
+        case dict():
+            for key, inner in value.items():
+                yield from places(inner, (*at, key))
+        case list() if value:
+            for i in sorted({0, len(value) - 1 if len(at) == 1 else 0}):
+                yield from places(value[i], (*at, i))
+        case _:
+            pass
+
+
+def inside(value: Any, at: Place) -> Any:
+    for step in at:
+        value = value[step]
+    return value
+
+
+def put(content: Any, at: Place, value: Any) -> str:
+    """The text with another value there."""
+    if not at:
+        return written(value)
+    holder, last = inside(content, at[:-1]), at[-1]
+    before, holder[last] = holder[last], value
+    text = written(content)
+    holder[last] = before
+    return text
+
+
+def taken_out(content: Any, at: Place) -> str:
+    """The text without the value there."""
+    holder = inside(content, at[:-1])
+    if isinstance(holder, dict):
+        return put(content, at[:-1], {key: holder[key] for key in holder if key != at[-1]})
+    return put(content, at[:-1], [one for i, one in enumerate(holder) if i != at[-1]])
+
+
+def others(value: Any) -> list[Any]:
+    """Values in the place of a leaf; texts of a hash stay hashes."""
+    match value:
+        case bool():
+            return [not value, int(value), None]
+        case int():
+            return [value + 1, -1, float(value), True]
+        case float():
+            return [value + 1e-9, float("nan"), str(value)]
+        case str() if len(value) == 64:
+            return [value[:-1] + ("0" if value[-1] != "0" else "1"), ""]
+        case str():
+            words = ("satisfied", "violated", "supported")
+            return [f"{value}x", *(word for word in words if word != value)]
+        case _:
+            return [0, "", False]
+
+
+def changes(content: Any) -> Iterator[tuple[str, Place, str]]:
+    """What is done, where, and the text of the file then."""
+    for at in places(content):
+        value = inside(content, at)
+        if at:
+            yield "taken out", at, taken_out(content, at)
+        if isinstance(value, dict):
+            yield "a key more", at, put(content, at, {**value, "more": 1})
+            for key in value:
+                twice = {**value, f"{MARK}{key}": value[key]}
+                yield "twice", (*at, key), put(content, at, twice)
+        elif isinstance(value, list):
+            for extra in [*value[:1], 1]:
+                yield "one more", at, put(content, at, [*value, extra])
+        else:
+            for other in others(value):
+                yield f"{other!r}", at, put(content, at, other)
+
+
+def is_free(what: str, at: Place) -> bool:
+    """Whether it is a leaf that may be otherwise; a default may be left out, too."""
+    generic = tuple("*" if isinstance(step, int) else step for step in at)
+    return generic in FREE and (what not in STRUCTURE or generic[-2] == "assumptions")
+
+
+# Evidence -------------------------------------------------------------------------------------
+
+
+class Case:
+    """A small project, audited and reviewed, whose logs are audited once for each integrity."""
+
+    def __init__(self, project: Project, plan: Plan, lock: Lock, manifest: Manifest) -> None:
+        self.project, self._plan, self._lock, self._manifest = project, plan, lock, manifest
+        self._known: dict[tuple[str, str], Audited] = {}
+
+    def judged(self, text: str) -> Sequence[Rechecked] | Diagnostic:
+        found = document(write("build/changed.json", text))
+        if isinstance(found, Diagnostic):
+            return found
+        runs = dict.fromkeys(result["run"] for result in found["results"])
+        there = {run: run for run in runs if run and Path(run).is_file()}
+        scope = Scope(tuple(claim.id for claim in self._plan.claims), self._lock)
+        again = rechecked(found, self._plan, there, self._engine, scope, self._manifest)
+        assert not isinstance(again, Diagnostic)
+        return again
+
+    def _engine(self, plan: Plan, logs: Sequence[str]) -> Found:
+        for one in logs:
+            key = (plan.integrity, one)
+            if key not in self._known:
+                with closing(IN_TURN(plan, [one])) as found:
+                    for done in found:
+                        assert not isinstance(done, Diagnostic)
+                        self._known[key] = done[1]
+            yield one, self._known[key]
+
+
+def stands(found: Sequence[Rechecked] | Diagnostic) -> bool:
+    """Whether the command would exit with 0."""
+    if isinstance(found, Diagnostic):
+        return False
+    return all(one.finding is Finding.STANDS for one in found)
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
+    with pytest.MonkeyPatch.context() as patch:
+        place = tmp_path_factory.mktemp("project")
+        patch.chdir(place)
+        yield place
+
+
+@pytest.fixture(scope="module")
+def case(folder: Path) -> Case:
+    for id, sentence in REQUIREMENTS.items():
+        write(f"requirements/{id}.fret", sentence)
+    write("requirements/bindings.toml", BINDINGS)
+    log("logs/good.mcap", 0, 1.5, 3, 0, 0, 0)
+    log("logs/bad.mcap", 0, 1.5, 0, 0, 1.5)
+    manifested()
+    project, manifest = whole("requirements"), read_manifest("logs.sha256")
+    assert isinstance(project, Project)
+    assert isinstance(manifest, Manifest)
+    plan = planned(project)
+    assert isinstance(plan, Plan)
+    audit = audit_logs(plan, ["logs/bad.mcap", "logs/good.mcap"])
+    assert not isinstance(audit, Diagnostic)
+    audited = read(write("build/evidence.json", audit.evidence))
+    assert not isinstance(audited, Diagnostic)
+    known = chains(project, audited)
+    reviews = {c.requirement: accepted(c, "A", "b", "2026-01-02", "c") for c in known}
+    return Case(project, plan, Lock(reviews), manifest)
+
+
+def test_no_change_to_evidence_is_certified(case: Case) -> None:
+    content = json.loads(Path("build/evidence.json").read_text())
+    assert stands(case.judged(json.dumps(content)))
+    passed, count = [], 0
+    for what, at, text in changes(content):
+        count += 1
+        if not is_free(what, at) and stands(case.judged(text)):
+            passed.append((what, at))
+    assert count > 1000
+    assert passed == []
+
+
+LEFT_OUT: Mapping[str, Callable[[Mapping[str, Any]], bool]] = {
+    "a run": lambda one: one["run"] == "logs/bad.mcap",
+    "a requirement": lambda one: one["requirement"] == "r2",
+    "what is violated": lambda one: one["verdict"] == "violated",
+    "all": lambda one: True,
+}
+
+
+@pytest.mark.parametrize("named", [True, False])
+@pytest.mark.parametrize("name", LEFT_OUT)
+def test_nothing_is_left_out(case: Case, name: str, named: bool) -> None:
+    content = json.loads(Path("build/evidence.json").read_text())
+    gone = [one for one in content["results"] if LEFT_OUT[name](one)]
+    assert gone
+    content["results"] = [one for one in content["results"] if one not in gone]
+    if not named:  # neither at the beginning of the file
+        left = {one["requirement"] for one in content["results"]}
+        kept = [one for one in content["requirements"] if one["id"] in left]
+        content["requirements"] = kept
+    assert not stands(case.judged(json.dumps(content)))
+
+
+# Proofs ---------------------------------------------------------------------------------------
+
+TRACE = Trace(("p", "q"), ((True, False), (None, False)), ("it starts", "it ends"), 0)
+FOUND = (
+    Evidence("r1", Layer.MONITOR, "it means it", Proved("9 states"), "fretc", (), {"m": "a" * 64}),
+    Evidence("r1", Layer.LOOP, "it is kept", Counterexample("at 1", TRACE), "fretc", ("(1) so",)),
+    Evidence("r2", Layer.MONITOR, "it means it", Vacuous("never"), "fretc", (), {"n": "b" * 64}),
+    Evidence("r2", Layer.LOOP, "it is kept", Proved("all"), "Dafny 4.9", ("(1) so",)),
+)
+"""What is found again, whatever is asked for."""
+
+
+def test_no_change_to_proofs_is_certified(case: Case, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(reproving, "evidence", lambda *asked: FOUND)
+    content = json.loads(json.dumps(proofs_document("0.1.0", FOUND)))
+
+    def judged(text: str) -> Sequence[Rechecked] | Diagnostic:
+        found = proven.read(write("build/changed.json", text))
+        if isinstance(found, Diagnostic):
+            return found
+        again = reproving.reproved(
+            case.project, found, Limits(), tuple(REQUIREMENTS), lambda words: None
+        )
+        assert not isinstance(again, Diagnostic)
+        return again
+
+    assert stands(judged(json.dumps(content)))
+    texts = [(what, at, text) for what, at, text in changes(content)]
+    for i, record in enumerate(content["evidence"]):
+        for result in {*RESULTS} - {record["result"]}:
+            at = ("evidence", i, "result")
+            texts.append((result, at, put(content, at, result)))
+        for layer in {*map(str, Layer)} - {record["layer"]}:
+            at = ("evidence", i, "layer")
+            texts.append((layer, at, put(content, at, layer)))
+    passed = [(what, at) for what, at, text in texts if stands(judged(text))]
+    assert len(texts) > 100
+    assert passed == []

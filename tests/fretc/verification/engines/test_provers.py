@@ -1,0 +1,385 @@
+"""Provers: what is believed of what they say; and what the real ones say of what is emitted."""
+
+import importlib.util
+import shutil
+from importlib.metadata import PackageNotFoundError
+from itertools import cycle
+from pathlib import Path
+
+import pytest
+
+from compiler.logic.claims import Counterexample, Layer, NotChecked, Proved, Result
+from compiler.targets.dafny import text
+from fretc.verification.engines import provers
+from fretc.verification.engines.provers import verified, with_crosshair, with_dafny
+from tests.compiler.targets.test_dafny import (
+    BINDINGS,
+    CONDITIONS,
+    TIMINGS,
+    bound,
+    emitted,
+    rule,
+)
+
+needs_dafny = pytest.mark.skipif(shutil.which("dafny") is None, reason="Dafny is not installed")
+needs_crosshair = pytest.mark.skipif(
+    importlib.util.find_spec("crosshair") is None, reason="CrossHair is not installed"
+)
+
+# A Dafny that is not one ----------------------------------------------------------------------
+
+LEMMAS = "lemma A()\n{\n}\n\nlemma B(x: int)\n  ensures x > 0\n{\n}\n"
+FINISHED = "Dafny program verifier finished with"
+
+
+@pytest.fixture
+def dafny(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> "Fake":
+    return Fake(tmp_path, monkeypatch)
+
+
+class Fake:
+    """A script of that name on the PATH."""
+
+    def __init__(self, folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+        self.folder = folder
+        monkeypatch.setenv("PATH", f"{folder}:/usr/bin:/bin")
+
+    def says(self, body: str, version: str = "Dafny 2.3.0.10506", text: str = LEMMAS) -> Result:
+        old = version.startswith("Dafny")
+        newer = "Dafny: Error: unknown switch: --version" if old else version
+        script = (
+            "#!/bin/sh\n"
+            f'if [ "$1" = --version ]; then echo "{newer}"; exit 1; fi\n'
+            f'if [ "$1" = /version ]; then echo "{version}"; exit 1; fi\n{body}\n'
+        )
+        path = self.folder / "dafny"
+        path.write_text(script)
+        path.chmod(0o755)
+        return verified(text, seconds=2)[0]
+
+
+def test_all_verified_is_proved(dafny: Fake) -> None:
+    assert dafny.says(f'echo "{FINISHED} 2 verified, 0 errors"') == Proved(
+        "2 parts verified, among them all 2 lemmas and methods"
+    )
+
+
+def test_lines_that_debians_z3_adds_do_not_matter(dafny: Fake) -> None:
+    noise = "Prover error: line 18 column 28: unknown parameter 'model_compress'"
+    found = dafny.says(f'echo "{noise}"; echo; echo "{FINISHED} 2 verified, 0 errors"')
+    assert isinstance(found, Proved)
+
+
+@pytest.mark.parametrize(
+    ("body", "reason"),
+    [
+        ("kill -SEGV $$", "Dafny ended with exit status -11 and no verdict"),
+        ("echo nonsense", "Dafny ended with exit status 0 and no verdict"),
+        ("sleep 60", "Dafny did not finish within 2 s"),
+        (
+            f'echo "{FINISHED} 1 verified, 0 errors"',
+            "Dafny verified 1 parts, and the file has at least 2",
+        ),
+        (
+            f'echo "{FINISHED} 2 verified, 0 errors"; exit 4',
+            "Dafny tells of 0 errors, and its exit status is 4",
+        ),
+        (
+            f'echo "{FINISHED} 1 verified, 1 error"',
+            "Dafny tells of 1 errors, and its exit status is 0",
+        ),
+        (
+            f'echo "{FINISHED} 2 verified, 0 errors, 1 time out"',
+            "Dafny ended with exit status 0 and no verdict",
+        ),
+        (
+            f'echo "{FINISHED} 2 verified, 0 errors"; echo "{FINISHED} 2 verified, 0 errors"',
+            "Dafny ended with exit status 0 and no verdict",
+        ),
+        (
+            'echo "text.dfy(6,10): Error BP5003: A postcondition might not hold."; '
+            f'echo "{FINISHED} 2 verified, 0 errors"',
+            "Dafny finds no proof of `B` (line 6): A postcondition might not hold",
+        ),
+        (
+            'echo "text.dfy(5,3): Error: closeparen expected"; exit 2',
+            "Dafny finds no proof of `B` (line 5): closeparen expected",
+        ),
+    ],
+)
+def test_anything_else_is_not_checked(dafny: Fake, body: str, reason: str) -> None:
+    assert dafny.says(body) == NotChecked(reason)
+
+
+def test_dafny_4_is_asked_in_its_own_way(dafny: Fake) -> None:
+    body = (
+        'if [ "$2" = --help ]; then echo "  --allow-warnings  Allow them"; exit 0; fi\n'
+        f'[ "$*" = "verify --verification-time-limit=1 --allow-warnings text.dfy" ] || exit 9\n'
+        f'echo; echo "{FINISHED} 5 verified, 0 errors"'
+    )
+    found = dafny.says(body, version="4.9.1+abc")
+    assert found == Proved("5 parts verified, among them all 2 lemmas and methods")
+
+
+def test_dafny_2_is_asked_in_its_own_way(dafny: Fake) -> None:
+    body = (
+        '[ "$*" = "/compile:0 /timeLimit:1 text.dfy" ] || exit 9\n'
+        f'grep -q "lemma B" text.dfy && echo "{FINISHED} 2 verified, 0 errors"'
+    )
+    assert isinstance(dafny.says(body), Proved)
+
+
+def test_a_program_without_a_version_is_not_dafny(dafny: Fake) -> None:
+    found = dafny.says(f'echo "{FINISHED} 2 verified, 0 errors"', version="Dafny")
+    assert found == NotChecked("`dafny` tells no version: it is not Dafny")
+
+
+def test_without_dafny_nothing_is_known_and_what_to_do_is_said(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("PATH", str(tmp_path))
+    result, engine = verified(LEMMAS)
+    assert engine == "Dafny"
+    assert isinstance(result, NotChecked)
+    assert result.reason.startswith("Dafny is not installed: put `dafny` on the PATH")
+
+
+def test_nothing_is_claimed_of_another_text(dafny: Fake) -> None:
+    dafny.says(f'echo "{FINISHED} 99 verified, 0 errors"')
+    made = rule("whenever p robot shall within 5 ticks satisfy q")
+    good = text(made, None)
+    for other in (good.replace("==>", "==> true ||"), good + "\n"):
+        found = with_dafny(made, other, None)
+        assert {type(one.result) for one in found} == {NotChecked}
+    assert {type(one.result) for one in with_dafny(made, good, None)} == {Proved}
+
+
+def test_each_part_of_the_file_has_a_line_of_its_own(dafny: Fake) -> None:
+    dafny.says(f'echo "{FINISHED} 99 verified, 0 errors"')
+    declarations = bound()
+    made = rule("whenever p robot shall within 3 ticks satisfy q", declarations)
+    found = with_dafny(made, text(made, declarations), declarations)
+    assert [(one.layer, one.claim) for one in found] == [
+        (
+            Layer.MONITOR,
+            "the counter of `within 3 ticks` is violated exactly where the definition is, "
+            "on every sequence of ticks, for every bound",
+        ),
+        (
+            Layer.INTERCEPTOR,
+            "a model of the interceptor publishes only zero while it is halted, and else "
+            "commands; a request gives 4 ticks of zero; 24 ticks without a stop halt; "
+            "10 ticks without a scan halt",
+        ),
+        (
+            Layer.BOUNDS,
+            "never violated, for every bound n and every delay reach + braking of at most n",
+        ),
+        (Layer.BOUNDS, "never violated at the bound of 3 ticks and the declared delay of 4"),
+    ]
+    assert [type(one.result) for one in found] == [Proved, Proved, Proved, NotChecked]
+    assert found[3].result == NotChecked(
+        "the declared delay of 4 ticks is more than the bound of 3"
+    )
+    assert found[0].engine == "Dafny 2.3.0.10506"
+    assert list(found[0].artefacts) == ["r1.dfy"]
+    assert found[3].assumptions[-2:] == (
+        "reach = 1 ticks ([assume] latency and lost)",
+        "braking = 3 ticks ([assume] braking)",
+    )
+
+
+# Dafny ----------------------------------------------------------------------------------------
+
+
+def say(text: str) -> Result:
+    return verified(text, seconds=120)[0]
+
+
+@needs_dafny
+def test_dafny_verifies_monitors_at_any_bound() -> None:
+    """All in one text, each in a module of its own; conditions and bounds take turns."""
+    timings = ("within {n} ticks", *TIMINGS[-5:], "eventually")
+    turns = zip(timings, cycle(CONDITIONS), cycle((0, 1, 20, 10000)), strict=False)
+    sentences = [f"{c}robot shall {timing.format(n=n)} satisfy q" for timing, c, n in turns]
+    monitors = [emitted(one, None).partition("// Interceptor -")[0] for one in sentences]
+    assert len(set(monitors)) == 7
+    modules = [f"module M{i} {{\n{one}}}\n" for i, one in enumerate(monitors)]
+    assert isinstance(say("\n".join(modules)), Proved)
+
+
+@needs_dafny
+def test_dafny_verifies_the_interceptor_and_the_loop() -> None:
+    latching = BINDINGS.replace("[assume]", "latching = true\n\n[assume]")
+    found = emitted("when p robot shall within 20 ticks satisfy q", latching)
+    assert "NeverViolatedAsDeclared" in found
+    assert isinstance(say(found), Proved)
+
+
+def replaced(text: str, old: str, new: str) -> str:
+    assert text.count(old) == 1, (text.count(old), old)
+    return text.replace(old, new)
+
+
+@needs_dafny
+def test_dafny_rejects_mutants_of_the_monitor_and_of_the_plain_interceptor() -> None:
+    good = emitted("whenever p robot shall within 20 ticks satisfy q", None)
+    late = replaced(good, "d.count == n)", "d.count == n + 1)")
+    forwarding = replaced(late, "      out := ZERO;", "      out := command;")
+    found = say(forwarding)
+    assert isinstance(found, NotChecked)
+    assert "`InvariantHolds`" in found.reason
+    assert "`CommandCallback`" in found.reason
+
+
+@needs_dafny
+def test_dafny_rejects_an_interceptor_without_hold_and_a_loop_with_too_long_a_delay() -> None:
+    good = emitted("whenever p robot shall within 20 ticks satisfy q")
+    released = replaced(good, "held := if requested then HOLD else s.held,", "held := 0,")
+    late = replaced(
+        released,
+        "requires 1 <= braking && reach + braking <= n\n  requires 0",
+        "requires 1 <= braking && reach + braking <= n + 1\n  requires 0",
+    )
+    found = say(late)
+    assert isinstance(found, NotChecked)
+    assert "`HoldLasts`" in found.reason
+    assert "`StopCallback`" in found.reason
+    assert "`NeverViolated`" in found.reason
+
+
+# CrossHair ------------------------------------------------------------------------------------
+
+CORE = '''\
+"""A core."""
+
+
+def bounded(x: int) -> int:
+    """Keep to the range.
+
+    post: 0 <= __return__
+    post: __return__ <= 10
+    """
+    return max(x, 0)
+
+
+def divided(x: int) -> float:
+    """Fail at 7.
+
+    post: True
+    """
+    return 1 / (x - 7)
+'''
+
+
+@needs_crosshair
+def test_crosshair_confirms_and_refutes_contract_by_contract() -> None:
+    said: list[str] = []
+    found = with_crosshair(CORE, "R1", seconds=10, tell=said.append)
+    assert said == ["bounded", "divided"]
+    kept, broken = found[:2]
+    assert (kept.requirement, kept.layer) == ("R1", Layer.INTERCEPTOR)
+    assert (kept.claim, kept.result) == (
+        "`bounded` keeps `0 <= __return__`",
+        Proved("confirmed over all paths"),
+    )
+    assert kept.engine.startswith("CrossHair 0.0.")
+    assert broken.claim == "`bounded` keeps `__return__ <= 10`"
+    assert isinstance(broken.result, Counterexample)
+    assert "when calling bounded(" in broken.result.detail
+    raised = [one for one in found[2:] if isinstance(one.result, Counterexample)]
+    assert raised
+    assert not any(isinstance(one.result, Proved) for one in found[2:])
+
+
+@needs_crosshair
+def test_what_crosshair_does_not_confirm_is_not_checked() -> None:
+    hard = (
+        'def f(x: int, y: int, z: int) -> bool:\n    """Fermat.\n\n'
+        "    pre: x > 2 and y > 2 and z > 2\n    post: __return__\n"
+        '    """\n    return x**3 + y**3 != z**3\n'
+    )
+    (found,) = with_crosshair(hard, seconds=1)
+    assert isinstance(found.result, NotChecked)
+
+
+def test_a_core_that_is_no_module_is_not_checked() -> None:
+    failing = CORE.replace("def bounded", "raise ImportError\n\n\ndef bounded")
+    found = with_crosshair(failing, seconds=1)
+    assert found
+    assert not any(isinstance(one.result, Proved) for one in found)
+
+
+def test_without_crosshair_each_contract_is_not_checked(monkeypatch: pytest.MonkeyPatch) -> None:
+    def absent(name: str) -> str:
+        raise PackageNotFoundError(name)
+
+    monkeypatch.setattr(provers, "version", absent)
+    found = with_crosshair(CORE)
+    assert [one.claim for one in found] == [
+        "`bounded` keeps `0 <= __return__`",
+        "`bounded` keeps `__return__ <= 10`",
+        "`divided` keeps `True`",
+    ]
+    reason = "CrossHair is not installed: pip install 'fretc[crosshair]'"
+    assert {one.result for one in found} == {NotChecked(reason)}
+
+
+KEEPING = '''\
+from typing import NamedTuple
+
+
+class Velocity(NamedTuple):
+    vx: float = 0.0
+    vy: float = 0.0
+    vz: float = 0.0
+    wx: float = 0.0
+    wy: float = 0.0
+    wz: float = 0.0
+
+
+def kept(command: Velocity) -> Velocity:
+    """Hand it on.
+
+    post: __return__ is command
+    """
+    return command
+'''
+
+
+@needs_crosshair
+def test_velocities_that_nobody_looks_into_are_whole_numbers_for_crosshair() -> None:
+    (found,) = with_crosshair(KEEPING, seconds=10)
+    assert found.result == Proved("confirmed over all paths")
+    assert found.assumptions == (
+        "the numbers of a velocity are whole; no function names one of them",
+    )
+
+
+@pytest.mark.parametrize(
+    "body",
+    [
+        "return command if command.vx < 1 else Velocity()",
+        "return Velocity(command[0])",
+        "vx, *rest = command\n    return Velocity(vx)",
+        "return Velocity(*command)",
+        "match command:\n        case Velocity(vx):\n            return Velocity(vx)",
+    ],
+)
+def test_velocities_that_somebody_looks_into_stay_floats(body: str) -> None:
+    looking = KEEPING.replace("return command", body)
+    compile(looking, "core.py", "exec")
+    assert provers._with_whole_velocities(looking) is None
+    assert provers._with_whole_velocities(KEEPING) == KEEPING.replace("float = 0.0", "int = 0")
+
+
+@needs_crosshair
+def test_crosshair_confirms_a_step_of_the_interceptor() -> None:
+    """The others take their time; all of them are looked at by the command."""
+    core = (Path(provers.__file__).parents[3] / "monitors/interceptor.py").read_text()
+    alone = core.replace("    post:", "    told:").replace(
+        "told: __return__ == (0", "post: __return__ == (0"
+    )
+    (found,) = with_crosshair(alone, seconds=20)
+    assert found.result == Proved("confirmed over all paths")
+    assert found.claim == "`expired` keeps `__return__ == (0 < timeout <= age)`"

@@ -1,0 +1,92 @@
+"""A call with limits gives its result, or says why it does not."""
+
+import multiprocessing
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from fretc.verification.engines.sandbox import DEFAULT, Limits, Stopped, confined
+
+
+def twice(number: int) -> int:
+    return 2 * number
+
+
+def spin() -> None:
+    while True:
+        pass
+
+
+def sleep() -> None:
+    time.sleep(600)
+
+
+def fill() -> int:
+    return len(bytearray(8 * 2**30))
+
+
+def fail() -> None:
+    raise ValueError("no")
+
+
+def die() -> None:
+    os.kill(os.getpid(), signal.SIGSEGV)
+
+
+def test_the_result_comes_back() -> None:
+    assert confined(DEFAULT, twice, 21) == 42
+    assert multiprocessing.active_children() == []
+
+
+def test_what_the_function_raises_is_raised() -> None:
+    with pytest.raises(ValueError, match="no"):
+        confined(DEFAULT, fail)
+
+
+def test_time_on_a_processor_is_limited() -> None:
+    assert confined(Limits(seconds=1), spin) == Stopped("out of time: more than 1 s of a processor")
+    assert multiprocessing.active_children() == []
+
+
+def test_time_on_the_wall_is_limited(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(Limits, "wall", 1.0)
+    assert confined(DEFAULT, sleep) == Stopped("out of time: no answer within 1 s")
+    assert multiprocessing.active_children() == []
+
+
+def test_memory_is_limited() -> None:
+    assert confined(Limits(memory=2**30), fill) == Stopped("out of memory: more than 1 GiB")
+
+
+def test_a_crash_is_told() -> None:
+    found = confined(DEFAULT, die)
+    assert found == Stopped("the process crashed (signal 11); it may have had too little memory")
+
+
+def test_an_interruption_ends_the_process(tmp_path: Path) -> None:
+    script = tmp_path / "waits.py"
+    script.write_text(
+        "import os, time\n"
+        "from fretc.verification.engines.sandbox import DEFAULT, confined\n"
+        "def wait(path):\n"
+        "    open(path, 'w').write(str(os.getpid()))\n"
+        "    time.sleep(600)\n"
+        "if __name__ == '__main__':\n"
+        f"    confined(DEFAULT, wait, {str(tmp_path / 'pid')!r})\n"
+    )
+    environment = {**os.environ, "PYTHONPATH": str(Path(__file__).parents[4])}
+    command = [sys.executable, str(script)]
+    running = subprocess.Popen(command, env=environment, stderr=subprocess.PIPE)
+    pid = tmp_path / "pid"
+    deadline = time.monotonic() + 30
+    while not (pid.exists() and pid.read_text()) and time.monotonic() < deadline:
+        time.sleep(0.02)
+    running.send_signal(signal.SIGINT)
+    running.communicate(timeout=30)
+    with pytest.raises(ProcessLookupError):
+        os.kill(int(pid.read_text()), 0)

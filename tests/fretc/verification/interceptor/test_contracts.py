@@ -1,0 +1,452 @@
+"""The contracts of an interceptor: the emitted one keeps them, and each mutant breaks its own."""
+
+from dataclasses import replace
+from itertools import product
+from typing import Any
+
+import pytest
+
+from compiler.logic.claims import Counterexample, Evidence, Layer, NotChecked, Proved
+from compiler.project.interceptor_options import options as counted
+from compiler.targets.python.interceptor import text
+from fretc.verification.interceptor.contracts import contracts
+from fretc.verification.interceptor.file import Core, Head, core, head
+from fretc.verification.interceptor.heard import COMMAND, RELEASE, RING, SCAN, STOP
+from fretc.verification.interceptor.machine import Gate, NotAnInterceptorError, Settings
+from fretish.bindings.declarations import Form, Interception
+from monitors.interceptor import Options
+
+MS = 1_000_000
+NODE = Interception(
+    "/stop",
+    "/cmd_vel",
+    "/wheels",
+    "/scan",
+    period=50 * MS,
+    hold=100 * MS,
+    stop_timeout=150 * MS,
+    scan_timeout=100 * MS,
+    command_timeout=120 * MS,
+)
+PAPER = Interception("/stop", "/cmd_vel", "/wheels", form=Form.EVENT, latching=True)
+OPTIONS = Options(2, 3, 2, 3)
+EMITTED = text(NODE, "bindings.toml")
+
+FIRST = "at first no stop is in force"
+SETS = "each message of the safety function sets the stop or clears it"
+LATCHES = "each message of the safety function sets the stop, and no message clears it"
+PASSES = "each command is passed on unchanged, or is zero where the robot must stand"
+STOPPED = "while a stop is requested nothing but zero is published"
+FOR_EVER = "after the first request nothing but zero is ever published"
+AT_ONCE = "zero is published at once on a request"
+HOLD = (
+    "after a request nothing but zero is published up to tick 2 of the timer, and zero at each of "
+    "these ticks"
+)
+SILENCE = (
+    "{} ticks of the timer after the last message of {}, and until the next one, nothing but zero "
+    "is published"
+)
+NO_STOP = SILENCE.format(3, "the safety function")
+NO_SCAN = SILENCE.format(2, "the sensor")
+NO_COMMAND = SILENCE.format(3, "the planner")
+NOTHING_ELSE = "nothing but zero and the last command is ever published"
+SPEAKS = "at each tick of the timer something is published"
+REPEATS = "at a tick without a reason to stand the last command is published"
+RANGE = "every number that the core keeps stays between 0 and its bound"
+ONLY_THEN = "something is published when a command comes, and at no other time"
+
+
+def mutant(*changes: tuple[str, str], of: str = EMITTED) -> str:
+    for old, new in changes:
+        assert of.count(old) == 1, (old, of.count(old))
+        of = of.replace(old, new)
+    return of
+
+
+def refuted(found: tuple[Evidence, ...]) -> set[str]:
+    assert all(isinstance(e.result, Proved | Counterexample) for e in found), found[0].result
+    return {e.claim for e in found if isinstance(e.result, Counterexample)}
+
+
+def reason(text: str, options: Options = OPTIONS) -> str:
+    (result,) = {e.result for e in contracts(text, options)}
+    assert isinstance(result, NotChecked)
+    return result.reason
+
+
+def test_the_emitted_interceptor_keeps_every_contract() -> None:
+    assert counted(NODE) == OPTIONS
+    found = contracts(EMITTED, OPTIONS)
+    assert [e.claim for e in found] == [
+        FIRST, SETS, PASSES, STOPPED, AT_ONCE, HOLD, NO_STOP, NO_SCAN, NO_COMMAND,
+        NOTHING_ELSE, SPEAKS, REPEATS, RANGE,
+    ]  # fmt: skip
+    assert {e.result for e in found} == {Proved("225 states, 1125 steps")}
+    assert {e.layer for e in found} == {Layer.INTERCEPTOR}
+    assert found[0].assumptions == (
+        "the ROS node hands every message to the core, one at a time, and publishes what it says",
+        "the timer rings at every period in [interceptor]",
+    )
+
+
+def test_the_papers_interceptor_keeps_its_own() -> None:
+    found = contracts(text(PAPER, "bindings.toml"), counted(PAPER))
+    assert [e.claim for e in found] == [
+        FIRST, LATCHES, PASSES, STOPPED, FOR_EVER, NOTHING_ELSE, ONLY_THEN, RANGE,
+    ]  # fmt: skip
+    assert refuted(found) == set()
+    assert found[0].assumptions[1:] == ("no silence is noticed: form = event in [interceptor]",)
+
+
+@pytest.mark.parametrize("latching", [False, True])
+def test_the_core_keeps_them_with_all_small_options(latching: bool) -> None:
+    alone, _, _ = EMITTED.partition("\n\n# The options ")
+    for numbers in product((0, 1, 2), (0, 2), (0, 1), (0, 2)):
+        options = Options(*numbers, latching=latching)
+        assert refuted(contracts(alone, options)) == set()
+
+
+def test_a_channel_that_is_not_watched_is_an_assumption() -> None:
+    alone, _, _ = EMITTED.partition("\n\n# The options ")
+    (first, *_) = contracts(alone, Options(0, 0, 0, 3))
+    assert first.assumptions[2:] == (
+        "the safety function is never silent for long: no stop_timeout in [interceptor]",
+        "the sensor is never silent for long: no scan_timeout in [interceptor]",
+    )
+
+
+# Places in the text
+SCANNED = "    return replace(state, scan_age=0), None"
+PASSED = "return after, ZERO if halted(after, options) else command"
+CASE = "        case ScanHeard():"
+GROWS = "stop_age=min(state.stop_age + 1, options.stop_timeout)"
+HELD = "held=options.hold if requested else state.held"
+WATCH_STOP = "        or expired(state.stop_age, options.stop_timeout)\n"
+WATCH_SCAN = "        or expired(state.scan_age, options.scan_timeout)\n"
+WATCH_COMMAND = "        or expired(state.command_age, options.command_timeout)\n"
+RUNG = "said = ZERO if halted(older, options) else state.command"
+ASKED = "return after, ZERO if requested and not options.event_driven else None"
+HANDED = "            return hear_command(state, command, options)"
+PAID = (
+    "less = replace(older, held=max(state.held - 1, 0))\n"
+    "    said = ZERO if halted(less, options) else state.command"
+)
+
+
+# Mutants --------------------------------------------------------------------------------------
+
+MUTANTS = {
+    "forwards while stopped": (
+        (("        state.stop\n        or state.held", "        state.held"),),
+        {PASSES, STOPPED},
+    ),
+    "forgets the watchdog of the safety function": (((WATCH_STOP, ""),), {PASSES, NO_STOP}),
+    "forgets the watchdog of the sensor": (((WATCH_SCAN, ""),), {PASSES, NO_SCAN}),
+    "forgets the watchdog of the planner": (((WATCH_COMMAND, ""),), {NO_COMMAND}),
+    "holds a tick too short": ((("state.held > 0\n", "state.held > 1\n"),), {PASSES, HOLD}),
+    "pays before it says": (((RUNG, PAID),), {HOLD}),
+    "holds a tick too long": (
+        ((HELD, "held=options.hold + 1 if requested else state.held"),),
+        {PASSES, REPEATS, RANGE},
+    ),
+    "a watchdog barks late": (
+        (
+            (
+                "    return timeout > 0 and age >= timeout",
+                "    return timeout > 0 and age > timeout",
+            ),
+        ),
+        {PASSES, NO_STOP, NO_SCAN, NO_COMMAND},
+    ),
+    "a watchdog never grows older": (((GROWS, "stop_age=state.stop_age"),), {PASSES, NO_STOP}),
+    "all is heard at first": (
+        (("stop_age=options.stop_timeout,\n        scan", "stop_age=0,\n        scan"),),
+        {PASSES, NO_STOP},
+    ),
+    "waits for the tick": (((ASKED, "return after, None"),), {AT_ONCE}),
+    "releases what was not": (((HELD, "held=options.hold if requested else 0"),), {PASSES, HOLD}),
+    "is stopped at first": (
+        (("        stop=False,", "        stop=True,"),),
+        {FIRST},
+    ),
+    "passes on the command before": (
+        ((PASSED, "return after, ZERO if halted(after, options) else state.command"),),
+        {PASSES, NOTHING_ELSE},
+    ),
+    "makes up a command": (
+        ((PASSED, "return after, ZERO if halted(after, options) else Velocity(1.0)"),),
+        {PASSES, NOTHING_ELSE},
+    ),
+    "makes up a command at a scan": (
+        ((SCANNED, f"{SCANNED[:-4]}ZERO if halted(state, options) else Velocity(9.0)"),),
+        {NOTHING_ELSE},
+    ),
+    "says nothing when halted": (
+        ((RUNG, "said = None if halted(older, options) else state.command"),),
+        {HOLD, SPEAKS},
+    ),
+    "always stands": (
+        (("        state.stop\n        or", "        True\n        or"),),
+        {PASSES, REPEATS},
+    ),
+    "counts without an end": (
+        ((GROWS, "stop_age=min(state.stop_age + 1, options.stop_timeout + 1)"),),
+        {RANGE},
+    ),
+}
+
+
+@pytest.mark.parametrize("name", MUTANTS)
+def test_a_mutant_breaks_the_contracts_that_it_should(name: str) -> None:
+    changes, broken = MUTANTS[name]
+    assert refuted(contracts(mutant(*changes), OPTIONS)) == broken
+
+
+FIELD = "    command_age: int\n"
+AT_FIRST = "command_age=options.command_timeout,\n"
+OBEYS = "stop=requested or (options.latching and state.stop)"
+
+
+@pytest.mark.parametrize(
+    ("first", "then", "sum_"),
+    [
+        ("9007199254740992", "9007199254740992.0", "state.odd + 1"),
+        ("9007199254740992.0", "9007199254740992", "state.odd + 1"),
+        ("Velocity()", "Velocity(0)", "state.odd.vx + 9007199254740993"),
+        ("Velocity(0)", "Velocity()", "state.odd.vx + 9007199254740993"),
+    ],
+)
+@pytest.mark.parametrize("obeys", [">", "<="])
+def test_equal_numbers_that_add_up_differently_are_not_one_state(
+    first: str, then: str, sum_: str, obeys: str
+) -> None:
+    """Whole numbers and floats part beyond 2^53; a scan changes the one into the other."""
+    changed = mutant(
+        (FIELD, f"{FIELD}    odd: float | Velocity\n"),
+        (AT_FIRST, f"{AT_FIRST}        odd={first},\n"),
+        (
+            SCANNED,
+            f"    odd = {then} if state.scan_age == 0 else state.odd\n"
+            "    return replace(state, scan_age=0, odd=odd), None",
+        ),
+        (OBEYS, f"stop=requested and {sum_} {obeys} 9007199254740992"),
+    )
+    found = {e.claim: e.result for e in contracts(changed, OPTIONS)}
+    assert not isinstance(found[SETS], Proved)
+
+
+def test_zero_in_whole_numbers_is_none() -> None:
+    """ROS 2 takes floats alone, and the node would fail when the robot is to stop."""
+    whole = mutant((PASSED, "return after, Velocity(0) if halted(after, options) else command"))
+    assert {PASSES, STOPPED, NOTHING_ELSE} <= refuted(contracts(whole, OPTIONS))
+
+
+def test_a_state_has_fields_by_which_states_are_told_apart() -> None:
+    """As a NamedTuple it would have none that are looked at."""
+    changed = mutant(
+        ("@dataclass(frozen=True, slots=True)\nclass State:", "class State(NamedTuple):")
+    )
+    assert reason(changed) == ("its core is not as fretc can read it: `class State(NamedTuple):`")
+
+
+def test_a_latch_that_releases_is_told() -> None:
+    latching = replace(NODE, latching=True)
+    lost = mutant(
+        ("stop=requested or (options.latching and state.stop)", "stop=requested"),
+        of=text(latching, "b.toml"),
+    )
+    assert refuted(contracts(lost, counted(latching))) == {LATCHES, FOR_EVER, PASSES}
+
+
+def replayed(text: str, options: Options, evidence: Evidence) -> list[tuple[str, Any]]:
+    """What the text says when the run of a counterexample is given to it with true velocities."""
+    assert isinstance(evidence.result, Counterexample)
+    assert evidence.result.trace is not None
+    read = core(text)
+    assert isinstance(read, Core)
+    module = read.module
+    state, out = module.initial(module.OPTIONS), []
+    for i, action in enumerate(evidence.result.trace.actions):
+        heard, _, said = action.partition(": ")
+        message = {
+            STOP: module.StopHeard(True),
+            RELEASE: module.StopHeard(False),
+            COMMAND: module.CommandHeard(module.Velocity(i + 1.0)),
+            SCAN: module.ScanHeard(),
+            RING: module.TimerRang(),
+        }[heard]
+        state, command = module.step(state, message, module.OPTIONS)
+        out.append((said, None if command is None else command.vx))
+    return out
+
+
+def test_a_counterexample_is_a_shortest_run_that_can_be_replayed() -> None:
+    text = mutant(*MUTANTS["forgets the watchdog of the sensor"][0])
+    found = next(e for e in contracts(text, OPTIONS) if e.claim == NO_SCAN)
+    assert isinstance(found.result, Counterexample)
+    assert found.result.detail == "a run of 2 steps breaks it"
+    assert found.result.trace is not None
+    assert found.result.trace.names == (
+        "stop requested",
+        "must stand",
+        "zero",
+        "command",
+        "stop silent",
+        "scan silent",
+        "command silent",
+    )
+    assert found.result.trace.rows == (
+        (False, True, False, False, False, True, True),
+        (False, True, False, True, False, True, False),
+    )
+    assert replayed(text, OPTIONS, found) == [
+        ("nothing is published", None),
+        ("the last command is published", 2.0),
+    ]
+
+
+@pytest.mark.parametrize("name", MUTANTS)
+def test_every_counterexample_replays(name: str) -> None:
+    changed = mutant(*MUTANTS[name][0])
+    for evidence in contracts(changed, OPTIONS):
+        if isinstance(evidence.result, Counterexample):
+            for said, command in replayed(changed, OPTIONS, evidence):
+                told = {None: "nothing is published", 0.0: "zero is published"}.get(command)
+                assert said == told or (told is None and said.endswith("is published"))
+
+
+# What is not checked --------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "told"),
+    [
+        (SCANNED, "    print(state)\n    return state, None", "`print(state)`"),
+        (SCANNED, "    state.held = 0\n    return state, None", "`state.held = 0`"),
+        (SCANNED, "    global ZERO\n    return state, None", "`global ZERO`"),
+        (SCANNED, "    return hear_scan(state, options)", "`hear_scan` calls itself"),
+        (SCANNED, "    while True:\n        pass", "`while True:`"),
+        (SCANNED, "    return [state for _ in ()], None", "`[state for _ in ()]`"),
+        (SCANNED, "    return state.__class__(), None", "`state.__class__()`"),
+        (SCANNED, "    return state.command is ZERO, None", "`state.command is ZERO`"),
+        (
+            "from dataclasses import dataclass, replace",
+            "from dataclasses import dataclass, replace\nimport os",
+            "`import os`",
+        ),
+        (
+            "from typing import NamedTuple",
+            "from typing import NamedTuple, Any",
+            "`from typing import NamedTuple, Any`",
+        ),
+        ("ZERO = Velocity()", "ZERO = Velocity()\nZERO = Velocity(1.0)", "`ZERO = Velocity(1.0)`"),
+        ("ZERO = Velocity()", "ZERO = [].pop()", "`ZERO = [].pop()`"),
+        ("    held: int\n", "    held: int = print()\n", "`held: int = print()`"),
+        ("del sys.path[0]", "del sys.path[:]", "`import sys`"),
+        ("ZERO = Velocity()", "ZERO = Velocity(1.0)", "`ZERO = Velocity(1.0)`"),
+        ("ZERO = Velocity()", "ZERO = Velocity()\nHOLD = Options(1, 0, 0, 0)", "`HOLD`"),
+        (SCANNED, "    return replace(state, held=OPTIONS.hold), None", "`OPTIONS`"),
+        (SCANNED, "    return replace(state, scan_age=0 * 2), None", "`0 * 2`"),
+        (SCANNED, "    return replace(state, scan_age=(0, 1)[0]), None", "`(0, 1)[0]`"),
+        (SCANNED, "    return replace(state, scan_age=abs(0)), None", "`abs(0)`"),
+        (SCANNED, "    if state is None:\n        pass\n    return state, None", "`state is None`"),
+        (CASE, "        case ScanHeard(__class__=c):", "`ScanHeard(__class__=c)`"),
+        (CASE, f"        case None:\n            pass\n{CASE}", "`None`"),
+        ("def hear_scan(state: State,", "def hear_scan(state: State, *more: State,", "`def hear"),
+        ("class ScanHeard:", "class ScanHeard(metaclass=type):", "`@dataclass"),
+    ],
+)  # fmt: skip
+def test_a_core_that_may_not_be_pure_is_not_executed(old: str, new: str, told: str) -> None:
+    """By none of those that explore it."""
+    changed = mutant((old, new))
+    if "HOLD" in new:
+        changed = mutant((SCANNED, "    return replace(state, held=HOLD.hold), None"), of=changed)
+    found = reason(changed)
+    assert found.startswith("its core is not as fretc can read it: ")
+    assert told in found or not new
+    with pytest.raises(NotAnInterceptorError) as refused:
+        Gate(changed, Settings())
+    assert str(refused.value) == found
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        "step = print",
+        "def step(*_): pass",
+        "import os as ring",
+        "globals()['step'] = print",
+        "OPTIONS = Options(0, 0, 0, 0)",
+        "for halted in (): pass",
+        "sys.modules[__name__].step = print",
+        "if (step := print): pass",
+    ],
+)
+def test_a_node_that_changes_the_core_is_told(line: str) -> None:
+    changed = mutant(("\n\nclass Gate:", f"\n\n{line}\n\nclass Gate:"))
+    assert "the node below it" in reason(changed)
+    with pytest.raises(NotAnInterceptorError, match="the node below it"):
+        Gate(changed, Settings())
+
+
+@pytest.mark.parametrize(
+    ("changes", "told"),
+    [
+        (
+            ((PASSED, "return after, ZERO if command == ZERO else command"),),
+            "it looks into a command",
+        ),
+        (((PASSED, "return after, command if command else ZERO"),), "it looks into a command"),
+        (((PASSED, "return after, Velocity(command.vx)"),), "it looks into a command"),
+        (
+            ((HANDED, "            return hear_command(state, max(command, ZERO), options)"),),
+            "it looks into a command",
+        ),
+        (
+            ((PASSED, f"return replace(after, held=command), {PASSED[14:]}"),),
+            "its state has a command in the place of a number",
+        ),
+        (((SCANNED, "    return state.command"),), "a step gives no state and command"),
+        ((("hold=2", "hold=3"),), "its options are not those that are declared"),
+        (((SCANNED, "    return replace(state, age=0), None"),), "a step fails: TypeError"),
+        (((SCANNED, "    return None"),), "a step gives no state and command"),
+        (((GROWS, "stop_age=state.stop_age + 1"),), "it has more than 3000 states"),
+        (
+            (("    held: int\n", "    hold: int\n"),),
+            "its core is not as fretc can read it: `state.held`",
+        ),
+        (
+            (
+                ("class ScanHeard:", "class SensorHeard:"),
+                ("        case ScanHeard():", "        case SensorHeard():"),
+            ),
+            "its core has no `ScanHeard`",
+        ),
+        ((("def halted(", "def halted(("),), "it is no Python"),
+    ],
+)
+def test_where_nothing_can_be_said_the_reason_is(
+    changes: tuple[tuple[str, str], ...], told: str
+) -> None:
+    (result,) = {e.result for e in contracts(mutant(*changes), OPTIONS, most=3000)}
+    assert isinstance(result, NotChecked)
+    assert result.reason.startswith(told)
+
+
+def test_the_core_ends_where_the_node_begins() -> None:
+    found = head(EMITTED)
+    assert isinstance(found, Head)
+    assert EMITTED.startswith(found.text)
+    assert found.text.rstrip().endswith("# latching = false\n)")
+    assert head(found.text) == found
+
+
+def test_a_text_that_is_no_interceptor_is_not_checked() -> None:
+    assert reason("") != ""
+    assert reason("\0") != ""
+    assert reason(EMITTED.replace("OPTIONS = Options(", "NUMBERS = Options(", 1)) == (
+        "its core has no `OPTIONS`"
+    )
+    timed = Options(1, 0, 0, 0, event_driven=True)
+    assert reason(EMITTED, timed).startswith("an interceptor without a timer")

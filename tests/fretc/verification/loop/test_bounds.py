@@ -1,0 +1,140 @@
+"""How long an answer takes at most: proved for all times, least under the declared ones."""
+
+from dataclasses import replace
+
+import pytest
+
+from compiler.logic.claims import Counterexample, NotChecked, Proved
+from fretc.verification.interceptor.machine import Settings
+from fretc.verification.loop import abstraction as looptwin
+from fretc.verification.loop import bounds
+from fretc.verification.loop.abstraction import Numbers, Plain, Times, covered
+from fretc.verification.loop.bounds import Answer, Question, search
+from fretc.verification.loop.model import Channel, Loop
+from fretc.verification.loop.search import Parts
+from tests.loops import CORE, EVENTUALLY, WITHIN, case, edited
+from tests.monitoring import rule
+
+HUNDRED_MS = 10**8
+USUAL = Settings(hold=4, stop_timeout=24)
+DECLARED = Channel(2, latency=2, lost=1, braking=4)
+
+
+def asked(
+    sentence: str, settings: Settings = USUAL, channel: Channel = DECLARED, core: str = CORE
+) -> Question:
+    made = rule(sentence)
+    return Question(case(sentence, settings, channel, core), made.sentence, made.ticks, HUNDRED_MS)
+
+
+def test_a_bound_that_is_long_enough() -> None:
+    found = search(asked(WITHIN.format(4)))
+    assert isinstance(found.answered, Proved)
+    assert found.answered.detail.startswith("by an inductive invariant; ")
+    assert found.enough == Proved(
+        "the least that is kept is 4 ticks (400 ms); with one tick less a run of 5 ticks "
+        "violates it"
+    )
+
+
+def test_a_bound_that_is_a_tick_too_short_is_shown_by_a_run() -> None:
+    found = search(asked(WITHIN.format(3)))
+    assert isinstance(found.answered, Proved), "the law holds all the same"
+    assert isinstance(found.enough, Counterexample)
+    assert found.enough.detail == "the least that is kept is 4 ticks (400 ms)"
+    assert found.enough.trace is not None
+    assert len(found.enough.trace.rows) == 5
+
+
+def test_without_a_bound_the_least_is_told() -> None:
+    found = search(asked(EVENTUALLY))
+    assert found.enough == Proved("the least that is kept is 4 ticks (400 ms)")
+
+
+@pytest.mark.parametrize(
+    ("channel", "least"),
+    [
+        (Channel(1), 1),
+        (Channel(1, lost=2), 3),
+        (Channel(3, latency=4, lost=1, braking=3), 4),
+        (Channel(1, lost=2, edge=True, heartbeat=3), 7),
+        (Channel(2, latency=3, lost=1, braking=2, edge=True, heartbeat=2), 5),
+        (Channel(2, latency=1, braking=2, edge=True, heartbeat=4), 2),
+    ],
+)
+def test_the_least_bound_is_the_one_that_is_proved(channel: Channel, least: int) -> None:
+    found = search(asked(EVENTUALLY, Settings(), channel))
+    assert isinstance(found.enough, Proved)
+    assert found.enough.detail.startswith(f"the least that is kept is {least} tick")
+
+
+def test_a_loop_that_does_something_else_is_not_checked() -> None:
+    wrong = edited(
+        CORE, "return after, ZERO if halted(after, options) else command", "return after, command"
+    )
+    reason = NotChecked("the loop does what its model in whole numbers does not")
+    assert search(asked(WITHIN.format(4), core=wrong)) == Answer(reason, reason)
+
+
+FORGETS = (
+    ("    command_age: int\n\n", "    command_age: int\n    quiet: int = 0\n\n"),
+    ("        stop_age=0,\n", "        stop_age=0,\n        quiet=0,\n"),
+    ("        state.stop\n        or", "        (state.stop and state.quiet < 30)\n        or"),
+    (
+        "        state,\n        stop_age=min(",
+        "        state,\n        quiet=min(state.quiet + 1, 30),\n        stop_age=min(",
+    ),
+)
+
+
+def test_small_times_say_nothing_of_long_ones_where_the_core_is_another() -> None:
+    """It forgets a stop after 30 ticks without a message: 40 lost ones are too many for it."""
+    core = CORE
+    for old, new in FORGETS:
+        core = edited(core, old, new)
+    small = search(asked(WITHIN.format(4), Settings(hold=1), core=core))
+    assert isinstance(small.enough, Proved), "under the declared times it is as good as any"
+    assert isinstance(small.answered, NotChecked)
+    assert small.answered.reason.startswith("the interceptor's core is not the one that fretc")
+    large = Channel(1, latency=2, lost=40, braking=4)
+    assert not isinstance(search(asked(EVENTUALLY, Settings(hold=1), large, core)).enough, Proved)
+
+
+def test_a_twin_that_promises_too_much_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Held against the loop with one lost message less than there is."""
+    loop = Parts.of(case(WITHIN.format(9), Settings(), Channel(1, lost=2))).loop
+    assert covered(loop, 10**5, 9).strange is None
+    loop.channel = replace(loop.channel, lost=1)
+    monkeypatch.setattr(Loop, "_fates", lambda *_: [(True, 0), (False, 2)])
+    strange = covered(loop, 10**5, 9).strange
+    assert strange is not None
+    assert strange[1].losses == 2
+
+
+def test_a_twin_whose_heart_beats_too_fast_is_found() -> None:
+    loop = Parts.of(
+        case(WITHIN.format(9), Settings(), Channel(1, lost=1, edge=True, heartbeat=3))
+    ).loop
+    assert covered(loop, 10**5, 9).strange is None
+    right = looptwin.times_of
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(looptwin, "times_of", lambda known: right(known)._replace(heartbeat=2))
+        strange = covered(loop, 10**5, 9).strange
+    assert strange is not None
+    assert (strange[0].silent, strange[1].silent) == (2, 3)
+
+
+def test_an_invariant_that_is_too_strong_is_not_proved(monkeypatch: pytest.MonkeyPatch) -> None:
+    def too_strong(at: Numbers, times: Times, bound: object, logic: Plain) -> object:
+        return logic.both(real(at, times, bound, logic), at.open <= 0)
+
+    real = bounds._invariant
+    monkeypatch.setattr(bounds, "_invariant", too_strong)
+    found = search(asked(EVENTUALLY, Settings(), Channel(1)))
+    assert found.answered == NotChecked("of the invariant: a step does not keep it")
+
+
+def test_without_z3_it_is_told_how_to_get_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(bounds, "find_spec", lambda _: None)
+    reason = NotChecked("z3 is not installed: pip install 'fretc[bounds]'")
+    assert search(asked(EVENTUALLY)) == Answer(reason, reason)

@@ -1,0 +1,347 @@
+"""The closed loop over the texts: what it keeps, and the runs by which it does not."""
+
+from dataclasses import replace
+
+import pytest
+
+from compiler.logic import formula as f
+from compiler.logic.claims import (
+    Counterexample,
+    NotChecked,
+    Proved,
+    Result,
+    Vacuous,
+    status,
+)
+from fretc.verification.interceptor.machine import Settings
+from fretc.verification.loop.model import Channel
+from fretc.verification.loop.search import is_safety, search
+from tests.loops import CORE, EVENTUALLY, LATCH, TIMER, WITHIN, case, edited, with_safety
+
+EDGE = Channel(1, edge=True)
+
+
+def trace(result: Result) -> list[str]:
+    """The rows of a run as digits, each with what happened."""
+    assert isinstance(result, Counterexample)
+    assert result.trace is not None
+    digits = ("".join("-" if v is None else str(int(v)) for v in row) for row in result.trace.rows)
+    return [f"{row} {told}" for row, told in zip(digits, result.trace.actions, strict=True)]
+
+
+# The loops of the paper and their mends -------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("settings", "channel", "kept", "released"),
+    [
+        (LATCH, Channel(1, edge=True), "counterexample", "counterexample"),
+        (LATCH, Channel(1, edge=True, punctual=True), "proved", "counterexample"),
+        (TIMER, Channel(1), "proved", "proved"),
+        (TIMER, Channel(1, lost=2), "counterexample", "proved"),
+        (TIMER, Channel(1, lost=2, edge=True), "counterexample", "counterexample"),
+    ],
+    ids=["the paper's", "with a busy planner", "timer", "lossy", "lossy and on change only"],
+)
+def test_what_each_loop_keeps_within_two_ticks(
+    settings: Settings, channel: Channel, kept: str, released: str
+) -> None:
+    found = search(case(WITHIN.format(2), settings, channel))
+    assert (status(found.kept), status(found.released)) == (kept, released)
+
+
+def test_without_a_bound_only_what_is_sent_once_is_lost() -> None:
+    found = {
+        lost: status(search(case(EVENTUALLY, TIMER, Channel(1, lost=2, edge=edge))).kept)
+        for lost, edge in (("level", False), ("edge", True))
+    }
+    assert found == {"level": "proved", "edge": "counterexample"}
+
+
+def test_a_heartbeat_mends_what_is_lost_on_change_only() -> None:
+    """Two messages may be lost, three ticks apart: after six ticks the third one is heard."""
+    lossy = Channel(1, lost=2, edge=True, heartbeat=3)
+    found = {n: search(case(WITHIN.format(n), TIMER, lossy)) for n in (6, 7)}
+    assert (status(found[6].kept), status(found[7].kept)) == ("counterexample", "proved")
+    assert status(found[7].released) == "proved"
+    assert status(search(case(EVENTUALLY, TIMER, lossy)).kept) == "proved"
+    assert trace(found[6].kept)[1:] == [
+        "101-01 a stop is requested, and the message is lost",
+        "001-01 a stop is requested, and no message is sent",
+        "001-01 a stop is requested, and no message is sent",
+        "001-01 a stop is requested, and the message is sent again, and lost",
+        "001-01 a stop is requested, and no message is sent",
+        "001-01 a stop is requested, and no message is sent",
+        "001110 a stop is requested, and the message is sent again; `true` is heard",
+    ]
+
+
+@pytest.mark.parametrize(("timeout", "released"), [(6, "counterexample"), (7, "proved")])
+def test_a_watchdog_lets_go_where_the_heartbeat_is_faster(timeout: int, released: str) -> None:
+    """Two cells to a tick: three ticks of silence, and no more."""
+    beating = Channel(2, edge=True, heartbeat=3)
+    found = search(case(WITHIN.format(3), Settings(stop_timeout=timeout), beating))
+    assert (status(found.kept), status(found.released)) == ("proved", released)
+
+
+def test_a_heartbeat_of_one_tick_speaks_at_every_tick() -> None:
+    told = {
+        search(case(WITHIN.format(3), TIMER, channel)).kept
+        for channel in (Channel(1, lost=2), Channel(1, lost=2, edge=True, heartbeat=1))
+    }
+    (result,) = {status(one) for one in told}
+    assert result == "proved"
+
+
+def test_the_latch_of_the_paper_lets_the_wheels_turn_where_the_planner_falls_silent() -> None:
+    found = search(case(WITHIN.format(2), LATCH, EDGE))
+    assert trace(found.kept) == [
+        "010-01 no stop is requested; a command to move is heard",
+        "101111 a stop is requested, and the message is sent; `true` is heard",
+        "001-11 a stop is requested, and no message is sent",
+        "001-11 a stop is requested, and no message is sent",
+    ]
+
+
+def test_without_a_bound_that_run_has_no_end() -> None:
+    found = search(case(EVENTUALLY, LATCH, EDGE)).kept
+    assert trace(found) == [
+        "010-01 no stop is requested; a command to move is heard",
+        "101111 a stop is requested, and the message is sent; `true` is heard",
+        "001-11 a stop is requested, and no message is sent",
+    ]
+    assert isinstance(found, Counterexample)
+    assert found.trace is not None
+    assert (found.trace.names, found.trace.cycle) == (
+        ("near", "stopped", "request", "delivered", "halt", "wheels"),
+        2,
+    )
+
+
+def test_a_loop_that_loses_two_messages_keeps_a_bound_of_three() -> None:
+    lossy = Channel(1, lost=2)
+    found = {n: status(search(case(WITHIN.format(n), TIMER, lossy)).kept) for n in (2, 3)}
+    assert found == {2: "counterexample", 3: "proved"}
+    assert trace(search(case(WITHIN.format(2), TIMER, lossy)).kept)[1:] == [
+        "101-01 a stop is requested, and the message is lost",
+        "001-01 a stop is requested, and the message is lost",
+        "001110 a stop is requested, and the message is sent; `true` is heard",
+    ]
+
+
+@pytest.mark.parametrize(
+    ("channel", "least"),
+    [
+        (Channel(2, latency=2, braking=4), 3),
+        (Channel(2, latency=1, braking=1), 1),
+        (Channel(2, latency=2, braking=1), 2),
+        (Channel(2, latency=2, lost=1, braking=4), 4),
+    ],
+)
+def test_latency_losses_and_braking_add_up(channel: Channel, least: int) -> None:
+    settings = Settings(hold=4, stop_timeout=24)
+    kept = status(search(case(WITHIN.format(least), settings, channel)).kept)
+    short = "immediately" if least == 1 else f"within {least - 1} ticks"
+    sentence = f"whenever near the sw shall {short} satisfy stopped"
+    assert (kept, status(search(case(sentence, settings, channel)).kept)) == (
+        "proved",
+        "counterexample",
+    )
+
+
+def test_a_robot_may_stand_earlier_than_it_must() -> None:
+    """Else nobody could refute that it moves on for three ticks after the trigger."""
+    sentence = "upon near the sw shall after 3 ticks satisfy stopped"
+    found = search(case(sentence, TIMER, Channel(1, braking=3)))
+    assert status(found.kept) == "counterexample"
+
+
+def test_a_watchdog_stops_a_robot_for_good_where_silence_is_normal() -> None:
+    found = search(case(WITHIN.format(2), Settings(stop_timeout=3), EDGE))
+    assert (status(found.kept), status(found.released)) == ("proved", "counterexample")
+
+
+# Texts that are wrong -------------------------------------------------------------------------
+
+
+FORWARDS = "return after, ZERO if halted(after, options) else command"
+
+
+def test_an_interceptor_that_forwards_while_it_is_stopped_is_refuted() -> None:
+    wrong = edited(CORE, FORWARDS, "return after, command")
+    found = search(case(WITHIN.format(2), core=wrong)).kept
+    assert status(found) == "counterexample"
+    assert "`true` is heard" in trace(found)[1]
+
+
+def test_a_safety_function_that_is_a_tick_late_is_refuted() -> None:
+    """The observer is the monitor that fretc makes, not the one that is late."""
+    known = case(WITHIN.format(2), TIMER, Channel(1, lost=1))
+    assert isinstance(search(known).kept, Proved)
+    late = edited(known.safety, "self.r1_owed = since_2", "self.r1_owed = since_1")
+    late = edited(late, "self.r1_trigger = near", "self.r1_trigger = False")
+    assert status(search(with_safety(known, late)).kept) == "counterexample"
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "reason"),
+    [
+        (
+            FORWARDS,
+            "return after, ZERO if command.vx > 1 else command",
+            "its step looks into a velocity",
+        ),
+        (
+            "return replace(state, scan_age=0), None",
+            "print(state)\n    return replace(state, scan_age=0), None",
+            "its core is not as fretc can read it: `print(state)`",
+        ),
+        (
+            "return replace(state, scan_age=0), None",
+            "return replace(state, scan_age=0), Velocity(1.0)",
+            "it makes a velocity that it has not heard",
+        ),
+        (
+            "return replace(state, scan_age=0), None",
+            "after = replace(state, command=ZERO)\n    return (after, ZERO) if after == state "
+            "else (state, None)",
+            "its step looks into a velocity",
+        ),
+        (
+            FORWARDS,
+            "return (after, None) if after == state else (after, command)",
+            "its step looks into a velocity",
+        ),
+        (
+            "    return replace(state, scan_age=0), None",
+            "    return state.command",
+            "its step gives no pair",
+        ),
+        (
+            "command=command, command_age=0",
+            "command=command, stop=command, command_age=0",
+            "its step looks into a velocity",
+        ),
+        (
+            "command=command, command_age=0",
+            "command=command, held=command, command_age=0",
+            "its step looks into a velocity",
+        ),
+        ("def halted(", "def stopped(", "its core has no `halted`"),
+        (
+            "ZERO = Velocity()",
+            "ZERO = Velocity(1.0)",
+            "its core is not as fretc can read it: `ZERO = Velocity(1.0)`",
+        ),
+    ],
+)
+def test_what_is_no_pure_interceptor_is_not_checked(old: str, new: str, reason: str) -> None:
+    found = search(
+        case(WITHIN.format(2), channel=Channel(1, scans=True), core=edited(CORE, old, new))
+    )
+    assert found.kept == found.released == NotChecked(reason)
+
+
+def test_an_interceptor_whose_numbers_grow_for_ever_is_not_checked() -> None:
+    grows = edited(
+        CORE,
+        "return replace(state, scan_age=0), None",
+        "return replace(state, scan_age=state.scan_age + 1), None",
+    )
+    known = case(WITHIN.format(2), channel=Channel(1, scans=True), core=grows)
+    reason = "its State takes more than 500 values"
+    assert search(replace(known, limit=500)).kept == NotChecked(reason)
+
+
+# Vacuity and limits ---------------------------------------------------------------------------
+
+
+def test_a_demand_that_never_begins_is_vacuous() -> None:
+    found = search(case("whenever near & !near the sw shall within 2 ticks satisfy stopped"))
+    assert isinstance(found.kept, Vacuous)
+    assert found.kept.detail.startswith("no demand ever begins")
+
+
+def test_a_robot_that_never_moves_is_vacuous() -> None:
+    frozen = edited(CORE, "        stop=False,\n", "        stop=True,\n")
+    found = search(case(WITHIN.format(2), Settings(latching=True), core=frozen))
+    assert isinstance(found.kept, Vacuous)
+    assert found.kept.detail.startswith("the robot never moves")
+
+
+def test_a_stop_that_is_never_in_force_is_vacuous() -> None:
+    deaf = edited(CORE, "stop=requested or", "stop=False and requested or")
+    found = search(case(WITHIN.format(2), core=deaf))
+    assert found.released == Vacuous("no stop is ever in force")
+
+
+def test_too_many_states_are_not_checked() -> None:
+    known = replace(case(WITHIN.format(2), TIMER, Channel(1, lost=2)), limit=3)
+    assert search(known).kept == NotChecked("more than 3 states")
+
+
+@pytest.mark.parametrize(
+    ("formula", "expected"),
+    [
+        (f.globally(f.eventually(f.Atom("p"))), False),
+        (f.globally(f.eventually(f.Atom("p"), f.Interval(0, 3))), True),
+        (f.not_(f.eventually(f.Atom("p"))), True),
+        (f.until(f.Atom("p"), f.Atom("q")), False),
+        (f.release(f.Atom("p"), f.Atom("q")), True),
+        (f.implies(f.globally(f.Atom("p")), f.Atom("q")), False),
+    ],
+)
+def test_what_finite_runs_can_refute(formula: f.Formula, expected: bool) -> None:
+    assert is_safety(formula) == expected
+
+
+HALTED = """\
+def halted(state: State, options: Options) -> bool:
+    return 0 > 1
+
+
+def kept_back(state: State, options: Options) -> bool:"""
+
+
+def test_what_a_core_says_of_itself_does_not_release_a_stop() -> None:
+    """Its `halted` says no, and its steps go by another function."""
+    lying = CORE.replace("halted(", "kept_back(")
+    lying = edited(lying, "def kept_back(state: State, options: Options) -> bool:", HALTED)
+    for settings, channel in ((LATCH, EDGE), (TIMER, Channel(1, lost=2, edge=True))):
+        known = case(WITHIN.format(9), settings, channel)
+        assert status(search(known).released) == "counterexample"
+        assert status(search(replace(known, interceptor=lying)).released) == "counterexample"
+
+
+@pytest.mark.parametrize(
+    ("cell", "first", "step", "ignored"),
+    [
+        ("w_1", "Window(60, 3)", "far = w_1.step(True, near)", "far"),
+        ("x_broken", "-1", "x_broken = x_broken + 1 if near else x_broken", "x_broken > 5"),
+        ("x_doomed", "-1", "x_doomed = x_doomed + 1 if near else x_doomed", "x_doomed > 5"),
+    ],
+)
+def test_a_safety_function_that_remembers_more_than_is_put_back_is_not_stepped(
+    cell: str, first: str, step: str, ignored: str
+) -> None:
+    known = case(WITHIN.format(3))
+    text = known.safety
+    for old, new in (
+        ('        "doubt",\n', f'        "doubt",\n        "{cell}",\n'),
+        ('        "oldest_1",\n    )', f'        "oldest_1",\n        "{cell}",\n    )'),
+        (
+            "        self.oldest_1 = -1\n",
+            f"        self.oldest_1 = -1\n        self.{cell} = {first}\n",
+        ),
+        ("= self.oldest_1\n", f"= self.oldest_1\n        {cell} = self.{cell}\n"),
+        ("self.oldest_1 = oldest_1\n", f"self.oldest_1 = oldest_1\n        self.{cell} = {cell}\n"),
+        (
+            "            if oldest_1 >= 0 and",
+            f"            {step}\n            if oldest_1 >= 0 and",
+        ),
+        ("elif near and not_stopped:", f"elif near and not_stopped and not ({ignored}):"),
+    ):
+        text = edited(text, old, new)
+    found = search(with_safety(known, text)).kept
+    assert isinstance(found, NotChecked)
+    assert "it is not laid out as fretc writes it" in found.reason

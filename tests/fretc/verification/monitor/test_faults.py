@@ -1,0 +1,184 @@
+# ruff: noqa: E501
+"""Faults that were put into a monitor's text by hand: what becomes of each is written beside it.
+
+They are of the kinds that a proof about verdicts of known values does not see: what is told of
+triggers, answers and open demands, the handling of unknown values, columns, names.
+"""
+
+import re
+from functools import cache
+
+import pytest
+
+from compiler.targets.python import monitor as target
+from fretc.verification.monitor.equivalence import NotChecked
+from fretc.verification.monitor.verifying import verified
+from monitors.loading import load
+from tests.compiler.formalization.test_mutants import (
+    DIFFERS,
+    MARK,
+    REFUSED,
+    REFUTED,
+    SAME,
+    Judge,
+)
+from tests.monitoring import rule
+
+WITHIN = "in m mode whenever p the sw shall within 3 ticks satisfy q"
+FOR = "upon p the sw shall for 2 ticks satisfy q & !m"
+BEFORE = "before m mode the sw shall always satisfy q"
+LONG = 2**4000 - 1
+"""A constant that changes nothing on any trace that is drawn."""
+
+P = "            if p is not True and p is not False:\n"
+
+FAULTS = (
+    # Names.
+    (WITHIN, '"p": "p"', '"p": "q"', REFUSED),
+    (WITHIN, '"p": "p",\n        "q": "q",', '"p": "q",\n        "q": "p",', REFUSED),
+    (WITHIN, '"p": "p",\n        "q": "q",', '"q": "q",\n        "p": "p",', REFUSED),
+    (WITHIN, '("not_q", "q", False)', '("not_q", "q", True)', REFUSED),
+    (WITHIN, '("not_q", "q", False)', '("not_q", "p", False)', REFUSED),
+    (WITHIN, '("p", "p", True)', '("p", "m", True)', REFUSED),
+    (WITHIN, '("p", "p", True)', '("p", "p", 1)', REFUSED),
+    (WITHIN, "for (m, p, q) in rows", "for (m, q, p) in rows", REFUSED),
+    (WITHIN, "row = (m, p, q)", "row = (m, q, p)", REFUSED),
+    (WITHIN, "self, *, m: Truth, p: Truth", "self, *, p: Truth, m: Truth", REFUSED),
+    # Triggers, and the mark of the last one.
+    (WITHIN, "self.r1_trigger = m and p", "self.r1_trigger = p", DIFFERS),
+    (WITHIN, "self.r1_trigger = m and p", "self.r1_trigger = m and p and not_q", DIFFERS),
+    (WITHIN, "self.r1_trigger = m and p", "self.r1_trigger = False", DIFFERS),
+    (WITHIN, "        self.r1_trigger = m and p\n", "", DIFFERS),
+    (WITHIN, "            if m and p:\n                r1_last", "            if p:\n                r1_last", DIFFERS),
+    (WITHIN, "            if m and p:\n                r1_last = tick\n", "", DIFFERS),
+    (WITHIN, "            if m and p:\n                r1_last = tick\n", "            r1_last = tick\n", DIFFERS),
+    (WITHIN, "        self.r1_last = r1_last\n", "", REFUSED),
+    # Open demands, and their mark.
+    (WITHIN, "self.r1_owed = since_2", "self.r1_owed = since_1", DIFFERS),
+    (WITHIN, "        self.r1_owed = since_2\n", "", DIFFERS),
+    (WITHIN, "if not since_2:", "if not since_1:", DIFFERS),
+    (WITHIN, "if not since_2:\n                r1_open = -1\n            elif r1_open < 0:\n                r1_open = tick", "r1_broken", REFUSED),
+    (WITHIN, "            if not since_2:\n                r1_open = -1\n            elif r1_open < 0:\n                r1_open = tick\n", "", DIFFERS),
+    (WITHIN, "        self.r1_answer = m and q\n", "        r1_open = r1_last if self.r1_owed else -1\n", DIFFERS),
+    (FOR, "        r1_open = r1_last if self.r1_owed else -1\n", "", DIFFERS),
+    (FOR, "        self.r1_owed = since_2\n        r1_open = r1_last if self.r1_owed else -1\n", "        r1_open = r1_last if self.r1_owed else -1\n        self.r1_owed = since_2\n", REFUSED),
+    (FOR, "        r1_open = r1_last if self.r1_owed else -1\n        self.r1_broken = r1_broken\n        self.r1_last = r1_last\n        self.r1_open = r1_open\n", "        self.r1_open = r1_open\n        r1_open = r1_last if self.r1_owed else -1\n        self.r1_broken = r1_broken\n        self.r1_last = r1_last\n", REFUSED),
+    (FOR, "self.r1_owed = since_2", "self.r1_owed = since_1", DIFFERS),
+    # Answers.
+    (WITHIN, "self.r1_answer = m and q", "self.r1_answer = q", DIFFERS),
+    (WITHIN, "self.r1_answer = m and q", "self.r1_answer = m", DIFFERS),
+    (WITHIN, "        self.r1_answer = m and q\n", "", DIFFERS),
+    # What is settled, doomed, failed, broken.
+    (WITHIN, "        self.r1_answer = m and q\n", "        self.r1_answer = m and q\n        self.r1_settled = q\n", DIFFERS),
+    (WITHIN, "        self.r1_answer = m and q\n", "        self.r1_answer = m and q\n        self.r1_doom = since_2\n", DIFFERS),
+    (WITHIN, "        self.r1_answer = m and q\n", "        self.r1_answer = m and q\n        self.r1_fails = since_2\n", REFUTED),
+    (WITHIN, "self.r1_breach = since_1", "self.r1_breach = since_2", DIFFERS),
+    (WITHIN, "r1_broken < 0 and since_1", "r1_broken < 0 and since_2", REFUTED),
+    (BEFORE, "self.r1_settled = since_2", "self.r1_settled = since_2 and first", REFUTED),
+    # Unknown values.
+    (WITHIN, "q = not_q = doubt", "q = not_q = False", REFUSED),
+    (WITHIN, "q = not_q = doubt", "q = not_q = True", REFUSED),
+    (WITHIN, "q = not_q = doubt", "not_q = doubt", REFUSED),
+    (WITHIN, "q = not_q = doubt", "q = doubt", REFUSED),
+    (WITHIN, "known = False\n                    m = doubt", "m = doubt", REFUSED),
+    (WITHIN, "known = False\n                    m = doubt", "m = doubt\n                    known = True", REFUSED),
+    (WITHIN, "        doubt = self.doubt\n", "        doubt = False\n", REFUSED),
+    (WITHIN, "        self.doubt = doubt\n", "        self.doubt = False\n", REFUSED),
+    (WITHIN, "doubt: bool = False", "doubt: bool = True", REFUSED),
+    (WITHIN, "            not_q = not q\n", "", REFUSED),
+    (WITHIN, "            not_q = not q\n", "            not_q = not p\n", REFUSED),
+    (WITHIN, 'm = boolean(m, "m")', "pass", REFUSED),
+    (WITHIN, P, "            if p is not True:\n", REFUSED),
+    (WITHIN, P, "            if p is not False:\n", REFUSED),
+    (WITHIN, "oldest_1 >= 0 and not_q and m", "oldest_1 >= 0 and not q and m", DIFFERS),
+    (WITHIN, "elif m and p and not_q:", "elif m and p and (not q):", DIFFERS),
+    (WITHIN, "elif m and p and not_q:", "elif not (not m or not p) and not_q:", SAME),
+    (FOR, "(since_1 and (not_q or m)):", "(since_1 and (not q or m)):", DIFFERS),
+    (FOR, "self.r1_breach = since_1 and (not_q or m)", "self.r1_breach = since_1 and (not q or m)", DIFFERS),
+    (FOR, "before_1, kept_before_1 = kept_before_1, not_p", "before_1, kept_before_1 = kept_before_1, not p", DIFFERS),
+    (WITHIN, "if m is None or p is None or q is None:", "if m is None or p is None:", REFUSED),
+    (WITHIN, "            self._fork()\n", "            pass\n", REFUSED),
+    (WITHIN, "            may.advance((row,))\n", "            pass\n", REFUSED),
+    (WITHIN, "if may is not must:", "if may is must:", REFUSED),
+    (WITHIN, "        return known\n", "        return True\n", REFUSED),
+    # Steps.
+    (WITHIN, "since_1 = oldest_1 >= 3", "since_1 = oldest_1 >= 2", REFUTED),
+    (WITHIN, "since_1 = oldest_1 >= 3", "since_1 = oldest_1 > 2", SAME),
+    (WITHIN, "oldest_1 + 1 if oldest_1 < 3 else 3", "oldest_1 + 1 if oldest_1 < 5 else 5", SAME),
+    (WITHIN, "self.oldest_1 = -1", "self.oldest_1 = 0", REFUTED),
+    (WITHIN, "self.r1_open = -1", "self.r1_open = 0", REFUSED),
+    (WITHIN, "self.r1_owed = False", "self.r1_owed = True", REFUSED),
+    (WITHIN, "                self.r1_trigger,\n                self.r1_breach,", "                self.r1_breach,\n                self.r1_trigger,", REFUSED),
+    (WITHIN, "self.r1_last, self.r1_open", "self.r1_open, self.r1_last", REFUSED),
+    # Columns.
+    (WITHIN, "trigger=m & p,", f"trigger=m & p & {LONG},", REFUSED),
+    (WITHIN, "breach=since_1,", f"breach=since_1 & {LONG},", REFUSED),
+    (WITHIN, "owed=since_2,", f"owed=since_2 & {LONG},", REFUSED),
+    (WITHIN, "answer=m & q,", f"answer=m & q & {LONG},", REFUSED),
+    (WITHIN, "since_2 = held_1", f"since_2 = held_1 & {LONG}", REFUSED),
+    (WITHIN, "held_1 = since(not_q & m,", f"held_1 = since(not_q & m & {LONG},", REFUSED),
+    (FOR, "0, 2, every)", f"0, 2, {LONG})", REFUSED),
+    (WITHIN, "trigger=m & p,", "trigger=m & p & 1152921504606846975,", DIFFERS),
+    (WITHIN, "trigger=m & p,", "trigger=p & m,", REFUSED),
+    (WITHIN, "trigger=m & p,", "trigger=m,", DIFFERS),
+    (WITHIN, "answer=m & q,", "answer=m | q,", DIFFERS),
+    (WITHIN, "settled=0,", "settled=1,", DIFFERS),
+    (WITHIN, "doom=0,", "doom=None,", DIFFERS),
+    (WITHIN, "                doom=0,\n", "", DIFFERS),
+    (WITHIN, "not_q & m, m & p & not_q, 3, every", "not_q & m, m & p & not_q, 4, every", DIFFERS),
+    (WITHIN, "p: int, not_q: int", "not_q: int, p: int", REFUSED),
+    (WITHIN, "        since_2 = held_1\n", "        since_2 = held_1\n        every = 0\n", REFUSED),
+    (WITHIN, "        since_2 = held_1\n", "        since_2 = held_1\n        once = 0\n", REFUSED),
+    (WITHIN, "        since_2 = held_1\n", "        since_2 = held_1\n        m = p\n", REFUSED),
+    (WITHIN, "        since_2 = held_1\n", "        other = held_1\n        since_2 = other\n", SAME),
+    # What it says it is of.
+    (WITHIN, 'whenever p the sw shall within 3 ticks satisfy q",', 'the sw shall never satisfy q",', REFUSED),
+    (WITHIN, '",\n            3,\n', '",\n            4,\n', REFUSED),
+    (WITHIN, '            "R1",\n', '            "R2",\n', REFUSED),
+)  # fmt: skip
+
+
+@cache
+def judge(sentence: str) -> tuple[str, Judge]:
+    made = rule(sentence)
+    return target.text(made), Judge(made)
+
+
+@pytest.mark.parametrize(("sentence", "old", "new", "expected"), FAULTS)
+def test_a_fault_comes_to_what_is_written_beside_it(
+    sentence: str, old: str, new: str, expected: str
+) -> None:
+    """What is proved tells the same as the right one on drawn traces: `TOLD` is never right."""
+    text, judged = judge(sentence)
+    place = text.index(MARK)
+    assert text[place:].count(old) == 1, text[place:].count(old)
+    assert judged.found(text[:place] + text[place:].replace(old, new)) == expected
+
+
+@pytest.mark.parametrize(
+    "name",
+    "row tick doubt known must may rows refused Signals since other_name".split(),
+)
+def test_a_parameter_of_another_name_than_its_proposition_has_is_refused(name: str) -> None:
+    """`row` hid unknown values: it is what a step calls the values of a tick."""
+    made = rule("in m mode whenever longname the sw shall within 3 ticks satisfy q")
+    text = target.text(made)
+    place = text.index(MARK)
+    own = re.sub(r'(?<!")\blongname\b(?!"| the)', name, text[place:])
+    own = own.replace('"longname": "longname"', f'"longname": "{name}"')
+    own = own.replace('("longname", "longname", True)', f'("{name}", "longname", True)')
+    assert load("renamed", text[:place] + own).PROPOSITIONS["longname"] == name
+    assert isinstance(verified(made, text[:place] + own).result, NotChecked)
+
+
+@pytest.mark.parametrize(
+    "name",
+    "known rows boolean tick doubt self advance signals marks CELLS p not_q r1_last __hidden".split(),
+)
+def test_a_cell_has_no_name_that_something_else_has(name: str) -> None:
+    """`known`, put back into the rail, would say that nothing was unknown."""
+    text, judged = judge(WITHIN)
+    place = text.index(MARK)
+    assert judged.found(text[:place] + re.sub(r"\boldest_1\b", name, text[place:])) == REFUSED
+    renamed = re.sub(r"\boldest_1\b", "count", text[place:])
+    assert judged.found(text[:place] + renamed) == SAME

@@ -1,0 +1,548 @@
+"""Monitors are proved from their text; what is wrong, or may hide something, is never proved."""
+
+import random
+import re
+from collections.abc import Sequence
+
+import pytest
+
+from compiler.formalization.letters import Valuation
+from compiler.targets.python import monitor as target
+from fretc.verification.monitor.equivalence import Judgement, NotChecked, Proved, Refuted
+from fretc.verification.monitor.verifying import (
+    Disagreement,
+    NotAMonitorError,
+    Verified,
+    verified,
+)
+from monitors.kernel import Monitor
+from monitors.loading import load
+from monitors.source_text import kernel
+from tests.meaning import COUNTING, SCOPES
+from tests.monitoring import emitted, rule
+from tests.strategies import templates
+
+WITHIN = "whenever p the sw shall within 3 ticks satisfy q"
+FOR = "when p the sw shall for 3 ticks satisfy q"
+LAYOUT = "it is not laid out as fretc writes it"
+RUNTIME = "the run time in it is not the one of this version of fretc"
+
+
+def check(sentence: str, text: str | None = None, limit: int = 10**6) -> Verified:
+    return verified(rule(sentence), emitted(sentence) if text is None else text, limit)
+
+
+def edited(text: str, *edits: tuple[str, str]) -> str:
+    """The text with the one place of each edit changed, below the run time."""
+    place = text.index("# The requirements ---")
+    head, own = text[:place], text[place:]
+    for old, new in edits:
+        assert own.count(old) == 1, (old, own.count(old))
+        own = own.replace(old, new)
+    return head + own
+
+
+def reason(found: Verified) -> str:
+    assert isinstance(found.result, NotChecked), found
+    return found.result.reason
+
+
+# What is right --------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("scope", SCOPES)
+def test_every_template_is_proved(scope: str) -> None:
+    for template in templates((0, 1, 2)):
+        if template.scope == scope:
+            found = check(template.sentence)
+            assert isinstance(found.result, Proved), (template, found)
+            assert found.compared > 0
+
+
+@pytest.mark.parametrize("n", [3, 20])
+def test_templates_are_proved_at_longer_bounds(n: int) -> None:
+    counting = [template for template in templates((n,)) if template.timing in COUNTING]
+    for template in random.Random(n).sample(counting, 24):
+        assert isinstance(check(template.sentence).result, Proved), template
+
+
+@pytest.mark.parametrize(
+    ("sentence", "least"),
+    [
+        ("in m mode whenever p the sw shall within 10000 ticks satisfy q", 10_000),
+        ("when p the sw shall for 10000 ticks satisfy q", 10_000),
+        ("upon p the sw shall after 10000 ticks satisfy q", 10_000),
+    ],
+)
+def test_long_bounds_are_proved_as_they_are(sentence: str, least: int) -> None:
+    found = check(sentence)
+    assert isinstance(found.result, Proved)
+    assert found.result.states > least
+    assert found.compared > 4 * least, "the columns are compared on traces that reach the bound"
+
+
+def test_each_requirement_of_one_text_is_proved() -> None:
+    sentences = (WITHIN, FOR, "in m mode the sw shall before s satisfy q")
+    text = emitted(*sentences)
+    for number, sentence in enumerate(sentences, 1):
+        found = verified(rule(sentence, f"R{number}"), text)
+        assert isinstance(found.result, Proved), sentence
+        assert {*found.atoms} == {"m", "p", "q", "s"}
+
+
+def test_of_several_requirements_only_the_wrong_one_is_refuted() -> None:
+    text = edited(emitted(WITHIN, FOR), ("since_1 = oldest_1 >= 3", "since_1 = oldest_1 >= 4"))
+    assert isinstance(verified(rule(WITHIN, "R1"), text).result, Refuted)
+    assert isinstance(verified(rule(FOR, "R2"), text).result, Proved)
+
+
+@pytest.mark.parametrize(
+    "name",
+    "door_open tick r1_open r1_broken r1_doomed first kept_first since_1 oldest_1 known doubt "
+    "rows refused must every row Signals Window class not_p x_broken lambda".split(),
+)
+def test_names_do_not_confuse_it(name: str) -> None:
+    sentence = f'in m mode upon "{name}" the sw shall within 2 ticks satisfy ! p & q'
+    found = check(sentence)
+    assert isinstance(found.result, Proved), name
+    assert name in found.atoms
+
+
+@pytest.mark.parametrize("id", ["tick", "doubt", "Monitor", "3", "a-b", "since_1", "self", "first"])
+def test_ids_do_not_confuse_it(id: str) -> None:
+    made = rule(WITHIN, id)
+    assert isinstance(verified(made, target.text(made)).result, Proved)
+
+
+def test_a_proof_says_how_much_was_looked_at() -> None:
+    found = check(WITHIN)
+    assert (found.requirement, found.atoms) == ("R1", ("p", "q"))
+    assert found.result == Proved(states=5, steps=20)
+    assert found.compared == 20 * (4 * 3 + 50)
+
+
+# What is wrong --------------------------------------------------------------------------------
+
+P, Q, NONE, BOTH = (True, False), (False, True), (False, False), (True, True)
+PENDING, VIOLATED = ("pending", True), ("violated", False)
+
+
+@pytest.mark.parametrize(
+    ("edits", "word", "told", "found"),
+    [
+        ([(">= 3\n", ">= 4\n")], (P, NONE, NONE, NONE), VIOLATED, PENDING),
+        ([(">= 3\n", ">= 2\n")], (P, NONE, NONE), PENDING, VIOLATED),
+        (
+            [("oldest_1 + 1 if oldest_1 < 3 else 3", "oldest_1 + 1 if oldest_1 < 2 else 2")],
+            (P, NONE, NONE, NONE),
+            VIOLATED,
+            PENDING,
+        ),
+        ([("elif p and not_q:", "elif p or not_q:")], (NONE,) * 4, PENDING, VIOLATED),
+        (
+            [("        self.oldest_1 = -1", "        self.oldest_1 = 0")],
+            (NONE,) * 3,
+            PENDING,
+            VIOLATED,
+        ),
+    ],
+)
+def test_a_wrong_step_is_refuted_by_a_shortest_trace(
+    edits: list[tuple[str, str]],
+    word: tuple[Valuation, ...],
+    told: Judgement,
+    found: Judgement,
+) -> None:
+    result = check(WITHIN, edited(emitted(WITHIN), *edits)).result
+    assert result == Refuted(word, told, found)
+
+
+def test_a_monitor_of_another_sentence_with_the_same_id_is_refuted() -> None:
+    assert isinstance(check(WITHIN, emitted(WITHIN.replace("3", "2"))).result, Refuted)
+    assert isinstance(check(WITHIN, emitted(WITHIN.replace("whenever", "upon"))).result, Refuted)
+    assert isinstance(
+        check("the sw shall satisfy q", emitted("the sw shall satisfy r")).result, Refuted
+    )
+
+
+def test_a_wrong_column_program_disagrees_with_the_steps() -> None:
+    text = edited(emitted(WITHIN), ("p & not_q, 3, every)", "p & not_q, 4, every)"))
+    found = check(WITHIN, text)
+    assert isinstance(found.result, Disagreement)
+    assert found.compared == 0
+    assert all(len(values) == len(found.atoms) for values in found.result.word)
+
+
+def test_a_wrong_column_program_is_found_at_a_long_bound() -> None:
+    sentence = "when p the sw shall for 5000 ticks satisfy q"
+    text = emitted(sentence)
+    place = text.index("def columns")
+    for bound in ("4999", "5001"):
+        wrong = text[:place] + text[place:].replace("0, 5000, every)", f"0, {bound}, every)")
+        assert wrong != text
+        assert isinstance(check(sentence, wrong).result, Disagreement), bound
+
+
+@pytest.mark.parametrize("signal", ["trigger", "breach", "owed", "settled", "answer"])
+def test_every_signal_of_the_column_program_is_compared(signal: str) -> None:
+    sentence = "before m mode the sw shall within 2 ticks satisfy q"
+    text = emitted(sentence)
+    wrong = re.sub(rf"(?m)^( +{signal}=).*,$", r"\1every & 1,", text)
+    assert wrong != text
+    assert isinstance(check(sentence, wrong).result, Disagreement)
+
+
+def test_a_column_program_that_fails_or_tells_of_ticks_beyond_the_trace_disagrees() -> None:
+    for new in ("once(p, None, None, every)", "2361183241434822606848"):
+        text = edited(emitted(WITHIN), ("trigger=p,", f"trigger={new},"))
+        assert isinstance(check(WITHIN, text).result, Disagreement), new
+
+
+def test_a_step_that_takes_what_is_unknown_for_certain_disagrees_with_the_columns() -> None:
+    """With all values known, `not q` and `not_q` are one."""
+    text = edited(emitted(WITHIN), ("elif p and not_q:", "elif p and not q:"))
+    found = check(WITHIN, text)
+    assert isinstance(found.result, Disagreement)
+    assert any(None in values for values in found.result.word)
+
+
+def test_the_trace_of_a_disagreement_names_the_atoms_in_their_order() -> None:
+    """The monitor may list its propositions in another order than the sentence."""
+    sentence = "whenever p the sw shall within 3 ticks satisfy q"
+    other = "the sw shall always satisfy q | z"
+    text = emitted(other, sentence)
+    wrong = edited(text, ("p & not_q, 3, every)", "p & not_q, 4, every)"))
+    found = verified(rule(sentence, "R2"), wrong)
+    assert found.atoms == ("p", "q", "z")
+    assert isinstance(found.result, Disagreement)
+    *_, last = found.result.word
+    assert last[1] is not True, "an overdue demand is told where q does not come"
+
+
+# What is not checked --------------------------------------------------------------------------
+
+
+def test_predicates_about_other_ticks_are_not_checked() -> None:
+    told = reason(check("whenever occurred(3, p) the sw shall satisfy q"))
+    assert told == "`occurred` speaks of other ticks, and the automaton knows one"
+
+
+def test_more_than_twelve_propositions_are_not_checked() -> None:
+    def of(count: int) -> str:
+        return f"the sw shall always satisfy {' | '.join(f'a{i}' for i in range(count))}"
+
+    assert isinstance(check(of(12)).result, Proved)
+    assert reason(check(of(13))) == "13 propositions, more than 12"
+
+
+def test_more_states_than_the_limit_are_not_checked() -> None:
+    assert "more than 10 states" in reason(check(WITHIN.replace("3", "100"), limit=10))
+
+
+def test_a_monitor_of_other_requirements_is_not_checked() -> None:
+    found = verified(rule(WITHIN, "R2"), emitted(WITHIN))
+    assert reason(found) == "the monitor is of other requirements"
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        ("return min(ticks, default=-1)", "return max(ticks, default=-1)"),
+        ("import argparse\n", "import argparse\nimport random\n"),
+        ("import argparse\n", "import argparse\nclass int(int): ...\n"),
+        ("Truth = bool | None\n", "Truth = bool | None\nsince = None\n"),
+        ("\n# The requirements ---", "from random import random\n# The requirements ---"),
+    ],
+)
+def test_another_run_time_is_not_checked(old: str, new: str) -> None:
+    text = emitted(WITHIN)
+    assert old in text
+    text = text.replace(old, new, 1)
+    assert reason(check(WITHIN, text)).startswith((RUNTIME, LAYOUT))
+
+
+def test_a_run_time_in_a_string_is_none() -> None:
+    """What is executed is another one, where every verdict is pending."""
+    text = emitted(WITHIN)
+    place = text.index("# The requirements ---")
+    other = text[:place].replace(
+        "            VIOLATED\n            if", "            PENDING\n            if"
+    )
+    hidden = f"_ = r'''{kernel().text}'''\n"
+    text = f"{other}{hidden}{text[place:]}"
+    assert run(text, [P, NONE, NONE, NONE]) == "pending"
+    assert reason(check(WITHIN, text)) == RUNTIME
+
+
+# Hidden state ---------------------------------------------------------------------------------
+
+LOOP = "            tick += 1\n"
+BREACH = "            if r1_broken < 0 and since_1:\n"
+SINCE = "            since_1 = oldest_1 >= 3\n"
+END = "        self.tick = tick\n"
+INIT = "        self.tick = -1\n"
+CLASS = "    CELLS: ClassVar[tuple[str, ...]] = (\n"
+STEP = "        must.advance((row,))\n"
+
+HIDDEN: dict[str, list[tuple[str, str]]] = {
+    "the tick in a test of the logic": [
+        (SINCE, SINCE + "            if tick == 5000: since_1 = True\n")
+    ],
+    "the tick in a value": [(SINCE, "            since_1 = oldest_1 >= 3 or tick == 5000\n")],
+    "the tick beside the breach": [
+        (BREACH, BREACH + "                r1_broken = tick\n            if tick == 5000:\n")
+    ],
+    "the tick within the breach": [
+        (BREACH, "            if r1_broken < 0 and (since_1 or tick == 5000):\n")
+    ],
+    "the tick that a violation gives": [
+        (
+            BREACH + "                r1_broken = tick",
+            BREACH + "                r1_broken = tick - 7000",
+        )
+    ],
+    "a violation that is taken back": [
+        (BREACH, "            if p:\n                r1_broken = -1\n" + BREACH)
+    ],
+    "a violation from the start": [
+        ("        self.r1_broken = -1\n", "        self.r1_broken = 0\n")
+    ],
+    "a mark in the logic": [(SINCE, "            since_1 = oldest_1 >= 3 and r1_last < 5000\n")],
+    "a signal in the logic": [
+        (SINCE, "            since_1 = oldest_1 >= 3 and not self.r1_trigger\n")
+    ],
+    "a mark that is no cell": [(SINCE, SINCE + "            r1_open = r1_open + 1\n")],
+    "the tick through another name": [(LOOP, LOOP + "            now = tick\n")],
+    "a local from row to row": [
+        ("        known = True\n", "        known = True\n        kept = 0\n"),
+        (SINCE, SINCE + "            kept = kept + 1\n"),
+    ],
+    "a local that some rows do not set": [
+        (SINCE, SINCE + "            if p:\n                kept = q\n"),
+        (BREACH, "            if r1_broken < 0 and (since_1 or kept):\n"),
+    ],
+    "a cell that is not written back": [("        self.oldest_1 = oldest_1\n", "")],
+    "a cell that is not read": [("        oldest_1 = self.oldest_1\n", "        oldest_1 = -1\n")],
+    "a cell that is named as a mark": [(CLASS, CLASS + '        "r1_broken",\n')],
+    "a slot that is no cell": [
+        ('        "tick",\n', '        "tick",\n        "ticks",\n'),
+        (INIT, INIT + "        self.ticks = 0\n"),
+        (SINCE, SINCE + "            self.ticks = self.ticks + 1\n"),
+    ],
+    "an attribute of the class": [(SINCE, SINCE + "            R1Rail.RUNS = 1\n")],
+    "a list in the class": [
+        (CLASS, "    SEEN: ClassVar[list[int]] = []\n" + CLASS),
+        (SINCE, SINCE + "            self.SEEN.append(1)\n"),
+    ],
+    "a global": [
+        ("class R1Rail", "SEEN = [0]\n\n\nclass R1Rail"),
+        (SINCE, SINCE + "            SEEN[0] += 1\n"),
+    ],
+    "a global statement": [(LOOP, "            global R1Rail\n" + LOOP)],
+    "a default argument": [
+        ("rows: Iterable[Sequence[Any]])", "rows: Iterable[Sequence[Any]], seen: list[int] = [])")
+    ],
+    "a function beside": [
+        (
+            "class R1Rail",
+            "def seen(counts=[0]):\n    counts[0] += 1\n    return counts[0] > 9\n\n\nclass R1Rail",
+        )
+    ],
+    "a method beside": [
+        (
+            "    def signals(self)",
+            "    def seen(self): return self.tick > 5000\n\n    def signals(self)",
+        )
+    ],
+    "a property": [
+        (
+            "    def signals(self)",
+            "    @property\n    def seen(self): return self.tick > 5000\n\n    def signals(self)",
+        )
+    ],
+    "a closure": [(SINCE, "            since_1 = (lambda: oldest_1 >= 3 or tick > 5000)()\n")],
+    "a name in an expression": [(SINCE, "            since_1 = (seen := oldest_1 >= 3)\n")],
+    "a comprehension": [(SINCE, "            since_1 = [oldest_1 >= 3][0]\n")],
+    "a call": [(SINCE, "            since_1 = bool(oldest_1 >= 3)\n")],
+    "a change of the run time": [
+        ("class R1Rail", "Monitor.verdicts = lambda self: (PENDING,)\n\n\nclass R1Rail")
+    ],
+    "another name of the run time": [("class R1Rail", "since = once\n\n\nclass R1Rail")],
+    "a change within a class": [(CLASS, "    sys.setrecursionlimit(5000)\n" + CLASS)],
+    "a decorator": [("    def advance(", "    @copy.copy\n    def advance(")],
+    "another base": [("class R1Rail:", "class R1Rail(dict):")],
+    "a metaclass": [("class R1Monitor(Monitor)", "class R1Monitor(Monitor, metaclass=type)")],
+    "another class of the object": [(SINCE, SINCE + "            self.__class__ = R1Rail\n")],
+    "whether it is the same object": [(SINCE, "            since_1 = oldest_1 is q\n")],
+    "True and 1 told apart": [(SINCE, "            since_1 = (oldest_1 >= 3) is not q\n")],
+    "the rail that may": [(SINCE, "            since_1 = oldest_1 >= 3 or doubt\n")],
+    "unknown values as they are not": [
+        (
+            "                    known = False\n                    p = doubt\n",
+            "                    known = False\n                    p = False\n",
+        )
+    ],
+    "an unknown value that is known": [
+        (
+            "                    known = False\n                    p = doubt\n",
+            "                    p = doubt\n",
+        )
+    ],
+    "other rows": [("for (p, q) in rows", "for (q, p) in rows")],
+    "no rows": [("        if tick == self.tick:\n            return True\n", "")],
+    "a step of its own": [
+        (STEP, STEP + "        if must.tick == 5000:\n            return VIOLATED\n")
+    ],
+    "a verdict of its own": [("if must.r1_broken >= 0:", "if must.r1_broken > 0:")],
+    "a run of its own": [
+        ("        self.advance(rows)\n", "        self.advance(list(rows)[:5000])\n")
+    ],
+    "a reset of its own": [
+        ("    def run(", "    def reset(self) -> None:\n        pass\n\n    def run(")
+    ],
+    "another rail": [("    RAIL = R1Rail\n", "    RAIL = type('R1Rail', (R1Rail,), {})\n")],
+    "marks that are others": [("Marks(self.r1_broken,", "Marks(self.r1_open,")],
+    "marks that are computed": [
+        ("Marks(self.r1_broken,", "Marks(max(self.r1_broken, 5000 - self.tick),")
+    ],
+    "signals that are others": [
+        ("                self.r1_fails,\n", "                self.r1_settled,\n")
+    ],
+    "a column program that counts": [
+        ("trigger=p,", "trigger=p if every.bit_length() < 5000 else 0,")
+    ],
+    "a column program that keeps": [
+        ("def columns(every: int, *,", "def columns(every: int, seen=[], *,")
+    ],
+    "another monitor": [
+        (
+            "MONITOR: type[Monitor] = R1Monitor\n",
+            "MONITOR: type[Monitor] = R1Monitor\nR1Monitor.verdicts = 0\n",
+        )
+    ],
+    "another name than the class": [
+        (
+            "MONITOR: type[Monitor] = R1Monitor\n",
+            "MONITOR: type[Monitor] = type('X', (R1Monitor,), {})\n",
+        )
+    ],
+    "more when it is run": [
+        ("    sys.exit(main(MONITOR))", "    R1Rail.CELLS = ()\n    sys.exit(main(MONITOR))")
+    ],
+}
+
+
+@pytest.mark.parametrize("what", HIDDEN)
+def test_what_may_hide_something_is_never_proved(what: str) -> None:
+    text = edited(emitted(WITHIN), *HIDDEN[what])
+    told = reason(check(WITHIN, text))
+    assert told.startswith((LAYOUT, "what it does at a tick depends on")), told
+
+
+WINDOWED = "only in m mode whenever p the sw shall after 2 ticks satisfy q"
+WINDOW = "            since_1 = kept_since_1.step("
+
+
+@pytest.mark.parametrize(
+    "edit",
+    [
+        (WINDOW, f"            kept_since_1.now = 0\n{WINDOW}"),
+        (WINDOW, f"            kept_since_1 = kept_since_1\n{WINDOW}"),
+        (WINDOW, "            since_1 = kept_since_1.now > 5000 or kept_since_1.step("),
+        (WINDOW, "            since_1 = kept_since_1 or kept_since_1.step("),
+        (WINDOW, "            since_1 = Window(1, 2).step("),
+        ("        self.r1_trigger = not_m", "        self.r1_trigger = kept_since_1 and not_m"),
+        ("= Window(2, 2)", "= Window(2, self.tick)"),
+    ],
+)
+def test_a_window_is_stepped_and_nothing_else(edit: tuple[str, str]) -> None:
+    text = emitted(WINDOWED)
+    assert isinstance(check(WINDOWED, text).result, Proved)
+    told = reason(check(WINDOWED, edited(text, edit)))
+    assert told.startswith((LAYOUT, "what it does at a tick depends on")), told
+
+
+def test_the_reason_shows_the_place() -> None:
+    text = edited(emitted(WITHIN), *HIDDEN["the tick in a value"])
+    assert reason(check(WITHIN, text)) == "what it does at a tick depends on `tick`"
+    text = edited(emitted(WITHIN), *HIDDEN["a global"])
+    assert reason(check(WITHIN, text)) == f"{LAYOUT}: two classes and no more"
+    text = edited(emitted(WITHIN), *HIDDEN["a call"])
+    assert reason(check(WITHIN, text)) == f"{LAYOUT}: `bool(oldest_1 >= 3)`"
+
+
+def run(text: str, rows: Sequence[tuple[bool, bool]]) -> str:
+    machine: Monitor = load("monitor.py", text)
+    for row in rows:
+        machine.advance([row])
+    return machine.verdicts()[0]
+
+
+@pytest.mark.parametrize("what", ["the tick in a value", "the tick within the breach"])
+def test_a_time_bomb_goes_off_where_it_is_not_looked_at(what: str) -> None:
+    """So the layout has to be looked at: a few thousand steps show nothing."""
+    text = edited(emitted(WITHIN), *HIDDEN[what])
+    quiet = [(False, False)] * 5000
+    assert run(text, quiet) == "pending"
+    assert run(text, [*quiet, (False, False)]) == "violated"
+    assert run(emitted(WITHIN), [*quiet, (False, False)]) == "pending"
+
+
+# No monitor -----------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("text", "told"),
+    [
+        ("x = 1\n", "names no"),
+        ("", "names no"),
+        ("def f(:\n", "no Python"),
+        ("raise SystemExit(0)\n", "names no"),
+        ("import nothing_of_that_name\n", "names no"),
+        ("MONITOR = 3\n", "names no"),
+        ("x = '\0'\n", "no Python"),
+    ],
+)
+def test_what_is_no_monitor_is_told(text: str, told: str) -> None:
+    with pytest.raises(NotAMonitorError, match=told):
+        check(WITHIN, text)
+
+
+def test_nothing_of_another_text_is_executed() -> None:
+    text = "import os\nMONITOR: type = int\nos._exit(0)\n"
+    assert reason(check(WITHIN, text)) == RUNTIME
+    assert reason(check(WITHIN, emitted(WITHIN) + "import os\nos._exit(0)\n")) != RUNTIME
+
+
+def cut(text: str) -> str:
+    return text[: text.index("    def signals")]
+
+
+def test_half_a_monitor_is_none() -> None:
+    with pytest.raises(NotAMonitorError):
+        check(WITHIN, cut(emitted(WITHIN)))
+
+
+def test_another_deadline_in_its_words_is_not_proved() -> None:
+    text = emitted(WITHIN).replace("            3,\n        ),", "            300,\n        ),")
+    assert text != emitted(WITHIN)
+    assert "states another sentence" in reason(check(WITHIN, text))
+
+
+@pytest.mark.parametrize("bounds", ["60, 3", "-1, 3", "3, -1", "3, 2"])
+def test_a_window_whose_state_is_less_than_what_it_goes_by_is_not_proved(bounds: str) -> None:
+    """Ages above its end are one state, and it would ask for more of them."""
+    changed = edited(
+        emitted(WITHIN),
+        ('        "doubt",\n', '        "doubt",\n        "w_1",\n'),
+        ('        "oldest_1",\n    )', '        "oldest_1",\n        "w_1",\n    )'),
+        ("self.oldest_1 = -1\n", f"self.oldest_1 = -1\n        self.w_1 = Window({bounds})\n"),
+        ("= self.oldest_1\n", "= self.oldest_1\n        w_1 = self.w_1\n"),
+        ("self.oldest_1 = oldest_1\n", "self.oldest_1 = oldest_1\n        self.w_1 = w_1\n"),
+        (
+            "if oldest_1 >= 0 and not_q",
+            "far = w_1.step(True, p)\n            if oldest_1 >= 0 and not_q",
+        ),
+        ("elif p and not_q:", "elif p and not_q and not far:"),
+    )
+    assert reason(check(WITHIN, changed)).startswith(LAYOUT)

@@ -1,0 +1,111 @@
+from fractions import Fraction
+from math import inf, isclose, nan
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from fretish.bindings.amounts import declared_unit, exact, scaled, shared_unit, value
+from tests.fretc.logs.logs import declare
+
+SIGNALS = declare("""\
+[clock]
+tick = "100 ms"
+[signal.v]
+path = "/a.v"
+unit = "km/h"
+[signal.w]
+path = "/a.w"
+unit = "m/s"
+[signal.charge]
+path = "/a.c"
+unit = "%"
+[signal.plain]
+path = "/a.p"
+""").signals
+finite = st.floats(allow_nan=False, allow_infinity=False)
+
+
+@pytest.mark.parametrize(
+    ("number", "unit", "beside", "text"),
+    [
+        (0.0318, "m", [], "0.0318 m"),
+        (1.3888888888888888, "m/s", [], "1.389 m/s"),
+        (5.0, "km/h", [], "5 km/h"),
+        (0.0499999, "m", [0.05], "0.0499999 m"),
+        (0.050000000000000003, "m", [0.05], "0.05 m"),
+        (-0.1500001, "m/s", [0.15, -0.15], "-0.1500001 m/s"),
+        (123456.7, "", [], "123457"),
+        (1234567890.0, "Pa", [], "1235000000 Pa"),
+        (1e20, "m", [], "1e+20 m"),
+        (1e-9, "m", [0.0], "1e-09 m"),
+        (0.0, "", [], "0"),
+        (None, "m", [], "unknown"),
+        ("+inf", "m", [], "+inf"),
+        (-inf, "m", [], "-inf"),
+        (nan, "m", [], "unknown"),
+    ],
+)
+def test_a_number_has_the_digits_that_say_something(
+    number: float | str | None, unit: str, beside: list[float], text: str
+) -> None:
+    assert value(number, unit, beside) == text
+
+
+@given(finite, st.lists(finite, max_size=3))
+def test_a_shown_number_lies_on_the_side_of_each_bound_on_which_it_is(
+    number: float, bounds: list[float]
+) -> None:
+    shown = float(value(number, "", bounds))
+    for bound in bounds:
+        assert (shown < bound, shown > bound) == (number < bound, number > bound)
+    assert isclose(shown, number, rel_tol=5.1e-4)
+
+
+@pytest.mark.parametrize(
+    ("number", "text"),
+    [(0.05, "0.05"), (1.23456789, "1.23456789"), (100.0, "100"), (4.999999999999999, "5")],
+)
+def test_a_bound_has_all_its_digits_and_none_that_comes_of_converting_it(
+    number: float, text: str
+) -> None:
+    assert exact(number, "m") == f"{text} m"
+
+
+@given(finite)
+def test_a_bound_is_read_back_as_it_was(number: float) -> None:
+    assert isclose(float(exact(number, "")), number, rel_tol=1e-15)
+
+
+@given(st.decimals(-1000, 1000, places=3), st.sampled_from(sorted(SIGNALS)))
+def test_what_is_written_in_the_declared_unit_is_shown_as_it_was_written(
+    written: float, name: str
+) -> None:
+    signal = SIGNALS[name]
+    base = float(Fraction(written) * signal.unit.factor)
+    unit, factor = declared_unit(name, str(signal.unit), SIGNALS)
+    shown = exact(scaled(base, factor), unit)
+    assert Fraction(shown.removesuffix(unit).strip()) == Fraction(written)
+    assert unit == {"v": "km/h", "w": "m/s", "charge": "%", "plain": ""}[name]
+
+
+def test_a_signal_that_is_not_declared_or_has_another_dimension_keeps_its_base_unit() -> None:
+    assert declared_unit("gone", "m", SIGNALS) == ("m", Fraction(1))
+    assert declared_unit("v", "rad", SIGNALS) == ("rad", Fraction(1))
+
+
+@pytest.mark.parametrize(
+    ("term", "base", "unit"),
+    [
+        ("v", "m/s", "km/h"),
+        ("abs(v)", "m/s", "km/h"),
+        ("v + w", "m/s", "m/s"),
+        ("v * charge", "m/s", "km/h"),
+        ("v / w", "", ""),
+        ("charge", "", "%"),
+    ],
+)
+def test_a_term_is_shown_in_the_unit_that_its_signals_share(
+    term: str, base: str, unit: str
+) -> None:
+    assert shared_unit(term, base, SIGNALS)[0] == unit

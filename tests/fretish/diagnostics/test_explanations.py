@@ -1,0 +1,96 @@
+"""Every code is explained, and the examples do what they say."""
+
+import tomllib
+
+import pytest
+
+from compiler.formalization.formalize import duplicates, formalize
+from compiler.targets.python import monitor
+from fretish.bindings.declarations import Declarations
+from fretish.bindings.reader import read_bindings
+from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.diagnostics.explanations import Explained, as_record, explanations, text
+from fretish.diagnostics.source import Source
+from fretish.documents import requirements
+from tests.mending import toml_in
+
+EXAMPLES = {number: each for number, each in explanations().items() if each.wrong}
+
+
+def told(kind: str, declared: str, example: str) -> list[Diagnostic]:
+    """All that is said of an example."""
+    if kind == "bindings":
+        return list(read_bindings(Source("bindings.toml", example))[1])
+    beside: Declarations | None = None
+    if declared:
+        beside, wrong = read_bindings(Source("bindings.toml", declared))
+        assert beside is not None, wrong
+    written, said = requirements(Source("r.fret", example.strip("\n")))
+    found: list[Diagnostic] = [*said, *duplicates(written).values()]
+    for requirement in written:
+        rule, remarks = formalize(requirement, beside)
+        found.extend(remarks)
+        remark = monitor.remark(rule) if rule else None
+        found.extend([remark] if remark else [])
+    return found
+
+
+def given(kind: str, declared: str, example: str) -> set[str]:
+    """The codes of all that is said of an example."""
+    return {diagnostic.code.number for diagnostic in told(kind, declared, example)}
+
+
+def test_every_code_is_explained_and_nothing_else() -> None:
+    assert set(explanations()) == {code.number for code in Code}
+
+
+@pytest.mark.parametrize("number", EXAMPLES)
+def test_an_example_gives_its_code_and_the_mended_one_gives_none(number: str) -> None:
+    example = EXAMPLES[number]
+    assert number in given(example.kind, example.declared, example.wrong)
+    assert not given(example.kind, example.declared, example.mended)
+
+
+@pytest.mark.parametrize("number", EXAMPLES)
+def test_the_toml_that_an_example_is_told_to_write_parses(number: str) -> None:
+    example = EXAMPLES[number]
+    for diagnostic in told(example.kind, example.declared, example.wrong):
+        for fragment in (*toml_in(diagnostic.help or ""), diagnostic.paste):
+            tomllib.loads(fragment)
+
+
+@pytest.mark.parametrize("code", Code, ids=lambda code: code.number)
+def test_an_explanation_is_short_and_made_of_sentences(code: Code) -> None:
+    explained = explanations()[code.number]
+    for part in (explained.cause, explained.mend):
+        assert part == " ".join(part.split())
+        assert part[-1] in ".?"
+    assert all(len(line) <= 100 for line in text(code).splitlines())
+    assert as_record(code)["cause"] == explained.cause
+
+
+def test_the_text_of_a_code() -> None:
+    assert text(Code.NEVER_DECIDED) == (
+        "F203  no run can ever decide the requirement\n"
+        "\n"
+        "  Whatever has happened, the response may still come: no run, however long, violates the\n"
+        "  requirement, and none confirms it. A monitor of it can never say more than `pending`, "
+        "so it\n"
+        "  protects nobody while the system runs.\n"
+        "\n"
+        "  To mend it: State a bound.\n"
+        "\n"
+        "  wrong:\n"
+        "    whenever too_close the robot shall eventually satisfy stopped\n"
+        "\n"
+        "  mended:\n"
+        "    whenever too_close the robot shall within 2 ticks satisfy stopped\n"
+    )
+
+
+def test_a_code_without_an_example_has_none_in_its_record() -> None:
+    assert as_record(Code.INTERNAL)["example"] is None
+    assert explanations()["F999"] == Explained(
+        "fretc met a state that it does not expect. No verdict was given.",
+        "Report it with the input; `FRETC_TRACEBACK=1` shows where it comes from.",
+    )

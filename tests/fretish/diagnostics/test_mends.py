@@ -1,0 +1,60 @@
+"""What a message proposes can be pasted: whatever in it is TOML parses."""
+
+import ast
+import tomllib
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from fretish.bindings.interceptor import TABLE
+from fretish.reading.toml_text import as_key
+from tests.mending import toml_in
+
+ROOT = Path(__file__).parents[3]
+MODULES = sorted(
+    p for room in ("fretish", "monitors", "compiler", "fretc") for p in (ROOT / room).rglob("*.py")
+)
+
+
+def texts(module: Path) -> Iterator[str]:
+    """Every text of a module but its docstrings; what is filled in later is `X`."""
+    tree = ast.parse(module.read_text("utf-8"))
+    inner = {id(part) for node in ast.walk(tree) if isinstance(node, ast.JoinedStr)
+             for part in node.values}  # fmt: skip
+    said = {id(n.value) for n in ast.walk(tree) if isinstance(n, ast.Expr)}
+    for node in ast.walk(tree):
+        if isinstance(node, ast.JoinedStr):
+            parts = (p.value if isinstance(p, ast.Constant) else "X" for p in node.values)
+            yield "".join(map(str, parts))
+        elif isinstance(node, ast.Constant) and id(node) not in inner | said:
+            yield str(node.value)
+
+
+FRAGMENTS = sorted(
+    {found for module in MODULES for text in texts(module) for found in toml_in(text)}
+)
+
+
+def test_the_fragments_are_found() -> None:
+    assert {'tick = "100 ms"', "[clock]", "[proposition.X]", "lost = 0"} <= {*FRAGMENTS}
+
+
+@pytest.mark.parametrize("fragment", FRAGMENTS)
+def test_toml_in_a_message_parses(fragment: str) -> None:
+    assert tomllib.loads(fragment)
+
+
+@given(st.text(st.characters(exclude_categories=["Cs"]), min_size=1))
+def test_any_name_can_be_a_key(name: str) -> None:
+    assert tomllib.loads(f"[proposition.{as_key(name)}]") == {"proposition": {name: {}}}
+
+
+def test_a_plain_name_stays_as_it_is() -> None:
+    assert (as_key("too_close"), as_key("(x <= 1.5)")) == ("too_close", '"(x <= 1.5)"')
+
+
+def test_what_is_to_be_pasted_parses() -> None:
+    assert tomllib.loads(TABLE)["interceptor"]["stop"] == "/stop"

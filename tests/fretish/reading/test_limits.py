@@ -1,0 +1,105 @@
+"""Reading is ended where it takes more than anything of its size needs."""
+
+import threading
+import time
+
+import pytest
+
+from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.diagnostics.source import Source
+from fretish.reading import limits
+from fretish.reading.limits import ExceededError, budget, within
+
+PLACE = Source("r.fret", "the sw").span(0, 0)
+
+
+def endless() -> int:
+    while True:
+        pass
+
+
+def growing() -> list[bytes]:
+    kept: list[bytes] = []
+    while True:
+        kept.append(bytes([1]) * 2**20)
+
+
+def test_what_is_read_within_its_limits_is_given() -> None:
+    assert within(10, PLACE, lambda: 7) == 7
+
+
+def test_reading_without_end_is_f930(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(limits, "SECONDS", 0.2)
+    start = time.process_time()
+    told = within(10, PLACE, endless)
+    assert time.process_time() - start < 2
+    assert isinstance(told, Diagnostic)
+    assert (told.code, told.span) == (Code.TOO_COSTLY, PLACE)
+    assert told.message.startswith("it would take more than 0.2 seconds of a processor")
+
+
+def test_reading_that_takes_more_and_more_memory_is_f930(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(limits, "MEMORY", 40 * 2**20)
+    told = within(10, PLACE, growing)
+    assert isinstance(told, Diagnostic)
+    assert told.message.startswith("it would take more than 40 MiB of memory")
+
+
+def test_a_library_that_takes_every_exception_for_its_own_is_ended_all_the_same(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(limits, "SECONDS", 0.2)
+
+    def careless() -> int:
+        while True:
+            try:
+                endless()
+            except Exception:
+                continue
+
+    assert isinstance(within(10, PLACE, careless), Diagnostic)
+
+
+def test_what_is_larger_may_take_longer(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(limits, "SECONDS", 0.1)
+
+    def busy() -> str:
+        start = time.process_time()
+        while time.process_time() - start < 0.5:
+            pass
+        return "read"
+
+    assert isinstance(within(1_000, PLACE, busy), Diagnostic)
+    assert within(200_000, PLACE, busy) == "read"
+
+
+def test_a_budget_within_another_is_a_part_of_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(limits, "SECONDS", 0.2)
+
+    def outer() -> object:
+        return [within(0, PLACE, endless) for _ in range(1000)]
+
+    start = time.process_time()
+    assert isinstance(within(0, PLACE, outer), Diagnostic)
+    assert time.process_time() - start < 2
+
+
+def test_nothing_is_ended_behind_a_budget(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(limits, "SECONDS", 0.1)
+    with budget(0):
+        pass
+    start = time.process_time()
+    while time.process_time() - start < 0.4:
+        pass
+
+
+def test_a_thread_reads_without_a_budget() -> None:
+    found: list[object] = []
+    thread = threading.Thread(target=lambda: found.append(within(10, PLACE, lambda: 7)))
+    thread.start()
+    thread.join()
+    assert found == [7]
+
+
+def test_the_error_is_no_exception_that_a_reader_might_catch() -> None:
+    assert not issubclass(ExceededError, Exception)

@@ -1,0 +1,168 @@
+"""Warnings where FRETish means something else than many readers take it to mean."""
+
+import pytest
+
+from fretish.diagnostics.diagnostic import Severity
+from fretish.diagnostics.rendering import render_all
+from fretish.diagnostics.source import Source
+from fretish.parser import parse
+from fretish.pitfalls import surprises
+from fretish.syntax import Sentence
+from tests.meaning import COUNTING, TIMINGS
+
+
+def codes(text: str) -> list[str]:
+    sentence = parse(Source("r.fret", text).span())
+    assert isinstance(sentence, Sentence), sentence
+    found = list(surprises(sentence))
+    assert {diagnostic.severity for diagnostic in found} <= {Severity.WARNING}
+    return [diagnostic.code.number for diagnostic in found]
+
+
+def told(text: str) -> str:
+    sentence = parse(Source("r.fret", text).span())
+    assert isinstance(sentence, Sentence), sentence
+    return render_all(list(surprises(sentence)))
+
+
+# Whole texts ----------------------------------------------------------------------------------
+
+
+def test_a_condition_that_triggers_where_it_becomes_true() -> None:
+    assert told("when too_close & moving the sw shall immediately satisfy stopped") == (
+        "F204 warning: "
+        "`when` triggers only at the ticks at which `too_close & moving` becomes true\n"
+        "  --> r.fret:1:1\n"
+        "   | when too_close & moving the sw shall immediately satisfy stopped\n"
+        "   | ^^^^^^^^^^^^^^^^^^^^^^^\n"
+        "help: write `whenever too_close & moving` if it must trigger as long as that is true, "
+        "or `upon too_close & moving` if not"
+    )
+
+
+def test_a_sentence_without_a_timing() -> None:
+    assert told("the sw shall satisfy q") == (
+        "F205 warning: without a timing the response is required at some time, however late\n"
+        "  --> r.fret:1:5\n"
+        "   | the sw shall satisfy q\n"
+        "   |     ^^\n"
+        "help: write `eventually` if that is meant, or `immediately`, `always`, `within N seconds`"
+    )
+
+
+def test_a_deadline_in_a_scope_that_ends() -> None:
+    assert told("in m mode whenever p the sw shall within 3 ticks satisfy q") == (
+        "F206 warning: where `m` ends the scope before the deadline, nothing is required\n"
+        "  --> r.fret:1:35\n"
+        "   | in m mode whenever p the sw shall within 3 ticks satisfy q\n"
+        "   |                                   ^^^^^^^^^^^^^^\n"
+        "help: the response is demanded only where the whole duration fits into the scope"
+    )
+
+
+def test_a_scope_after_a_mode() -> None:
+    assert told("after x > 3 the sw shall always satisfy q") == (
+        "F207 warning: only the first stretch of `x > 3` counts; later ones change nothing\n"
+        "  --> r.fret:1:1\n"
+        "   | after x > 3 the sw shall always satisfy q\n"
+        "   | ^^^^^^^^^^^\n"
+        "help: use a condition, `upon !(x > 3)`, to begin anew each time"
+    )
+
+
+def test_a_scope_before_a_mode() -> None:
+    assert told("before m mode the sw shall always satisfy q") == (
+        "F208 warning: where `m` holds at the first tick, nothing is required\n"
+        "  --> r.fret:1:1\n"
+        "   | before m mode the sw shall always satisfy q\n"
+        "   | ^^^^^^^^^^^^^\n"
+        "help: state what must hold at the start apart, if `m` can hold there"
+    )
+
+
+# Where each applies, and where not -------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("condition", "warned"),
+    [
+        ("when p", True),
+        ("WHEN p", True),
+        ("if p", True),
+        ("where p", True),
+        ("unless p", True),
+        ("when p is FALSE", True),
+        ("when p and upon q", True),
+        ("unless p and whenever q", True),
+        ("upon p", False),  # `upon` says what it does
+        ("whenever p", False),
+        ("whenever p and whenever q", False),
+        ("", False),
+    ],
+)
+def test_an_edge_is_told_for_the_words_that_do_not_say_it(condition: str, warned: bool) -> None:
+    expected = ["F204"] if warned else []
+    assert codes(f"{condition} the sw shall immediately satisfy q") == expected
+
+
+@pytest.mark.parametrize("condition", ["whenever p and when q", "whenever p or if q"])
+def test_an_edge_is_told_where_a_later_word_makes_a_whenever_a_trigger(condition: str) -> None:
+    """One other word anywhere makes the whole list a trigger."""
+    assert codes(f"{condition} the sw shall immediately satisfy q") == ["F204"]
+
+
+WORDINGS = {
+    "null": "",
+    "next": "at the next timepoint",
+    "within": "within 3 ticks",
+    "for": "for 3 ticks",
+    "after": "after 3 ticks",
+    "until": "until s",
+    "before": "before s",
+}
+SCOPES = {
+    "null": ("", []),
+    "in": ("in m", []),
+    "while": ("while m & n", []),
+    "notin": ("unless in m", []),
+    "before": ("before m", ["F208"]),
+    "after": ("after m", ["F207"]),
+    "onlyIn": ("only in m", []),
+    "onlyBefore": ("only before m", []),
+    "onlyAfter": ("only after m", ["F207"]),
+}
+
+
+@pytest.mark.parametrize("timing", TIMINGS)
+@pytest.mark.parametrize("scope", SCOPES)
+def test_each_scope_and_timing_has_its_own_warnings(scope: str, timing: str) -> None:
+    wording, of_scope = SCOPES[scope]
+    ends = scope in ("in", "while", "notin", "before")
+    expected = [
+        *(["F205"] if timing == "null" else []),
+        *(["F206"] if timing == "within" and ends else []),
+        *of_scope,
+    ]
+    said = WORDINGS.get(timing, timing)
+    assert codes(f"{wording} whenever p the sw shall {said} satisfy q") == expected
+
+
+def test_every_timing_has_a_wording() -> None:
+    assert set(COUNTING) <= set(WORDINGS) <= set(TIMINGS)
+
+
+def test_eventually_is_no_surprise_where_it_is_written() -> None:
+    assert codes("the sw shall eventually satisfy q") == []
+
+
+def test_a_sentence_may_have_several_surprises() -> None:
+    assert codes("before m if p the sw shall within 0 ticks satisfy q") == ["F204", "F206", "F208"]
+
+
+def test_the_mend_of_an_edge_is_fretish() -> None:
+    for condition in ("p & (q | r)", "p -> q", "x > 3"):
+        text = told(f"when {condition} the sw shall always satisfy q")
+        for word in ("whenever", "upon"):
+            mend = f"{word} {condition}"
+            assert f"`{mend}`" in text
+            assert codes(f"{mend} the sw shall always satisfy q") == []
