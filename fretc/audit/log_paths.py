@@ -83,18 +83,22 @@ def _named(path: str) -> Iterator[str | Diagnostic]:
                 yield match
 
 
-def _below(path: Path, seen: set[str] | None = None) -> Iterator[str | Diagnostic]:
+def _below(path: Path, seen: dict[str, None] | None = None) -> Iterator[str | Diagnostic]:
     """The logs in a folder; a link that leads to none is one that cannot be read, and never lost.
+
+    A link may lead to a folder elsewhere, but not to one that the named folder lies in: that would
+    be all of a disk.
 
     Args:
         path: the folder.
-        seen: folders that were looked into already: links may lead in circles.
+        seen: folders that were looked into already, the named one first: links may lead in circles.
     """
-    seen = set() if seen is None else seen
     real = os.path.realpath(path)
-    if real in seen:
+    if seen is None:
+        seen = {}
+    elif real in seen or os.path.commonpath([real, next(iter(seen))]) == real:
         return
-    seen.add(real)
+    seen[real] = None
     entries = sorted(path.iterdir())
     logs = [entry for entry in entries if not entry.name.endswith(ANNOTATIONS)]
     files = [

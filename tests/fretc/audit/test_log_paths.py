@@ -133,6 +133,13 @@ def test_a_folder_of_links_is_the_logs_that_they_lead_to() -> None:
     assert logs(["runs"]) == ["runs/b.mcap", "runs/day/a.mcap"]
 
 
+def test_a_link_to_a_folder_above_is_not_followed() -> None:
+    made("a.mcap", "runs/day/b.mcap")
+    Path("runs/all").symlink_to(Path.cwd())
+    Path("runs/day/disk").symlink_to("/")
+    assert logs(["runs"]) == ["runs/day/b.mcap"]
+
+
 def test_a_link_to_a_log_that_is_not_there_is_not_passed_by() -> None:
     # As of data that was not fetched: the other logs alone would show too much.
     made("runs/a.mcap")
