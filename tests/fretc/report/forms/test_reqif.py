@@ -314,12 +314,12 @@ LETTERS = st.characters(codec="utf-8", include_characters="<>&\"'\\]{}\u0000\u00
 
 
 def held(text: str) -> str:
-    """What XML can hold of it: line ends are one character, and some characters have no place."""
+    """Line ends are one character, and what XML cannot hold, or a terminal obeys, has no place."""
     lines = re.sub(r"\r\n|\r", "\n", text.strip())
     return "".join(
         "\ufffd"
         if c in "\ufffe\uffff"
-        or (unicodedata.category(c) == "Cc" and ord(c) < 32 and c not in "\t\n")
+        or (unicodedata.category(c) == "Cc" and c not in "\t\n")
         else c
         for c in lines
     )
