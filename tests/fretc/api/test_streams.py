@@ -4,7 +4,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from mcap.reader import make_reader
 from mcap_ros2.decoder import DecoderFactory
@@ -58,6 +58,7 @@ def verdicts(plan: Plan, samples: list[tuple[int, float]]) -> dict[str, str]:
     return {each.requirement: str(each.verdict) for each in found}
 
 
+@settings(max_examples=20)  # each makes monitors and looks at all phases of the ticks
 @given(
     st.lists(
         st.tuples(st.integers(1, 120), st.sampled_from([0.0, 2.0, 4.0, float("nan")])), min_size=1

@@ -140,7 +140,9 @@ def streamed(
 
 
 @given(declared(), SAMPLES, CUTS)
-@example(bindings("x < 5 for 15 ns", "any"), [Sample("x", 1, 1.0), Sample("x", 40, 9.0)], [30, 60])
+@example(bindings("x < 5 for 15 ns", "any"), [Sample("x", 1, 1.0), Sample("x", 25, 9.0)], [22, 60])
+@example(bindings("x < 5"), [Sample("x", 1, 1.0), Sample("x", 11, 9.0)], [11])
+@example(bindings("x < 5", "any", phase=9), [Sample("x", 1, 1.0), Sample("x", 5, 9.0)], [20])
 def test_ticks_are_those_of_the_whole_log_however_time_passes(
     declarations: Declarations, samples: list[Sample], cuts: list[int]
 ) -> None:
