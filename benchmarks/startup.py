@@ -14,6 +14,7 @@ FRETC = str(Path(sys.executable).parent / "fretc")
 ROOT = Path(__file__).parent.parent
 COMMANDS: dict[str, Sequence[str]] = {
     "fretc --version": [FRETC, "--version"],
+    "import fretc": [sys.executable, "-c", "import fretc"],
     "fretc requirements/r1.fret": [FRETC, "requirements/r1.fret"],
     "fretc requirements/r1.fret --emit monitor -o -": [
         FRETC, "requirements/r1.fret", "--emit", "monitor", "-o", "-",

@@ -1,1 +1,95 @@
-"""The product: what people call, from the shell or from Python."""
+"""The product: what people call, from the shell or from Python.
+
+The names below are the API; docs/api.md says what they do, and which of their parts stay. A name
+is imported when it is first asked for.
+"""
+
+from importlib import import_module
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from compiler.files.edition import __version__ as __version__
+    from compiler.formalization.rule import Rule as Rule
+    from compiler.logic.claims import Evidence as Proof
+    from compiler.project.folder import Project as Project
+    from fretc.api.audits import Audit as Audit
+    from fretc.api.audits import audit_logs as audit_logs
+    from fretc.api.monitors import Monitor as Monitor
+    from fretc.api.monitors import load_monitor as load_monitor
+    from fretc.api.monitors import monitor_text as monitor_text
+    from fretc.api.proofs import verify as verify
+    from fretc.api.refusal import Refusal as Refusal
+    from fretc.api.reports import Report as Report
+    from fretc.api.reports import make_report as make_report
+    from fretc.api.requirements import Formulas as Formulas
+    from fretc.api.requirements import formalize as formalize
+    from fretc.api.requirements import formulas as formulas
+    from fretc.api.requirements import read_project as read_project
+    from fretc.api.streams import End as End
+    from fretc.api.streams import Stream as Stream
+    from fretc.api.streams import Tick as Tick
+    from fretc.audit.evidence.reader import Result as Result
+    from fretish.diagnostics.diagnostic import Diagnostic as Diagnostic
+
+_HOMES = {
+    "Audit": "fretc.api.audits",
+    "Diagnostic": "fretish.diagnostics.diagnostic",
+    "End": "fretc.api.streams",
+    "Formulas": "fretc.api.requirements",
+    "Monitor": "fretc.api.monitors",
+    "Project": "compiler.project.folder",
+    "Proof": "fretc.api.proofs",
+    "Refusal": "fretc.api.refusal",
+    "Report": "fretc.api.reports",
+    "Result": "fretc.audit.evidence.reader",
+    "Rule": "compiler.formalization.rule",
+    "Stream": "fretc.api.streams",
+    "Tick": "fretc.api.streams",
+    "__version__": "compiler.files.edition",
+    "audit_logs": "fretc.api.audits",
+    "formalize": "fretc.api.requirements",
+    "formulas": "fretc.api.requirements",
+    "load_monitor": "fretc.api.monitors",
+    "make_report": "fretc.api.reports",
+    "monitor_text": "fretc.api.monitors",
+    "read_project": "fretc.api.requirements",
+    "verify": "fretc.api.proofs",
+}
+"""The module of each name."""
+
+__all__ = [
+    "Audit",
+    "Diagnostic",
+    "End",
+    "Formulas",
+    "Monitor",
+    "Project",
+    "Proof",
+    "Refusal",
+    "Report",
+    "Result",
+    "Rule",
+    "Stream",
+    "Tick",
+    "__version__",
+    "audit_logs",
+    "formalize",
+    "formulas",
+    "load_monitor",
+    "make_report",
+    "monitor_text",
+    "read_project",
+    "verify",
+]
+
+
+def __getattr__(name: str) -> object:
+    """The value of a name, which stays: it is not asked for again."""
+    if name not in _HOMES:
+        raise AttributeError(f"module `fretc` has no attribute `{name}`", name=name)
+    value = globals()[name] = getattr(import_module(_HOMES[name]), name)
+    return value
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})

@@ -16,6 +16,7 @@ import click
 
 from compiler.files.edition import __version__
 from compiler.files.processes import shield
+from fretc.api.refusal import too_deep
 from fretc.commands.audit import audit, info
 from fretc.commands.bind import bind
 from fretc.commands.check import check
@@ -101,7 +102,7 @@ def main() -> None:
         say([exceeded(error)])
         raise SystemExit(BAD) from None
     except RecursionError:
-        say([_too_deep()])
+        say([too_deep()])
         raise SystemExit(BAD) from None
     except OSError as error:
         _no_output(error)
@@ -140,14 +141,6 @@ def _no_output(error: OSError) -> None:
     if not isinstance(error, BrokenPipeError):
         say([not_written("standard output", error.strerror or str(error))])
     os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-
-
-def _too_deep() -> Diagnostic:
-    return Diagnostic(
-        Code.TOO_DEEP,
-        "an expression has too many operators within each other",
-        help="give parts of it names of their own",
-    )
 
 
 def _bad_usage(error: click.ClickException) -> Diagnostic:

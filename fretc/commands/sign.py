@@ -86,13 +86,13 @@ def _installed() -> None:
 
 def private(path: str) -> PrivateKey:
     """The private key of a file; its passphrase is asked for where it has one."""
-    from compiler.files.text_files import unreadable
+    from compiler.files.text_files import content, unreadable
     from fretc.attestation.keys import UnusableKeyError, private_key
     from fretc.attestation.signers import bad_key
 
     _installed()
     try:
-        return private_key(Path(path).read_bytes(), lambda: _passphrase(path))
+        return private_key(content(path), lambda: _passphrase(path))
     except OSError as error:
         stop(unreadable(path, error))
     except UnusableKeyError as error:

@@ -120,7 +120,7 @@ def verify(
     from compiler.project.folder import companions
     from fretc.verification.ajpf_results import written
     from fretc.verification.engines.sandbox import Limits
-    from fretc.verification.verify import Request
+    from fretc.verification.verify import Request, refusals
 
     if (agent is None) != (properties is None):
         stop(_half(agent))
@@ -140,7 +140,9 @@ def verify(
         provers,
         _said_by_ajpf(project, results),
     )
-    _refused(project, asked)
+    wrong = refusals(project, asked)
+    if wrong:
+        stop(*wrong)
     found = _evidence(project, asked)
     given = (path, interceptor, agent, properties, bindings, *results)
     read = [requirement.wording.source.name for requirement in project.requirements]
@@ -192,19 +194,6 @@ def _read(path: str | None) -> Source | None:
     if isinstance(source, Diagnostic):
         stop(source)
     return source
-
-
-def _refused(project: Project, asked: Request) -> None:
-    """Layers that step a monitor need one."""
-    from compiler.logic.claims import Layer
-    from compiler.targets.python import monitor
-
-    if not {Layer.MONITOR, Layer.LOOP, Layer.BOUNDS}.intersection(asked.layers):
-        return
-    found = (monitor.refuse(rule) for rule in project.rules)
-    wrong = [diagnostic for diagnostic in found if diagnostic is not None]
-    if wrong:
-        stop(*wrong)
 
 
 def _evidence(project: Project, asked: Request) -> Sequence[Evidence]:

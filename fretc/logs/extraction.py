@@ -22,7 +22,7 @@ from fretc.logs.messages.layouts import Found, Group, Layout, Layouts, Shape, Wh
 from fretc.logs.messages.probes import trusted
 from fretc.logs.messages.vectorized import nearest, samples, siblings
 from fretc.logs.signals.samples import EXACT, Numbers, Times, Values, widest
-from fretc.logs.signals.signals import RANGE_MIN, FieldError, sample
+from fretc.logs.signals.signals import RANGE_MIN, FieldError, is_chosen, sample
 from fretc.logs.signals.signals import nearest as nearest_of_one
 from fretish.bindings.declarations import Reduce, Signal
 from fretish.diagnostics.diagnostic import Diagnostic
@@ -54,7 +54,9 @@ class Extract:
     @classmethod
     def empty(cls, count: int, signals: Iterable[Signal], single: Container[str] = ()) -> Extract:
         """Of messages that are still to be read; `single` are signals of 32-bit floats."""
-        kinds = {one.name: "f4" if one.name in single and _chosen(one) else "f8" for one in signals}
+        kinds = {
+            one.name: "f4" if one.name in single and is_chosen(one) else "f8" for one in signals
+        }
         return cls(
             {name: np.full(count, np.nan, kind) for name, kind in kinds.items()},
             np.zeros(count, bool),
@@ -73,11 +75,6 @@ class Extract:
         """Some messages state a least distance."""
         if least is not None:
             self.nearest[signal.name] = min(least, self.nearest.get(signal.name, least))
-
-
-def _chosen(signal: Signal) -> bool:
-    """Whether its samples are numbers of the log, and not computed of them."""
-    return signal.reduce not in (Reduce.MEAN, Reduce.OUTLINE)
 
 
 class Extraction:

@@ -86,6 +86,14 @@ def evidence(
     return tuple(found)
 
 
+def refusals(project: Project, asked: Request) -> tuple[Diagnostic, ...]:
+    """Why a monitor cannot be made of some requirements, where a layer steps one."""
+    if not {Layer.MONITOR, Layer.LOOP, Layer.BOUNDS}.intersection(asked.layers):
+        return ()
+    found = (monitor.refuse(rule) for rule in project.rules)
+    return tuple(diagnostic for diagnostic in found if diagnostic is not None)
+
+
 def _ajpf(project: Project, asked: Request) -> Iterator[Evidence]:
     """What AJPF itself has said; where nothing else is asked for, that it has said nothing."""
     yield from asked.ajpf

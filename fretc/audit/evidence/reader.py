@@ -210,6 +210,17 @@ def _loaded(path: str) -> tuple[Evidence, Mapping[str, Any]] | Diagnostic:
     source = read_text(path)
     if isinstance(source, Diagnostic):
         return _not_audited(path) if source.code is Code.NO_SUCH_FILE else source
+    return _parsed(source)
+
+
+def parse(source: Source) -> Evidence | Diagnostic:
+    """Check the text of an evidence file."""
+    found = _parsed(source)
+    return found if isinstance(found, Diagnostic) else found[0]
+
+
+def _parsed(source: Source) -> tuple[Evidence, Mapping[str, Any]] | Diagnostic:
+    path = source.name
     try:
         file = parsed(source.text)
     except json.JSONDecodeError as error:

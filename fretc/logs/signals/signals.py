@@ -260,8 +260,13 @@ def _sibling(message: object, name: str) -> float:
 
 def unrounded(signal: Signal, values: Values) -> Values:
     """The elements as 64-bit floats; as they are where those would not do, and one is chosen."""
-    chosen = signal.reduce not in (Reduce.MEAN, Reduce.OUTLINE)
-    return values if chosen and values.dtype == EXACT else values.astype(np.float64)
+    keeps = is_chosen(signal) and values.dtype == EXACT
+    return values if keeps else values.astype(np.float64)
+
+
+def is_chosen(signal: Signal) -> bool:
+    """Whether its samples are numbers of the log, and not computed of them."""
+    return signal.reduce not in (Reduce.MEAN, Reduce.OUTLINE)
 
 
 def _readings(signal: Signal, values: Values, valid: NDArray[np.bool_]) -> Values | None:

@@ -69,7 +69,7 @@ def trace(declarations: Declarations, recording: Recording, names: Collection[st
     is_cut = len(ticks.times) > 0 and recording.end_ns > ticks.times[-1]
     times = np.append(ticks.times, recording.end_ns) if is_cut else ticks.times
     first = recording.start_ns if ticks.period is not None else None
-    states = {name: _states(name, declarations, recording, times, first) for name in names}
+    states = {name: states_at(name, declarations, recording, times, first) for name in names}
     count = len(ticks.times)
     columns = {name: packed(found[:count]) for name, found in states.items()}
     if not is_cut:
@@ -112,9 +112,14 @@ def origin(declarations: Declarations, recording: Recording, period: int) -> int
     return last if 0 <= last - recording.start_ns < period else recording.start_ns
 
 
-def _states(
+def states_at(
     name: str, declarations: Declarations, recording: Recording, ticks: Times, first: int | None
 ) -> States:
+    """What each tick sees of a proposition, shape (ticks,).
+
+    `first` is when the log began, from where on the first tick sees; None: it sees what happened at
+    its own time.
+    """
     proposition = declarations.propositions[name]
     steps = evaluate(proposition, declarations, recording)
     begun = None if first is None else (first, heard(proposition, recording))

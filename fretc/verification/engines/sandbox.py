@@ -9,12 +9,14 @@ from __future__ import annotations
 import multiprocessing
 import resource
 import signal
+import sys
 import traceback
-from collections.abc import Callable
-from contextlib import suppress
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from multiprocessing.connection import Connection
 from multiprocessing.context import SpawnProcess
+from types import ModuleType
 from typing import Any, ParamSpec, TypeVar
 
 from compiler.files.processes import shield
@@ -61,7 +63,8 @@ def confined(
 
     Args:
         limits: of time and memory.
-        function: of a module, so that it can be named to another process.
+        function: of a module that can be imported, and not of the program: that is not executed
+            in another process.
         args: what can be sent between processes, as can the result.
         kwargs: likewise.
 
@@ -74,7 +77,8 @@ def confined(
     call = (theirs, limits, function, args, kwargs)
     process = context.Process(target=_serve, args=call, daemon=True)
     try:
-        process.start()
+        with _without_main():
+            process.start()
         theirs.close()
         told: R | Stopped = _answer(ours, process, limits)
         return told
@@ -83,6 +87,17 @@ def confined(
             process.kill()
             process.join()
         ours.close()
+
+
+@contextmanager
+def _without_main() -> Iterator[None]:
+    """Hide the program from a process that starts: it would execute the whole of it once more."""
+    main = sys.modules["__main__"]
+    sys.modules["__main__"] = ModuleType("__main__")
+    try:
+        yield
+    finally:
+        sys.modules["__main__"] = main
 
 
 def _answer(connection: Connection, process: SpawnProcess, limits: Limits) -> Any:

@@ -68,18 +68,36 @@ def test_a_crash_is_told() -> None:
     assert found == Stopped("the process crashed (signal 11); it may have had too little memory")
 
 
-def test_an_interruption_ends_the_process(tmp_path: Path) -> None:
-    script = tmp_path / "waits.py"
+def test_the_program_itself_is_not_executed_once_more(tmp_path: Path) -> None:
+    script = tmp_path / "program.py"
     script.write_text(
-        "import os, time\n"
+        "from operator import neg\n"
         "from fretc.verification.engines.sandbox import DEFAULT, confined\n"
+        "print(confined(DEFAULT, neg, 21))\n"
+    )
+    environment = {**os.environ, "PYTHONPATH": str(Path(__file__).parents[4])}
+    command = [sys.executable, str(script)]
+    run = subprocess.run(command, env=environment, capture_output=True, text=True, timeout=60)
+    assert (run.stdout, run.stderr) == ("-21\n", "")
+
+
+def test_an_interruption_ends_the_process(tmp_path: Path) -> None:
+    (tmp_path / "waits.py").write_text(
+        "import os, time\n"
         "def wait(path):\n"
         "    open(path, 'w').write(str(os.getpid()))\n"
         "    time.sleep(600)\n"
-        "if __name__ == '__main__':\n"
-        f"    confined(DEFAULT, wait, {str(tmp_path / 'pid')!r})\n"
     )
-    environment = {**os.environ, "PYTHONPATH": str(Path(__file__).parents[4])}
+    script = tmp_path / "program.py"
+    script.write_text(
+        "from fretc.verification.engines.sandbox import DEFAULT, confined\n"
+        "from waits import wait\n"
+        f"confined(DEFAULT, wait, {str(tmp_path / 'pid')!r})\n"
+    )
+    environment = {
+        **os.environ,
+        "PYTHONPATH": f"{Path(__file__).parents[4]}{os.pathsep}{tmp_path}",
+    }
     command = [sys.executable, str(script)]
     running = subprocess.Popen(command, env=environment, stderr=subprocess.PIPE)
     pid = tmp_path / "pid"

@@ -1,0 +1,1 @@
+"""What `import fretc` offers: each module holds some of its names."""

@@ -1,0 +1,105 @@
+"""Recorded logs → results."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass
+
+from compiler.project.folder import Project
+from fretc.api.refusal import Refusal, accepted, bounded
+from fretc.audit.evidence.estimates import Estimated
+from fretc.audit.evidence.reader import Result, parse
+from fretc.audit.log_paths import logs as logs_of
+from fretc.audit.many_logs import Audit as Run
+from fretc.audit.many_logs import audit_logs as audited
+from fretc.audit.many_logs import locally
+from fretc.audit.plan import Plan, planned
+from fretc.logs.signals.integrity import Integrity
+from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.diagnostics.source import Source
+
+Path = str | os.PathLike[str]
+
+
+@dataclass(frozen=True, slots=True)
+class Audit:
+    """What the logs show of the requirements."""
+
+    results: tuple[Result, ...]
+    """One for each log and requirement in force, also where nothing could be judged."""
+    probabilities: tuple[Estimated, ...]
+    """What all logs say of each requirement with a probability."""
+    diagnostics: tuple[Diagnostic, ...]
+    """What there is to say of logs, and of requirements that cannot be judged."""
+    violated: bool
+    """Whether any requirement is violated in any log, or refuted by all of them."""
+    shown: bool
+    """Whether every requirement is satisfied in every log, or supported by all of them."""
+    evidence: str
+    """The text of the evidence file, as `fretc audit` writes it."""
+
+
+@bounded
+def audit_logs(
+    project: Project,
+    *logs: Path,
+    integrity: str = "hash",
+    confidence: float = 0.95,
+    jobs: int = 1,
+) -> Audit:
+    """Judge logs by every requirement in force.
+
+    A log that cannot be read, and a requirement that cannot be judged, have results too: they say
+    no data, and why.
+
+    Args:
+        project: the requirements and their bindings.
+        logs: files, folders of them, patterns, or URLs.
+        integrity: how much of a log is read beyond what is bound: `index`, `hash` or `full`.
+        confidence: of what all logs say of a probability, between 0.5 and 1.
+        jobs: processes that share the logs.
+
+    Raises:
+        Refusal: there is no log, no such file, or no requirement that can be judged.
+    """
+    wrong = _bad_choice(integrity, confidence, jobs)
+    if wrong is not None:
+        raise Refusal((wrong,))
+    named = accepted(logs_of([os.fspath(log) for log in logs]))
+    if not named:
+        raise Refusal((_nothing(),))
+    plan = planned(project, integrity=Integrity(integrity), confidence=confidence)
+    if not isinstance(plan, Plan):
+        raise Refusal(plan)
+    return _audit(plan, accepted(audited(plan, named, locally(jobs))))
+
+
+def _audit(plan: Plan, found: Run) -> Audit:
+    evidence = accepted(parse(Source("evidence.json", found.evidence)))
+    return Audit(
+        evidence.results,
+        evidence.probabilities,
+        tuple(dict.fromkeys((*plan.refusals, *found.diagnostics))),
+        found.violated,
+        found.shown,
+        found.evidence,
+    )
+
+
+def _bad_choice(integrity: str, confidence: float, jobs: int) -> Diagnostic | None:
+    if integrity not in list(Integrity):
+        known = ", ".join(Integrity)
+        return _bad(f"there is no integrity `{integrity}`", f"name one of {known}")
+    if not 0.5 < confidence < 1:
+        return _bad(f"no confidence is {confidence}", "give a number between 0.5 and 1")
+    if jobs < 1:
+        return _bad(f"{jobs} processes do no work", "give 1 or more")
+    return None
+
+
+def _bad(what: str, mend: str) -> Diagnostic:
+    return Diagnostic(Code.BAD_USAGE, what, help=mend)
+
+
+def _nothing() -> Diagnostic:
+    return Diagnostic(Code.NOTHING_TO_DO, "there is no log to audit", help="name one or several")

@@ -1,0 +1,98 @@
+"""Monitors of requirements: their text, and the monitor that it makes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from typing import Any, Protocol, cast
+
+from compiler.formalization.formalize import clashes, duplicates
+from compiler.formalization.rule import Rule
+from compiler.targets.python import monitor as python
+from fretc.api.refusal import Refusal, bounded
+from fretish.diagnostics.diagnostic import Code, Diagnostic
+from monitors.kernel.stepping import Row, Standing
+from monitors.kernel.verdicts import Truth, Verdict
+from monitors.loading import load
+
+
+class Monitor(Protocol):
+    """A generated monitor; docs/monitors.md says what its methods give."""
+
+    PROPOSITIONS: Mapping[str, str]
+    """Each proposition with its parameter of `step`."""
+
+    @property
+    def tick(self) -> int:
+        """The last tick; -1 before the first."""
+
+    def step(self, **truth: Truth) -> Verdict | tuple[Verdict, ...]:
+        """One tick; None is unknown. Of several requirements a verdict for each."""
+
+    def run(self, rows: Iterable[Row | Mapping[str, Truth]]) -> Verdict | tuple[Verdict, ...]:
+        """Many ticks: the truth of all propositions in their order, or by their names."""
+
+    def standings(self) -> tuple[Standing, ...]:
+        """What would be said of each requirement if the trace ended now."""
+
+    def verdicts(self) -> tuple[Verdict, ...]:
+        """Of each requirement, whatever follows: satisfied or violated; or pending."""
+
+    def state(self) -> dict[str, Any]:
+        """Everything that is remembered, as plain values that JSON can hold."""
+
+    def restore(self, state: Mapping[str, Any]) -> None:
+        """Go on from what `state` gave; ValueError: it is of another monitor."""
+
+    def reset(self) -> None:
+        """Forget everything: the next step is tick 0."""
+
+
+@bounded
+def monitor_text(*rules: Rule) -> str:
+    """The text of one monitor for all of the requirements: a file that needs Python alone.
+
+    Args:
+        rules: at least one, each with an id of its own; one that comes twice counts once.
+
+    Raises:
+        Refusal: a monitor cannot express one of them, or they do not fit into one file.
+    """
+    if not rules:
+        raise Refusal((_nothing(),))
+    rules = tuple({id(rule): rule for rule in rules}.values())
+    same_id = duplicates([rule.requirement for rule in rules]).values()
+    wrong = [
+        *filter(None, map(python.refuse, rules)),
+        *clashes(rules),
+        *dict.fromkeys(same_id),
+        *_several_clocks(rules),
+    ]
+    if wrong:
+        raise Refusal(wrong)
+    return python.text(*rules)
+
+
+def load_monitor(*rules: Rule) -> Monitor:
+    """The monitor of the requirements, compiled and ready to be stepped.
+
+    Args, raises: as for `monitor_text`.
+    """
+    return cast(Monitor, load("monitor.py", monitor_text(*rules)))
+
+
+def _several_clocks(rules: tuple[Rule, ...]) -> Iterable[Diagnostic]:
+    first, *others = rules
+    for rule in others:
+        if rule.clock != first.clock:
+            yield Diagnostic(
+                Code.BAD_USAGE,
+                f"{rule.id} and {first.id} are on two clocks: one monitor has one",
+                rule.requirement.wording,
+                help="formalize both with the same bindings",
+            )
+
+
+def _nothing() -> Diagnostic:
+    return Diagnostic(
+        Code.NOTHING_TO_DO, "a monitor needs a requirement", help="give one rule or several"
+    )

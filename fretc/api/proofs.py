@@ -1,0 +1,76 @@
+"""Whether what is made of requirements keeps them."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable
+
+from compiler.logic.claims import Evidence as Proof
+from compiler.logic.claims import Layer
+from compiler.project.folder import Project
+from fretc.api.refusal import Refusal, accepted, bounded
+from fretc.verification.ajpf_results import evidence as ajpf_evidence
+from fretc.verification.engines.sandbox import Limits
+from fretc.verification.verify import Request, evidence, refusals
+from fretish.diagnostics.diagnostic import Code, Diagnostic, has_errors
+
+Path = str | os.PathLike[str]
+_PROVERS = ("dafny", "crosshair")
+
+
+@bounded
+def verify(
+    project: Project,
+    *,
+    layers: Iterable[str] = tuple(map(str, Layer)),
+    provers: Iterable[str] = (),
+    ajpf: Iterable[Path] = (),
+    limit: int = 60,
+) -> tuple[Proof, ...]:
+    """Prove, layer by layer, that what is made of the requirements keeps them.
+
+    Args:
+        project: the requirements and their bindings.
+        layers: some of `monitor`, `interceptor`, `loop`, `bounds`, `agent`, `ajpf`.
+        provers: `dafny` or `crosshair`, if they are installed.
+        ajpf: results that AJPF has given.
+        limit: seconds of a processor for each claim.
+
+    Returns:
+        A line for each claim, with its result: `Proved`, `Counterexample`, `Vacuous`, `NotChecked`.
+
+    Raises:
+        Refusal: a requirement has a mistake, or no monitor can express it.
+    """
+    if has_errors(project.diagnostics):
+        raise Refusal(each for each in project.diagnostics if each.is_error)
+    asked = _named("layer", layers, tuple(map(str, Layer)))
+    helpers = _named("prover", provers, _PROVERS)
+    if not project.rules or not asked:
+        raise Refusal((Diagnostic(Code.NOTHING_TO_DO, "there is nothing to verify"),))
+    if limit < 1:
+        raise Refusal((_bad(f"no proof ends in {limit} seconds", "give 1 or more"),))
+    results, remarks = ajpf_evidence(project.rules, [os.fspath(path) for path in ajpf])
+    if has_errors(remarks):
+        raise Refusal(remarks)
+    request = Request(
+        [Layer(name) for name in asked], Limits(seconds=limit), provers=helpers, ajpf=results
+    )
+    wrong = refusals(project, request)
+    if wrong:
+        raise Refusal(wrong)
+    return accepted(evidence(project, request))
+
+
+def _named(what: str, names: Iterable[str], known: tuple[str, ...]) -> tuple[str, ...]:
+    found = tuple(dict.fromkeys([names] if isinstance(names, str) else names))
+    for name in found:
+        if name not in known:
+            raise Refusal(
+                (_bad(f"there is no {what} `{name}`", f"name some of {', '.join(known)}"),)
+            )
+    return found
+
+
+def _bad(what: str, mend: str) -> Diagnostic:
+    return Diagnostic(Code.BAD_USAGE, what, help=mend)

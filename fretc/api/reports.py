@@ -1,0 +1,85 @@
+"""The traceability report."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+from compiler.project.folder import Project, beside
+from fretc.api.refusal import Refusal, bounded
+from fretc.attestation.signatures import SIGNERS
+from fretc.report.make import Made, make
+from fretc.verification.ajpf_results import written as ajpf_results
+from fretc.verification.reader import written as verification_file
+from fretish.diagnostics.diagnostic import Code, Diagnostic
+
+Path = str | os.PathLike[str]
+
+
+@dataclass(frozen=True, slots=True)
+class Report:
+    """Hazard, requirement, formula, artefact, run and verdict in one."""
+
+    _made: Made
+
+    @property
+    def html(self) -> str:
+        """One page that works offline."""
+        return self._made.html or ""
+
+    @property
+    def json(self) -> str:
+        """What it says, for programs."""
+        return self._made.json or ""
+
+    @property
+    def diagnostics(self) -> tuple[Diagnostic, ...]:
+        """What there is to say of evidence, proofs, reviews and waivers."""
+        return self._made.diagnostics
+
+
+@bounded
+def make_report(
+    project: Project,
+    evidence: Path = "build/evidence.json",
+    *,
+    verification: Path | None = None,
+    lock: Path | None = None,
+    waivers: Path | None = None,
+    signers: Path | None = None,
+    ajpf: Iterable[Path] = (),
+) -> Report:
+    """Make the report.
+
+    Args:
+        project: the requirements with their hazards.
+        evidence: the file; where there is none, nothing has been exercised.
+        verification: what `fretc verify` wrote; None: `build/verification.json`, if it is there.
+        lock: the reviews; None: `fretc.lock` beside the requirements, if it is there.
+        waivers: None: `waivers.toml` beside the requirements, if it is there.
+        signers: whose keys count; None: `allowed_signers` beside the requirements, if it is there.
+        ajpf: results of AJPF; none: each `build/*_ajpf/result.json`.
+
+    Raises:
+        Refusal: a file cannot be read, or there is no requirement.
+    """
+    if not project.requirements:
+        raise Refusal((Diagnostic(Code.NOTHING_TO_DO, "there is no requirement to report on"),))
+    first = project.requirements[0].wording.source.name
+    made = make(
+        project,
+        os.fspath(evidence),
+        lock=_path(lock) or beside(first, "fretc.lock"),
+        waivers=_path(waivers) or beside(first, "waivers.toml"),
+        verification=_path(verification) or verification_file(),
+        ajpf=[os.fspath(path) for path in ajpf] or ajpf_results(),
+        signers=_path(signers) or beside(first, SIGNERS),
+    )
+    if made.report is None:
+        raise Refusal(made.diagnostics)
+    return Report(made)
+
+
+def _path(path: Path | None) -> str | None:
+    return None if path is None else os.fspath(path)

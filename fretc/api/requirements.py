@@ -1,0 +1,122 @@
+"""Requirements and bindings from files, one sentence from a text, and formulas as texts."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass
+
+from compiler.files.text_files import read
+from compiler.formalization.formalize import formalize as formalized
+from compiler.formalization.rule import Rule
+from compiler.logic import printing
+from compiler.project.folder import Project, whole
+from fretc.api.refusal import Refusal, accepted, bounded
+from fretish.bindings.declarations import Declarations
+from fretish.bindings.reader import read_bindings
+from fretish.diagnostics.diagnostic import Code, Diagnostic, has_errors
+from fretish.diagnostics.source import Source
+from fretish.documents import Requirement
+from fretish.meaning import meaning
+
+Path = str | os.PathLike[str]
+
+
+@bounded
+def read_project(
+    requirements: Path = "requirements", bindings: Path | None = None, hazards: Path | None = None
+) -> Project:
+    """Read a folder of requirements, or one file, with what stands beside it.
+
+    A mistake in one requirement, or in a signal or a proposition that it reads, is no reason to
+    refuse the others: it is among the `diagnostics` of the project, and every function that would
+    need that requirement refuses it or says of it that nothing is shown.
+
+    Args:
+        requirements: the folder, or one `.fret` file.
+        bindings: None: the `bindings.toml` in the folder, if there is one.
+        hazards: None: the `hazards.toml` in the folder, if there is one.
+
+    Raises:
+        Refusal: there is no requirement, or a file cannot be read as a whole.
+    """
+    project = accepted(whole(os.fspath(requirements), _path(bindings), _path(hazards)))
+    if has_errors(project.general):
+        raise Refusal(each for each in project.general if each.is_error)
+    return project
+
+
+@bounded
+def formalize(sentence: str, bindings: Path | None = None, id: str = "R1") -> Rule:
+    """Parse and formalize one sentence of FRETish.
+
+    Args:
+        sentence: without a header.
+        bindings: a `bindings.toml`; None: a duration counts ticks, whatever its unit.
+        id: of the requirement.
+
+    Raises:
+        Refusal: the sentence is not FRETish, is free text, or the bindings have a mistake.
+    """
+    requirement = Requirement(id, Source("<sentence>", sentence.strip()).span())
+    declarations = _declarations(bindings) if bindings is not None else None
+    rule, remarks = formalized(requirement, declarations)
+    if rule is None or has_errors(remarks):
+        raise Refusal([each for each in remarks if each.is_error] or remarks)
+    return rule
+
+
+def _path(path: Path | None) -> str | None:
+    return None if path is None else os.fspath(path)
+
+
+def _declarations(path: Path) -> Declarations:
+    declarations, remarks = read_bindings(accepted(read(os.fspath(path))))
+    if declarations is None or has_errors(remarks):
+        raise Refusal(each for each in remarks if each.is_error)
+    return declarations
+
+
+@dataclass(frozen=True, slots=True)
+class Formulas:
+    """The formulas of one requirement in one notation."""
+
+    infinite: str
+    """Future-time, on infinite traces."""
+    finite: str
+    """Future-time, on finite traces, with `LAST`."""
+    past: str | None
+    """Past-time, at the last tick; None: the notation has no past operators."""
+    probabilistic: str | None
+    """PCTL*; None: the sentence gives no probability."""
+    meaning: str
+    """The sentence in plain English."""
+
+
+def formulas(rule: Rule, notation: str = "plain") -> Formulas:
+    """The formulas of a requirement.
+
+    Args:
+        rule: from `formalize`, or one of the `rules` of a project.
+        notation: `plain`, `fret`, `spot`, `nusmv` or `latex`.
+
+    Raises:
+        Refusal: there is no such notation.
+    """
+    dialect = printing.DIALECTS.get(notation)
+    if dialect is None:
+        raise Refusal((_no_notation(notation),))
+    return Formulas(
+        printing.text(rule.ft_infinite, dialect),
+        printing.text(rule.ft_finite, dialect),
+        printing.text(rule.pt, dialect) if dialect.has_past else None,
+        printing.pctl(rule.pctl) if rule.pctl is not None else None,
+        meaning(rule.sentence, rule.ticks, rule.clock),
+    )
+
+
+def _no_notation(notation: str) -> Diagnostic:
+    return Diagnostic(
+        Code.BAD_USAGE,
+        f"there is no notation `{notation}`",
+        help=f"name one of {', '.join(printing.DIALECTS)}",
+    )

@@ -1,0 +1,216 @@
+"""Requirements judged tick by tick, from the raw samples of a robot that runs."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import partial
+from operator import index
+
+from compiler.project.folder import Project
+from compiler.targets.python import monitor as python
+from fretc.api.refusal import Refusal, accepted, bounded
+from fretc.audit.measurements.judgement import judged
+from fretc.audit.plan import Plan, planned
+from fretc.logs.stream import Stream as Truths
+from fretc.logs.stream import Tick as Row
+from fretish.bindings.declarations import Signal
+from fretish.diagnostics.diagnostic import Code, Diagnostic, suggestion
+from monitors import kernel
+from monitors.kernel import Column, Monitor, Outcome
+from monitors.kernel.stepping import Standing
+from monitors.kernel.verdicts import Truth
+from monitors.loading import load
+
+
+@dataclass(frozen=True, slots=True)
+class Tick:
+    """One tick of the declared clock."""
+
+    number: int
+    """From 0 on."""
+    time_ns: int
+    truth: Mapping[str, Truth]
+    """Of each proposition; None is unknown."""
+    standings: tuple[Standing, ...]
+    """What would be said of each requirement if the trace ended here."""
+
+
+@dataclass(frozen=True, slots=True)
+class End:
+    """What an audit says of the same samples."""
+
+    ticks: tuple[Tick, ...]
+    """Those that were left."""
+    verdicts: Mapping[str, str]
+    """Of each requirement: satisfied, violated, inconclusive, vacuous or no data."""
+
+
+class Stream:
+    """The requirements of a project, judged while samples come.
+
+    Ticks and verdicts are those of an audit of a log with the same samples, computed by the same
+    functions. Times are nanoseconds of the clock that the bindings declare.
+    """
+
+    @bounded
+    def __init__(self, project: Project) -> None:
+        """Judge every requirement in force.
+
+        Raises:
+            Refusal: one of them cannot be judged, or has a probability: no single run shows that.
+        """
+        plan = _plan(project)
+        self._plan, self._declared = plan, project.declarations
+        self._monitors = [load(f"{each.id}_monitor", each.monitor) for each in plan.claims]
+        names = dict.fromkeys(name for each in self._monitors for name in each.PROPOSITIONS)
+        self._truths = Truths(plan.declarations, tuple(names))
+        self._last: Mapping[str, Truth] = {}
+        self._count = 0
+
+    def add(self, signal: str, time_ns: int, value: object) -> None:
+        """One sample of a signal.
+
+        What its field holds is given, in the unit of the field: a number; for a path with `[:]` or
+        an index, the whole array; None where it is unknown. The signal's `valid`, `invalid` and
+        `reduce` say what that means. A sample of a signal that no requirement reads is passed by.
+
+        Raises:
+            Refusal: there is no such signal, the value is no number, it needs other fields of its
+                message (then use `add_message`), or it comes late. The stream is as it was.
+        """
+        if self._signal(signal) is not None:
+            wrong = self._truths.add(signal, index(time_ns), value)
+            if wrong is not None:
+                raise Refusal((wrong,))
+
+    def add_message(self, topic: str, time_ns: int, message: object) -> None:
+        """One message: a sample of each signal that reads its topic.
+
+        The message is a mapping of its fields, or an object that has them as attributes. A message
+        of a topic that no requirement reads is passed by.
+
+        Raises:
+            Refusal: a field is missing, is no number, or the message comes late. The stream is as
+                it was.
+        """
+        wrong = self._truths.message(topic, index(time_ns), message)
+        if wrong is not None:
+            raise Refusal((wrong,))
+
+    @property
+    def waiting(self) -> tuple[str, ...]:
+        """The topics that have to begin before the first tick can be placed."""
+        return self._truths.waiting
+
+    def until(self, time_ns: int) -> tuple[Tick, ...]:
+        """Let time pass: nothing from before `time_ns` comes any more.
+
+        Returns:
+            The ticks before that time that are new.
+
+        Raises:
+            Refusal: a million ticks or more would pass at once, or the stream has ended.
+        """
+        return tuple(map(self._step, accepted(self._truths.until(index(time_ns)))))
+
+    def end(self) -> End:
+        """End the stream at its last sample, or at the time that has passed if that is later.
+
+        Raises:
+            Refusal: it has ended already.
+        """
+        last = accepted(self._truths.end())
+        ticks = tuple(map(self._step, last.ticks))
+        return End(
+            ticks, {m.REQUIREMENTS[0].id: self._verdict(m, last.cut) for m in self._monitors}
+        )
+
+    def _signal(self, name: str) -> Signal | None:
+        """The signal, if a requirement reads it."""
+        assert self._declared is not None, "a plan has bindings"
+        if name not in self._declared.signal_names:
+            raise Refusal((_no_signal(name, self._declared.signal_names),))
+        return self._plan.declarations.signals.get(name)
+
+    def _step(self, row: Row) -> Tick:
+        for monitor in self._monitors:
+            monitor.advance([row.truth])
+        self._last = row.truth
+        tick = Tick(
+            self._count,
+            row.time,
+            row.truth,
+            tuple(standing for monitor in self._monitors for standing in monitor.standings()),
+        )
+        self._count += 1
+        return tick
+
+    def _verdict(self, monitor: Monitor, cut: Mapping[str, Truth] | None) -> str:
+        """As an audit judges, but that the monitor remembers all ticks before the last one."""
+        ticks = min(1, self._count)
+        columns = {name: _column(self._last.get(name), ticks) for name in monitor.PROPOSITIONS}
+        end = str(self._plan.declarations.clock.end)
+        engine = partial(_outcome, before=ticks)
+        return str(
+            judged(monitor, columns, cut, ticks, intact=True, end=end, engine=engine).verdict
+        )
+
+
+def _plan(project: Project) -> Plan:
+    plan = planned(project)
+    if not isinstance(plan, Plan):
+        raise Refusal(plan)
+    if plan.refusals:
+        raise Refusal(plan.refusals)
+    claimed = {claim.id for claim in plan.claims}
+    refused = (python.refuse(rule) for rule in project.rules if rule.id in claimed)
+    wrong = [diagnostic for diagnostic in refused if diagnostic is not None]
+    if wrong:
+        raise Refusal(wrong)
+    return plan
+
+
+def _column(truth: Truth, ticks: int) -> Column:
+    """The column of the last tick alone."""
+    return Column(int(truth is True), int(truth is None)) if ticks else Column(0, 0)
+
+
+def _outcome(
+    monitor: Monitor, columns: Mapping[str, Column], ticks: int, end: str, before: int
+) -> tuple[Outcome, ...]:
+    """What a monitor shows that has made its steps, and perhaps one more, which it forgets."""
+    if ticks > before:
+        monitor = _copy(monitor)
+        monitor.advance([{name: columns[name].at(before) for name in monitor.PROPOSITIONS}])
+    (standing,) = monitor.standings()
+    verdict = standing.verdict
+    if end == kernel.VIOLATED and verdict == kernel.INCONCLUSIVE:
+        verdict = kernel.VIOLATED
+    nothing: tuple[()] = ()
+    first = standing.first_violation
+    return (
+        Outcome(
+            standing.requirement,
+            monitor.tick + 1,
+            verdict,
+            standing.finite,
+            first,
+            *(nothing,) * 5,
+        ),
+    )
+
+
+def _copy(monitor: Monitor) -> Monitor:
+    other = type(monitor)()
+    other.restore(monitor.state())
+    return other
+
+
+def _no_signal(name: str, known: tuple[str, ...]) -> Diagnostic:
+    near = suggestion(name, known)
+    return Diagnostic(
+        Code.UNKNOWN_NAME,
+        f"the bindings declare no signal `{name}`",
+        help=f"did you mean `{near}`?" if near else f"they declare {', '.join(known)}",
+    )

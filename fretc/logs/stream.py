@@ -1,0 +1,425 @@
+"""Samples that still come → the truth of propositions at each tick of the clock.
+
+What a tick sees is computed by the functions that judge recorded logs (`signals.propositions`,
+`signals.traces`), over a window of samples. The window begins before the last tick, by the longest
+time that a proposition looks back (`lookback`), and one nanosecond: from there on its steps are
+those of the whole log. Each signal keeps one sample from before the window, the one in force where
+it begins; so no `max_age` makes the window longer. Times are nanoseconds of the declared clock.
+"""
+
+from __future__ import annotations
+
+from array import array
+from bisect import bisect_left, bisect_right
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass, field
+from math import isnan
+from typing import Any
+
+import numpy as np
+
+from fretc.logs import findings
+from fretc.logs.mcap.damage import LATEST
+from fretc.logs.signals.propositions import truth_values
+from fretc.logs.signals.samples import EXACT, Recording, Samples, Topic
+from fretc.logs.signals.signals import (
+    FieldError,
+    Sparse,
+    UnstatedError,
+    fields,
+    is_chosen,
+    sample,
+    stated_field,
+)
+from fretc.logs.signals.traces import origin, states_at
+from fretish import expressions as e
+from fretish.bindings.declarations import Declarations, Signal
+from fretish.diagnostics.diagnostic import Code, Diagnostic
+from monitors.kernel.verdicts import Truth
+
+MOST_TICKS = 1_000_000
+"""Ticks that may pass at once: more are a mistake in the unit of time."""
+
+
+@dataclass(frozen=True, slots=True)
+class Tick:
+    """One tick of the clock, and the truth of each proposition at it."""
+
+    time: int
+    truth: Mapping[str, Truth]
+
+
+@dataclass(frozen=True, slots=True)
+class End:
+    """The last ticks, and the tick that the end of the stream cuts short (None: there is none)."""
+
+    ticks: tuple[Tick, ...]
+    cut: Mapping[str, Truth] | None
+
+
+class Stream:
+    """Takes samples in any order, as long as none is earlier than the time that has passed."""
+
+    def __init__(self, declarations: Declarations, propositions: Collection[str]) -> None:
+        self._declarations = declarations
+        self._propositions = tuple(propositions)
+        self._lookback = max(
+            (lookback(declarations.propositions[name].expression) for name in propositions),
+            default=0,
+        )
+        self._queues = {name: _Queue(signal) for name, signal in declarations.signals.items()}
+        self._clock_times: list[int] = []
+        """Messages of the clock's topic, from the time that has passed on."""
+        self._firsts: dict[str, int] = {}
+        """The first message of each bound topic."""
+        self._end = 0
+        """The last message of all bound topics."""
+        self._passed = 0
+        self._last_tick: int | None = None
+        self._ended = False
+
+    # Samples
+
+    def add(self, name: str, time: int, value: object) -> Diagnostic | None:
+        """One sample of a signal: what its field holds, a number or an array of them."""
+        signal = self._declarations.signals[name]
+        if self._declarations.clock.period is None:
+            return _needs_messages(self._declarations)
+        message = value
+        for part in reversed(signal.path.fields):
+            message = {part: message}
+        return self._take(signal.path.topic, time, message, (signal,))
+
+    def message(self, topic: str, time: int, message: object) -> Diagnostic | None:
+        """One message: a sample of each signal that reads the topic, and of its clock a tick."""
+        signals = [s for s in self._declarations.signals.values() if s.path.topic == topic]
+        if not signals and topic != self._declarations.clock.topic:
+            return None
+        return self._take(topic, time, message, signals)
+
+    def _take(
+        self, topic: str, time: int, message: object, signals: Sequence[Signal]
+    ) -> Diagnostic | None:
+        """All of its samples, or none and why."""
+        wrong = self._over() or self._untimely(topic, time)
+        if wrong is not None:
+            return wrong
+        read = Message(message)
+        values: list[tuple[_Queue, float, np.dtype[Any] | None]] = []
+        for signal in signals:
+            found = _value(signal, read)
+            if isinstance(found, Diagnostic):
+                return found
+            queue = self._queues[signal.name]
+            wrong = queue.refusal(found[1], self._passed)
+            if wrong is not None:
+                return wrong
+            values.append((queue, *found))
+        for queue, value, kind in values:
+            queue.put(time, value, kind)
+        self._firsts[topic] = min(time, self._firsts.get(topic, time))
+        self._end = max(self._end, time)
+        if topic == self._declarations.clock.topic:
+            self._clock_times.insert(bisect_right(self._clock_times, time), time)
+        return None
+
+    def _untimely(self, topic: str, time: int) -> Diagnostic | None:
+        if time == 0:
+            return Diagnostic(
+                Code.ZERO_STAMP,
+                f"a message of `{topic}` has a zero for a time: its clock was never set",
+                help="leave it out, or give it the time at which it was received",
+            )
+        if not 0 < time < LATEST:
+            return Diagnostic(
+                Code.BAD_MESSAGE,
+                f"a message of `{topic}` has the time {time}, which no clock tells",
+                help="give the time in nanoseconds",
+            )
+        if time < self._passed:
+            return Diagnostic(
+                Code.OUT_OF_ORDER,
+                f"a message of `{topic}` is {self._passed - time} ns late: the ticks up to "
+                f"{self._passed} ns are judged",
+                help="let time pass only up to where no message can come any more",
+            )
+        return None
+
+    # Ticks
+
+    @property
+    def waiting(self) -> tuple[str, ...]:
+        """The topics that are yet to begin, and before which no tick can be placed.
+
+        The grid of ticks begins with the last topic that begins less than a tick after the first
+        one, and with the first one where another begins later: while topics are missing, both may
+        come true.
+        """
+        placed = self._declarations.clock.period is None or self._last_tick is not None
+        if placed or not self._begun() or self._origin() is not None:
+            return ()
+        return tuple(sorted(self._topics() - self._begun().keys()))
+
+    def until(self, time: int) -> tuple[Tick, ...] | Diagnostic:
+        """Let time pass: no message before `time` comes any more.
+
+        Returns:
+            The ticks before `time` that are new, as a log has them that goes on for longer.
+        """
+        if (over := self._over()) is not None:
+            return over
+        if not 0 <= time < LATEST:
+            return Diagnostic(
+                Code.BAD_MESSAGE,
+                f"time cannot pass up to {time}: no clock tells that",
+                help="give the time in nanoseconds",
+            )
+        before, self._passed = self._passed, max(time, self._passed)
+        times = self._due(self._passed - 1)
+        if isinstance(times, Diagnostic):
+            self._passed = before
+            return times
+        found = self._ticks(times, self._passed)
+        self._forget()
+        return found
+
+    def end(self) -> End | Diagnostic:
+        """The ticks that are left where the log ends here: at the last message or time passed."""
+        if (over := self._over()) is not None:
+            return over
+        end, before = max(self._end, self._passed), self._passed
+        self._passed, self._ended = LATEST, True
+        times = self._due(end)
+        if isinstance(times, Diagnostic):
+            self._passed, self._ended = before, False
+            return times
+        last = times[-1] if times else self._last_tick
+        if last is None or last == end:
+            return End(self._ticks(times, end), None)
+        *ticks, cut = self._ticks([*times, end], end)
+        self._last_tick = last
+        return End(tuple(ticks), cut.truth)
+
+    def _over(self) -> Diagnostic | None:
+        if not self._ended:
+            return None
+        return Diagnostic(Code.BAD_USAGE, "the stream has ended", help="begin a new one")
+
+    def _topics(self) -> set[str]:
+        return {signal.path.topic for signal in self._declarations.signals.values()}
+
+    def _begun(self) -> dict[str, int]:
+        return {topic: first for topic, first in self._firsts.items() if first < self._passed}
+
+    def _start(self) -> int:
+        return min(self._begun().values())
+
+    def _origin(self) -> int | None:
+        """Where the grid of ticks begins; None while messages that are still to come decide that.
+
+        A topic that has not begun can move it back to the start of the log, and, less than a tick
+        after that, forward to its own first message.
+        """
+        begun, period = self._begun(), self._declarations.clock.period
+        if period is None or not begun:
+            return None
+        start = min(begun.values())
+        found = origin(self._declarations, self._recording(start, start, {}), period)
+        if self._ended or self._topics() <= begun.keys():
+            return found
+        return start if self._passed >= start + period and found == start else None
+
+    def _due(self, last: int) -> list[int] | Diagnostic:
+        """The times of the new ticks up to `last`."""
+        clock = self._declarations.clock
+        if clock.period is None:
+            return self._clock_times[: bisect_right(self._clock_times, last)]
+        if self._last_tick is not None:
+            start = self._last_tick + clock.period
+        elif (first := self._origin()) is not None:
+            start = first + clock.phase
+        else:
+            return []
+        times = range(start, last + 1, clock.period)
+        if len(times) > MOST_TICKS:
+            return Diagnostic(
+                Code.TOO_LARGE,
+                f"{len(times)} ticks would pass at once",
+                help="give times in nanoseconds, all on one clock",
+            )
+        return list(times)
+
+    def _ticks(self, times: Sequence[int], end: int) -> tuple[Tick, ...]:
+        """What each of the new ticks sees, in a log that goes on up to `end`."""
+        if not times:
+            return ()
+        start, first = self._start(), None
+        before = [] if self._last_tick is None else [self._last_tick]
+        if before:
+            start = max(start, self._window())
+        elif self._declarations.clock.period is not None:
+            first = start
+        samples = {name: queue.samples() for name, queue in self._queues.items()}
+        recording = self._recording(start, end, samples)
+        ticks = np.array([*before, *times], np.int64)
+        truth = {
+            name: truth_values(states_at(name, self._declarations, recording, ticks, first))
+            for name in self._propositions
+        }
+        self._last_tick = times[-1]
+        return tuple(
+            Tick(time, {name: values[i] for name, values in truth.items()})
+            for i, time in enumerate(times, len(before))
+        )
+
+    def _window(self) -> int:
+        """From when on samples count for the ticks to come."""
+        assert self._last_tick is not None
+        return self._last_tick - self._lookback - 1
+
+    def _forget(self) -> None:
+        """Drop what no later tick sees."""
+        if self._last_tick is None:
+            return
+        del self._clock_times[: bisect_right(self._clock_times, self._last_tick)]
+        for queue in self._queues.values():
+            queue.forget(self._window())
+
+    def _recording(self, start: int, end: int, samples: Mapping[str, Samples]) -> Recording:
+        return Recording(
+            name="",
+            sha256="",
+            size=0,
+            start_ns=start,
+            end_ns=end,
+            samples=samples,
+            ticks=np.zeros(0, np.int64),
+            gaps=(),
+            topics={name: _topic(name, first) for name, first in self._begun().items()},
+            nearest={},
+            findings=(),
+            intact=True,
+        )
+
+
+def lookback(expression: e.Expression) -> int:
+    """How far its truth looks back, in nanoseconds: the durations within each other, added up."""
+    inner = max(map(lookback, e.children(expression)), default=0)
+    return inner + expression.duration if isinstance(expression, e.Held) else inner
+
+
+@dataclass(slots=True)
+class _Queue:
+    """The samples of one signal, in order of time; equal times in the order in which they came."""
+
+    signal: Signal
+    times: list[int] = field(default_factory=list)
+    values: list[float] = field(default_factory=list)
+    kind: np.dtype[Any] | None = None
+    """None: every sample is unknown."""
+
+    def refusal(self, kind: np.dtype[Any] | None, passed: int) -> Diagnostic | None:
+        """F421: in a wider kind, samples that ticks have seen would compare otherwise."""
+        if kind is None or self.kind is None or np.promote_types(self.kind, kind) == self.kind:
+            return None
+        if not self.times or self.times[0] >= passed:
+            return None
+        return Diagnostic(
+            Code.SEVERAL_TYPES,
+            f"`{self.signal.name}` was of {_words(self.kind)}, and now is of {_words(kind)}",
+            self.signal.span,
+            help="give all samples of a signal as numbers of one kind",
+        )
+
+    def put(self, time: int, value: float, kind: np.dtype[Any] | None) -> None:
+        """One sample, behind those of the same time."""
+        if kind is not None:
+            self.kind = kind if self.kind is None else np.promote_types(self.kind, kind)
+        place = bisect_right(self.times, time)
+        self.times.insert(place, time)
+        self.values.insert(place, value)
+
+    def forget(self, start: int) -> None:
+        """Drop the samples before the one that is in force where the window starts."""
+        count = max(0, bisect_left(self.times, start) - 1)
+        del self.times[:count]
+        del self.values[:count]
+
+    def samples(self) -> Samples:
+        """All that are left."""
+        values = np.array(self.values, self.kind or np.float32)
+        return Samples(np.array(self.times, np.int64), values, self.signal.scale)
+
+
+_WORDS = {4: "32-bit floats", 8: "64-bit floats", EXACT.itemsize: "whole numbers from 2^53 on"}
+
+
+def _words(kind: np.dtype[Any]) -> str:
+    return _WORDS[kind.itemsize]
+
+
+class Message(Sparse):
+    """A message as Python has it: a mapping, or an object with attributes.
+
+    What is None is unknown; what is not there is a mistake.
+    """
+
+    def __init__(self, message: object) -> None:
+        self._message = message
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Of its fields; those of a message of rclpy are not its slots."""
+        if isinstance(self._message, Mapping):
+            return tuple(map(str, self._message))
+        declared = getattr(self._message, "get_fields_and_field_types", None)
+        return tuple(declared()) if callable(declared) else fields(self._message)
+
+    def field(self, name: str) -> object:
+        """The value of a field; arrays of Python's `array` are those of NumPy."""
+        if name not in self.names:
+            raise KeyError(name)
+        mapping = isinstance(self._message, Mapping)
+        value = self._message[name] if mapping else getattr(self._message, name)  # type: ignore[index]
+        if value is None:
+            raise UnstatedError
+        if isinstance(value, array):
+            return np.asarray(value)
+        inner = isinstance(value, Mapping) or fields(value)
+        return Message(value) if inner else value
+
+
+def _value(signal: Signal, message: Message) -> tuple[float, np.dtype[Any] | None] | Diagnostic:
+    """The sample, and of which kind of number it is; None: it is unknown."""
+    single = _is_single(signal, message)
+    try:
+        value = sample(signal, message, single=single)
+    except FieldError as error:
+        return findings.no_field(signal, error)
+    if isinstance(value, int):
+        return value, EXACT
+    if isnan(value):
+        return value, None
+    return value, np.dtype(np.float32 if single and is_chosen(signal) else np.float64)
+
+
+def _is_single(signal: Signal, message: Message) -> bool:
+    """Whether its field holds 32-bit floats."""
+    value: object = message
+    for name in signal.path.fields:
+        value = stated_field(value, name)
+    return getattr(value, "dtype", None) == np.float32
+
+
+def _topic(name: str, first: int) -> Topic:
+    """A topic of which nothing counts but when it begins."""
+    return Topic(name, "", "", 0, first, None, None, None, None)
+
+
+def _needs_messages(declarations: Declarations) -> Diagnostic:
+    return Diagnostic(
+        Code.MESSAGE_CLOCK,
+        f"the clock ticks with {declarations.clock}: a sample of one signal is no message",
+        declarations.source.span(0, 0),
+        help="give whole messages, with their topic",
+    )

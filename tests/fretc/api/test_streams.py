@@ -1,0 +1,129 @@
+"""A stream judges as an audit of the same samples does."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from mcap.reader import make_reader
+from mcap_ros2.decoder import DecoderFactory
+
+import fretc
+from fretc.audit.one_log import audit
+from fretc.audit.plan import Plan, planned, watched
+from fretc.logs.signals.samples import Recording, Samples, Topic
+from fretish.diagnostics.diagnostic import Code
+
+ROOT = Path(__file__).parent.parent.parent.parent
+SENTENCES = (
+    "whenever p r shall within 2 ticks satisfy q",
+    "whenever p r shall eventually satisfy q",
+    "r shall always satisfy q",
+    "upon p r shall for 2 ticks satisfy q",
+)
+BINDINGS = """
+[clock]
+tick = "10 ns"
+end = "{end}"
+[signal.x]
+path = "/x.data"
+max_age = "25 ns"
+[proposition.p]
+expr = "x < 3"
+agg = "any"
+[proposition.q]
+expr = "x > 1"
+"""
+
+
+@pytest.fixture(scope="module", params=["inconclusive", "violated"])
+def project(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> object:
+    folder = tmp_path_factory.mktemp("project")
+    for number, sentence in enumerate(SENTENCES, 1):
+        (folder / f"r{number}.fret").write_text(sentence)
+    (folder / "bindings.toml").write_text(BINDINGS.format(end=request.param))
+    return fretc.read_project(folder)
+
+
+def verdicts(plan: Plan, samples: list[tuple[int, float]]) -> dict[str, str]:
+    """Those of an audit."""
+    times = np.array([time for time, _ in samples], np.int64)
+    signal = Samples(times, np.array([value for _, value in samples]))
+    start, end = int(times[0]), int(times[-1])
+    topic = Topic("/x", "", "", len(times), start, end, None, None, None)
+    none, topics = np.zeros(0, np.int64), {"/x": topic}
+    recording = Recording("r", "", 1, start, end, {"x": signal}, none, (), topics, {}, (), True)
+    found = audit(recording, plan.declarations, watched(plan))
+    return {each.requirement: str(each.verdict) for each in found}
+
+
+@settings(max_examples=20)  # each makes monitors and looks at all phases of the ticks
+@given(
+    st.lists(
+        st.tuples(st.integers(1, 120), st.sampled_from([0.0, 2.0, 4.0, float("nan")])), min_size=1
+    ),
+    st.lists(st.integers(0, 120), max_size=6),
+)
+def test_the_verdicts_at_the_end_are_those_of_an_audit(
+    project: fretc.Project, samples: list[tuple[int, float]], cuts: list[int]
+) -> None:
+    plan = planned(project)
+    assert isinstance(plan, Plan)
+    samples = sorted(samples, key=lambda sample: sample[0])
+    stream = fretc.Stream(project)
+    cuts = [cut for cut in sorted(cuts) if cut <= samples[-1][0]]
+    for time, value in samples:
+        while cuts and cuts[0] <= time:
+            stream.until(cuts.pop(0))
+        stream.add("x", time, value)
+    assert dict(stream.end().verdicts) == verdicts(plan, samples)
+
+
+def test_a_recorded_run_gives_the_ticks_and_the_verdict_of_its_audit() -> None:
+    (log,) = ROOT.joinpath("traces").glob("*.mcap")
+    project = fretc.read_project(ROOT / "requirements")
+    (result,) = fretc.audit_logs(project, log).results
+    stream = fretc.Stream(project)
+    ticks: list[fretc.Tick] = []
+    with log.open("rb") as file:
+        reader = make_reader(file, decoder_factories=[DecoderFactory()])
+        for _, channel, message, decoded in reader.iter_decoded_messages(["/scan", "/odom"]):
+            ticks.extend(stream.until(message.log_time))
+            stream.add_message(channel.topic, message.log_time, decoded)
+    end = stream.end()
+    ticks.extend(end.ticks)
+    assert end.verdicts == {"R1": result.verdict}
+    assert len(ticks) == result.ticks
+    close = [tick.number for tick in ticks if tick.truth["too_close"]]
+    assert close == [moment.tick for moment in result.triggers]
+    assert result.end_ns is not None
+    assert 0 <= result.end_ns - ticks[-1].time_ns < 10**8
+
+
+def refused(tmp_path: Path, sentence: str) -> fretc.Refusal:
+    (tmp_path / "r1.fret").write_text(sentence)
+    (tmp_path / "bindings.toml").write_text(BINDINGS.format(end="inconclusive"))
+    with pytest.raises(fretc.Refusal) as refusal:
+        fretc.Stream(fretc.read_project(tmp_path))
+    return refusal.value
+
+
+@pytest.mark.parametrize(
+    ("sentence", "code"),
+    [
+        ("r shall always satisfy other", Code.UNBOUND),
+        ("r shall allways satisfy p", Code.MISSPELT),
+        ("r shall with probability > 0.9 eventually satisfy p", Code.NOT_EXPRESSIBLE),
+    ],
+)
+def test_a_requirement_that_no_run_can_show_is_refused_and_not_left_out(
+    tmp_path: Path, sentence: str, code: Code
+) -> None:
+    (tmp_path / "r2.fret").write_text("r shall always satisfy p")
+    assert code in [diagnostic.code for diagnostic in refused(tmp_path, sentence).diagnostics]
+
+
+def test_a_signal_that_is_not_declared_is_refused(project: fretc.Project) -> None:
+    with pytest.raises(fretc.Refusal, match="F309 the bindings declare no signal `y`"):
+        fretc.Stream(project).add("y", 1, 1.0)
