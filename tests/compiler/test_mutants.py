@@ -7,12 +7,13 @@ without the mistake, and that the definition is told by that one is held in `tes
 """
 
 import ast
-import copy
 import random
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import fields, replace
+from functools import cache
 from typing import Any, get_args
+from unittest import mock
 
 import pytest
 
@@ -20,13 +21,14 @@ from compiler import formula as f
 from compiler.past import Watch
 from compiler.proving import NotChecked, Proved, Refuted
 from compiler.rule import Rule
+from compiler.runtime import kernel
 from compiler.targets import monitor as target
 from compiler.verifying import Disagreement, NotAMonitorError, verified
 from fretish import syntax as s
 from monitors.kernel import Monitor
 from monitors.kernel.stepping import Standing
 from monitors.kernel.verdicts import Truth
-from monitors.loading import load
+from monitors.loading import executed, load
 from tests.monitoring import over, rule
 
 SENTENCES = (
@@ -105,13 +107,14 @@ def of_text(text: str) -> Iterator[tuple[str, str]]:
     """All mistakes in the logic of a text: in its cells, its tick, its signals and its columns."""
     place = text.index("\n", text.index(MARK))
     head, module = text[: place + 1], ast.parse(text[place:])
-    right = ast.unparse(module)
+    right = [ast.unparse(statement) for statement in module.body]
     functions = [
-        node
-        for node in ast.walk(module)
+        (number, node)
+        for number, statement in enumerate(module.body)
+        for node in ast.walk(statement)
         if isinstance(node, ast.FunctionDef) and node.name in ("__init__", "advance", "columns")
     ]
-    for function in functions:
+    for number, function in functions:
         names = {node.id for node in ast.walk(function) if isinstance(node, ast.Name)}
         names |= {argument.arg for argument in function.args.kwonlyargs}
         for parent in list(ast.walk(function)):
@@ -123,11 +126,13 @@ def of_text(text: str) -> Iterator[tuple[str, str]]:
                     if not isinstance(node, ast.AST):
                         continue
                     for kind, other in mistakes(node, frozenset(names)):
-                        _put(parent, field, i if several else None, other)
-                        changed = ast.unparse(ast.fix_missing_locations(copy.deepcopy(module)))
-                        _put(parent, field, i if several else None, node)
-                        if changed != right:
-                            yield f"{function.name}: {kind}", f"{head}\n{changed}\n"
+                        at = i if several else None
+                        _put(parent, field, at, ast.fix_missing_locations(other))
+                        changed = ast.unparse(module.body[number])
+                        _put(parent, field, at, node)
+                        if changed != right[number]:
+                            own = "\n".join([*right[:number], changed, *right[number + 1 :]])
+                            yield f"{function.name}: {kind}", f"{head}\n{own}\n"
 
 
 def _put(parent: ast.AST, field: str, place: int | None, node: ast.AST) -> None:
@@ -234,7 +239,8 @@ class Judge:
 
     def found(self, text: str) -> str:
         try:
-            result = verified(self.rule, text, MOST_STATES).result
+            with mock.patch("compiler.verifying.load", loaded):
+                result = verified(self.rule, text, MOST_STATES).result
         except NotAMonitorError:
             return REFUSED
         match result:
@@ -248,11 +254,28 @@ class Judge:
                 return self._compared(text)
 
     def _compared(self, text: str) -> str:
-        machine = load("other.py", text)
+        machine = loaded("other.py", text)
         for trace, expected in zip(self.traces, self.expected, strict=True):
             if telling(machine, trace) != expected:
                 return TOLD
         return SAME
+
+
+@cache
+def run_time() -> Mapping[str, object]:
+    """What the run time defines: no mistake is put into it, so it is executed once."""
+    names = vars(executed(f"{kernel().imports}\n{kernel().text}", "run_time"))
+    return {name: value for name, value in names.items() if not name.startswith("__")}
+
+
+def loaded(name: str, text: str) -> Monitor:
+    """As `load` does."""
+    _, found, own = text.partition(kernel().text)
+    assert found
+    names: dict[str, Any] = {**run_time(), "__name__": name}
+    exec(compile(own, name, "exec"), names)
+    machine: Monitor = names["MONITOR"]()
+    return machine
 
 
 def telling(machine: Monitor, trace: dict[str, list[Truth]]) -> object:
