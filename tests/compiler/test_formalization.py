@@ -58,11 +58,39 @@ def drawn(names: Sequence[str], length: int, count: int, seed: str) -> list[fret
     ]
 
 
+def exhaustive(names: Sequence[str]) -> range:
+    """The lengths of which all traces are judged: to 3 for four names, to 4 for fewer."""
+    return range(1, 1 + max((k for k in range(1, 5) if len(names) * k <= 12), default=0))
+
+
+all_traces = cache(fret.all_traces)
+
+
+@cache
+def satisfied(template: Template, length: int) -> int:
+    """Which of all traces of a length satisfy the template."""
+    return fret.bits(all_traces(template.columns, length), template.satisfied)
+
+
+def judgements(template: Template, drawn_each: int) -> Iterator[tuple[list[fret.Trace], int]]:
+    """Some traces, and which of them satisfy the template."""
+    lengths = exhaustive(template.columns)
+    for length in lengths:
+        yield all_traces(template.columns, length), satisfied(template, length)
+    for traces in longer(template.columns, len(lengths), repr(template), drawn_each):
+        yield traces, fret.bits(traces, template.satisfied)
+
+
 def some_traces(names: Sequence[str], seed: str, drawn_each: int) -> Iterator[list[fret.Trace]]:
-    """All short traces (3 ticks for four names, 4 for three or fewer), then drawn longer ones."""
-    exhaustive = max((k for k in range(1, 5) if len(names) * k <= 12), default=0)
-    for length in range(1, exhaustive + 1):
-        yield fret.all_traces(names, length)
+    """All short traces, then drawn longer ones."""
+    lengths = exhaustive(names)
+    yield from (fret.all_traces(names, length) for length in lengths)
+    yield from longer(names, len(lengths), seed, drawn_each)
+
+
+def longer(
+    names: Sequence[str], exhaustive: int, seed: str, drawn_each: int
+) -> Iterator[list[fret.Trace]]:
     for length in (*range(exhaustive + 1, 7), 9):
         yield drawn(names, length, drawn_each, seed)
 
@@ -145,8 +173,7 @@ def test_future_past_and_watch_mean_what_fretish_means(scope: str) -> None:
         back = at_end(printing.past(past(meant)))
         breach = fret.parse(printing.past(signals.breach))
         fails = fret.parse(printing.past(signals.fails))
-        for traces in some_traces(template.columns, repr(template), drawn_each=25):
-            expected = fret.bits(traces, template.satisfied)
+        for traces, expected in judgements(template, drawn_each=25):
             word, length, full = fret.packed(traces)
             lost = fret.values(fails, word, length, full)[-1]
             for broken in fret.values(breach, word, length, full):
@@ -237,12 +264,11 @@ def test_a_breach_cannot_be_repaired(scope: str) -> None:
     """The verdict `violated` is certain: every longer trace is violated too."""
     for template in every(scope):
         breach = fret.parse(printing.past(watch(read(template.sentence)).breach))
-        for traces in some_traces(template.columns, repr(template), drawn_each=10):
+        for traces, kept in judgements(template, drawn_each=10):
             word, length, full = fret.packed(traces)
             lost = 0
             for broken in fret.values(breach, word, length, full):
                 lost |= broken
-            kept = fret.bits(traces, template.satisfied)
             assert fret.differing(traces, lost & kept, 0) is None, template
 
 

@@ -9,11 +9,9 @@ without the mistake, and that the definition is told by that one is held in `tes
 import ast
 import random
 from collections import Counter
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import fields, replace
-from functools import cache
 from typing import Any, get_args
-from unittest import mock
 
 import pytest
 
@@ -21,14 +19,13 @@ from compiler import formula as f
 from compiler.past import Watch
 from compiler.proving import NotChecked, Proved, Refuted
 from compiler.rule import Rule
-from compiler.runtime import kernel
 from compiler.targets import monitor as target
 from compiler.verifying import Disagreement, NotAMonitorError, verified
 from fretish import syntax as s
 from monitors.kernel import Monitor
 from monitors.kernel.stepping import Standing
 from monitors.kernel.verdicts import Truth
-from monitors.loading import executed, load
+from monitors.loading import load
 from tests.monitoring import over, rule
 
 SENTENCES = (
@@ -239,8 +236,7 @@ class Judge:
 
     def found(self, text: str) -> str:
         try:
-            with mock.patch("compiler.verifying.load", loaded):
-                result = verified(self.rule, text, MOST_STATES).result
+            result = verified(self.rule, text, MOST_STATES).result
         except NotAMonitorError:
             return REFUSED
         match result:
@@ -254,28 +250,11 @@ class Judge:
                 return self._compared(text)
 
     def _compared(self, text: str) -> str:
-        machine = loaded("other.py", text)
+        machine = load("other.py", text)
         for trace, expected in zip(self.traces, self.expected, strict=True):
             if telling(machine, trace) != expected:
                 return TOLD
         return SAME
-
-
-@cache
-def run_time() -> Mapping[str, object]:
-    """What the run time defines: no mistake is put into it, so it is executed once."""
-    names = vars(executed(f"{kernel().imports}\n{kernel().text}", "run_time"))
-    return {name: value for name, value in names.items() if not name.startswith("__")}
-
-
-def loaded(name: str, text: str) -> Monitor:
-    """As `load` does."""
-    _, found, own = text.partition(kernel().text)
-    assert found
-    names: dict[str, Any] = {**run_time(), "__name__": name}
-    exec(compile(own, name, "exec"), names)
-    machine: Monitor = names["MONITOR"]()
-    return machine
 
 
 def telling(machine: Monitor, trace: dict[str, list[Truth]]) -> object:
