@@ -5,7 +5,7 @@ import re
 import sys
 from pathlib import Path
 
-import pytest
+from tests.each import each
 
 ROOT = Path(__file__).parent.parent
 ROOMS = ("fretish", "monitors", "compiler", "simulation")
@@ -97,13 +97,13 @@ def imported(module: Path) -> set[str]:
     return names
 
 
-@pytest.mark.parametrize("module", modules(), ids=lambda path: str(path.relative_to(ROOT)))
+@each("module", modules())
 def test_a_module_imports_only_from_its_left(module: Path) -> None:
     room = module.relative_to(ROOT).parts[0]
     assert imported(module) & set(ROOMS) <= MAY_IMPORT[room]
 
 
-@pytest.mark.parametrize("module", modules(), ids=lambda path: str(path.relative_to(ROOT)))
+@each("module", modules())
 def test_a_library_comes_in_through_its_door(module: Path) -> None:
     name = str(module.relative_to(ROOT))
     for library in imported(module) & DOORS.keys():

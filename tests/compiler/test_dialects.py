@@ -16,6 +16,7 @@ from compiler.rule import Rule
 from compiler.semantics import holds
 from fretish.documents import requirements
 from fretish.source import Source
+from tests.each import each
 
 a, b, c = f.Atom("a"), f.Atom("b"), f.Atom("c")
 FAST = f.Atom("(arm_x >= 3)")
@@ -214,8 +215,8 @@ PAIRS: tuple[Callable[[f.Formula, f.Formula], f.Formula], ...] = (
 )
 
 
-@pytest.mark.parametrize("outer", range(len(PAIRS)))
-@pytest.mark.parametrize("inner", range(len(PAIRS)))
+@each("outer", range(len(PAIRS)))
+@each("inner", range(len(PAIRS)))
 def test_spot_groups_two_operators_as_they_were(outer: int, inner: int) -> None:
     for formula in (
         PAIRS[outer](PAIRS[inner](a, b), c),

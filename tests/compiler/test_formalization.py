@@ -25,6 +25,7 @@ from fretish.parser import parse
 from fretish.source import Source
 from fretish.syntax import Sentence, duration
 from tests import fret_notation as fret
+from tests.each import each
 from tests.strategies import Template, templates
 
 DATA = Path(__file__).parents[1] / "data"
@@ -43,12 +44,11 @@ def table(name: str) -> list[dict[str, Any]]:
     return [row for row in rows if row.get("group") != "temporal_predicate"]
 
 
-def formulas_of_fret() -> list[Any]:
+def formulas_of_fret() -> list[dict[str, Any]]:
     """Templates and case studies; without the temporal predicates, which fretc leaves alone."""
     rows = [*table("fret_templates.json"), *table("fret_case_studies.json")]
     predicates = ("preBool", "preReal", "preInt", "persist", "occur", "prevOcc", "FTP")
-    plain = [row for row in rows if not any(word in row["pt"] for word in predicates)]
-    return [pytest.param(row, id=row["id"]) for row in plain]
+    return [row for row in rows if not any(word in row["pt"] for word in predicates)]
 
 
 def drawn(names: Sequence[str], length: int, count: int, seed: str) -> list[fret.Trace]:
@@ -108,13 +108,13 @@ def at_end(text: str) -> Callable[[Sequence[fret.Trace]], int]:
 # Against FRET's own formulas ------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("row", formulas_of_fret())
+@each("row", formulas_of_fret())
 def test_the_infinite_formula_has_the_language_of_frets(row: dict[str, Any]) -> None:
     ours = printing.future(endless(future(read(row["fretish"]))))
     assert same_language(ours, row["ft_inf"])
 
 
-@pytest.mark.parametrize("row", formulas_of_fret())
+@pytest.mark.parametrize("row", formulas_of_fret(), ids=lambda row: row["id"])
 def test_the_formulas_judge_finite_traces_as_frets_do(row: dict[str, Any]) -> None:
     meant = read(row["fretish"])
     judges = {
@@ -131,7 +131,7 @@ def test_the_formulas_judge_finite_traces_as_frets_do(row: dict[str, Any]) -> No
             assert fret.differing(traces, expected, judge(traces)) is None, name
 
 
-@pytest.mark.parametrize("row", formulas_of_fret())
+@each("row", formulas_of_fret())
 def test_the_printed_formulas_mean_what_the_formulas_mean(row: dict[str, Any]) -> None:
     meant = read(row["fretish"])
     forward, back = future(meant), past(meant)
@@ -391,7 +391,7 @@ def implied(strict: Template, lax: Template) -> bool:
     return same_language(f"({one}) & ({two})", one)
 
 
-@pytest.mark.parametrize("template", [t for t in templates((2,)) if t.n], ids=str)
+@each("template", [t for t in templates((2,)) if t.n])
 def test_the_chosen_rounding_implies_the_other_one(template: Template) -> None:
     down, up = template, replace(template, n=3)
     if template.timing == "after":

@@ -22,6 +22,7 @@ from compiler.targets import interceptor
 from compiler.verification import Proved
 from fretish.declarations import Form, Interception
 from monitors.interceptor import Options
+from tests.each import each
 
 DECLARED = Interception(
     "/gwendolen_control", "/cmd_vel", "/cmd_vel_filtered", None, 50_000_000, 200_000_000
@@ -239,9 +240,7 @@ def test_a_helper_with_a_name_of_its_own_changes_nothing() -> None:
     assert all_proved(with_helper("asks"))
 
 
-@pytest.mark.parametrize(
-    "name", sorted({*set().union(*map(bound_by_node, NODES)), *dir(builtins)} - {"OPTIONS"})
-)
+@each("name", sorted({*set().union(*map(bound_by_node, NODES)), *dir(builtins)} - {"OPTIONS"}))
 def test_a_core_binds_no_name_that_its_node_binds_or_calls(name: str) -> None:
     """The node below would have it mean something else while it flies, or would call the core's."""
     assert isinstance(head(with_helper(name)), str)

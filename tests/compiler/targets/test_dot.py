@@ -14,6 +14,7 @@ from compiler import counters
 from compiler.chart import chart
 from compiler.letters import atoms_of, meanings
 from tests import meaning
+from tests.each import each
 from tests.emitting import LOOKING_BACK, MANY, PROBABLE, SHARING, emitted, refused, rule
 from tests.strategies import Template, templates
 
@@ -162,7 +163,7 @@ def test_a_thousand_ticks_are_one_node() -> None:
     )
 
 
-@pytest.mark.parametrize(("template"), list(templates((40,))), ids=lambda t: t.sentence)
+@each("template", list(templates((40,))))
 def test_no_template_has_more_nodes_than_fit_on_a_page(template: Template) -> None:
     sentence = template.sentence
     if re.search("only .* (upon|whenever) .* after", sentence):
