@@ -5,7 +5,7 @@ import random
 import re
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
-from functools import cache
+from functools import cache, lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -63,46 +63,53 @@ def exhaustive(names: Sequence[str]) -> range:
     return range(1, 1 + max((k for k in range(1, 5) if len(names) * k <= 12), default=0))
 
 
-all_traces = cache(fret.all_traces)
+Packed = tuple[dict[str, list[int]], int, int]
+"""As `fret.values` takes them: their columns, their length and all bits."""
+Traces = tuple[list[fret.Trace], Packed]
+
+
+@lru_cache(32)
+def all_traces(names: tuple[str, ...], length: int) -> Traces:
+    traces = fret.all_traces(names, length)
+    return traces, fret.packed(traces)
 
 
 @cache
 def satisfied(template: Template, length: int) -> int:
     """Which of all traces of a length satisfy the template."""
-    return fret.bits(all_traces(template.columns, length), template.satisfied)
+    return fret.bits(all_traces(template.columns, length)[0], template.satisfied)
 
 
-def judgements(template: Template, drawn_each: int) -> Iterator[tuple[list[fret.Trace], int]]:
+def judgements(template: Template, drawn_each: int) -> Iterator[tuple[Traces, int]]:
     """Some traces, and which of them satisfy the template."""
     lengths = exhaustive(template.columns)
     for length in lengths:
         yield all_traces(template.columns, length), satisfied(template, length)
     for traces in longer(template.columns, len(lengths), repr(template), drawn_each):
-        yield traces, fret.bits(traces, template.satisfied)
+        yield traces, fret.bits(traces[0], template.satisfied)
 
 
-def some_traces(names: Sequence[str], seed: str, drawn_each: int) -> Iterator[list[fret.Trace]]:
+def some_traces(names: Sequence[str], seed: str, drawn_each: int) -> Iterator[Traces]:
     """All short traces, then drawn longer ones."""
     lengths = exhaustive(names)
-    yield from (fret.all_traces(names, length) for length in lengths)
+    yield from (all_traces(tuple(names), length) for length in lengths)
     yield from longer(names, len(lengths), seed, drawn_each)
 
 
-def longer(
-    names: Sequence[str], exhaustive: int, seed: str, drawn_each: int
-) -> Iterator[list[fret.Trace]]:
-    for length in (*range(exhaustive + 1, 7), 9):
-        yield drawn(names, length, drawn_each, seed)
+def longer(names: Sequence[str], above: int, seed: str, drawn_each: int) -> Iterator[Traces]:
+    for length in (*range(above + 1, 7), 9):
+        traces = drawn(names, length, drawn_each, seed)
+        yield traces, fret.packed(traces)
 
 
-def at_start(text: str) -> Callable[[Sequence[fret.Trace]], int]:
+def at_start(text: str) -> Callable[[Packed], int]:
     node = fret.parse(text)
-    return lambda traces: fret.values(node, *fret.packed(traces))[0]
+    return lambda packed: fret.values(node, *packed)[0]
 
 
-def at_end(text: str) -> Callable[[Sequence[fret.Trace]], int]:
+def at_end(text: str) -> Callable[[Packed], int]:
     node = fret.parse(text)
-    return lambda traces: fret.values(node, *fret.packed(traces))[-1]
+    return lambda packed: fret.values(node, *packed)[-1]
 
 
 # Against FRET's own formulas ------------------------------------------------------------------
@@ -125,10 +132,10 @@ def test_the_formulas_judge_finite_traces_as_frets_do(row: dict[str, Any]) -> No
     }
     texts = (row["ft_fin"], row["pt"], printing.future(future(meant)))
     names = sorted(set().union(*(fret.atoms(fret.parse(text)) for text in texts)) - {"LAST"})
-    for traces in some_traces(names or ["q"], row["id"], drawn_each=20):
-        expected = judges["ft_fin"](traces)
+    for traces, packed in some_traces(names or ["q"], row["id"], drawn_each=20):
+        expected = judges["ft_fin"](packed)
         for name, judge in judges.items():
-            assert fret.differing(traces, expected, judge(traces)) is None, name
+            assert fret.differing(traces, expected, judge(packed)) is None, name
 
 
 @each("row", formulas_of_fret())
@@ -173,14 +180,14 @@ def test_future_past_and_watch_mean_what_fretish_means(scope: str) -> None:
         back = at_end(printing.past(past(meant)))
         breach = fret.parse(printing.past(signals.breach))
         fails = fret.parse(printing.past(signals.fails))
-        for traces, expected in judgements(template, drawn_each=25):
-            word, length, full = fret.packed(traces)
+        for (traces, packed), expected in judgements(template, drawn_each=25):
+            word, length, full = packed
             lost = fret.values(fails, word, length, full)[-1]
             for broken in fret.values(breach, word, length, full):
                 lost |= broken
             for name, judged in (
-                ("future", forward(traces)),
-                ("past", back(traces)),
+                ("future", forward(packed)),
+                ("past", back(packed)),
                 ("watch", full ^ lost),
             ):
                 assert fret.differing(traces, expected, judged) is None, (template, name)
@@ -249,9 +256,9 @@ def test_a_variable_may_be_any_expression(scope: str, shift: int) -> None:
                 for trace in traces
             ]
             expected = fret.bits(values, template.satisfied)
+            packed = word, _, full = fret.packed(traces)
             for name, judge in judges.items():
-                assert fret.differing(traces, expected, judge(traces)) is None, (text, name)
-            word, _, full = fret.packed(traces)
+                assert fret.differing(traces, expected, judge(packed)) is None, (text, name)
             lost = fret.values(fret.parse(printing.past(signals.fails)), word, length, full)[-1]
             breach = fret.parse(printing.past(signals.breach))
             for broken in fret.values(breach, word, length, full):
@@ -264,8 +271,8 @@ def test_a_breach_cannot_be_repaired(scope: str) -> None:
     """The verdict `violated` is certain: every longer trace is violated too."""
     for template in every(scope):
         breach = fret.parse(printing.past(watch(read(template.sentence)).breach))
-        for traces, kept in judgements(template, drawn_each=10):
-            word, length, full = fret.packed(traces)
+        for (traces, packed), kept in judgements(template, drawn_each=10):
+            word, length, full = packed
             lost = 0
             for broken in fret.values(breach, word, length, full):
                 lost |= broken
