@@ -78,6 +78,7 @@ def hold(folder: Path, files: Mapping[str, str | bytes], *args: str) -> str:
     return used.text
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("files", TEXTS.values(), ids=TEXTS)
 def test_a_text_is_read_or_refused_within_the_limits(
     tmp_path: Path, files: Mapping[str, str]
@@ -136,6 +137,7 @@ LOGS: dict[str, bytes | Callable[[], bytes]] = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("data", LOGS.values(), ids=LOGS)
 def test_a_log_is_read_or_refused_within_the_limits(
     tmp_path: Path, data: bytes | Callable[[], bytes]
@@ -146,6 +148,7 @@ def test_a_log_is_read_or_refused_within_the_limits(
     hold(tmp_path, {"log.mcap": data, **dict(audited)}, "audit", "log.mcap", "--jobs", "1")
 
 
+@pytest.mark.slow
 def test_a_bag_whose_chunk_unpacks_to_far_more_is_refused(tmp_path: Path) -> None:
     path = tmp_path / "made.bag"
     writer = Writer(path)
@@ -173,6 +176,7 @@ ENDLESS = (
 )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("statements", "said"),
     [
@@ -224,6 +228,7 @@ FOLDERS = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("text", FOLDERS.values(), ids=FOLDERS)
 def test_the_description_of_a_run_is_read_or_refused_within_the_limits(
     tmp_path: Path, text: str
@@ -241,6 +246,7 @@ PARENTS: dict[str, str | bytes] = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", PARENTS)
 def test_a_document_of_parents_is_refused_within_the_limits(tmp_path: Path, name: str) -> None:
     settings = f'[tool.fretc]\nparents = ["{name}"]\n'

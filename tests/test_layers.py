@@ -5,6 +5,8 @@ import re
 import sys
 from pathlib import Path
 
+import pytest
+
 from tests.each import each
 
 ROOT = Path(__file__).parent.parent
@@ -97,12 +99,14 @@ def imported(module: Path) -> set[str]:
     return names
 
 
+@pytest.mark.slow
 @each("module", modules())
 def test_a_module_imports_only_from_its_left(module: Path) -> None:
     room = module.relative_to(ROOT).parts[0]
     assert imported(module) & set(ROOMS) <= MAY_IMPORT[room]
 
 
+@pytest.mark.slow
 @each("module", modules())
 def test_a_library_comes_in_through_its_door(module: Path) -> None:
     name = str(module.relative_to(ROOT))

@@ -67,6 +67,7 @@ def test_the_last_tick_is_free_on_infinite_traces() -> None:
 # Simplification -------------------------------------------------------------------------------
 
 
+@pytest.mark.slow
 @each("sentence", [*sentences(SCOPES), *sentences(ONLY_SCOPES)])
 def test_a_simplified_formula_says_the_same_in_fewer_characters(sentence: str) -> None:
     for formula in formulas(sentence):

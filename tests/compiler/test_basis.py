@@ -457,6 +457,7 @@ def asked(fretc: Fretc) -> Said:
     )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", CHANGES)
 def test_a_change_reaches_what_is_made_of_it_and_nothing_else(reviewed: Fretc, name: str) -> None:
     change = CHANGES[name]
@@ -555,6 +556,7 @@ WITHDRAWN = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("audited", [False, True])
 @pytest.mark.parametrize("name", WITHDRAWN)
 def test_what_was_claimed_and_is_not_any_more_is_never_lost(
@@ -640,6 +642,7 @@ def _dated(day: str) -> None:
     Path(LOCK).write_text(text)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", LOCKS)
 def test_a_lock_that_nobody_can_have_written_is_refused_by_all(reviewed: Fretc, name: str) -> None:
     LOCKS[name]()

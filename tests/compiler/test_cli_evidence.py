@@ -69,6 +69,7 @@ def test_another_log_under_the_same_name_is_found(audited: Fretc) -> None:
     assert "differs: the log has changed; the verdict is satisfied, and was violated" in run.out
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("looked", ["index", "hash", "full"])
 def test_another_log_of_the_same_verdicts_is_found(audited: Fretc, looked: str) -> None:
     assert audited("audit", "logs", "--integrity", looked).status == 1
@@ -119,6 +120,7 @@ def changed(**fields: object) -> None:
     write("build/evidence.json", json.dumps({**known, **fields}))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("field", "value", "told"),
     [

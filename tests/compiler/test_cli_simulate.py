@@ -24,6 +24,7 @@ def simulate(folder: Path, *words: str) -> subprocess.CompletedProcess[str]:
     )
 
 
+@pytest.mark.slow
 def test_a_mission_is_recorded_and_drawn(tmp_path: Path) -> None:
     words = (
         "walker",
@@ -52,6 +53,7 @@ def test_a_mission_is_recorded_and_drawn(tmp_path: Path) -> None:
     assert about["fretc"]
 
 
+@pytest.mark.slow
 def test_folders_that_are_missing_are_made(tmp_path: Path) -> None:
     ran = simulate(tmp_path, "--duration", "1", "--out", "a/b/c.mcap", "--png", "d/e.png")
     assert ran.returncode == 0, ran.stderr
@@ -59,6 +61,7 @@ def test_folders_that_are_missing_are_made(tmp_path: Path) -> None:
     assert (tmp_path / "d/e.png").is_file()
 
 
+@pytest.mark.slow
 def test_a_mission_can_be_a_log_of_ros_1(tmp_path: Path) -> None:
     ran = simulate(tmp_path, "--duration", "1", "--encoding", "ros1", "--out", "a.mcap")
     assert ran.returncode == 0, ran.stderr
@@ -73,6 +76,7 @@ def test_the_scenarios_are_named(tmp_path: Path) -> None:
     assert len(ran.stdout.splitlines()) == 19
 
 
+@pytest.mark.slow
 def test_a_campaign_ends_in_a_table_and_tells_what_is_not_as_stated(tmp_path: Path) -> None:
     (tmp_path / "mine.toml").write_text(
         'title = "Mine"\nduration = 3\n[expect]\ninconclusive = ["R12"]\n', encoding="utf-8"
@@ -152,6 +156,7 @@ def test_what_is_wrong_in_a_scenario_is_shown(
     assert shown in ran.err
 
 
+@pytest.mark.slow
 def test_a_campaign_that_is_stopped_leaves_nothing_half_written(tmp_path: Path) -> None:
     (tmp_path / "logs").mkdir()
     (tmp_path / "temporary").mkdir()

@@ -121,6 +121,7 @@ def test_the_infinite_formula_has_the_language_of_frets(row: dict[str, Any]) -> 
     assert same_language(ours, row["ft_inf"])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("row", formulas_of_fret(), ids=lambda row: row["id"])
 def test_the_formulas_judge_finite_traces_as_frets_do(row: dict[str, Any]) -> None:
     meant = read(row["fretish"])
@@ -138,6 +139,7 @@ def test_the_formulas_judge_finite_traces_as_frets_do(row: dict[str, Any]) -> No
             assert fret.differing(traces, expected, judge(packed)) is None, name
 
 
+@pytest.mark.slow
 @each("row", formulas_of_fret())
 def test_the_printed_formulas_mean_what_the_formulas_mean(row: dict[str, Any]) -> None:
     meant = read(row["fretish"])
@@ -171,6 +173,7 @@ def test_there_are_288_templates() -> None:
     assert len(list(templates((0,)))) == 288
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("scope", SCOPES)
 def test_future_past_and_watch_mean_what_fretish_means(scope: str) -> None:
     for template in every(scope):
@@ -223,6 +226,7 @@ FORMS: list[tuple[str, Callable[[bool, bool], bool]]] = [
 """What a user may write for a variable, over two others, and its truth table."""
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("scope", SCOPES)
 @pytest.mark.parametrize("shift", range(3))
 def test_a_variable_may_be_any_expression(scope: str, shift: int) -> None:
@@ -266,6 +270,7 @@ def test_a_variable_may_be_any_expression(scope: str, shift: int) -> None:
             assert fret.differing(traces, expected, full ^ lost) is None, (text, "watch")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("scope", SCOPES)
 def test_a_breach_cannot_be_repaired(scope: str) -> None:
     """The verdict `violated` is certain: every longer trace is violated too."""
@@ -279,6 +284,7 @@ def test_a_breach_cannot_be_repaired(scope: str) -> None:
             assert fret.differing(traces, lost & kept, 0) is None, template
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("scope", SCOPES)
 def test_a_finite_formula_does_not_depend_on_what_follows_the_last_tick(scope: str) -> None:
     for template in every(scope):

@@ -418,6 +418,7 @@ STATEMENTS = (
 )
 
 
+@pytest.mark.slow
 @given(
     st.sampled_from(OUTSIDE),
     st.lists(st.sampled_from(PLACES), max_size=3),

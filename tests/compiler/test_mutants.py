@@ -287,6 +287,7 @@ never read, an operand that follows from the other. In columns none is taken: no
 that it changes nothing at all lengths."""
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("sentence", SENTENCES)
 def test_a_mistake_in_a_text_is_found_or_changes_nothing(sentence: str) -> None:
     made = rule(sentence)
@@ -304,6 +305,7 @@ def test_a_mistake_in_a_text_is_found_or_changes_nothing(sentence: str) -> None:
     assert found[DIFFERS] >= 10, found
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("sentence", SENTENCES)
 def test_a_mistake_in_a_formula_is_found_or_proved_to_change_nothing(sentence: str) -> None:
     """What changes nothing is proved, or not checked: its columns are others, and seem to agree."""

@@ -40,11 +40,13 @@ def in_shell(folder: Path, arguments: str, shell: str) -> subprocess.CompletedPr
     return done
 
 
+@pytest.mark.slow
 def test_a_reader_that_goes_away_is_no_violation(folder: Path) -> None:
     done = in_shell(folder, f"audit {LOG}", "{} | true; echo ${{PIPESTATUS[0]}}")
     assert done.stdout == "2\n"
 
 
+@pytest.mark.slow
 def test_a_full_standard_error_leaves_the_exit_status_alone(folder: Path) -> None:
     assert in_shell(folder, f"audit {LOG}", "{} 2>/dev/full").returncode == 0
     assert in_shell(folder, "audit none.mcap", "{} 2>/dev/full").returncode == 2
@@ -63,6 +65,7 @@ def test_a_closed_standard_output_costs_nothing_but_the_output(folder: Path) -> 
     assert (folder / "build/r1.psl").is_file()
 
 
+@pytest.mark.slow
 def test_an_encoding_that_has_no_tick_mark_still_shows_the_verdict(folder: Path) -> None:
     done = in_shell(folder, f"audit {LOG}", "PYTHONIOENCODING=latin-1 {}")
     assert done.returncode == 0
@@ -79,6 +82,7 @@ def test_evidence_never_replaces_what_is_read(folder: Path, fretc: Fretc) -> Non
     assert (folder / "run.mcap").read_bytes() == Path(LOG).read_bytes()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["bindings.toml", "hazards.toml", "fretc.lock"])
 @pytest.mark.parametrize(
     "line",
@@ -146,6 +150,7 @@ def test_what_is_no_regular_file_is_never_replaced(folder: Path, fretc: Fretc) -
     assert (folder / "pipe").is_fifo()
 
 
+@pytest.mark.slow
 def test_a_termination_leaves_no_temporary_file(folder: Path) -> None:
     ids = "".join(f'+++\nid = "R{i}"\n+++\n{R1}' for i in range(1000))
     (folder / "many.fret").write_text(ids, "utf-8")

@@ -135,12 +135,14 @@ def test_all_templates_are_there() -> None:
     assert len(ALL) == len(set(ALL)) == 8 * 3 * (9 + 3 * 2)
 
 
+@pytest.mark.slow
 @each("sentence", ALL)
 def test_without_its_probabilities_it_is_the_future_time_formula(sentence: str) -> None:
     formula = printing.future(rule(sentence).ft_infinite)
     assert same_language(without_probabilities(pctl(sentence)), formula)
 
 
+@pytest.mark.slow
 @each("sentence", ALL)
 def test_the_model_checkers_know_every_operator(sentence: str) -> None:
     """They have no implication and no release within a path, and no last tick."""
@@ -158,6 +160,7 @@ def test_every_path_is_within_a_probability(sentence: str) -> None:
     assert "P>=0.9 [ " in text
 
 
+@pytest.mark.slow
 @each("sentence", list(templates("")))
 def test_a_sentence_without_a_probability_has_none(sentence: str) -> None:
     formalized = rule(sentence)

@@ -134,6 +134,7 @@ HARMLESS = ("P.ft.persists(2,p).before.whenever", "P.ft.occurs(2,p).notin.whenev
 """The end is forgotten in these too, but their answer has as long as their predicate."""
 
 
+@pytest.mark.slow
 @each("row", [row for row in with_a("ft_fin") if has_no_end(row)])
 def test_a_finite_trace_is_judged_without_what_follows_it(row: dict[str, Any]) -> None:
     """FRET's formula of the same sentence does depend on it."""
@@ -295,6 +296,7 @@ def rows(trace: Trace) -> list[dict[str, bool]]:
     return [{name: trace[name][k] for name in trace} for k in range(len(trace["q"]))]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("text", BACK)
 @each("place", PLACES)
 @each("scope", SCOPES)
@@ -306,6 +308,7 @@ def test_a_predicate_that_looks_back_means_what_it_says(text: str, scope: str, p
         assert verdict == meant(trace, scope, place, BACK[text]), (sentence, trace)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("text", AHEAD)
 @each("place", PLACES)
 @each("scope", SCOPES)
@@ -353,6 +356,7 @@ OF_THE_RUN: dict[str, Callable[[Sequence[bool], int], bool]] = {
 """Within the expression of a scope, which knows no interval yet."""
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("text", OF_THE_RUN)
 @pytest.mark.parametrize("scope", WHILE)
 def test_the_first_tick_within_a_scope_is_that_of_the_run(scope: str, text: str) -> None:
@@ -390,6 +394,7 @@ POSITIONS = [
 ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("sentence", POSITIONS)
 def test_no_monitor_asks_whether_it_is_the_first_tick(sentence: str) -> None:
     """It tells what it would, were it told by a proposition that holds at that tick alone."""

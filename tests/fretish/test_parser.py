@@ -411,6 +411,7 @@ def of_two(left: e.Expression, right: e.Expression) -> list[e.Expression]:
     ]
 
 
+@pytest.mark.slow
 def test_every_operator_under_every_operator_is_read_back() -> None:
     for inner in of_two(p, q):
         for tree in (*of_two(inner, r), *of_two(r, inner), *of_two(inner, inner)):
@@ -460,6 +461,7 @@ def test_nothing_is_accepted_after_a_whole_sentence(rest: str) -> None:
     assert isinstance(parse(Source("r.fret", f"{start} {rest}").span()), Diagnostic)
 
 
+@pytest.mark.slow
 @given(sentences, st.text(alphabet='abpq .,()!&|<>=-"3\n', max_size=8))
 def test_any_text_gives_a_sentence_or_one_mistake(tree: s.Sentence, rest: str) -> None:
     text = printed(tree) + rest

@@ -73,6 +73,7 @@ def test_they_are_byte_for_byte_those_of_the_suite(name: str, sha256: str) -> No
     assert hashlib.sha256(variant.data).hexdigest() == sha256
 
 
+@pytest.mark.slow
 @each("variant", ALL)
 def test_each_file_holds_what_it_states_and_is_whole(variant: Variant, tmp_path: Path) -> None:
     path = tmp_path / "log.mcap"
@@ -113,6 +114,7 @@ def with_numbers(records: Records) -> Records:
     )
 
 
+@pytest.mark.slow
 @each("variant", WITH_MESSAGES)
 def test_each_payload_arrives_with_its_time(variant: Variant, tmp_path: Path) -> None:
     records = with_numbers(variant.records)

@@ -118,6 +118,7 @@ def assert_walked_as_defined(sentence: str, traces: int) -> None:
             assert (walk.place == "satisfied") is (index == defined.satisfied), sentence
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("scope", meaning.SCOPES)
 def test_every_template_is_walked_as_it_is_defined(scope: str) -> None:
     for drawn in templates((0, 1, 3)):
@@ -212,6 +213,7 @@ def test_graphviz_draws_it(sentence: str, tmp_path: Path) -> None:
     assert "</svg>" in done.stdout
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("sentence", "told"),
     [

@@ -18,6 +18,8 @@ TIMED = Interception("/stop", "/cmd_vel", "/wheels", period=2 * MS, stop_timeout
 PAPER = Interception("/stop", "/cmd_vel", "/wheels", form=Form.EVENT, ros=1)
 FAST = 0.4
 
+pytestmark = pytest.mark.slow
+
 
 @pytest.fixture(autouse=True)
 def _ros_1() -> None:

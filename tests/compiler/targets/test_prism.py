@@ -73,6 +73,7 @@ def without_probabilities(text: str) -> str:
 ALL = list(templates("with probability >= 0.9"))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("scope", range(8))
 def test_without_its_probabilities_it_is_the_future_time_formula(scope: int) -> None:
     for sentence in ALL[45 * scope : 45 * (scope + 1)]:
@@ -80,6 +81,7 @@ def test_without_its_probabilities_it_is_the_future_time_formula(scope: int) -> 
         assert same_language(without_probabilities(property_of(sentence)), formula), sentence
 
 
+@pytest.mark.slow
 @each("sentence", ALL)
 def test_no_trap_of_prism_or_storm_is_in_it(sentence: str) -> None:
     text = property_of(sentence)
