@@ -8,7 +8,7 @@ proposition is false on the first trace and true on the second.
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import product
 
@@ -281,17 +281,19 @@ def packed(traces: Sequence[Trace]) -> tuple[dict[str, list[int]], int, int]:
     names = list(traces[0])
     length = len(traces[0][names[0]])
     word = {
-        name: [
-            sum(1 << k for k, trace in enumerate(traces) if trace[name][i]) for i in range(length)
-        ]
-        for name in names
+        name: [_packed(trace[name][i] for trace in traces) for i in range(length)] for name in names
     }
     return word, length, (1 << len(traces)) - 1
 
 
+def _packed(values: Iterable[bool]) -> int:
+    """The first value is the lowest bit."""
+    return int("".join("1" if value else "0" for value in values)[::-1], 2)
+
+
 def bits(traces: Sequence[Trace], judge: Callable[[Trace], bool]) -> int:
     """A judgement of each trace, as bits."""
-    return sum(1 << k for k, trace in enumerate(traces) if judge(trace))
+    return _packed(judge(trace) for trace in traces)
 
 
 def differing(traces: Sequence[Trace], left: int, right: int) -> Trace | None:

@@ -8,6 +8,7 @@ formalizer.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
+from functools import lru_cache
 
 Column = Sequence[bool]
 Interval = tuple[int, int]
@@ -34,7 +35,7 @@ def satisfied(
     demand = _NEGATED[timing] if scope.startswith("only") else _DEMANDS[timing]
     return all(
         demand(t, right, n, q, s)
-        for left, right in intervals(scope, m)
+        for left, right in _intervals(scope, tuple(m))
         for t in triggers(condition, p, left, right)
     )
 
@@ -58,6 +59,12 @@ def intervals(scope: str, m: Column) -> Iterator[Interval]:
         yield first_mode, last
     elif scope == "onlyAfter":
         yield 0, last if first_end is None else first_end
+
+
+@lru_cache(2**14)
+def _intervals(scope: str, m: tuple[bool, ...]) -> tuple[Interval, ...]:
+    """Of all traces, many have one column of modes."""
+    return tuple(intervals(scope, m))
 
 
 def _runs(column: Column) -> Iterator[Interval]:

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
+from typing import NamedTuple
 
 from compiler.formalization.formalize import formalize
 from compiler.formalization.past import Watch
@@ -20,8 +21,7 @@ from monitors.kernel.verdicts import Truth, truth
 from monitors.loading import load
 
 
-@dataclass(frozen=True)
-class Step:
+class Step(NamedTuple):
     """What a monitor tells after one tick."""
 
     tick: int
@@ -83,7 +83,7 @@ def step(machine: Monitor, place: int = 0) -> Step:
         standing.verdict,
         standing.finite,
         standing.first_violation,
-        *(truth(must, may) for must, may in signals),
+        *[truth(must, may) for must, may in signals],
     )
 
 

@@ -14,6 +14,7 @@ import time
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 from typing import Any
 from xmlrpc.client import ServerProxy
@@ -61,6 +62,7 @@ for line in sys.stdin:
 '''
 
 
+@cache
 def missing() -> str:
     """Why ROS 1 cannot be had here; empty where it can."""
     if not Path(PYTHON).exists():

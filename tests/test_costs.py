@@ -3,7 +3,7 @@
 import io
 import sqlite3
 import zipfile
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
 
 import pytest
@@ -78,6 +78,7 @@ def hold(folder: Path, files: Mapping[str, str | bytes], *args: str) -> str:
     return used.text
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("files", TEXTS.values(), ids=TEXTS)
 def test_a_text_is_read_or_refused_within_the_limits(
     tmp_path: Path, files: Mapping[str, str]
@@ -131,7 +132,7 @@ def zstd() -> bytes:
     return ended(MAGIC + b"".join(map(framed, (Header("", ""), FLOAT, TOPIC, chunk))))
 
 
-LOGS = {
+LOGS: dict[str, bytes | Callable[[], bytes]] = {
     "ros1, an array of 10^9 numbers": log("ros1", "ros1msg", "a/B", "float64[1000000000] data\n"),
     "ros1, an array of 10^9 texts": log("ros1", "ros1msg", "a/B", "string[1000000000] data\n"),
     "ros1, a tree of types": log("ros1", "ros1msg", "a/B", tree("", "[100]", "float64 x")),
@@ -139,17 +140,22 @@ LOGS = {
     "ros2, a tree of empty types": log("cdr", "ros2msg", "a/msg/B", tree("", "[100]", "")),
     "idl, a text without an end": log("cdr", "ros2idl", "a/msg/B", '"' + '\\"' * (N // 2)),
     "idl, comments without an end": log("cdr", "ros2idl", "a/msg/B", "/*" * (N // 2)),
-    "a chunk of much more than it should hold": zstd(),
+    "a chunk of much more than it should hold": zstd,
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("data", LOGS.values(), ids=LOGS)
-def test_a_log_is_read_or_refused_within_the_limits(tmp_path: Path, data: bytes) -> None:
+def test_a_log_is_read_or_refused_within_the_limits(
+    tmp_path: Path, data: bytes | Callable[[], bytes]
+) -> None:
+    data = data() if callable(data) else data
     hold(tmp_path, {"log.mcap": data}, "info", "log.mcap")
     audited = bound("").items()
     hold(tmp_path, {"log.mcap": data, **dict(audited)}, "audit", "log.mcap", "--jobs", "1")
 
 
+@pytest.mark.slow
 def test_a_bag_whose_chunk_unpacks_to_far_more_is_refused(tmp_path: Path) -> None:
     path = tmp_path / "made.bag"
     writer = Writer(path)
@@ -177,6 +183,7 @@ ENDLESS = (
 )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("statements", "said"),
     [
@@ -228,6 +235,7 @@ FOLDERS = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("text", FOLDERS.values(), ids=FOLDERS)
 def test_the_description_of_a_run_is_read_or_refused_within_the_limits(
     tmp_path: Path, text: str
@@ -245,6 +253,7 @@ PARENTS: dict[str, str | bytes] = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", PARENTS)
 def test_a_document_of_parents_is_refused_within_the_limits(tmp_path: Path, name: str) -> None:
     settings = f'[tool.fretc]\nparents = ["{name}"]\n'

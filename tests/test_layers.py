@@ -9,6 +9,8 @@ from pathlib import Path
 
 import pytest
 
+from tests.each import each
+
 ROOT = Path(__file__).parent.parent
 ORDER = """
 monitors.kernel  monitors
@@ -139,7 +141,8 @@ def libraries(module: Path) -> set[str]:
     return names
 
 
-@pytest.mark.parametrize("module", modules(), ids=lambda path: str(path.relative_to(ROOT)))
+@pytest.mark.slow
+@each("module", modules())
 def test_a_module_imports_only_from_packages_before_its_own(module: Path) -> None:
     here = package_of(module)
     forbidden = {one for room, others in NOT.items() if within(here, room) for one in others}
@@ -148,7 +151,8 @@ def test_a_module_imports_only_from_packages_before_its_own(module: Path) -> Non
         assert not any(within(package, one) for one in forbidden), f"{here} -> {package}"
 
 
-@pytest.mark.parametrize("module", modules(), ids=lambda path: str(path.relative_to(ROOT)))
+@pytest.mark.slow
+@each("module", modules())
 def test_a_library_comes_in_through_its_door(module: Path) -> None:
     name = module.relative_to(ROOT).as_posix()
     for library in libraries(module) & DOORS.keys():
@@ -160,14 +164,14 @@ def test_the_order_names_every_package_once() -> None:
     assert {package_of(module) for module in modules()} == set(ORDER)
 
 
-@pytest.mark.parametrize("package", ORDER)
+@each("package", ORDER)
 def test_a_folder_can_be_taken_in_at_a_glance(package: str) -> None:
     names = [p for p in ROOT.joinpath(*package.split(".")).glob("*.py") if p.stem != "__init__"]
     assert len(names) <= MOST or package == "fretc.commands"  # a module a command
     assert package.count(".") <= 2
 
 
-@pytest.mark.parametrize("package", ORDER)
+@each("package", ORDER)
 def test_a_package_s_face_imports_nothing(package: str) -> None:
     """Or to import one module of it would import them all: that is how hidden circles begin."""
     if package == "monitors.kernel":  # a monitor that is loaded needs all of it

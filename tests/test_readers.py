@@ -19,6 +19,7 @@ def known(tmp_path_factory: pytest.TempPathFactory) -> Mapping[str, Reader]:
     return readers(tmp_path_factory.mktemp("sound"))
 
 
+@pytest.mark.slow
 def test_every_reader_reads_its_sound_file(known: Mapping[str, Reader], tmp_path: Path) -> None:
     for number, (name, reader) in enumerate(known.items()):
         folder = tmp_path / str(number)
@@ -27,6 +28,7 @@ def test_every_reader_reads_its_sound_file(known: Mapping[str, Reader], tmp_path
         assert status in (0, 1, 3), f"{name}: {text}"
 
 
+@pytest.mark.slow
 def test_mutations_get_an_answer_from_every_reader(
     known: Mapping[str, Reader], tmp_path: Path
 ) -> None:

@@ -66,6 +66,7 @@ def test_it_makes_a_monitor_far_from_the_checkout(wheel: Path, tmp_path: Path) -
     assert (tmp_path / "out" / "r_monitor.py").is_file()
 
 
+@pytest.mark.slow
 def test_it_simulates_far_from_the_checkout(wheel: Path, tmp_path: Path) -> None:
     installed = tmp_path / "installed"
     zipfile.ZipFile(wheel).extractall(installed)

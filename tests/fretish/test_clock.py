@@ -234,6 +234,7 @@ def test_two_different_periods_are_not_shown_alike() -> None:
 # The law: a rounded sentence asks for at least as much as the one that is not rounded -----------
 
 
+@pytest.mark.slow
 @given(
     st.sampled_from(SCOPES),
     st.sampled_from(CONDITIONS),

@@ -1,5 +1,7 @@
 """Whatever is fed to the parser, it answers with a tree or with a diagnostic of its own."""
 
+import pytest
+
 from compiler.formalization.formalize import formalize
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.source import Source
@@ -8,6 +10,7 @@ from fretish.parser import parse
 from tests.fuzzing import check, sentences
 
 
+@pytest.mark.slow
 def test_ten_thousand_near_sentences_get_a_formula_or_a_diagnostic() -> None:
     accepted = sum(check(text) for text in sentences(10_000, seed=20))
     assert 2_000 < accepted < 8_000

@@ -18,6 +18,7 @@ from fretish.keywords import KEYWORDS
 from fretish.parser import parse
 from fretish.printer import expression
 from fretish.printer import sentence as printed
+from tests.each import each
 from tests.strategies import sentences
 
 SURFACE = Path(__file__).parents[1] / "data" / "fret_surface_forms.json"
@@ -66,17 +67,17 @@ def condition(text: str) -> s.Condition:
 # FRET's own table -----------------------------------------------------------------------------
 
 
-def rows(*, accepted: bool, flagged: frozenset[str] = frozenset()) -> list[Any]:
+def rows(*, accepted: bool, flagged: frozenset[str] = frozenset()) -> list[dict[str, Any]]:
     chosen = [
         row
         for row in ROWS
         if row["accepted"] is accepted and flagged == frozenset(row.get("flags", ())) & {"D5", "D6"}
     ]
     assert chosen
-    return [pytest.param(row, id=row["id"]) for row in chosen]
+    return chosen
 
 
-@pytest.mark.parametrize("row", rows(accepted=True))
+@each("row", rows(accepted=True))
 def test_a_wording_that_fret_accepts_has_its_keys(row: dict[str, Any]) -> None:
     assert keys(read(row["fretish"])) == (row["scope"], row["condition"], row["timing"])
 
@@ -85,7 +86,7 @@ LOWER_CASE = re.compile(r" is (true|false) ")
 """After `is` FRET's lexer takes them for constants; fretc reads them as it does in capitals."""
 
 
-@pytest.mark.parametrize("row", rows(accepted=False))
+@each("row", rows(accepted=False))
 def test_a_wording_that_fret_rejects_is_a_mistake(row: dict[str, Any]) -> None:
     text = row["fretish"]
     if LOWER_CASE.search(text):
@@ -95,7 +96,7 @@ def test_a_wording_that_fret_rejects_is_a_mistake(row: dict[str, Any]) -> None:
         assert isinstance(parse(Source("r.fret", text).span()), Diagnostic)
 
 
-@pytest.mark.parametrize("row", rows(accepted=True, flagged=frozenset({"D6"})))
+@each("row", rows(accepted=True, flagged=frozenset({"D6"})))
 def test_a_duration_that_is_no_whole_number_is_refused_where_fret_misreads_it(
     row: dict[str, Any],
 ) -> None:
@@ -104,7 +105,7 @@ def test_a_duration_that_is_no_whole_number_is_refused_where_fret_misreads_it(
     assert result.code is Code.BAD_DURATION
 
 
-@pytest.mark.parametrize("row", rows(accepted=True, flagged=frozenset({"D5"})))
+@each("row", rows(accepted=True, flagged=frozenset({"D5"})))
 def test_a_scope_word_inside_a_name_does_not_change_the_scope(row: dict[str, Any]) -> None:
     scopes = {
         "In readonly, the sw shall always satisfy q": "in",
@@ -120,7 +121,7 @@ def test_a_published_requirement_has_its_keys(row: dict[str, Any]) -> None:
     assert keys(read(row["fretish"])) == (row["scope"], row["condition"], row["timing"])
 
 
-@pytest.mark.parametrize("row", TEMPLATES, ids=lambda row: row["id"])
+@each("row", TEMPLATES)
 def test_a_sentence_of_the_template_table_has_its_keys(row: dict[str, Any]) -> None:
     assert keys(read(row["fretish"])) == (row["scope"], row["condition"], row["timing"])
 
@@ -410,6 +411,7 @@ def of_two(left: e.Expression, right: e.Expression) -> list[e.Expression]:
     ]
 
 
+@pytest.mark.slow
 def test_every_operator_under_every_operator_is_read_back() -> None:
     for inner in of_two(p, q):
         for tree in (*of_two(inner, r), *of_two(r, inner), *of_two(inner, inner)):
@@ -459,6 +461,7 @@ def test_nothing_is_accepted_after_a_whole_sentence(rest: str) -> None:
     assert isinstance(parse(Source("r.fret", f"{start} {rest}").span()), Diagnostic)
 
 
+@pytest.mark.slow
 @given(sentences, st.text(alphabet='abpq .,()!&|<>=-"3\n', max_size=8))
 def test_any_text_gives_a_sentence_or_one_mistake(tree: s.Sentence, rest: str) -> None:
     text = printed(tree) + rest

@@ -8,6 +8,7 @@ from fretish.diagnostics.source import Source
 from fretish.parser import parse
 from fretish.pitfalls import surprises
 from fretish.syntax import Sentence
+from tests.each import each
 from tests.meaning import COUNTING, TIMINGS
 
 
@@ -133,8 +134,8 @@ SCOPES = {
 }
 
 
-@pytest.mark.parametrize("timing", TIMINGS)
-@pytest.mark.parametrize("scope", SCOPES)
+@each("timing", TIMINGS)
+@each("scope", SCOPES)
 def test_each_scope_and_timing_has_its_own_warnings(scope: str, timing: str) -> None:
     wording, of_scope = SCOPES[scope]
     ends = scope in ("in", "while", "notin", "before")

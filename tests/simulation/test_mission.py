@@ -29,6 +29,8 @@ from simulation.world.scenario import (
 from simulation.world.scene import STORE
 from tests.simulation.missions import record
 
+pytestmark = pytest.mark.slow
+
 SECOND = 10**9
 MOVED = load("obstacle-moved")
 NOMINAL = load("nominal")

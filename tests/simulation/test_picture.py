@@ -3,6 +3,7 @@ from io import BytesIO
 from pathlib import Path
 
 import numpy as np
+import pytest
 from matplotlib.image import imread
 from PIL import Image
 from PIL.GifImagePlugin import GifImageFile
@@ -14,6 +15,7 @@ from simulation.world.scenario import load
 from tests.simulation.missions import record
 
 
+@pytest.mark.slow
 def test_the_picture_shows_what_was_moved_and_where_the_robot_was_stopped(tmp_path: Path) -> None:
     shares = {}
     for name in ("nominal", "obstacle-moved"):
@@ -30,6 +32,7 @@ def test_the_picture_shows_what_was_moved_and_where_the_robot_was_stopped(tmp_pa
     assert shares["obstacle-moved"]["stop"] > 0.0001
 
 
+@pytest.mark.slow
 def test_the_picture_and_the_film_show_where_the_robot_touched_something(tmp_path: Path) -> None:
     mission = record(tmp_path / "a.mcap", load("nominal"), max_seconds=4)
     assert mission.touched == ()
@@ -44,6 +47,7 @@ def test_the_picture_and_the_film_show_where_the_robot_touched_something(tmp_pat
     assert counts[2] > 0 < counts[3]
 
 
+@pytest.mark.slow
 def test_the_film_shows_the_whole_mission(tmp_path: Path) -> None:
     mission = record(tmp_path / "a.mcap", load("obstacle-moved"), max_seconds=30)
     film = Image.open(BytesIO(animate(mission)))

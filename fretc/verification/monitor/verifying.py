@@ -32,6 +32,7 @@ from monitors.kernel.columns import column, truths
 from monitors.kernel.stepping import literals_of
 from monitors.kernel.verdicts import Truth
 from monitors.loading import load
+from monitors.source_text import kernel
 
 DRAWN = 20
 """Traces on which the column program is compared, where the bound is small."""
@@ -106,16 +107,18 @@ def _shown(rule: Rule, text: str, monitor: Monitor, limit: int, others: Sequence
     result = prove(machine, rule.sentence, rule.ticks or 0, atoms, limit)
     if not isinstance(result, Proved):
         return Verified(rule.id, atoms, result)
-    (stated,) = load("written", target.text(rule)).REQUIREMENTS
-    if tuple(monitor.REQUIREMENTS[place]) != tuple(stated):
-        reason = "it decides the same, but states another sentence or deadline"
-        return Verified(rule.id, atoms, NotChecked(reason))
+    written = target.text(rule)
+    if text != written:
+        (stated,) = load("written", written).REQUIREMENTS
+        if tuple(monitor.REQUIREMENTS[place]) != tuple(stated):
+            reason = "it decides the same, but states another sentence or deadline"
+            return Verified(rule.id, atoms, NotChecked(reason))
     compared, word = _columns_compared(monitor, place, atoms, rule.ticks or 0)
     if word is not None:
         return Verified(rule.id, atoms, Disagreement(word), compared)
-    if _is_written(text, monitor, (*others, rule)):
+    if text == written or _is_written(text, monitor, (*others, rule)):
         return Verified(rule.id, atoms, result, compared)
-    beside = _beside_its_own(rule, text, monitor, place, atoms, limit)
+    beside = _beside_its_own(written, text, monitor, place, atoms, limit)
     if isinstance(beside, int):
         return Verified(rule.id, atoms, result, compared, beside)
     return Verified(rule.id, atoms, beside, compared)
@@ -132,10 +135,9 @@ def _is_written(text: str, monitor: Monitor, rules: Sequence[Rule]) -> bool:
 
 
 def _beside_its_own(
-    rule: Rule, text: str, monitor: Monitor, place: int, atoms: Sequence[str], limit: int
+    written: str, text: str, monitor: Monitor, place: int, atoms: Sequence[str], limit: int
 ) -> int | Disagreement | NotChecked:
     """In how many states it tells the same as the text that fretc writes for the rule."""
-    written = target.text(rule)
     if len(atoms) > rails.MOST_PROPOSITIONS:
         most = rails.MOST_PROPOSITIONS
         return NotChecked(
@@ -161,8 +163,9 @@ def _beside_its_own(
 
 def _demand_monitor(text: str) -> None:
     """It is Python, and names a monitor."""
-    try:
-        tree = ast.parse(text)
+    runtime = kernel().text
+    try:  # the run time is Python, and long: lines keep their numbers without it
+        tree = ast.parse(text.replace(runtime, "\n" * runtime.count("\n"), 1))
     except (SyntaxError, ValueError, RecursionError) as error:
         raise NotAMonitorError(f"it is no Python: {error}") from None
     named = (node.target for node in tree.body if isinstance(node, ast.AnnAssign))

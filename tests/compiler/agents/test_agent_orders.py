@@ -75,6 +75,7 @@ def modelled(percepts: tuple[str, ...], agent: Agent, properties: str, in_turn: 
     return check(explored.kripke, said[0].formula) is None
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("condition", "guarded", "word"),
     [

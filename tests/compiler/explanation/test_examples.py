@@ -79,6 +79,7 @@ def is_doomed(drawn: Template, rows: dict[str, list[bool]]) -> bool:
     return True
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("scope", meaning.SCOPES)
 def test_a_monitor_decides_at_the_same_tick(scope: str) -> None:
     for drawn in every(scope, (2,)):
@@ -149,6 +150,7 @@ def test_a_verdict_is_certain_before_the_trace_ends_where_parts_share_propositio
     assert {example.decided for example in told.violated} == {0}
 
 
+@pytest.mark.slow
 def test_long_bounds_have_traces_and_too_long_ones_say_so() -> None:
     _, told = found("upon p the sw shall within 1000 ticks satisfy q")
     assert [len(example.prefix) for example in told.satisfied] == [1, 1001]

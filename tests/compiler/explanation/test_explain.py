@@ -19,6 +19,7 @@ TIMINGS = (
 )  # fmt: skip
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(8))
 def test_sentences_whose_parts_share_propositions_are_explained(seed: int) -> None:
     choose = random.Random(seed)

@@ -12,6 +12,7 @@ from tests.telling import told
 LENGTH, TRACES = 9, 15
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("scope", SCOPES)
 def test_triggers_answers_violations_and_open_demands_are_those_of_the_definition(
     scope: str,

@@ -23,6 +23,7 @@ def is_live(formula: Formula) -> bool:
     return bool(spot.is_liveness_automaton(automaton))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("scope", SCOPES)
 def test_of_each_template_spot_says_the_same(scope: str) -> None:
     for template in templates((0, 1, 3)):
@@ -38,6 +39,7 @@ def test_of_parts_that_share_atoms_spot_says_the_same(scope: str) -> None:
         assert is_violable(made) is not is_live(made.ft_infinite), made.sentence
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("scope", SCOPES)
 def test_where_the_end_violates_some_short_run_does_exactly_if_it_is_violable(scope: str) -> None:
     clock = Clock(10**8, end=End.VIOLATED)

@@ -30,6 +30,7 @@ def test_the_intervals_are_those_of_the_definition(scope: str) -> None:
             assert intervals(kind, m) == list(meaning.intervals(scope, m))
 
 
+@pytest.mark.slow
 def test_every_short_trace_is_judged_as_fretish_means_it() -> None:
     for drawn in templates((0, 1, 2)):
         rule, names = counted(drawn), drawn.columns

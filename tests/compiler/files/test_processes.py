@@ -61,6 +61,7 @@ def test_the_modules_are_executed_where_nobody_keeps_them_out(hostile: Path) -> 
     assert "json" in executed(hostile)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "command",
     [
@@ -85,6 +86,7 @@ def test_no_command_executes_what_lies_in_the_present_folder(
     assert done.returncode in (0, 1, 3), done.stderr
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("target", "file", "arguments", "status"),
     [
@@ -110,6 +112,7 @@ def test_a_generated_file_executes_nothing_that_lies_beside_it(
     assert (done.returncode, done.stderr) == (status, "")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("option", ["-P", "-I"])
 def test_a_generated_monitor_runs_where_python_leaves_its_folder_out_itself(
     tmp_path: Path, option: str
@@ -120,6 +123,7 @@ def test_a_generated_monitor_runs_where_python_leaves_its_folder_out_itself(
     assert (done.returncode, done.stderr) == (0, "")
 
 
+@pytest.mark.slow
 def test_a_generated_monitor_is_imported_without_a_change_of_the_path(tmp_path: Path) -> None:
     run(FRETC, str(ROOT / "requirements/r1.fret"), "--emit", "monitor", folder=tmp_path)
     code = "import sys; before = [*sys.path]; import r1_monitor; print(sys.path == before)"

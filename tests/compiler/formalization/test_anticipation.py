@@ -39,6 +39,7 @@ def check(sentence: str, made: Rule, names: tuple[str, ...], count: int) -> None
         assert told == oracle.verdicts(letters), (sentence, columns)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("scope", SCOPES)
 def test_each_template_is_decided_at_the_earliest_tick(scope: str) -> None:
     for template in templates():
@@ -90,6 +91,7 @@ def counted() -> Iterator[tuple[str, int]]:
     yield from ((timing, n) for timing in COUNTED for n in (0, 1, 2))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("scope", SCOPES)
 def test_parts_that_share_atoms_are_decided_at_the_earliest_tick(scope: str) -> None:
     for condition, (timing, n), draw in product(WHEN, counted(), range(2)):
@@ -97,6 +99,7 @@ def test_parts_that_share_atoms_are_decided_at_the_earliest_tick(scope: str) -> 
         check(sentence, rule(sentence), ("a", "b"), 6)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("n", [7, 9, 25])
 def test_long_durations_over_shared_atoms_are_decided_at_the_earliest_tick(n: int) -> None:
     """Above the length to which durations are shortened, at their own length."""

@@ -5,7 +5,7 @@ import random
 import re
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
-from functools import cache
+from functools import cache, lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -25,6 +25,7 @@ from fretish.diagnostics.source import Source
 from fretish.parser import parse
 from fretish.syntax import Sentence, duration
 from tests import fret_notation as fret
+from tests.each import each
 from tests.strategies import Template, templates
 
 DATA = Path(__file__).parents[2] / "data"
@@ -43,12 +44,11 @@ def table(name: str) -> list[dict[str, Any]]:
     return [row for row in rows if row.get("group") != "temporal_predicate"]
 
 
-def formulas_of_fret() -> list[Any]:
+def formulas_of_fret() -> list[dict[str, Any]]:
     """Templates and case studies; without the temporal predicates, which fretc leaves alone."""
     rows = [*table("fret_templates.json"), *table("fret_case_studies.json")]
     predicates = ("preBool", "preReal", "preInt", "persist", "occur", "prevOcc", "FTP")
-    plain = [row for row in rows if not any(word in row["pt"] for word in predicates)]
-    return [pytest.param(row, id=row["id"]) for row in plain]
+    return [row for row in rows if not any(word in row["pt"] for word in predicates)]
 
 
 def drawn(names: Sequence[str], length: int, count: int, seed: str) -> list[fret.Trace]:
@@ -58,35 +58,71 @@ def drawn(names: Sequence[str], length: int, count: int, seed: str) -> list[fret
     ]
 
 
-def some_traces(names: Sequence[str], seed: str, drawn_each: int) -> Iterator[list[fret.Trace]]:
-    """All short traces (3 ticks for four names, 4 for three or fewer), then drawn longer ones."""
-    exhaustive = max((k for k in range(1, 5) if len(names) * k <= 12), default=0)
-    for length in range(1, exhaustive + 1):
-        yield fret.all_traces(names, length)
-    for length in (*range(exhaustive + 1, 7), 9):
-        yield drawn(names, length, drawn_each, seed)
+def exhaustive(names: Sequence[str]) -> range:
+    """The lengths of which all traces are judged: to 3 for four names, to 4 for fewer."""
+    return range(1, 1 + max((k for k in range(1, 5) if len(names) * k <= 12), default=0))
 
 
-def at_start(text: str) -> Callable[[Sequence[fret.Trace]], int]:
+Packed = tuple[dict[str, list[int]], int, int]
+"""As `fret.values` takes them: their columns, their length and all bits."""
+Traces = tuple[list[fret.Trace], Packed]
+
+
+@lru_cache(32)
+def all_traces(names: tuple[str, ...], length: int) -> Traces:
+    traces = fret.all_traces(names, length)
+    return traces, fret.packed(traces)
+
+
+@cache
+def satisfied(template: Template, length: int) -> int:
+    """Which of all traces of a length satisfy the template."""
+    return fret.bits(all_traces(template.columns, length)[0], template.satisfied)
+
+
+def judgements(template: Template, drawn_each: int) -> Iterator[tuple[Traces, int]]:
+    """Some traces, and which of them satisfy the template."""
+    lengths = exhaustive(template.columns)
+    for length in lengths:
+        yield all_traces(template.columns, length), satisfied(template, length)
+    for traces in longer(template.columns, len(lengths), repr(template), drawn_each):
+        yield traces, fret.bits(traces[0], template.satisfied)
+
+
+def some_traces(names: Sequence[str], seed: str, drawn_each: int) -> Iterator[Traces]:
+    """All short traces, then drawn longer ones."""
+    lengths = exhaustive(names)
+    yield from (all_traces(tuple(names), length) for length in lengths)
+    yield from longer(names, len(lengths), seed, drawn_each)
+
+
+def longer(names: Sequence[str], above: int, seed: str, drawn_each: int) -> Iterator[Traces]:
+    for length in (*range(above + 1, 7), 9):
+        traces = drawn(names, length, drawn_each, seed)
+        yield traces, fret.packed(traces)
+
+
+def at_start(text: str) -> Callable[[Packed], int]:
     node = fret.parse(text)
-    return lambda traces: fret.values(node, *fret.packed(traces))[0]
+    return lambda packed: fret.values(node, *packed)[0]
 
 
-def at_end(text: str) -> Callable[[Sequence[fret.Trace]], int]:
+def at_end(text: str) -> Callable[[Packed], int]:
     node = fret.parse(text)
-    return lambda traces: fret.values(node, *fret.packed(traces))[-1]
+    return lambda packed: fret.values(node, *packed)[-1]
 
 
 # Against FRET's own formulas ------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("row", formulas_of_fret())
+@each("row", formulas_of_fret())
 def test_the_infinite_formula_has_the_language_of_frets(row: dict[str, Any]) -> None:
     ours = printing.future(endless(future(read(row["fretish"]))))
     assert same_language(ours, row["ft_inf"])
 
 
-@pytest.mark.parametrize("row", formulas_of_fret())
+@pytest.mark.slow
+@pytest.mark.parametrize("row", formulas_of_fret(), ids=lambda row: row["id"])
 def test_the_formulas_judge_finite_traces_as_frets_do(row: dict[str, Any]) -> None:
     meant = read(row["fretish"])
     judges = {
@@ -97,13 +133,14 @@ def test_the_formulas_judge_finite_traces_as_frets_do(row: dict[str, Any]) -> No
     }
     texts = (row["ft_fin"], row["pt"], printing.future(future(meant)))
     names = sorted(set().union(*(fret.atoms(fret.parse(text)) for text in texts)) - {"LAST"})
-    for traces in some_traces(names or ["q"], row["id"], drawn_each=20):
-        expected = judges["ft_fin"](traces)
+    for traces, packed in some_traces(names or ["q"], row["id"], drawn_each=20):
+        expected = judges["ft_fin"](packed)
         for name, judge in judges.items():
-            assert fret.differing(traces, expected, judge(traces)) is None, name
+            assert fret.differing(traces, expected, judge(packed)) is None, name
 
 
-@pytest.mark.parametrize("row", formulas_of_fret())
+@pytest.mark.slow
+@each("row", formulas_of_fret())
 def test_the_printed_formulas_mean_what_the_formulas_mean(row: dict[str, Any]) -> None:
     meant = read(row["fretish"])
     forward, back = future(meant), past(meant)
@@ -136,6 +173,7 @@ def test_there_are_288_templates() -> None:
     assert len(list(templates((0,)))) == 288
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("scope", SCOPES)
 def test_future_past_and_watch_mean_what_fretish_means(scope: str) -> None:
     for template in every(scope):
@@ -145,15 +183,14 @@ def test_future_past_and_watch_mean_what_fretish_means(scope: str) -> None:
         back = at_end(printing.past(past(meant)))
         breach = fret.parse(printing.past(signals.breach))
         fails = fret.parse(printing.past(signals.fails))
-        for traces in some_traces(template.columns, repr(template), drawn_each=25):
-            expected = fret.bits(traces, template.satisfied)
-            word, length, full = fret.packed(traces)
+        for (traces, packed), expected in judgements(template, drawn_each=25):
+            word, length, full = packed
             lost = fret.values(fails, word, length, full)[-1]
             for broken in fret.values(breach, word, length, full):
                 lost |= broken
             for name, judged in (
-                ("future", forward(traces)),
-                ("past", back(traces)),
+                ("future", forward(packed)),
+                ("past", back(packed)),
                 ("watch", full ^ lost),
             ):
                 assert fret.differing(traces, expected, judged) is None, (template, name)
@@ -189,6 +226,7 @@ FORMS: list[tuple[str, Callable[[bool, bool], bool]]] = [
 """What a user may write for a variable, over two others, and its truth table."""
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("scope", SCOPES)
 @pytest.mark.parametrize("shift", range(3))
 def test_a_variable_may_be_any_expression(scope: str, shift: int) -> None:
@@ -222,9 +260,9 @@ def test_a_variable_may_be_any_expression(scope: str, shift: int) -> None:
                 for trace in traces
             ]
             expected = fret.bits(values, template.satisfied)
+            packed = word, _, full = fret.packed(traces)
             for name, judge in judges.items():
-                assert fret.differing(traces, expected, judge(traces)) is None, (text, name)
-            word, _, full = fret.packed(traces)
+                assert fret.differing(traces, expected, judge(packed)) is None, (text, name)
             lost = fret.values(fret.parse(printing.past(signals.fails)), word, length, full)[-1]
             breach = fret.parse(printing.past(signals.breach))
             for broken in fret.values(breach, word, length, full):
@@ -232,20 +270,21 @@ def test_a_variable_may_be_any_expression(scope: str, shift: int) -> None:
             assert fret.differing(traces, expected, full ^ lost) is None, (text, "watch")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("scope", SCOPES)
 def test_a_breach_cannot_be_repaired(scope: str) -> None:
     """The verdict `violated` is certain: every longer trace is violated too."""
     for template in every(scope):
         breach = fret.parse(printing.past(watch(read(template.sentence)).breach))
-        for traces in some_traces(template.columns, repr(template), drawn_each=10):
-            word, length, full = fret.packed(traces)
+        for (traces, packed), kept in judgements(template, drawn_each=10):
+            word, length, full = packed
             lost = 0
             for broken in fret.values(breach, word, length, full):
                 lost |= broken
-            kept = fret.bits(traces, template.satisfied)
             assert fret.differing(traces, lost & kept, 0) is None, template
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("scope", SCOPES)
 def test_a_finite_formula_does_not_depend_on_what_follows_the_last_tick(scope: str) -> None:
     for template in every(scope):
@@ -365,7 +404,7 @@ def implied(strict: Template, lax: Template) -> bool:
     return same_language(f"({one}) & ({two})", one)
 
 
-@pytest.mark.parametrize("template", [t for t in templates((2,)) if t.n], ids=str)
+@each("template", [t for t in templates((2,)) if t.n])
 def test_the_chosen_rounding_implies_the_other_one(template: Template) -> None:
     down, up = template, replace(template, n=3)
     if template.timing == "after":

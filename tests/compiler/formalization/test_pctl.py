@@ -13,6 +13,7 @@ from compiler.logic.spot import same_language
 from fretish.diagnostics.source import Source
 from fretish.documents import requirements
 from tests import meaning
+from tests.each import each
 
 
 def rule(sentence: str) -> Rule:
@@ -134,13 +135,15 @@ def test_all_templates_are_there() -> None:
     assert len(ALL) == len(set(ALL)) == 8 * 3 * (9 + 3 * 2)
 
 
-@pytest.mark.parametrize("sentence", ALL)
+@pytest.mark.slow
+@each("sentence", ALL)
 def test_without_its_probabilities_it_is_the_future_time_formula(sentence: str) -> None:
     formula = printing.future(rule(sentence).ft_infinite)
     assert same_language(without_probabilities(pctl(sentence)), formula)
 
 
-@pytest.mark.parametrize("sentence", ALL)
+@pytest.mark.slow
+@each("sentence", ALL)
 def test_the_model_checkers_know_every_operator(sentence: str) -> None:
     """They have no implication and no release within a path, and no last tick."""
     words = re.findall(r"->|=>|\w+", re.sub(r"P>=(?:0\.9|1) \[", "[", pctl(sentence)))
@@ -148,7 +151,7 @@ def test_the_model_checkers_know_every_operator(sentence: str) -> None:
     assert set(words) <= {"m", "p", "q", "s", "G", "F", "X", "U", "true", "false"} | numbers
 
 
-@pytest.mark.parametrize("sentence", ALL)
+@each("sentence", ALL)
 def test_every_path_is_within_a_probability(sentence: str) -> None:
     """`P>=1` stands around the whole, and no bound stands without what is demanded."""
     text = pctl(sentence)
@@ -157,7 +160,8 @@ def test_every_path_is_within_a_probability(sentence: str) -> None:
     assert "P>=0.9 [ " in text
 
 
-@pytest.mark.parametrize("sentence", list(templates("")))
+@pytest.mark.slow
+@each("sentence", list(templates("")))
 def test_a_sentence_without_a_probability_has_none(sentence: str) -> None:
     formalized = rule(sentence)
     assert formalized.pctl is None

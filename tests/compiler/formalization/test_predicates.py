@@ -21,6 +21,7 @@ from fretish.diagnostics.source import Source
 from fretish.documents import requirements
 from tests import fret_notation as fret
 from tests import meaning, monitoring
+from tests.each import each
 from tests.strategies import templates
 
 TABLE = Path(__file__).parents[2] / "data/fret_templates.json"
@@ -43,8 +44,8 @@ ROWS: list[dict[str, Any]] = [
 ]
 
 
-def with_a(formula: str) -> list[Any]:
-    return [pytest.param(row, id=row["id"]) for row in ROWS if row[formula] is not None]
+def with_a(formula: str) -> list[dict[str, Any]]:
+    return [row for row in ROWS if row[formula] is not None]
 
 
 def has_no_end(row: dict[str, Any]) -> bool:
@@ -56,7 +57,8 @@ def has_no_end(row: dict[str, Any]) -> bool:
     return future and (scope or row["fretish"].startswith("While"))
 
 
-def every_trace(names: Sequence[str], length: int) -> tuple[fret.Word, int]:
+@cache
+def every_trace(names: tuple[str, ...], length: int) -> tuple[fret.Word, int]:
     """All traces of a length at once: bit k of all columns is the k-th trace."""
     cells = len(names) * length
     full = (1 << (1 << cells)) - 1
@@ -73,7 +75,7 @@ def words(names: Sequence[str]) -> Iterator[tuple[fret.Word, int, int]]:
     """All traces of up to 14 cells, then 400 of each length up to 10."""
     longest = 14 // len(names)
     for length in range(1, 11):
-        word, full = (every_trace if length <= longest else drawn_traces)(names, length)
+        word, full = (every_trace if length <= longest else drawn_traces)(tuple(names), length)
         yield word, length, full
 
 
@@ -81,12 +83,12 @@ def test_all_traces_of_two_ticks_are_four() -> None:
     assert every_trace(("p",), 2) == ({"p": [0b0101, 0b0011]}, 0b1111)
 
 
-@pytest.mark.parametrize("row", with_a("ft_inf"))
+@each("row", with_a("ft_inf"))
 def test_the_formula_of_infinite_traces_says_what_that_of_fret_says(row: dict[str, Any]) -> None:
     assert same_language(printing.future(rule(row["fretish"]).ft_infinite), row["ft_inf"])
 
 
-@pytest.mark.parametrize("row", [row for row in with_a("ft_fin") if not has_no_end(row.values[0])])
+@each("row", [row for row in with_a("ft_fin") if not has_no_end(row)])
 def test_the_formula_of_finite_traces_says_what_that_of_fret_says(row: dict[str, Any]) -> None:
     ours = fret.parse(printing.future(rule(row["fretish"]).ft_finite))
     theirs = fret.parse(row["ft_fin"])
@@ -95,7 +97,7 @@ def test_the_formula_of_finite_traces_says_what_that_of_fret_says(row: dict[str,
         assert at_start == fret.values(theirs, word, length, full)[0], length
 
 
-@pytest.mark.parametrize("row", with_a("pt"))
+@each("row", with_a("pt"))
 def test_the_past_time_formula_says_what_that_of_fret_says(row: dict[str, Any]) -> None:
     ours, theirs = fret.parse(printing.past(rule(row["fretish"]).pt)), fret.parse(row["pt"])
     for word, length, full in words(row["variables"]):
@@ -117,7 +119,7 @@ def beyond(formula: str, names: Sequence[str], length: int) -> set[int]:
     The trace ends where `LAST` is true, and three ticks follow it for ever; on all traces the
     same three, drawn anew for each continuation.
     """
-    word, full = every_trace(names, length)
+    word, full = every_trace(tuple(names), length)
     last = [0] * (length - 1) + [full] + [0] * 3
     choose = random.Random("what follows")
     said = set()
@@ -132,12 +134,13 @@ HARMLESS = ("P.ft.persists(2,p).before.whenever", "P.ft.occurs(2,p).notin.whenev
 """The end is forgotten in these too, but their answer has as long as their predicate."""
 
 
-@pytest.mark.parametrize("row", [row for row in with_a("ft_fin") if has_no_end(row.values[0])])
+@pytest.mark.slow
+@each("row", [row for row in with_a("ft_fin") if has_no_end(row)])
 def test_a_finite_trace_is_judged_without_what_follows_it(row: dict[str, Any]) -> None:
     """FRET's formula of the same sentence does depend on it."""
     ours = printing.future(rule(row["fretish"]).ft_finite)
     for length in (1, 2, 3):
-        word, full = every_trace(row["variables"], length)
+        word, full = every_trace(tuple(row["variables"]), length)
         alone = fret.values(fret.parse(ours), word, length, full)[0]
         assert beyond(ours, row["variables"], length) == {alone}
     theirs = beyond(row["ft_fin"], row["variables"], 3)
@@ -293,9 +296,10 @@ def rows(trace: Trace) -> list[dict[str, bool]]:
     return [{name: trace[name][k] for name in trace} for k in range(len(trace["q"]))]
 
 
-@pytest.mark.parametrize("place", PLACES)
-@pytest.mark.parametrize("scope", SCOPES)
+@pytest.mark.slow
 @pytest.mark.parametrize("text", BACK)
+@each("place", PLACES)
+@each("scope", SCOPES)
 def test_a_predicate_that_looks_back_means_what_it_says(text: str, scope: str, place: str) -> None:
     sentence = f"{SCOPES[scope]} {PLACES[place][0].format(text)}"
     formula = rule(sentence).pt
@@ -304,9 +308,10 @@ def test_a_predicate_that_looks_back_means_what_it_says(text: str, scope: str, p
         assert verdict == meant(trace, scope, place, BACK[text]), (sentence, trace)
 
 
-@pytest.mark.parametrize("place", PLACES)
-@pytest.mark.parametrize("scope", SCOPES)
+@pytest.mark.slow
 @pytest.mark.parametrize("text", AHEAD)
+@each("place", PLACES)
+@each("scope", SCOPES)
 def test_a_predicate_that_looks_ahead_means_what_it_says(text: str, scope: str, place: str) -> None:
     sentence = f"{SCOPES[scope]} {PLACES[place][0].format(text)}"
     formula = rule(sentence).ft_finite
@@ -351,6 +356,7 @@ OF_THE_RUN: dict[str, Callable[[Sequence[bool], int], bool]] = {
 """Within the expression of a scope, which knows no interval yet."""
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("text", OF_THE_RUN)
 @pytest.mark.parametrize("scope", WHILE)
 def test_the_first_tick_within_a_scope_is_that_of_the_run(scope: str, text: str) -> None:
@@ -388,6 +394,7 @@ POSITIONS = [
 ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("sentence", POSITIONS)
 def test_no_monitor_asks_whether_it_is_the_first_tick(sentence: str) -> None:
     """It tells what it would, were it told by a proposition that holds at that tick alone."""

@@ -91,6 +91,7 @@ def assert_judged_as_meant(template: Template, rows: Sequence[Mapping[str, bool]
     assert found is template.satisfied(columns), (template, rows)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("scope", meaning.SCOPES)
 def test_every_short_trace_is_judged_as_fretish_means_it(scope: str) -> None:
     for drawn in every(scope, SMALL):
@@ -165,6 +166,7 @@ def in_spot(rule: Rule) -> Any:
     return spot.formula(printing.text(rule.ft_infinite, printing.SPOT))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("n", [*SMALL, 5])
 @pytest.mark.parametrize("scope", meaning.SCOPES)
 def test_the_automaton_has_the_language_of_the_infinite_formula(scope: str, n: int) -> None:
@@ -245,6 +247,7 @@ def assert_decides_as_early_as_spot(
     return len(reached)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("n", [*SMALL, 5])
 @pytest.mark.parametrize("scope", meaning.SCOPES)
 def test_verdicts_come_at_the_earliest_instant(scope: str, n: int) -> None:

@@ -80,6 +80,7 @@ def test_each_form_has_the_language_of_frets_own_formula(group: str) -> None:
     assert compared[group == "template"] > 80
 
 
+@pytest.mark.slow
 def test_what_has_no_form_changes_when_a_trace_stutters() -> None:
     """No next-free form exists of it, so that the refusal is no weakness of ours."""
     for template in all_templates():

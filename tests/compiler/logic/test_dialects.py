@@ -16,6 +16,7 @@ from compiler.logic.printing import DIALECTS, FRET, LATEX, NUSMV, PLAIN, SPOT
 from compiler.logic.spot import same_language
 from fretish.diagnostics.source import Source
 from fretish.documents import requirements
+from tests.each import each
 
 a, b, c = f.Atom("a"), f.Atom("b"), f.Atom("c")
 FAST = f.Atom("(arm_x >= 3)")
@@ -214,8 +215,8 @@ PAIRS: tuple[Callable[[f.Formula, f.Formula], f.Formula], ...] = (
 )
 
 
-@pytest.mark.parametrize("outer", range(len(PAIRS)))
-@pytest.mark.parametrize("inner", range(len(PAIRS)))
+@each("outer", range(len(PAIRS)))
+@each("inner", range(len(PAIRS)))
 def test_spot_groups_two_operators_as_they_were(outer: int, inner: int) -> None:
     for formula in (
         PAIRS[outer](PAIRS[inner](a, b), c),

@@ -183,6 +183,7 @@ def test_unknown_is_told_by_the_parts() -> None:
     ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("scope", SCOPES)
 def test_the_future_at_the_first_tick_is_the_past_at_the_last(scope: str) -> None:
     """FRET's finite verdict by both of its formulas, and the monitor's, at every prefix."""
@@ -200,6 +201,7 @@ def test_the_future_at_the_first_tick_is_the_past_at_the_last(scope: str) -> Non
             assert ahead == back == told[ticks - 1].finite, (template, columns, ticks)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("scope", SCOPES)
 def test_stepping_and_columns_agree_at_every_prefix(scope: str) -> None:
     """Also where some values are unknown."""
@@ -273,6 +275,7 @@ def test_nested_formulas_with_long_bounds_on_long_traces(
     assert evaluate(formula, numbers(columns), ticks) == number(table(formula, columns, ticks))
 
 
+@pytest.mark.slow
 @slow
 @given(long_past, long_traces())
 def test_monitors_of_past_formulas_tell_them_at_each_tick(

@@ -11,6 +11,7 @@ from compiler.logic import printing
 from compiler.logic.spot import equivalent, same_language, simplified
 from fretish.diagnostics.source import Source
 from fretish.documents import requirements
+from tests.each import each
 
 a, b = f.Atom("a"), f.Atom("b")
 SCOPES = ("", "in m", "unless in m", "before m", "after m")
@@ -66,7 +67,8 @@ def test_the_last_tick_is_free_on_infinite_traces() -> None:
 # Simplification -------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("sentence", [*sentences(SCOPES), *sentences(ONLY_SCOPES)])
+@pytest.mark.slow
+@each("sentence", [*sentences(SCOPES), *sentences(ONLY_SCOPES)])
 def test_a_simplified_formula_says_the_same_in_fewer_characters(sentence: str) -> None:
     for formula in formulas(sentence):
         text = simplified(formula)

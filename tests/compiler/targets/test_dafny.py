@@ -102,6 +102,7 @@ def emitted(sentence: str, bindings: str | None = BINDINGS) -> str:
 # The monitor in the text is the reference automaton -------------------------------------------
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("condition", CONDITIONS)
 @pytest.mark.parametrize("timing", TIMINGS)
 @pytest.mark.parametrize("n", [0, 1, 2])

@@ -13,6 +13,7 @@ from compiler.logic.spot import same_language
 from compiler.targets.prism import complement, unrolled
 from tests import meaning
 from tests.compiler.formalization.test_pctl import CONDITIONS, SCOPES, TIMINGS, templates
+from tests.each import each
 from tests.emitting import MANY, PROBABLE, emitted, refused, rule
 
 
@@ -72,6 +73,7 @@ def without_probabilities(text: str) -> str:
 ALL = list(templates("with probability >= 0.9"))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("scope", range(8))
 def test_without_its_probabilities_it_is_the_future_time_formula(scope: int) -> None:
     for sentence in ALL[45 * scope : 45 * (scope + 1)]:
@@ -79,7 +81,8 @@ def test_without_its_probabilities_it_is_the_future_time_formula(scope: int) -> 
         assert same_language(without_probabilities(property_of(sentence)), formula), sentence
 
 
-@pytest.mark.parametrize("sentence", ALL)
+@pytest.mark.slow
+@each("sentence", ALL)
 def test_no_trap_of_prism_or_storm_is_in_it(sentence: str) -> None:
     text = property_of(sentence)
     words = set(re.findall(r"[A-Za-z]+", re.sub(r'"\w+"', "", text)))

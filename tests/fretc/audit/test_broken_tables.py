@@ -186,6 +186,7 @@ def check(cases: Sequence[Case]) -> None:
     assert all(why.span and why.span.source.name.endswith(".toml") for why in plan.refusals)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("table", TABLES, ids=".".join)
 def test_what_reads_a_broken_table_is_refused_and_nothing_else(table: tuple[str, str]) -> None:
     for kind in BREAKS[table[0]]:
@@ -214,6 +215,7 @@ def audit(fretc: Fretc) -> tuple[int, dict[str, Any], list[str]]:
     return run.status, results(Path("build/evidence.json").read_text("utf-8")), codes
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("place", range(len(TABLES)))
 def test_an_audit_judges_the_others_as_before(fretc: Fretc, place: int) -> None:
     kinds = list(BREAKS[TABLES[place][0]])
@@ -248,6 +250,7 @@ COMMANDS = [
 ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("command", COMMANDS, ids=" ".join)
 def test_every_command_names_all_mistakes_and_makes_nothing_of_what_reads_them(
     fretc: Fretc, command: tuple[str, ...]

@@ -85,6 +85,7 @@ def test_a_plan_is_the_same_after_a_journey(fretc: Fretc) -> None:
     assert there.declarations == plan().declarations
 
 
+@pytest.mark.slow
 def test_the_command_gives_the_same_on_a_fleet(fretc: Fretc, cluster: Any) -> None:
     here = fretc("audit", *LOGS)
     evidence = Path("build/evidence.json").read_bytes()
@@ -95,6 +96,7 @@ def test_the_command_gives_the_same_on_a_fleet(fretc: Fretc, cluster: Any) -> No
     assert not Path("build/evidence.json.journal").exists()
 
 
+@pytest.mark.slow
 def test_a_worker_that_is_killed_loses_nothing_and_counts_nothing_twice(
     fretc: Fretc, cluster: Any
 ) -> None:
@@ -111,6 +113,7 @@ def test_a_worker_that_is_killed_loses_nothing_and_counts_nothing_twice(
     assert sorted(told) == LOGS
 
 
+@pytest.mark.slow
 def test_a_log_that_kills_its_workers_is_told_and_the_others_are_audited(
     fretc: Fretc, cluster: Any, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -207,6 +210,7 @@ def test_without_the_extra_the_line_that_installs_it_is_told(
     assert run.err.startswith("F908 a fleet needs `distributed`\nhelp: install the extra: pip ")
 
 
+@pytest.mark.slow
 def test_a_cluster_of_its_own_is_stopped_and_goes_on(fretc: Fretc) -> None:
     fretc("audit", *LOGS)
     evidence = Path("build/evidence.json").read_bytes()
@@ -233,6 +237,7 @@ def test_a_cluster_of_its_own_is_stopped_and_goes_on(fretc: Fretc) -> None:
     assert Path("build/evidence.json").read_bytes() == evidence
 
 
+@pytest.mark.slow
 def test_nobody_else_on_the_machine_is_let_into_a_cluster_of_its_own() -> None:
     """Who can connect can execute code as the one who audits."""
     from distributed import Client, Security
@@ -254,6 +259,7 @@ def test_nobody_else_on_the_machine_is_let_into_a_cluster_of_its_own() -> None:
         assert worker.startswith("tls://127.0.0.1:")
 
 
+@pytest.mark.slow
 def test_a_cluster_of_its_own_has_no_pages() -> None:
     with fleet._own_cluster(1) as client:
         port = client.scheduler_info()["services"].get("dashboard")

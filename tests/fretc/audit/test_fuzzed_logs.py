@@ -240,6 +240,7 @@ def bench(tmp_path_factory: pytest.TempPathFactory) -> Any:
     return Bench(tmp_path_factory.mktemp("fuzz"))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", KINDS, ids=str)
 @MANY
 @given(draw=st.data())
@@ -249,6 +250,7 @@ def test_a_log_that_is_cut_satisfies_nothing(bench: Bench, kind: Kind, draw: Any
     assert "satisfied" not in bench.check(kind, data[:cut])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", KINDS, ids=str)
 @MANY
 @given(draw=st.data())

@@ -156,6 +156,7 @@ def test_a_log_that_could_not_be_read_or_has_changed_meanwhile_is_not_kept(fretc
     assert not JOURNAL.exists()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("file", "old", "new"),
     [
@@ -195,6 +196,7 @@ def test_another_fretc_or_evaluation_makes_all_of_it_new(
     assert finished() == []
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("tail", [b'{"log": "c.mcap", "sha', b"\0\0\0\n", b"[1]\n", b"\xff\n"])
 def test_a_line_that_is_not_whole_does_not_count(fretc: Fretc, tail: bytes) -> None:
     fretc("audit", *LOGS)
@@ -264,6 +266,7 @@ def test_evidence_that_is_printed_keeps_nothing(fretc: Fretc) -> None:
     assert fretc("audit", *LOGS, "--evidence", "-", "--resume").err.startswith("F907 ")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("stop", [signal.SIGINT, signal.SIGTERM, signal.SIGKILL])
 def test_an_audit_is_stopped_and_goes_on(fretc: Fretc, stop: signal.Signals) -> None:
     logs = [f"{name}{number}.mcap" for name in "ab" for number in range(12)]

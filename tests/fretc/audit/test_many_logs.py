@@ -195,6 +195,7 @@ def test_without_bindings_nothing_can_be_audited(fretc: Fretc) -> None:
     assert run.err.startswith("F304 no bindings say what the propositions mean in the messages\n")
 
 
+@pytest.mark.slow
 def test_a_folder_of_logs_gives_the_same_with_any_number_of_processes(fretc: Fretc) -> None:
     for name in ("a", "b", "deep/c"):
         target = Path(f"runs/{name}.mcap")

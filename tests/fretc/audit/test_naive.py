@@ -557,6 +557,7 @@ def judged(verdict: str, found: Case, run: Run, what: str) -> list[str]:
     return [f"{what}: {verdict}, and not {sorted(may)}"]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("part", range(4))
 def test_audits_are_those_of_the_documentation(tmp_path: Path, part: int) -> None:
     for seed in range(part, RUNS, 4):

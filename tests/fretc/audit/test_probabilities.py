@@ -165,6 +165,7 @@ def test_the_counts_are_those_of_the_truth_columns(fretc: Fretc) -> None:
 NAMES = [f"{part}{i}" for part in "mpqs" for i in (1, 2)]
 
 
+@pytest.mark.slow
 def test_no_sentence_with_a_probability_ends_an_audit_and_each_is_counted(fretc: Fretc) -> None:
     """Every template with any expressions, constants among them, each a requirement of its own."""
     chance = random.Random("audits")
@@ -202,6 +203,7 @@ def test_what_no_run_can_meet_is_failed_at_each_trigger(fretc: Fretc) -> None:
     assert counts() == (0, 6, 0)
 
 
+@pytest.mark.slow
 def test_what_is_unknown_in_the_middle_is_open_and_damage_withholds_support(fretc: Fretc) -> None:
     logs(60, "1" * 20, "1" * 20)
     assert fretc("audit", "runs").status == 0
@@ -238,6 +240,7 @@ def test_a_copy_of_a_log_counts_once(fretc: Fretc) -> None:
     assert (counts(), told()["logs"]["copies"]) == ((28, 0, 0), 1)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("integrity", ["index", "hash", "full"])
 def test_a_log_that_was_written_again_counts_once(fretc: Fretc, integrity: str) -> None:
     """The same messages with other chunks, another compression, and a topic that nobody reads."""
@@ -313,6 +316,7 @@ def test_an_unreadable_log_is_bad_input_and_supports_nothing(fretc: Fretc) -> No
     assert (told()["answer"], told()["logs"]["damaged"]) == ("inconclusive", 1)
 
 
+@pytest.mark.slow
 def test_the_stated_confidence_is_used(fretc: Fretc) -> None:
     logs(33, "1000", "0100")
     assert fretc("audit", "runs", "--confidence", "0.99").status == 3
@@ -323,6 +327,7 @@ def test_the_stated_confidence_is_used(fretc: Fretc) -> None:
         assert fretc("audit", "runs", "--confidence", wrong).status == 2
 
 
+@pytest.mark.slow
 def test_beside_other_requirements_each_is_judged_its_way(fretc: Fretc) -> None:
     logs(33, "1000", "0100")
     require("whenever c the robot shall within 2 ticks satisfy r", "R8")

@@ -81,6 +81,7 @@ def rows(out: str) -> dict[str, str]:
     return {row["requirement"]: row["verdict"] for row in json.loads(out)}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", REFUSED)
 @pytest.mark.parametrize(("values", "verdict"), [([1, 1, 1], "satisfied"), ([1, 0, 1], "violated")])
 def test_what_cannot_be_judged_is_no_data_beside_what_can(
@@ -101,6 +102,7 @@ def test_what_cannot_be_judged_is_no_data_beside_what_can(
     assert (check.status, f"{code} " in check.err) == (2, True)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", REFUSED)
 def test_no_form_of_the_audit_and_of_the_report_loses_it(fretc: Fretc, kind: str) -> None:
     sentence, header, bindings, code = REFUSED[kind]

@@ -12,21 +12,16 @@ SEEDS = int(os.environ.get("FRETC_SEEDS", "1"))
 """How many seeds each scenario is tried with; 20 take some twenty minutes on two cores."""
 
 
-@pytest.fixture(scope="module")
-def runs() -> dict[str, list[Run]]:
-    found: dict[str, list[Run]] = {}
-    scenarios = [load(name) for name in names()]
-    for run in campaign(scenarios, range(1, SEEDS + 1), os.cpu_count() or 1):
-        found.setdefault(run.scenario, []).append(run)
-    return found
-
-
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", range(1, SEEDS + 1))
 @pytest.mark.parametrize("name", names())
-def test_every_verdict_is_the_stated_one(name: str, runs: dict[str, list[Run]]) -> None:
-    assert [run.seed for run in runs[name]] == list(range(1, SEEDS + 1))
-    assert {run.seed: (run.wrong, run.verdicts) for run in runs[name] if run.wrong} == {}
+def test_every_verdict_is_the_stated_one(name: str, seed: int, tmp_path: Path) -> None:
+    run = simulated(load(name), seed, tmp_path / "run.mcap")
+    assert (run.scenario, run.seed) == (name, seed)
+    assert run.wrong == {}, run.verdicts
 
 
+@pytest.mark.slow
 def test_two_runs_with_one_seed_are_the_same_to_the_last_byte(tmp_path: Path) -> None:
     scenario = replace(load("scan-swapped"), duration=40.0)
     first = simulated(scenario, 5, tmp_path / "first.mcap")
@@ -45,6 +40,7 @@ def test_a_verdict_that_is_not_the_stated_one_is_told(tmp_path: Path) -> None:
     assert "not as stated: nominal, seed 1: R6 is vacuous, not satisfied, R9 is inc" in table([run])
 
 
+@pytest.mark.slow
 def test_the_logs_of_a_campaign_stay_where_they_are_wanted(tmp_path: Path) -> None:
     told: list[int] = []
     short = [replace(load(name), duration=2.0) for name in ("nominal", "walker")]

@@ -139,6 +139,7 @@ ranges = st.lists(
 )
 
 
+@pytest.mark.slow
 @given(ranges)
 @example([NAN] * 7 + [13.0])  # beyond the range of the sensor, and no +inf
 def test_while_nothing_is_open_it_decides_as_the_threshold_by_hand(values: list[float]) -> None:

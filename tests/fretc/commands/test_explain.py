@@ -180,6 +180,7 @@ def test_a_picture_does_not_replace_its_requirement(fretc: Fretc) -> None:
     assert Path("requirements/r1.fret").read_text() == R1
 
 
+@pytest.mark.slow
 def test_a_long_bound_is_folded(fretc: Fretc) -> None:
     write("long.fret", "when p the robot shall within 1000 ticks satisfy q")
     run = fretc("explain", "long.fret")

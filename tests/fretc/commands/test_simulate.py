@@ -8,10 +8,12 @@ from pathlib import Path
 import pytest
 from mcap.reader import make_reader
 
+from tests.command import Fretc
+
 ROOT = Path(__file__).parents[3]
 
 
-def fretc(folder: Path, *words: str) -> subprocess.CompletedProcess[str]:
+def simulate(folder: Path, *words: str) -> subprocess.CompletedProcess[str]:
     return subprocess.run(
         [sys.executable, "-c", "from fretc.cli import main; main()", "simulate", *words],
         cwd=folder,
@@ -22,6 +24,7 @@ def fretc(folder: Path, *words: str) -> subprocess.CompletedProcess[str]:
     )
 
 
+@pytest.mark.slow
 def test_a_mission_is_recorded_and_drawn(tmp_path: Path) -> None:
     words = (
         "walker",
@@ -36,7 +39,7 @@ def test_a_mission_is_recorded_and_drawn(tmp_path: Path) -> None:
         "--gif",
         "a.gif",
     )
-    ran = fretc(tmp_path, *words)
+    ran = simulate(tmp_path, *words)
     assert ran.returncode == 0, ran.stderr
     assert ran.stderr == "wrote a.mcap\nwrote a.png\nwrote a.gif\n"
     assert ran.stdout.startswith("walker, seed 3: 2.0 s, 0 of 4 goals, 0 stops, 0 contacts, least ")
@@ -50,38 +53,41 @@ def test_a_mission_is_recorded_and_drawn(tmp_path: Path) -> None:
     assert about["fretc"]
 
 
+@pytest.mark.slow
 def test_folders_that_are_missing_are_made(tmp_path: Path) -> None:
-    ran = fretc(tmp_path, "--duration", "1", "--out", "a/b/c.mcap", "--png", "d/e.png")
+    ran = simulate(tmp_path, "--duration", "1", "--out", "a/b/c.mcap", "--png", "d/e.png")
     assert ran.returncode == 0, ran.stderr
     assert (tmp_path / "a/b/c.mcap").is_file()
     assert (tmp_path / "d/e.png").is_file()
 
 
+@pytest.mark.slow
 def test_a_mission_can_be_a_log_of_ros_1(tmp_path: Path) -> None:
-    ran = fretc(tmp_path, "--duration", "1", "--encoding", "ros1", "--out", "a.mcap")
+    ran = simulate(tmp_path, "--duration", "1", "--encoding", "ros1", "--out", "a.mcap")
     assert ran.returncode == 0, ran.stderr
     with (tmp_path / "a.mcap").open("rb") as stream:
         assert make_reader(stream).get_header().profile == "ros1"
 
 
 def test_the_scenarios_are_named(tmp_path: Path) -> None:
-    ran = fretc(tmp_path, "--list")
+    ran = simulate(tmp_path, "--list")
     assert ran.returncode == 0
     assert "\nnominal          Nominal mission\n" in ran.stdout
     assert len(ran.stdout.splitlines()) == 19
 
 
+@pytest.mark.slow
 def test_a_campaign_ends_in_a_table_and_tells_what_is_not_as_stated(tmp_path: Path) -> None:
     (tmp_path / "mine.toml").write_text(
         'title = "Mine"\nduration = 3\n[expect]\ninconclusive = ["R12"]\n', encoding="utf-8"
     )
-    ran = fretc(tmp_path, "mine.toml", "--campaign", "2", "--jobs", "2")
+    ran = simulate(tmp_path, "mine.toml", "--campaign", "2", "--jobs", "2")
     assert ran.returncode == 0, ran.stderr
     assert ran.stdout.splitlines()[1].startswith("mine      2/2        0/2 ")
     (tmp_path / "mine.toml").write_text(
         'title = "Mine"\nduration = 3\n[expect]\nsatisfied = ["R12"]\n', encoding="utf-8"
     )
-    ran = fretc(tmp_path, "mine.toml", "--campaign", "1", "--format", "json")
+    ran = simulate(tmp_path, "mine.toml", "--campaign", "1", "--format", "json")
     assert ran.returncode == 1
     (run,) = json.loads(ran.stdout)
     assert run["wrong"] == {"R12": "satisfied"}
@@ -113,15 +119,15 @@ def test_a_campaign_ends_in_a_table_and_tells_what_is_not_as_stated(tmp_path: Pa
     ],
 )
 def test_what_cannot_be_done_is_refused_and_leaves_nothing(
-    tmp_path: Path, words: tuple[str, ...], said: str
+    tmp_path: Path, fretc: Fretc, words: tuple[str, ...], said: str
 ) -> None:
     (tmp_path / "bad.toml").write_text("", encoding="utf-8")
     (tmp_path / "ghost.toml").write_text(
         'title = "a"\n[store.moved]\nghost = [1, 1]\n', encoding="utf-8"
     )
-    ran = fretc(tmp_path, *words)
-    assert ran.returncode == 2
-    assert said in ran.stderr
+    ran = fretc("simulate", *words)
+    assert ran.status == 2
+    assert said in ran.err
     assert sorted(path.name for path in tmp_path.iterdir()) == ["bad.toml", "ghost.toml"]
 
 
@@ -141,15 +147,16 @@ def test_what_cannot_be_done_is_refused_and_leaves_nothing(
     ],
 )
 def test_what_is_wrong_in_a_scenario_is_shown(
-    tmp_path: Path, text: str, why: str, shown: str
+    tmp_path: Path, fretc: Fretc, text: str, why: str, shown: str
 ) -> None:
     (tmp_path / "bad.toml").write_text(f'title = "a"\n{text}', encoding="utf-8")
-    ran = fretc(tmp_path, "bad.toml", "--out", "a.mcap")
-    assert (ran.returncode, ran.stdout) == (2, "")
-    assert ran.stderr.startswith(f"F914 the scenario `bad.toml` cannot be run: {why}")
-    assert shown in ran.stderr
+    ran = fretc("simulate", "bad.toml", "--out", "a.mcap")
+    assert (ran.status, ran.out) == (2, "")
+    assert ran.err.startswith(f"F914 the scenario `bad.toml` cannot be run: {why}")
+    assert shown in ran.err
 
 
+@pytest.mark.slow
 def test_a_campaign_that_is_stopped_leaves_nothing_half_written(tmp_path: Path) -> None:
     (tmp_path / "logs").mkdir()
     (tmp_path / "temporary").mkdir()

@@ -328,6 +328,7 @@ def test_a_loop_that_keeps_its_requirement(fretc: Fretc, loop: Callable[..., str
     assert (run.status, rest, run.err) == (0, ASSUMPTIONS, WROTE)
 
 
+@pytest.mark.slow
 def test_the_stop_of_r1_is_released(fretc: Fretc) -> None:
     """Its safety function speaks on change; a watchdog that hears nothing halts it for good."""
     shutil.copytree(template_root().parent / "requirements", "requirements")
@@ -384,6 +385,7 @@ def test_a_run_is_replayed_by_the_monitor_itself(fretc: Fretc, loop: Callable[..
     assert subprocess.run(replay, capture_output=True, check=False).returncode == 1
 
 
+@pytest.mark.slow
 @pytest.mark.confined
 def test_the_least_bound_is_told(fretc: Fretc, loop: Callable[..., str]) -> None:
     run = fretc("verify", "--layer", "bounds", loop(400))
@@ -503,6 +505,7 @@ def test_nothing_is_proved_of_an_interceptor_that_flies_otherwise(
     assert reason in run.out
 
 
+@pytest.mark.slow
 def test_all_five_layers_have_a_line(fretc: Fretc, loop: Callable[..., str]) -> None:
     run = fretc("verify", loop(400), "--format", "json")
     assert {record["layer"] for record in told(run)} == {

@@ -89,6 +89,7 @@ def test_another_log_under_the_same_name_is_found(audited: Fretc) -> None:
     assert "differs: the log has changed; the verdict is satisfied, and was violated" in run.out
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("looked", ["index", "hash", "full"])
 def test_another_log_of_the_same_verdicts_is_found(audited: Fretc, looked: str) -> None:
     assert audited("audit", "logs", "--integrity", looked).status == 1
@@ -153,6 +154,7 @@ def manifested(*lines: str) -> None:
     write("logs.sha256", "".join(f"{line}\n" for line in lines or whole))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("field", "value", "told"),
     [

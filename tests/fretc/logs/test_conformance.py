@@ -13,6 +13,7 @@ from mcap.stream_reader import StreamReader
 from fretc.logs.reader import look, read
 from fretc.logs.signals.samples import Recording
 from fretish.diagnostics.diagnostic import Code, Diagnostic
+from tests.each import each
 from tests.fretc.logs.conformance import Records, Variant, build, variants
 from tests.fretc.logs.logs import X, codes, times, values
 
@@ -72,7 +73,8 @@ def test_they_are_byte_for_byte_those_of_the_suite(name: str, sha256: str) -> No
     assert hashlib.sha256(variant.data).hexdigest() == sha256
 
 
-@pytest.mark.parametrize("variant", ALL, ids=lambda variant: variant.name)
+@pytest.mark.slow
+@each("variant", ALL)
 def test_each_file_holds_what_it_states_and_is_whole(variant: Variant, tmp_path: Path) -> None:
     path = tmp_path / "log.mcap"
     path.write_bytes(variant.data)
@@ -112,7 +114,8 @@ def with_numbers(records: Records) -> Records:
     )
 
 
-@pytest.mark.parametrize("variant", WITH_MESSAGES, ids=lambda variant: variant.name)
+@pytest.mark.slow
+@each("variant", WITH_MESSAGES)
 def test_each_payload_arrives_with_its_time(variant: Variant, tmp_path: Path) -> None:
     records = with_numbers(variant.records)
     data = build(records, variant.features)

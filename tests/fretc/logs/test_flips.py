@@ -100,6 +100,7 @@ def columns(recording: Recording) -> Any:
     )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("kind", "integrity", "clock"),
     [

@@ -53,6 +53,7 @@ PACKED: dict[str, Callable[[bytes], bytes]] = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("stated", [0, 100, BOMB - 1, BOMB + 1, 2**40, 2**63, 2**64 - 1])
 @pytest.mark.parametrize("packing", PACKED)
 def test_a_chunk_that_unpacks_to_more_than_it_states_is_a_gap_and_costs_no_memory(
@@ -69,6 +70,7 @@ def test_a_chunk_that_unpacks_to_more_than_it_states_is_a_gap_and_costs_no_memor
     assert peak < 16 * MIB + 2 * believed
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("packing", PACKED)
 def test_a_large_chunk_that_is_what_it_states_is_read(tmp_path: Path, packing: str) -> None:
     content = framed(raw(2 * S, LITTLE + struct.pack("<d", 0.25) + bytes(BOMB - 31 - 12)))

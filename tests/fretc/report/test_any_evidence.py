@@ -147,6 +147,7 @@ def known(folder: Path) -> Project:
     return project(folder, *TEXTS)
 
 
+@pytest.mark.slow
 @given(drawn=audits())
 @_BRIEFLY
 def test_any_evidence_gives_a_report_that_fits_its_schema(
@@ -201,6 +202,7 @@ def forms(made: Made, results: Sequence[dict[str, Any]], known: Project) -> dict
     }
 
 
+@pytest.mark.slow
 @given(drawn=audits())
 @_BRIEFLY
 def test_all_forms_follow_one_model_of_verdict_and_currency(
@@ -244,6 +246,7 @@ def level(one: Mapping[str, Any], known: Project) -> str:
     return "none" if one["verdict"] == "satisfied" and not is_suspect(one, known) else "warning"
 
 
+@pytest.mark.slow
 @given(drawn=audits())
 @_BRIEFLY
 def test_reasons_come_by_severity_everywhere(

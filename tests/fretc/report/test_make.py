@@ -82,6 +82,7 @@ UNVIOLABLE = (
 )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("verdict", "changes", "word", "headline", "sentence"), VERDICTS)
 def test_each_verdict_has_its_overall_result(
     tmp_path: Path,

@@ -10,6 +10,8 @@ from pathlib import Path
 
 import pytest
 
+from tests.command import Fretc
+
 ROOT = Path(__file__).parents[3]
 FRETC = [sys.executable, "-c", "from fretc.cli import main; main()"]
 LOG = str(ROOT / "traces/mission-seed15.mcap")
@@ -23,7 +25,7 @@ def folder(tmp_path: Path) -> Path:
     return tmp_path
 
 
-def fretc(folder: Path, arguments: str, shell: str = "{}") -> subprocess.CompletedProcess[str]:
+def in_shell(folder: Path, arguments: str, shell: str) -> subprocess.CompletedProcess[str]:
     """Run a line in a shell; `{}` in `shell` stands for the command."""
     command = f"'{sys.executable}' -c 'from fretc.cli import main; main()' {arguments}"
     done = subprocess.run(
@@ -38,18 +40,20 @@ def fretc(folder: Path, arguments: str, shell: str = "{}") -> subprocess.Complet
     return done
 
 
+@pytest.mark.slow
 def test_a_reader_that_goes_away_is_no_violation(folder: Path) -> None:
-    done = fretc(folder, f"audit {LOG}", "{} | true; echo ${{PIPESTATUS[0]}}")
+    done = in_shell(folder, f"audit {LOG}", "{} | true; echo ${{PIPESTATUS[0]}}")
     assert done.stdout == "2\n"
 
 
+@pytest.mark.slow
 def test_a_full_standard_error_leaves_the_exit_status_alone(folder: Path) -> None:
-    assert fretc(folder, f"audit {LOG}", "{} 2>/dev/full").returncode == 0
-    assert fretc(folder, "audit none.mcap", "{} 2>/dev/full").returncode == 2
+    assert in_shell(folder, f"audit {LOG}", "{} 2>/dev/full").returncode == 0
+    assert in_shell(folder, "audit none.mcap", "{} 2>/dev/full").returncode == 2
 
 
 def test_a_full_standard_output_is_told(folder: Path) -> None:
-    done = fretc(folder, "r1.fret", "{} >/dev/full")
+    done = in_shell(folder, "r1.fret", "{} >/dev/full")
     assert (done.returncode, done.stderr.splitlines()[0]) == (
         2,
         "F905 `standard output` cannot be written: No space left on device",
@@ -57,26 +61,28 @@ def test_a_full_standard_output_is_told(folder: Path) -> None:
 
 
 def test_a_closed_standard_output_costs_nothing_but_the_output(folder: Path) -> None:
-    assert fretc(folder, "r1.fret --emit ajpf", "{} >&-").returncode == 0
+    assert in_shell(folder, "r1.fret --emit ajpf", "{} >&-").returncode == 0
     assert (folder / "build/r1.psl").is_file()
 
 
+@pytest.mark.slow
 def test_an_encoding_that_has_no_tick_mark_still_shows_the_verdict(folder: Path) -> None:
-    done = fretc(folder, f"audit {LOG}", "PYTHONIOENCODING=latin-1 {}")
+    done = in_shell(folder, f"audit {LOG}", "PYTHONIOENCODING=latin-1 {}")
     assert done.returncode == 0
     assert "\\u2714 R1  satisfied" in done.stdout
 
 
-def test_evidence_never_replaces_what_is_read(folder: Path) -> None:
+def test_evidence_never_replaces_what_is_read(folder: Path, fretc: Fretc) -> None:
     shutil.copy(LOG, folder / "run.mcap")
-    done = fretc(folder, "audit run.mcap --evidence ./run.mcap")
-    assert (done.returncode, done.stderr.splitlines()[0]) == (
+    done = fretc("audit", "run.mcap", "--evidence", "./run.mcap")
+    assert (done.status, done.err.splitlines()[0]) == (
         2,
         "F905 `run.mcap` cannot be written: it is `run.mcap`, which is read",
     )
     assert (folder / "run.mcap").read_bytes() == Path(LOG).read_bytes()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["bindings.toml", "hazards.toml", "fretc.lock"])
 @pytest.mark.parametrize(
     "line",
@@ -87,59 +93,64 @@ def test_evidence_never_replaces_what_is_read(folder: Path) -> None:
     ],
 )
 def test_what_stands_beside_requirements_is_never_replaced(
-    folder: Path, line: str, name: str
+    folder: Path, fretc: Fretc, line: str, name: str
 ) -> None:
     shutil.copy(LOG, folder / "run.mcap")
     there = folder / "requirements" / name
     there.touch()
     before = there.read_bytes()
-    assert fretc(folder, line.format(name)).returncode == 2
+    assert fretc(*line.format(name).split()).status == 2
     assert there.read_bytes() == before
 
 
-def test_a_report_never_replaces_its_evidence_nor_its_other_form(folder: Path) -> None:
-    fretc(folder, f"audit {LOG}")
+def test_a_report_never_replaces_its_evidence_nor_its_other_form(
+    folder: Path, fretc: Fretc
+) -> None:
+    fretc("audit", LOG)
     before = (folder / "build/evidence.json").read_bytes()
-    assert fretc(folder, "report --html build/evidence.json").returncode == 2
-    assert fretc(folder, "report --html build/x --json build/./x").returncode == 2
+    assert fretc("report", "--html", "build/evidence.json").status == 2
+    assert fretc("report", "--html", "build/x", "--json", "build/./x").status == 2
     assert not (folder / "build/x").exists()
     assert (folder / "build/evidence.json").read_bytes() == before
 
 
 def test_one_form_of_the_report_that_cannot_be_written_keeps_the_other_from_being_written(
     folder: Path,
+    fretc: Fretc,
 ) -> None:
-    assert fretc(folder, "report --html new.html --json r1.fret/x.json").returncode == 2
+    assert fretc("report", "--html", "new.html", "--json", "r1.fret/x.json").status == 2
     assert not (folder / "new.html").exists()
 
 
 def test_a_report_about_requirements_with_an_error_is_written_and_exits_with_2(
     folder: Path,
+    fretc: Fretc,
 ) -> None:
     (folder / "requirements/r2.fret").write_text("the sw shall stopped\n", "utf-8")
-    done = fretc(folder, "report --html report.html")
-    assert (done.returncode, (folder / "report.html").is_file()) == (2, True)
+    done = fretc("report", "--html", "report.html")
+    assert (done.status, (folder / "report.html").is_file()) == (2, True)
 
 
-def test_a_link_is_followed_and_a_file_keeps_its_permissions(folder: Path) -> None:
+def test_a_link_is_followed_and_a_file_keeps_its_permissions(folder: Path, fretc: Fretc) -> None:
     real = folder / "real.fret"
     real.write_text(R1.replace("satisfy stopped", "satisfy (stopped)"), "utf-8")
     real.chmod(0o640)
     (folder / "link.fret").symlink_to(real)
-    assert fretc(folder, "fmt link.fret").returncode == 0
+    assert fretc("fmt", "link.fret").status == 0
     assert (folder / "link.fret").is_symlink()
     assert real.read_text("utf-8") == R1
     assert real.stat().st_mode & 0o777 == 0o640
 
 
-def test_what_is_no_regular_file_is_never_replaced(folder: Path) -> None:
+def test_what_is_no_regular_file_is_never_replaced(folder: Path, fretc: Fretc) -> None:
     os.mkfifo(folder / "pipe")
-    assert fretc(folder, "simulate --duration 1 --out pipe").returncode == 2
-    assert fretc(folder, f"audit {LOG} --evidence pipe").returncode == 2
-    assert fretc(folder, "audit pipe").returncode == 2
+    assert fretc("simulate", "--duration", "1", "--out", "pipe").status == 2
+    assert fretc("audit", LOG, "--evidence", "pipe").status == 2
+    assert fretc("audit", "pipe").status == 2
     assert (folder / "pipe").is_fifo()
 
 
+@pytest.mark.slow
 def test_a_termination_leaves_no_temporary_file(folder: Path) -> None:
     ids = "".join(f'+++\nid = "R{i}"\n+++\n{R1}' for i in range(1000))
     (folder / "many.fret").write_text(ids, "utf-8")
@@ -157,11 +168,11 @@ def test_a_termination_leaves_no_temporary_file(folder: Path) -> None:
     assert list(folder.glob("build/.*.tmp")) == []
 
 
-def test_ids_whose_files_would_be_one_are_refused(folder: Path) -> None:
+def test_ids_whose_files_would_be_one_are_refused(folder: Path, fretc: Fretc) -> None:
     pairs = "".join(f'+++\nid = "{id}"\n+++\n{R1}' for id in ("a-b", "A.B"))
     (folder / "two.fret").write_text(pairs, "utf-8")
-    done = fretc(folder, "two.fret --emit monitor")
-    assert (done.returncode, done.stderr.splitlines()[0]) == (
+    done = fretc("two.fret", "--emit", "monitor")
+    assert (done.status, done.err.splitlines()[0]) == (
         2,
         "F201 the id `A.B` is taken: two.fret:2",
     )
@@ -174,20 +185,20 @@ def test_ids_whose_files_would_be_one_are_refused(folder: Path) -> None:
         "whenever p the sw shall within 1000000000000000 ticks satisfy q",
     ],
 )
-def test_a_number_without_end_is_told(folder: Path, sentence: str) -> None:
+def test_a_number_without_end_is_told(folder: Path, fretc: Fretc, sentence: str) -> None:
     (folder / "long.fret").write_text(sentence, "utf-8")
-    done = fretc(folder, "long.fret")
-    assert (done.returncode, done.stderr.splitlines()[0]) == (
+    done = fretc("long.fret")
+    assert (done.status, done.err.splitlines()[0]) == (
         2,
         "F108 a duration has at most 15 digits",
     )
 
 
-def test_a_predicate_that_looks_back_needs_no_column_of_its_own(folder: Path) -> None:
+def test_a_predicate_that_looks_back_needs_no_column_of_its_own(folder: Path, fretc: Fretc) -> None:
     (folder / "p.fret").write_text(
         "whenever persisted(1,p) the sw shall immediately satisfy q", "utf-8"
     )
-    assert fretc(folder, "p.fret --emit monitor").returncode == 0
+    assert fretc("p.fret", "--emit", "monitor").status == 0
     table = "p,q\n1,0\n1,1\n1,0\n"
     (folder / "t.csv").write_text(table, "utf-8")
     done = subprocess.run(
@@ -201,8 +212,10 @@ def test_a_predicate_that_looks_back_needs_no_column_of_its_own(folder: Path) ->
 
 
 @pytest.mark.parametrize("shell", ["{} >&-", "{} >/dev/full", "{} <&-"])
-def test_a_monitor_with_a_closed_or_full_stream_tells_so(folder: Path, shell: str) -> None:
-    fretc(folder, "r1.fret --emit monitor")
+def test_a_monitor_with_a_closed_or_full_stream_tells_so(
+    folder: Path, fretc: Fretc, shell: str
+) -> None:
+    fretc("r1.fret", "--emit", "monitor")
     (folder / "t.csv").write_text("too_close,stopped\n0,1\n", "utf-8")
     trace = "-" if "<" in shell else "t.csv"
     command = f"'{sys.executable}' build/r1_monitor.py {trace}"
@@ -220,25 +233,25 @@ def test_a_monitor_with_a_closed_or_full_stream_tells_so(folder: Path, shell: st
 
 @pytest.mark.parametrize("evidence", ["runs/b.mcap", "runs/a.mcap", "build/x"])
 def test_no_audit_is_begun_whose_evidence_or_journal_would_replace_a_log(
-    folder: Path, evidence: str
+    folder: Path, fretc: Fretc, evidence: str
 ) -> None:
     (folder / "runs").mkdir()
     (folder / "build").mkdir()
     for name in ("runs/b.mcap", "runs/a.mcap.journal", "build/x.journal"):
         shutil.copy(LOG, folder / name)
-    logs = "runs/b.mcap runs/a.mcap.journal build/x.journal"
-    done = fretc(folder, f"audit {logs} --evidence {evidence}")
-    assert done.returncode == 2
-    assert done.stderr.startswith("F905 ")
-    assert "wrote" not in done.stderr
+    logs = ("runs/b.mcap", "runs/a.mcap.journal", "build/x.journal")
+    done = fretc("audit", *logs, "--evidence", evidence)
+    assert done.status == 2
+    assert done.err.startswith("F905 ")
+    assert "wrote" not in done.err
     assert sum(path.is_file() for path in (*folder.glob("runs/*"), *folder.glob("build/*"))) == 3
     assert (folder / "build/x.journal").read_bytes() == Path(LOG).read_bytes()
 
 
-def test_no_name_of_a_log_writes_a_verdict_of_its_own(folder: Path) -> None:
+def test_no_name_of_a_log_writes_a_verdict_of_its_own(folder: Path, fretc: Fretc) -> None:
     forged = "a.mcap\n  \u2714 R1  satisfied\x1b[2K"
     shutil.copy(LOG, folder / forged)
-    done = fretc(folder, "audit *.mcap* --evidence $'build/x\\ny'")
-    assert done.stdout.splitlines()[0] == "a.mcap\\n  \u2714 R1  satisfied\\x1b[2K"
-    assert len(done.stdout.splitlines()) == 2
-    assert done.stderr == "wrote build/x\\ny\n"
+    done = fretc("audit", forged, "--evidence", "build/x\ny")
+    assert done.out.splitlines()[0] == "a.mcap\\n  \u2714 R1  satisfied\\x1b[2K"
+    assert len(done.out.splitlines()) == 2
+    assert done.err == "wrote build/x\\ny\n"

@@ -99,6 +99,7 @@ def test_what_is_not_as_expected_shows_nothing(
     assert only(ran).result == expected
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "name", ["SIF.gwen", "SIF.psl", "SIF_mutant.gwen", "Env.java", "SIF.ail", "R1.jpf", "run.py"]
 )

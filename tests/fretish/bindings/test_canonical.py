@@ -205,6 +205,7 @@ NAMES = {
 LENGTHS = st.fractions(min_value=-3, max_value=3, max_denominator=1000)
 
 
+@pytest.mark.slow
 @given(
     LENGTHS.filter(lambda n: n >= 0 and (n * 10**9).denominator == 1),
     st.sampled_from(sorted(NAMES)),

@@ -12,6 +12,7 @@ from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.explanations import Explained, as_record, explanations, text
 from fretish.diagnostics.source import Source
 from fretish.documents import requirements
+from tests.each import each
 from tests.mending import toml_in
 
 EXAMPLES = {number: each for number, each in explanations().items() if each.wrong}
@@ -59,7 +60,7 @@ def test_the_toml_that_an_example_is_told_to_write_parses(number: str) -> None:
             tomllib.loads(fragment)
 
 
-@pytest.mark.parametrize("code", Code, ids=lambda code: code.number)
+@each("code", Code)
 def test_an_explanation_is_short_and_made_of_sentences(code: Code) -> None:
     explained = explanations()[code.number]
     for part in (explained.cause, explained.mend):

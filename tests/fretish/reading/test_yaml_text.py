@@ -42,6 +42,7 @@ def test_what_is_no_yaml_is_a_value_error(text: str) -> None:
         loaded(text)
 
 
+@pytest.mark.slow
 def test_a_long_text_without_aliases_is_read() -> None:
     assert len(loaded("\n".join(f"- {i}" for i in range(30_000)))) == 30_000
 

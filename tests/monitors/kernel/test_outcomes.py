@@ -72,6 +72,7 @@ def judged(machine: Monitor, trace: Trace) -> tuple[set[int], set[int]]:
     return certain, {trigger for trigger, _ in listed & everywhere}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("scope", SCOPES)
 def test_what_is_said_to_be_certain_is_so_for_all_values_of_the_unknown(scope: str) -> None:
     for template in templates():

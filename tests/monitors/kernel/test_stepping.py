@@ -40,6 +40,7 @@ def told(machine: Monitor) -> tuple[object, ...]:
     return machine.tick, machine.verdicts(), machine.standings(), step(machine)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("sentence", SENTENCES)
 @pytest.mark.parametrize("unknown", [0.0, 0.001, 0.3])
 def test_a_run_is_its_steps_however_it_is_cut(sentence: str, unknown: float) -> None:
@@ -75,6 +76,7 @@ def test_booleans_of_numpy_are_those_of_python(sentence: str) -> None:
     assert type(numpy.must.signals()[0].trigger) is bool
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("sentence", SENTENCES)
 @pytest.mark.parametrize("bad", [1, "true", float("nan")])
 @pytest.mark.parametrize("unknown", [0.0, 0.3])
@@ -115,6 +117,7 @@ def test_whatever_stops_a_run_both_rails_stay_together() -> None:
 # Checkpoints ----------------------------------------------------------------------------------
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("unknown", [0.0, 0.2])
 def test_a_monitor_goes_on_from_its_state(unknown: float) -> None:
     machine = monitor(*SENTENCES)

@@ -296,6 +296,7 @@ public abstract class VerificationofAutonomousSystemsEnvironment {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(shutil.which("javac") is None, reason="javac is not here")
 def test_the_environment_compiles_against_what_it_uses_of_mcapl(tmp_path: Path) -> None:
     for name, text in STUBS.items():

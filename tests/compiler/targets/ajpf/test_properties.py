@@ -120,6 +120,7 @@ def test_every_template_is_emitted_or_refused_for_the_right_reason() -> None:
     assert counts == {"emitted": 183, "constant": 9, "counts ticks": 96}
 
 
+@pytest.mark.slow
 def test_every_property_has_the_language_of_the_formula() -> None:
     for template in expressible():
         found = properties(emitted(template.sentence))
@@ -331,6 +332,7 @@ def test_a_control_says_what_it_is_for(scope: str, why: str) -> None:
     assert reach.why == why
 
 
+@pytest.mark.slow
 def test_where_a_control_holds_so_does_the_requirement_without_its_trigger() -> None:
     """Of every template: what `reach` says alone implies the requirement."""
     for template in expressible():
@@ -540,6 +542,7 @@ def test_within_becomes_eventually_on_request_and_the_file_says_so() -> None:
     assert loss in told.message
 
 
+@pytest.mark.slow
 def test_what_is_weakened_is_implied_by_the_requirement_and_nothing_else_is_touched() -> None:
     weakened = 0
     for template in expressible(WEAKEN):

@@ -14,6 +14,7 @@ from compiler.formalization import reference as counters
 from compiler.formalization.letters import atoms_of, meanings
 from compiler.targets.automata.chart import chart
 from tests import meaning
+from tests.each import each
 from tests.emitting import LOOKING_BACK, MANY, PROBABLE, SHARING, emitted, refused, rule
 from tests.strategies import Template, templates
 
@@ -117,6 +118,7 @@ def assert_walked_as_defined(sentence: str, traces: int) -> None:
             assert (walk.place == "satisfied") is (index == defined.satisfied), sentence
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("scope", meaning.SCOPES)
 def test_every_template_is_walked_as_it_is_defined(scope: str) -> None:
     for drawn in templates((0, 1, 3)):
@@ -162,7 +164,7 @@ def test_a_thousand_ticks_are_one_node() -> None:
     )
 
 
-@pytest.mark.parametrize(("template"), list(templates((40,))), ids=lambda t: t.sentence)
+@each("template", list(templates((40,))))
 def test_no_template_has_more_nodes_than_fit_on_a_page(template: Template) -> None:
     sentence = template.sentence
     if re.search("only .* (upon|whenever) .* after", sentence):
@@ -211,6 +213,7 @@ def test_graphviz_draws_it(sentence: str, tmp_path: Path) -> None:
     assert "</svg>" in done.stdout
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("sentence", "told"),
     [

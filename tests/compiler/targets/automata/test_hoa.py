@@ -32,6 +32,7 @@ def assert_has_the_language_of_the_formula(sentence: str) -> None:
     assert spot.are_equivalent(read(text_of(sentence)), spot.formula(formula)), sentence
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("scope", meaning.SCOPES)
 def test_every_template_has_the_language_of_its_formula(scope: str) -> None:
     for template in templates((0, 1, 3)):
@@ -151,6 +152,7 @@ def test_a_predicate_that_looks_elsewhere_is_refused() -> None:
     assert "F601 HOA cannot express the predicate `persisted` of R1" in refused("hoa", LOOKING_BACK)
 
 
+@pytest.mark.slow
 def test_an_automaton_that_is_too_large_is_refused() -> None:
     sentence = "only in m mode whenever p the sw shall after 60 ticks satisfy q"
     assert refused("hoa", sentence) == (

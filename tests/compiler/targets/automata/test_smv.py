@@ -237,6 +237,7 @@ def assert_runs_as_defined(sentence: str, traces: int, length: int) -> None:
         assert ends is holds(made.pt, rows, length - 1), (sentence, rows)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("scope", meaning.SCOPES)
 def test_every_template_runs_as_it_is_defined(scope: str) -> None:
     for drawn in templates((0, 1, 3)):
@@ -272,6 +273,7 @@ def test_the_properties_of_a_safety_requirement() -> None:
     ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("scope", meaning.SCOPES)
 def test_the_requirement_is_its_future_time_formula(scope: str) -> None:
     for drawn in templates((0, 2)):

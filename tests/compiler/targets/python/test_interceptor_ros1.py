@@ -18,7 +18,13 @@ TIMED = Interception("/stop", "/cmd_vel", "/wheels", period=2 * MS, stop_timeout
 PAPER = Interception("/stop", "/cmd_vel", "/wheels", form=Form.EVENT, ros=1)
 FAST = 0.4
 
-pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "ROS 1 is here")
+pytestmark = pytest.mark.slow
+
+
+@pytest.fixture(autouse=True)
+def _ros_1() -> None:
+    if missing():
+        pytest.skip(missing())
 
 
 @pytest.fixture

@@ -64,6 +64,7 @@ def cut(columns: Columns, length: int) -> Columns:
 # The meaning ----------------------------------------------------------------------------------
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("scope", SCOPES)
 def test_finite_is_the_meaning_of_every_prefix(scope: str) -> None:
     for template in templates():
@@ -79,6 +80,7 @@ def test_finite_is_the_meaning_of_every_prefix(scope: str) -> None:
                 assert verdict.finite is known[prefix], (template, cut(columns, length))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("scope", SCOPES)
 def test_triggers_are_those_of_the_definition(scope: str) -> None:
     for template in templates((2,)):
@@ -103,6 +105,7 @@ def columns_of(names: Sequence[str], table: Sequence[tuple[bool, ...]]) -> Colum
     return {name: [row[i] for row in table] for i, name in enumerate(names)}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("scope", SCOPES)
 def test_violated_is_said_at_the_first_tick_that_nothing_can_repair(scope: str) -> None:
     """Two more ticks decide every template that counts to 1: nothing of before is open then."""
@@ -119,6 +122,7 @@ def test_violated_is_said_at_the_first_tick_that_nothing_can_repair(scope: str) 
                 assert (told.verdict == told.decided == "violated") is lost, (template, prefix)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("scope", SCOPES)
 def test_an_open_demand_is_never_counted_as_satisfied(scope: str) -> None:
     """Satisfied and vacuous are said only of traces that FRET's finite semantics satisfies."""
@@ -233,6 +237,7 @@ def with_holes(names: Sequence[str], length: int, seed: str) -> dict[str, list[T
     return columns
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("scope", SCOPES)
 def test_what_is_definite_stays_whatever_the_unknown_values_are(scope: str) -> None:
     for template in templates((0, 2)):
@@ -380,6 +385,7 @@ def shape(text: str) -> list[str]:
     return [type(node).__name__ for part in generated(text) for node in ast.walk(part)]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("scope", SCOPES)
 @pytest.mark.parametrize("timing", ["within", "for", "after"])
 def test_a_step_is_the_same_code_for_any_duration(scope: str, timing: str) -> None:
@@ -454,6 +460,7 @@ def locals_of(text: str) -> list[str]:
     return sorted(found - {"p", "q", "m"})
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("scope", "condition", "timing"),
     [
@@ -606,6 +613,7 @@ def tool(*command: str) -> subprocess.CompletedProcess[str]:
     return subprocess.run(command, capture_output=True, text=True, check=False)
 
 
+@pytest.mark.slow
 def test_a_monitor_passes_a_strict_type_check(programs: Path, tmp_path: Path) -> None:
     """In a folder with another name: the checker is not to find the project's configuration."""
     files = sorted(map(str, programs.glob("*.py")))
@@ -632,6 +640,7 @@ CASES = [
 ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("trace", "status", "verdict"), CASES)
 def test_the_exit_status_tells_the_verdict(
     programs: Path, tmp_path: Path, trace: str, status: int, verdict: str

@@ -104,6 +104,8 @@ expr = "y < 9 m"
 R1, R2, R3, HAZARDS, BINDINGS = FILES
 LOGS = ("logs/a.mcap", "logs/b.mcap")
 BY = ("--reviewer", "A", "--role", "b", "--comment", "c", "--date", "2026-01-02")
+ALONE = ("--jobs", "1")
+"""Two short logs are sooner read than a process is started for each."""
 
 
 # What a requirement is made of ------------------------------------------------------------------
@@ -414,7 +416,7 @@ def reviewed(fretc: Fretc, _base: Path) -> Fretc:
             write(name, text)
         for path, values in zip(LOGS, ((0, 2, 3, 3, 1, 1, 0), (0, 2, 2, 2, 2, 1, 0)), strict=True):
             log(path, *values)
-        assert fretc("audit", "logs").status == 0
+        assert fretc("audit", "logs", *ALONE).status == 0
         assert fretc("lock", *BY).status == 0
         shutil.copytree(".", _base, dirs_exist_ok=True)
     shutil.copytree(_base, ".", dirs_exist_ok=True)
@@ -442,7 +444,7 @@ def asked(fretc: Fretc) -> Said:
     assert not isinstance(known, Diagnostic)
     made = make(known, "build/evidence.json", lock="requirements/fretc.lock")
     report = json.loads(made.json or "")["requirements"]
-    verify = fretc("verify-evidence", "--format", "json").out
+    verify = fretc("verify-evidence", *ALONE, "--format", "json").out
     again = [one for one in json.loads(verify)["results"] if one["finding"] == "differs"]
     everywhere = any("this is fretc" in reason for one in again for reason in one["reasons"])
     return Said(
@@ -459,13 +461,14 @@ def asked(fretc: Fretc) -> Said:
     )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", CHANGES)
 def test_a_change_reaches_what_is_made_of_it_and_nothing_else(reviewed: Fretc, name: str) -> None:
     change = CHANGES[name]
     change.make()
     for audited in (False, True):
         if audited:
-            reviewed("audit", "logs")
+            reviewed("audit", "logs", *ALONE)
         said = asked(reviewed)
         assert said.stale == dict.fromkeys(("check", "report"), change.stale(audited))
         assert said.suspect == dict.fromkeys(("diff", "check", "report"), change.suspect(audited))
@@ -479,7 +482,7 @@ def test_there_are_more_changes_than_were_once_tried_by_hand() -> None:
 def test_evidence_of_what_has_come_back_is_still_of_something_else(reviewed: Fretc) -> None:
     before = Path(BINDINGS).read_text()
     put(BINDINGS, "x > 1 m", "x > 2 m")()
-    reviewed("audit", "logs")
+    reviewed("audit", "logs", *ALONE)
     Path(BINDINGS).write_text(before)
     said = asked(reviewed)
     assert list(said.stale.values()) == [{"R1"}] * 2
@@ -496,7 +499,7 @@ def test_evidence_of_something_else_is_not_accepted(reviewed: Fretc) -> None:
     assert told in run.err
     assert Path("requirements/fretc.lock").read_text() == before
     assert reviewed("lock", "R2", *BY).status == 0, "of the others nothing is asked"
-    reviewed("audit", "logs")
+    reviewed("audit", "logs", *ALONE)
     assert reviewed("lock", *BY, "--accept-violations").status == 0
     assert reviewed("diff").status == 0
 
@@ -513,7 +516,7 @@ def test_a_log_that_nothing_identifies_is_not_accepted(reviewed: Fretc) -> None:
 def test_a_log_that_is_gone_is_told(reviewed: Fretc, audited: bool) -> None:
     Path(LOGS[1]).unlink()
     if audited:
-        reviewed("audit", "logs")
+        reviewed("audit", "logs", *ALONE)
         told = json.loads(reviewed("diff", "--format", "json").out)
         assert {one["requirement"] for one in told if one["suspect_links"]} == set(IDS)
     else:
@@ -557,6 +560,7 @@ WITHDRAWN = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("audited", [False, True])
 @pytest.mark.parametrize("name", WITHDRAWN)
 def test_what_was_claimed_and_is_not_any_more_is_never_lost(
@@ -565,7 +569,7 @@ def test_what_was_claimed_and_is_not_any_more_is_never_lost(
     make_it, gone = WITHDRAWN[name]
     make_it()
     if audited:
-        reviewed("audit", "logs")
+        reviewed("audit", "logs", *ALONE)
     diff = json.loads(reviewed("diff", "--format", "json").out)
     found = {one["requirement"] for one in diff if one["suspect_links"] or one["state"] == "gone"}
     assert found == gone
@@ -596,7 +600,7 @@ def test_who_accepts_that_something_is_claimed_no_more_hears_of_it_no_more(
     make_it, gone = WITHDRAWN[name]
     make_it()
     if name != "all retired":
-        reviewed("audit", "logs")
+        reviewed("audit", "logs", *ALONE)
         assert reviewed("lock", "R1", *BY).status == 0
         assert reviewed("report", "--strict").status == 1, "R3 is still to be accepted"
         assert reviewed("lock", *sorted(gone), *BY).status == 0
@@ -643,6 +647,7 @@ def _dated(day: str) -> None:
     Path(LOCK).write_text(text)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", LOCKS)
 def test_a_lock_that_nobody_can_have_written_is_refused_by_all(reviewed: Fretc, name: str) -> None:
     LOCKS[name]()

@@ -190,6 +190,7 @@ def _paths(value: Any, at: tuple[str | int, ...] = ()) -> list[tuple[str | int, 
     return [at] * bool(at) + [p for key, part in inside for p in _paths(part, (*at, key))]
 
 
+@pytest.mark.slow
 @settings(suppress_health_check=[HealthCheck.function_scoped_fixture], deadline=None)
 @given(data=st.data())
 @example(data=None)

@@ -58,6 +58,7 @@ def holds(p: Fraction, op: ComparisonOperator, bound: Fraction) -> bool:
     }[op]  # fmt: skip
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("op", OPERATORS)
 @pytest.mark.parametrize(("n", "bound"), [(25, "0.8"), (33, "0.9"), (60, "0.5"), (60, "0.05")])
 def test_where_whole_runs_are_good_or_bad_no_answer_is_wrong_more_often_than_stated(
@@ -276,6 +277,7 @@ LARGEST = Trials(60, 60, 0)
 """With it the run with most triggers stays the same, whatever becomes of those of the others."""
 
 
+@pytest.mark.slow
 @given(some_trials, st.data())
 def test_bounds_hold_whatever_the_open_triggers_come_to(
     runs: list[Trials], data: st.DataObject

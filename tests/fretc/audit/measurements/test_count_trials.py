@@ -96,6 +96,7 @@ def drawn(template: Template, length: int, chance_: random.Random) -> Columns:
 ALL = list(templates((0, 1, 2)))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("scope", meaning.SCOPES)
 def test_every_template_is_counted_as_its_meaning_says(scope: str) -> None:
     for template in ALL:
@@ -108,6 +109,7 @@ def test_every_template_is_counted_as_its_meaning_says(scope: str) -> None:
             assert of(template, told) == naive(template, columns), (template, columns)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("scope", meaning.SCOPES)
 def test_the_monitor_and_the_count_agree_on_every_run(scope: str) -> None:
     """The same triggers; a failure is a violation, and a satisfied run has answers only."""
@@ -131,6 +133,7 @@ def test_the_monitor_and_the_count_agree_on_every_run(scope: str) -> None:
             assert (found.count == 0) == (outcome.verdict == "vacuous"), where
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("scope", meaning.SCOPES)
 def test_what_is_unknown_is_never_decided_against_what_it_may_be(scope: str) -> None:
     for template in ALL:
@@ -225,6 +228,7 @@ def fillings(chance_: random.Random) -> Iterator[Filled]:
             yield Filled(template, shapes)
 
 
+@pytest.mark.slow
 def test_any_expressions_are_counted_as_their_meaning_says() -> None:
     chance_ = random.Random("expressions")
     for filled in fillings(chance_):

@@ -113,6 +113,7 @@ def test_a_log_that_was_not_hashed_is_told_by_its_summary_and_an_unread_one_by_i
     assert told["runs"] == told["by_requirement"][0]["runs"] == 3
 
 
+@pytest.mark.slow
 def test_the_worst_of_several_verdicts_of_a_log_counts_and_that_is_said(
     fretc: Fretc, results: list[dict[str, Any]]
 ) -> None:

@@ -174,6 +174,7 @@ CUT_TICK_DEPENDS = recorded(
 """What the cut tick asks for depends on a tick before the last one."""
 
 
+@pytest.mark.slow
 @example(declared(), LAST_TICK_CHANGES, SENTENCES[-2], 0)
 @example(declared(), CUT_TICK_DEPENDS, SENTENCES[-1], 0)
 @given(declarations_, logs(), st.sampled_from(SENTENCES), st.integers(0, 11))
@@ -214,6 +215,7 @@ BUSY = recorded(
 )
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("few")
 @pytest.mark.parametrize("phase", range(12))
 @pytest.mark.parametrize("sentence", SENTENCES)

@@ -128,6 +128,7 @@ def pieces(draw: st.DrawFn, *, plain: bool = False) -> list[Piece]:
     return found
 
 
+@pytest.mark.slow
 @settings(suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(
     pieces(),
@@ -153,6 +154,7 @@ UNSET = [image(1000 * S, 0), float_of(1, 1000 * S + 10**8, 0.0, 0)]
 """The bound topic has no publish time, another one has."""
 
 
+@pytest.mark.slow
 @settings(suppress_health_check=[HealthCheck.function_scoped_fixture])
 @example([Piece(UNSET, crc=False, declares=False)], "publish_time", 1, 1, 1)
 @given(
@@ -276,6 +278,7 @@ MUTATED = [
 ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("compression", "clock"), [("", "log_time"), ("zstd", "header.stamp")])
 @pytest.mark.parametrize("crc", [True, False])
 def test_no_changed_byte_that_a_crc_covers_changes_what_is_read_unseen(

@@ -26,6 +26,7 @@ from tests.fretc.logs.logs import (
 )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("chunked", [True, False])
 def test_of_a_log_cut_anywhere_the_whole_messages_are_read(tmp_path: Path, chunked: bool) -> None:
     path = write(tmp_path / "log.mcap", TWELVE, per_chunk=4, chunked=chunked)
@@ -143,6 +144,7 @@ def test_a_data_section_without_end_is_damaged(tmp_path: Path) -> None:
     assert recording.gaps == ()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "options",
     [

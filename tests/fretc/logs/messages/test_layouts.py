@@ -40,6 +40,7 @@ def read(encoder: Encoder, payloads: list[bytes]) -> int:
     return rows
 
 
+@pytest.mark.slow
 @BOTH
 @given(data=st.data(), seed=st.integers(0, 2**32))
 def test_every_number_is_what_the_official_decoder_reads(
@@ -52,6 +53,7 @@ def test_every_number_is_what_the_official_decoder_reads(
     assert read(encoder, payloads) >= len([p for p in texts if p.isascii()])
 
 
+@pytest.mark.slow
 @BOTH
 @given(data=st.data(), seed=st.integers(0, 2**32))
 def test_a_damaged_payload_is_read_as_the_official_decoder_does_or_left_to_it(

@@ -36,6 +36,7 @@ def stream(text: str, *, ros1: bool) -> Stream:
     return Stream(Channel(1, "/x", "ros1" if ros1 else "cdr", {}, 1), schema)
 
 
+@pytest.mark.slow
 @BOTH
 @given(text=TEXTS)
 @example(text="float64 x\nA a\n" + "=" * 80 + "\nMSG: one/A")
@@ -75,6 +76,7 @@ def test_a_shape_of_other_fields_than_the_decoder_has_is_not_trusted(said: str, 
     assert not trusted(known, decode)
 
 
+@pytest.mark.slow
 def test_a_message_too_large_to_be_made_up_is_not_trusted() -> None:
     sent = stream("one/A[1000] a\n===\nMSG: one/A\nfloat64[1000] b", ros1=False)
     known, decode = shape(sent), decoder(sent)

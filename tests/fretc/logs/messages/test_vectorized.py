@@ -172,6 +172,7 @@ WHOLE = st.one_of(
 )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "fields", ["", 'reduce = "min"\n', 'reduce = "max"\n', 'reduce = "mean"\n']
 )

@@ -61,6 +61,7 @@ def decimals(draw: st.DrawFn, digits: int) -> Fraction:
     return Fraction(whole, 10 ** draw(st.integers(0, digits + 2)))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("op", OPERATORS)
 @given(st.data(), st.sampled_from(PAIRS), st.sampled_from([DOUBLE, SINGLE]), st.integers(-2, 2))
 def test_equal_constants_of_two_units_judge_each_sample_alike(
@@ -88,6 +89,7 @@ def moved(number: Any, steps: int) -> Any:
     return number
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("op", OPERATORS)
 @given(st.data(), st.sampled_from(PAIRS), st.sampled_from([DOUBLE, SINGLE]))
 def test_a_sample_that_was_a_decimal_is_judged_as_that_decimal(
@@ -146,6 +148,7 @@ INTEGERS = st.one_of(
 )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("op", OPERATORS)
 @given(INTEGERS, st.data(), st.sampled_from(["m", "mm", "km"]), st.sampled_from(["m", "mm"]))
 @example(2**53, None, "m", "m")

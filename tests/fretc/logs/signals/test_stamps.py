@@ -280,6 +280,7 @@ def naive(rows: Sequence[tuple[str, int, int]], topic: str) -> list[tuple[int, b
     return [(known[0], True)] * first + found[first:]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("source", list(TimeSource))
 @given(_ROWS)
 @example([("/scan", 0, 0, 9), ("/scan", 5, 5, 1)])

@@ -144,6 +144,7 @@ def test_a_bag_that_is_cut_is_refused(tmp_path: Path) -> None:
         assert refused(file).code is Code.UNREADABLE_LOG, cut
 
 
+@pytest.mark.slow
 def test_every_cut_of_a_small_bag_gives_a_code_and_never_a_fault(tmp_path: Path) -> None:
     file = bag(tmp_path / "log.bag", ros1(3), lines=100)
     data = file.read_bytes()
@@ -166,6 +167,7 @@ def test_a_bag_that_is_damaged_within_is_read_up_to_there(tmp_path: Path) -> Non
     assert recording.findings[0].code is Code.DAMAGED_CHUNK
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(60))
 def test_a_changed_byte_anywhere_never_passes_for_a_fault(tmp_path: Path, seed: int) -> None:
     random = np.random.default_rng(seed)

@@ -86,6 +86,7 @@ def test_a_log_from_standard_input_is_the_log(tmp_path: Path, kind: str) -> None
     assert lines[2] == f"  SHA-256  {hashlib.sha256(data).hexdigest()}"
 
 
+@pytest.mark.slow
 def test_nothing_of_standard_input_stays_behind(tmp_path: Path) -> None:
     data = write(tmp_path / "log.mcap", TWELVE).read_bytes()
     place = tmp_path / "temporary"
@@ -96,6 +97,7 @@ def test_nothing_of_standard_input_stays_behind(tmp_path: Path) -> None:
     assert list(place.iterdir()) == []
 
 
+@pytest.mark.slow
 def test_empty_and_foreign_standard_input_have_their_codes() -> None:
     found = info(subprocess.DEVNULL)
     assert (found.returncode, found.stderr[:4]) == (2, b"F407")

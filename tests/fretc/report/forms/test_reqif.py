@@ -318,13 +318,13 @@ def held(text: str) -> str:
     lines = re.sub(r"\r\n|\r", "\n", text.strip())
     return "".join(
         "\ufffd"
-        if c in "\ufffe\uffff"
-        or (unicodedata.category(c) == "Cc" and c not in "\t\n")
+        if c in "\ufffe\uffff" or (unicodedata.category(c) == "Cc" and c not in "\t\n")
         else c
         for c in lines
     )
 
 
+@pytest.mark.slow
 @given(text=st.text(LETTERS, min_size=1))
 def test_any_text_comes_back(small: Report, schema: xmlschema.XMLSchema, text: str) -> None:
     hazard = HazardView(f"{text}.", text, f".{text}.", "", "")
@@ -334,6 +334,7 @@ def test_any_text_comes_back(small: Report, schema: xmlschema.XMLSchema, text: s
     assert found["ReqIF.Text"] == held(f".{text}.")
 
 
+@pytest.mark.slow
 def test_a_thousand_requirements_are_all_there(small: Report) -> None:
     (view,), (row,) = small.requirements, small.matrix
     (one,) = view.results

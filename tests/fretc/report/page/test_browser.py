@@ -31,9 +31,12 @@ if TYPE_CHECKING:
 
 CHROMIUM = "/usr/bin/chromium"
 
-pytestmark = pytest.mark.skipif(
-    not Path(CHROMIUM).exists(), reason=f"needs {CHROMIUM}: apt-get install chromium"
-)
+pytestmark = [
+    pytest.mark.slow,
+    pytest.mark.skipif(
+        not Path(CHROMIUM).exists(), reason=f"needs {CHROMIUM}: apt-get install chromium"
+    ),
+]
 LONG = "x" * 10_000
 HOSTILE = (
     "<script>document.title = 'broken'</script>",

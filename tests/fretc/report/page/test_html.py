@@ -291,6 +291,7 @@ def test_direction_marks_are_shown_as_escapes(tmp_path: Path) -> None:
     assert "<bdi>a\\u202eb</bdi>" in _everywhere(tmp_path, "a\u202eb")
 
 
+@pytest.mark.slow
 def test_a_hundred_thousand_triggers_fit_into_a_small_page(tmp_path: Path) -> None:
     known = project(tmp_path)
     triggers = [moment(tick) for tick in range(0, 200_000, 2)]

@@ -23,6 +23,7 @@ def reported(folder: Path, requirements: int, runs: int, share: float) -> tuple[
     return made.report, made.html
 
 
+@pytest.mark.slow
 def test_fifty_requirements_in_twenty_runs_are_at_most_two_megabytes(tmp_path: Path) -> None:
     report, html = reported(tmp_path, 50, 20, 0.05)
     assert len(html.encode()) <= 2_000_000
@@ -32,6 +33,7 @@ def test_fifty_requirements_in_twenty_runs_are_at_most_two_megabytes(tmp_path: P
     assert {r.anchor for shown in chosen.by_anchor.values() for r in shown.details} == violated
 
 
+@pytest.mark.slow
 def test_when_all_is_violated_each_requirement_gets_a_share_of_the_details(tmp_path: Path) -> None:
     report, html = reported(tmp_path, 12, 10, 1.0)
     chosen = selection(report)

@@ -196,6 +196,7 @@ def say(text: str) -> Result:
     return verified(text, seconds=120)[0]
 
 
+@pytest.mark.slow
 @needs_dafny
 def test_dafny_verifies_monitors_at_any_bound() -> None:
     """All in one text, each in a module of its own; conditions and bounds take turns."""
@@ -208,6 +209,7 @@ def test_dafny_verifies_monitors_at_any_bound() -> None:
     assert isinstance(say("\n".join(modules)), Proved)
 
 
+@pytest.mark.slow
 @needs_dafny
 def test_dafny_verifies_the_interceptor_and_the_loop() -> None:
     latching = BINDINGS.replace("[assume]", "latching = true\n\n[assume]")
@@ -221,6 +223,7 @@ def replaced(text: str, old: str, new: str) -> str:
     return text.replace(old, new)
 
 
+@pytest.mark.slow
 @needs_dafny
 def test_dafny_rejects_mutants_of_the_monitor_and_of_the_plain_interceptor() -> None:
     good = emitted("whenever p robot shall within 20 ticks satisfy q", None)
@@ -232,6 +235,7 @@ def test_dafny_rejects_mutants_of_the_monitor_and_of_the_plain_interceptor() -> 
     assert "`CommandCallback`" in found.reason
 
 
+@pytest.mark.slow
 @needs_dafny
 def test_dafny_rejects_an_interceptor_without_hold_and_a_loop_with_too_long_a_delay() -> None:
     good = emitted("whenever p robot shall within 20 ticks satisfy q")
@@ -272,6 +276,7 @@ def divided(x: int) -> float:
 '''
 
 
+@pytest.mark.slow
 @needs_crosshair
 def test_crosshair_confirms_and_refutes_contract_by_contract() -> None:
     said: list[str] = []
@@ -292,6 +297,7 @@ def test_crosshair_confirms_and_refutes_contract_by_contract() -> None:
     assert not any(isinstance(one.result, Proved) for one in found[2:])
 
 
+@pytest.mark.slow
 @needs_crosshair
 def test_what_crosshair_does_not_confirm_is_not_checked() -> None:
     hard = (

@@ -306,6 +306,7 @@ def test_a_counterexample_is_a_shortest_run_that_can_be_replayed() -> None:
     ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", MUTANTS)
 def test_every_counterexample_replays(name: str) -> None:
     changed = mutant(*MUTANTS[name][0])

@@ -27,6 +27,7 @@ from fretc.verification.interceptor.machine import (
 )
 from fretish.bindings.declarations import Form, Interception
 from monitors.interceptor import Options
+from tests.each import each
 
 DECLARED = Interception(
     "/gwendolen_control", "/cmd_vel", "/cmd_vel_filtered", None, 50_000_000, 200_000_000
@@ -244,9 +245,7 @@ def test_a_helper_with_a_name_of_its_own_changes_nothing() -> None:
     assert all_proved(with_helper("asks"))
 
 
-@pytest.mark.parametrize(
-    "name", sorted({*set().union(*map(bound_by_node, NODES)), *dir(builtins)} - {"OPTIONS"})
-)
+@each("name", sorted({*set().union(*map(bound_by_node, NODES)), *dir(builtins)} - {"OPTIONS"}))
 def test_a_core_binds_no_name_that_its_node_binds_or_calls(name: str) -> None:
     """The node below would have it mean something else while it flies, or would call the core's."""
     assert isinstance(head(with_helper(name)), str)
@@ -424,6 +423,7 @@ STATEMENTS = (
 )
 
 
+@pytest.mark.slow
 @given(
     st.sampled_from(OUTSIDE),
     st.lists(st.sampled_from(PLACES), max_size=3),

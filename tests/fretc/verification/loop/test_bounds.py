@@ -27,6 +27,7 @@ def asked(
     return Question(case(sentence, settings, channel, core), made.sentence, made.ticks, HUNDRED_MS)
 
 
+@pytest.mark.slow
 def test_a_bound_that_is_long_enough() -> None:
     found = search(asked(WITHIN.format(4)))
     assert isinstance(found.answered, Proved)
@@ -37,6 +38,7 @@ def test_a_bound_that_is_long_enough() -> None:
     )
 
 
+@pytest.mark.slow
 def test_a_bound_that_is_a_tick_too_short_is_shown_by_a_run() -> None:
     found = search(asked(WITHIN.format(3)))
     assert isinstance(found.answered, Proved), "the law holds all the same"
@@ -46,11 +48,13 @@ def test_a_bound_that_is_a_tick_too_short_is_shown_by_a_run() -> None:
     assert len(found.enough.trace.rows) == 5
 
 
+@pytest.mark.slow
 def test_without_a_bound_the_least_is_told() -> None:
     found = search(asked(EVENTUALLY))
     assert found.enough == Proved("the least that is kept is 4 ticks (400 ms)")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("channel", "least"),
     [
@@ -87,6 +91,7 @@ FORGETS = (
 )
 
 
+@pytest.mark.slow
 def test_small_times_say_nothing_of_long_ones_where_the_core_is_another() -> None:
     """It forgets a stop after 30 ticks without a message: 40 lost ones are too many for it."""
     core = CORE

@@ -141,6 +141,7 @@ def _same(wheels: Wheels, row: Row) -> bool:
     return wheels.gate == fields and (wheels.still < 0) == row.moving
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("settings", "channel"),
     [

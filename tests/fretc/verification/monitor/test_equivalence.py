@@ -161,6 +161,7 @@ def test_a_lost_cause_is_told_though_fret_would_still_accept_the_trace() -> None
 # Refutations ----------------------------------------------------------------------------------
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("n", [1, 3, 10_000])
 @pytest.mark.parametrize("slip", [-1, 1])
 def test_a_deadline_that_is_one_tick_off_is_found(n: int, slip: int) -> None:
@@ -175,6 +176,7 @@ def test_a_trigger_that_restarts_the_clock_is_found() -> None:
     assert found == Refuted(valuations("p - p"), VIOLATED, PENDING)
 
 
+@pytest.mark.slow
 def test_a_trigger_that_restarts_a_long_clock_is_found() -> None:
     """There are a hundred million pairs, but 20 000 states decide."""
     found = prove(within(10_000, restarts=True), sentence_within(10_000), 10_000, ("p", "q"))

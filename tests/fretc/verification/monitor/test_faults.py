@@ -144,6 +144,7 @@ def judge(sentence: str) -> tuple[str, Judge]:
     return target.text(made), Judge(made)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("sentence", "old", "new", "expected"), FAULTS)
 def test_a_fault_comes_to_what_is_written_beside_it(
     sentence: str, old: str, new: str, expected: str
@@ -171,6 +172,7 @@ def test_a_parameter_of_another_name_than_its_proposition_has_is_refused(name: s
     assert isinstance(verified(made, text[:place] + own).result, NotChecked)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "name",
     "known rows boolean tick doubt self advance signals marks CELLS p not_q r1_last __hidden".split(),

@@ -57,6 +57,7 @@ def told_of(tree: ast.Module) -> str | None:
     return strange(f"{HEAD}{KERNEL}\n{text}\n")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(60))
 def test_whatever_is_left_out_of_a_text_or_swapped_it_is_told_in_words(seed: int) -> None:
     """Nothing, everything, the first or the last of any list; or one part for another."""

@@ -50,6 +50,7 @@ def reason(found: Verified) -> str:
 # What is right --------------------------------------------------------------------------------
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("scope", SCOPES)
 def test_every_template_is_proved(scope: str) -> None:
     for template in templates((0, 1, 2)):
@@ -59,6 +60,7 @@ def test_every_template_is_proved(scope: str) -> None:
             assert found.compared > 0
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("n", [3, 20])
 def test_templates_are_proved_at_longer_bounds(n: int) -> None:
     counting = [template for template in templates((n,)) if template.timing in COUNTING]
@@ -66,6 +68,7 @@ def test_templates_are_proved_at_longer_bounds(n: int) -> None:
         assert isinstance(check(template.sentence).result, Proved), template
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("sentence", "least"),
     [
@@ -81,6 +84,7 @@ def test_long_bounds_are_proved_as_they_are(sentence: str, least: int) -> None:
     assert found.compared > 4 * least, "the columns are compared on traces that reach the bound"
 
 
+@pytest.mark.slow
 def test_each_requirement_of_one_text_is_proved() -> None:
     sentences = (WITHIN, FOR, "in m mode the sw shall before s satisfy q")
     text = emitted(*sentences)
@@ -96,6 +100,7 @@ def test_of_several_requirements_only_the_wrong_one_is_refuted() -> None:
     assert isinstance(verified(rule(FOR, "R2"), text).result, Proved)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "name",
     "door_open tick r1_open r1_broken r1_doomed first kept_first since_1 oldest_1 known doubt "
@@ -173,6 +178,7 @@ def test_a_wrong_column_program_disagrees_with_the_steps() -> None:
     assert all(len(values) == len(found.atoms) for values in found.result.word)
 
 
+@pytest.mark.slow
 def test_a_wrong_column_program_is_found_at_a_long_bound() -> None:
     sentence = "when p the sw shall for 5000 ticks satisfy q"
     text = emitted(sentence)
@@ -432,6 +438,7 @@ HIDDEN: dict[str, list[tuple[str, str]]] = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("what", HIDDEN)
 def test_what_may_hide_something_is_never_proved(what: str) -> None:
     text = edited(emitted(WITHIN), *HIDDEN[what])
