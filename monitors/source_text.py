@@ -74,8 +74,8 @@ def _collect(tree: ast.Module, imports: dict[str, set[str]]) -> int:
 def _head(imports: dict[str, set[str]]) -> str:
     plain = [f"import {name}" for name in sorted(imports) if name != "sys" and " " not in name]
     some = [
-        _from(name, sorted(found, key=_constants_first))
-        for name, found in sorted(imports.items())
+        _from(name, sorted(names, key=_constants_first))
+        for name, names in sorted(imports.items())
         if name.startswith("from ")
     ]
     return "\n".join([ALONE, *plain, *some])

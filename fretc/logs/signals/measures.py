@@ -51,7 +51,7 @@ class Scope:
     numbers: Mapping[str, Values]
     unit: Unit = ONE
     scales: Mapping[str, Fraction] = field(default_factory=dict)
-    held: Mapping[e.Held, NDArray[np.int8]] = field(default_factory=dict)
+    held: Mapping[e.Persistence, NDArray[np.int8]] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True)

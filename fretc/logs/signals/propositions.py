@@ -100,7 +100,7 @@ def truth(expression: e.Expression, scope: Scope) -> States:
             return _same(truth(left, scope), truth(right, scope))
         case e.Xor(left, right):
             return _not(_same(truth(left, scope), truth(right, scope)))
-        case e.Held():
+        case e.Persistence():
             if expression not in scope.held:
                 raise ExpressionError("`for` needs a proposition: a single message has no duration")
             return scope.held[expression]
@@ -149,7 +149,7 @@ class History:
         numbers = {name: values[chosen[order]] for name, values in self.numbers.items()}
         return replace(self, times=every[order], numbers=numbers)
 
-    def scope(self, held: Mapping[e.Held, States] = MappingProxyType({})) -> Scope:
+    def scope(self, held: Mapping[e.Persistence, States] = MappingProxyType({})) -> Scope:
         """What the names stand for at the events."""
         return Scope(len(self.times), self.numbers, scales=self.scales, held=held)
 
@@ -256,9 +256,9 @@ def _steps(expression: e.Expression, history: History) -> Steps:
     return Steps(history.times, truth(expression, history.scope(states)))
 
 
-def _durations(expression: e.Expression) -> Iterator[e.Held]:
+def _durations(expression: e.Expression) -> Iterator[e.Persistence]:
     """The outermost `... for 200 ms` in it."""
-    if isinstance(expression, e.Held):
+    if isinstance(expression, e.Persistence):
         yield expression
         return
     for part in e.children(expression):

@@ -113,7 +113,7 @@ def test_a_proposition_is_read() -> None:
     assert (too_close.role, too_close.aggregate) == (Role.INPUT, Aggregate.ANY)
     assert (too_close.text, too_close.on_unknown) == ("an obstacle is nearer than 5 cm", None)
     slow = e.Comparison("<", e.Call("abs", (e.Name("vx"),)), e.Quantity("0.01", "m/s"))
-    assert stopped.expression == e.Held(slow, 200_000_000)
+    assert stopped.expression == e.Persistence(slow, 200_000_000)
     assert (stopped.role, stopped.kind) == (Role.OUTPUT, "physical")
 
 
@@ -121,12 +121,12 @@ def test_a_proposition_is_read() -> None:
 @pytest.mark.parametrize("unit", ["m/s", "mm/s", "km/h"])
 def test_a_number_may_have_an_exponent_with_and_without_a_unit(digits: str, unit: str) -> None:
     plain = read(GOOD.replace('unit = "m/s"\n', "").replace("0.01 m/s", digits))
-    assert plain.propositions["stopped"].expression == e.Held(
+    assert plain.propositions["stopped"].expression == e.Persistence(
         e.Comparison("<", e.Call("abs", (e.Name("vx"),)), e.Number(digits)), 200_000_000
     )
     for space in ("", " "):
         found = read(changed("0.01 m/s", f"{digits}{space}{unit}")).propositions["stopped"]
-        assert found.expression == e.Held(
+        assert found.expression == e.Persistence(
             e.Comparison("<", e.Call("abs", (e.Name("vx"),)), e.Quantity(digits, unit)), 200_000_000
         )
 
@@ -144,7 +144,7 @@ def test_a_modality_is_read_of_propositions_and_variables(modality: Modality) ->
 def test_a_duration_holds_for_all_that_stands_before_it() -> None:
     text = changed("abs(vx) < 0.01 m/s for", "vx < 1 m/s and vx > 0 m/s or vx = 2 m/s for")
     held = read(text).propositions["stopped"].expression
-    assert isinstance(held, e.Held)
+    assert isinstance(held, e.Persistence)
     assert isinstance(held.arg, e.Or)
 
 

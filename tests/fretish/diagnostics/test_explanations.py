@@ -9,7 +9,7 @@ from compiler.targets.python import monitor
 from fretish.bindings.declarations import Declarations
 from fretish.bindings.reader import read_bindings
 from fretish.diagnostics.diagnostic import Code, Diagnostic
-from fretish.diagnostics.explanations import Explained, as_record, explanations, text
+from fretish.diagnostics.explanations import Explanation, as_record, explanations, text
 from fretish.diagnostics.source import Source
 from fretish.documents import requirements
 from tests.mending import toml_in
@@ -90,7 +90,7 @@ def test_the_text_of_a_code() -> None:
 
 def test_a_code_without_an_example_has_none_in_its_record() -> None:
     assert as_record(Code.INTERNAL)["example"] is None
-    assert explanations()["F999"] == Explained(
+    assert explanations()["F999"] == Explanation(
         "fretc met a state that it does not expect. No verdict was given.",
         "Report it with the input; `FRETC_TRACEBACK=1` shows where it comes from.",
     )

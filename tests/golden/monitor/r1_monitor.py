@@ -42,12 +42,12 @@ def boolean(value: object, name: str = "") -> bool:
     """
     if type(value).__name__ in ("bool", "bool_"):
         return bool(value)
-    what = f"`{name}`" if name else "a truth value"
-    raise TypeError(f"{what} is True, False or None (unknown), not {value!r}")
+    subject = f"`{name}`" if name else "a truth value"
+    raise TypeError(f"{subject} is True, False or None (unknown), not {value!r}")
 
 
 class Verdict(StrEnum):
-    """What a trace says of a requirement.
+    """The judgement of a trace on a requirement.
 
     While it runs: satisfied or violated, whatever follows, or pending (LTL3). When it has ended:
     satisfied, violated, inconclusive, vacuous or no data. Source: Bauer, Leucker, Schallhart,
@@ -70,7 +70,7 @@ T = TypeVar("T")
 
 
 class Signals(NamedTuple, Generic[T]):
-    """What a monitor tells of one requirement: a truth value a tick, or whole columns of them."""
+    """A monitor's signals of one requirement: a truth value a tick, or whole columns of them."""
 
     trigger: T
     """A demand begins here."""
@@ -245,24 +245,24 @@ def historically(arg: int, lo: int, hi: int | None, every: int) -> int:
     return every ^ once(every ^ arg, lo, hi, every)
 
 
-def since_from(held: int, left: int, right: int, lo: int, every: int) -> int:
-    """`left S[lo,inf) right`, where `held` is `left S right`."""
+def since_from(unbounded: int, left: int, right: int, lo: int, every: int) -> int:
+    """`left S[lo,inf) right`, where `unbounded` is `left S right`."""
     if lo >= every.bit_length():
         return 0
     if right | left == left:  # then it began lo ticks ago or more if it has held since
-        return _lasting(held, lo)
-    return held << lo & historically(left, 0, lo - 1, every) if lo else held
+        return _lasting(unbounded, lo)
+    return unbounded << lo & historically(left, 0, lo - 1, every) if lo else unbounded
 
 
 def since_between(left: int, right: int, lo: int, hi: int | None, every: int) -> int:
     """`left S[lo,hi] right`."""
-    held = since(left, right)
+    result = since(left, right)
     if hi is None:
-        return since_from(held, left, right, lo, every)
+        return since_from(result, left, right, lo, every)
     if lo >= every.bit_length():
         return 0
-    held &= _smeared(right, hi - lo, every)
-    return held << lo & historically(left, 0, lo - 1, every) if lo else held
+    result &= _smeared(right, hi - lo, every)
+    return result << lo & historically(left, 0, lo - 1, every) if lo else result
 
 
 def released_between(left: int, right: int, lo: int, hi: int | None, every: int) -> int:
@@ -334,7 +334,7 @@ class Rail(Protocol):
         """Step every row; whether all was known in them."""
 
     def signals(self) -> tuple[Signals[bool], ...]:
-        """What the last tick told, for each requirement."""
+        """The signals of the last tick, for each requirement."""
 
     def marks(self) -> tuple[Marks, ...]:
         """What is remembered, for each requirement."""
@@ -375,7 +375,7 @@ class Window:
 
 
 class Standing(NamedTuple):
-    """What would be said of a requirement if the trace ended now."""
+    """The verdict on a requirement if the trace ended now, and what it rests on."""
 
     requirement: str
     verdict: Verdict
@@ -394,7 +394,7 @@ _PIECE, _FEW = 4096, 64
 
 
 class Monitor:
-    """Steps propositions and tells verdicts; a generated class adds `step` and `run`."""
+    """Steps propositions and gives verdicts; a generated class adds `step` and `run`."""
 
     PROGRAM: ClassVar[str]
     """SHA-256 of the generated code: a state fits no other."""
@@ -421,7 +421,7 @@ class Monitor:
         return self.must.tick
 
     def state(self) -> dict[str, Any]:
-        """Everything that is remembered, as plain values that JSON can hold."""
+        """The whole memory, as plain values that JSON can hold."""
         content = {
             "program": self.PROGRAM,
             "must": _saved(self.must),
@@ -448,18 +448,18 @@ class Monitor:
         self.must, self.may = must, must if content["may"] is None else may
 
     def standings(self) -> tuple[Standing, ...]:
-        """What would be said of each requirement if the trace ended now."""
+        """The standing of each requirement."""
         if self.tick < 0:
             nothing = (Verdict.NO_DATA, None, None, None, None)
             return tuple(Standing(r.id, *nothing) for r in self.REQUIREMENTS)
-        told = zip(
+        readings = zip(
             self.must.marks(),
             self.may.marks(),
             self.must.signals(),
             self.may.signals(),
             strict=True,
         )
-        return tuple(map(_standing, self.REQUIREMENTS, *zip(*told, strict=True)))
+        return tuple(map(_standing, self.REQUIREMENTS, *zip(*readings, strict=True)))
 
     def _fork(self) -> None:
         """From now on what may hold differs from what holds for certain."""
@@ -478,29 +478,29 @@ class Monitor:
         """
         waiting = iter(rows)
         while piece := list(itertools.islice(waiting, _PIECE)):
-            known = self._in_order(piece)
-            before = (self.must, self.may) if len(known) == 1 else self._copies()
+            block = self._in_order(piece)
+            before = (self.must, self.may) if len(block) == 1 else self._copies()
             try:
-                self._advance(known)
+                self._advance(block)
             except BaseException:  # whatever it was, both rails stay at one tick
                 self.must, self.may = before
                 raise
 
-    def _advance(self, known: list[Row]) -> None:
+    def _advance(self, block: list[Row]) -> None:
         """Step both rails, or one as long as all is known."""
         if self.may is not self.must:
-            self.must.advance(known)
-            self.may.advance(known)
-        elif len(known) < _FEW:
-            if any(None in row for row in known):
+            self.must.advance(block)
+            self.may.advance(block)
+        elif len(block) < _FEW:
+            if any(None in row for row in block):
                 self._fork()
-                self.may.advance(known)
-            self.must.advance(known)
+                self.may.advance(block)
+            self.must.advance(block)
         else:
             before = _copied(self.must, doubt=True)
-            if not self.must.advance(known):
+            if not self.must.advance(block):
                 self.may = before
-                before.advance(known)
+                before.advance(block)
 
     def _copies(self) -> tuple[Rail, Rail]:
         """Both rails as they are now."""
@@ -518,14 +518,14 @@ class Monitor:
 
     def verdicts(self) -> tuple[Verdict, ...]:
         """Of each requirement, whatever follows: satisfied or violated; or pending."""
-        told = zip(self.must.marks(), self.may.marks(), self.must.signals(), strict=True)
+        readings = zip(self.must.marks(), self.may.marks(), self.must.signals(), strict=True)
         return tuple(
             VIOLATED
             if must.violated >= 0
             else SATISFIED
             if certain.settled and may.violated < 0
             else PENDING
-            for must, may, certain in told
+            for must, may, certain in readings
         )
 
 
@@ -573,14 +573,14 @@ def literals_of(
 
 def _copied(rail: Rail, *, doubt: bool) -> Rail:
     """A rail in the same state, on which an unknown counts as `doubt`."""
-    other = type(rail)(doubt=doubt)
+    copy = type(rail)(doubt=doubt)
     for name in rail.__slots__:
-        there, value = getattr(other, name), getattr(rail, name)
+        there, value = getattr(copy, name), getattr(rail, name)
         if isinstance(there, Window):
             there.restore(value.state())
         elif name != "doubt":
-            setattr(other, name, value)
-    return other
+            setattr(copy, name, value)
+    return copy
 
 
 def _saved(rail: Rail) -> dict[str, Any]:
@@ -601,7 +601,7 @@ def _digest(content: Mapping[str, Any]) -> str:
 
 
 def _restored(rail: Rail, state: Mapping[str, Any]) -> None:
-    """Put what was saved into a rail; its digest has shown that it is whole."""
+    """Put a saved state into a rail; its digest has shown that nothing is missing."""
     for name, value in state.items():
         there = getattr(rail, name)
         if isinstance(there, Window):
@@ -684,11 +684,11 @@ def stepped(
     Args, raises: as for `evaluate`.
     """
     monitor.reset()
-    told = [truths(columns[name], ticks) for name in monitor.PROPOSITIONS]
+    table = [truths(columns[name], ticks) for name in monitor.PROPOSITIONS]
     must: list[tuple[Signals[bool], ...]] = []
     may: list[tuple[Signals[bool], ...]] = []
     for tick in range(ticks):
-        monitor.advance([tuple(values[tick] for values in told)])
+        monitor.advance([tuple(values[tick] for values in table)])
         must.append(monitor.must.signals())
         may.append(monitor.may.signals())
     return tuple(
@@ -782,12 +782,12 @@ def _uncertain(ends: Iterable[tuple[int, int]], waits: int) -> tuple[int, ...]:
     """
     runs = runs_of(waits)
     starts = [first for first, _ in runs]
-    found: list[int] = []
+    triggers: list[int] = []
     for trigger, end in ends:
         place = bisect_right(starts, trigger) - 1
         if trigger < end and (place < 0 or runs[place][1] < end - 1):
-            found.append(trigger)
-    return tuple(sorted(found))
+            triggers.append(trigger)
+    return tuple(sorted(triggers))
 
 
 class InputError(Exception):
@@ -825,13 +825,13 @@ def read_rows(
     is_json = re.match(r'\s*\{\s*["}]', first) is not None
     read = _json_rows if is_json else _csv_rows
     tick: int | None = None
-    counted: bool | None = None
+    has_tick: bool | None = None
     for place, row in read(lines, names, source, number):
         if "tick" not in names:
-            if counted not in (None, "tick" in row):
+            if has_tick not in (None, "tick" in row):
                 raise InputError(f"{place}: some rows have a `tick` and some have none")
-            counted = "tick" in row
-            if counted:
+            has_tick = "tick" in row
+            if has_tick:
                 tick = _next_tick(row["tick"], tick, place)
         yield tuple(_truth(row[name], name, place) for name in names)
 
@@ -878,12 +878,12 @@ def _distinct(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
     return found
 
 
-def _check_columns(found: Iterable[str], names: Sequence[str], place: str) -> None:
-    columns = list(found)
+def _check_columns(keys: Iterable[str], names: Sequence[str], place: str) -> None:
+    columns = list(keys)
     for name in names:
         if name not in columns:
-            known = _short(", ".join(columns)) or "none"
-            raise InputError(f"{place}: there is no column `{name}`; there are {known}")
+            listing = _short(", ".join(columns)) or "none"
+            raise InputError(f"{place}: there is no column `{name}`; there are {listing}")
     for name in (*names, "tick"):
         if columns.count(name) > 1:
             raise InputError(f"{place}: there are two columns `{name}`")
@@ -915,8 +915,8 @@ def _next_tick(value: Any, before: int | None, place: str) -> int:
         raise InputError(f"{place}: column `tick`: `{_short(text)}` is no whole number")
     tick = int(text)
     if before is not None and tick != before + 1:
-        what = "goes back" if tick <= before else "leaves ticks out"
-        raise InputError(f"{place}: column `tick` {what}: {before}, then {tick}")
+        fault = "goes back" if tick <= before else "leaves ticks out"
+        raise InputError(f"{place}: column `tick` {fault}: {before}, then {tick}")
     return tick
 
 
