@@ -33,7 +33,7 @@ _TARGET = "an agent"
 
 
 @dataclass(frozen=True, slots=True)
-class Drawn:
+class Reaction:
     """A plan of the agent."""
 
     event: Change
@@ -49,8 +49,8 @@ class Sif:
     percepts: tuple[str, ...]
     """Propositions of the scope, the condition and the stop condition, in this order."""
     responses: tuple[str, ...]
-    plans: tuple[Drawn, ...]
-    mutant: tuple[Drawn, ...]
+    plans: tuple[Reaction, ...]
+    mutant: tuple[Reaction, ...]
     """The plans without what makes the response true."""
     released: bool
     """Whether the response is taken back when the trigger goes."""
@@ -80,9 +80,9 @@ def sif(rule: Rule, guarded: bool = True) -> Sif | Diagnostic:
     if isinstance(responses, Diagnostic):
         return responses
     percepts = _percepts(sentence)
-    wrong = _wrong_name(rule, percepts, responses)
-    if wrong is not None:
-        return wrong
+    mistake = _wrong_name(rule, percepts, responses)
+    if mistake is not None:
+        return mistake
     believed = [name for name in responses if _is_belief(rule, name)]
     released = len(terms) == len(terms[0]) == len(responses) == len(believed) == 1
     answer = tuple(deed for name in responses for deed in _answer(rule, name))
@@ -134,9 +134,9 @@ def _literal(expression: e.Expression) -> tuple[str, bool] | None:
 def _responses(rule: Rule) -> tuple[str, ...] | Diagnostic:
     response = rule.sentence.response
     parts = response.args if isinstance(response, e.And) else (response,)
-    found = [part.id for part in parts if isinstance(part, e.Name)]
-    if len(found) == len(parts):
-        return tuple(dict.fromkeys(found))
+    names = [part.id for part in parts if isinstance(part, e.Name)]
+    if len(names) == len(parts):
+        return tuple(dict.fromkeys(names))
     mend = "an agent does things: state what is to be so, as `a` or `a & b`"
     return not_expressible(_TARGET, rule, "the shape of the response", mend)
 
@@ -145,12 +145,12 @@ def _percepts(sentence: s.Sentence) -> tuple[str, ...]:
     """What is drawn freely: everything that says when, and nothing that says what."""
     assert sentence.condition is not None
     timing = sentence.timing
-    said = [
+    expressions = [
         *([sentence.scope.mode] if sentence.scope else []),
         sentence.condition.expression,
         *([timing.stop] if isinstance(timing, s.Until | s.Before) else []),
     ]
-    return tuple(dict.fromkeys(name.id for part in said for name in e.names(part)))
+    return tuple(dict.fromkeys(name.id for part in expressions for name in e.names(part)))
 
 
 def _wrong_name(
@@ -202,10 +202,10 @@ def _action(rule: Rule, name: str) -> str:
 
 def _reactions(
     terms: tuple[Term, ...], answer: tuple[Deed, ...], last: Guard | None
-) -> tuple[Drawn, ...]:
+) -> tuple[Reaction, ...]:
     """A plan for each event that can make a term true; `last` tells that it was answered."""
     plans = [
-        Drawn(
+        Reaction(
             Change("+" if positive else "-", name),
             (
                 *(Guard(value, other) for other, value in term if other != name),
@@ -219,9 +219,9 @@ def _reactions(
     return tuple(dict.fromkeys(plans))
 
 
-def _releases(terms: tuple[Term, ...], responses: tuple[str, ...]) -> tuple[Drawn, ...]:
+def _releases(terms: tuple[Term, ...], responses: tuple[str, ...]) -> tuple[Reaction, ...]:
     """The only response is taken back when the only trigger goes."""
     (((trigger, _),),) = terms
     (response,) = responses
     deeds = (Action(f"undo_{response}"), Change("-", response))
-    return (Drawn(Change("-", trigger), (), deeds),)
+    return (Reaction(Change("-", trigger), (), deeds),)

@@ -93,18 +93,18 @@ def chart(rule: Rule) -> Chart:
         TooManyStatesError: it has more than `MOST_STATES` states.
     """
     automaton = explored(rule)
-    kept = [i for i, verdict in enumerate(automaton.verdicts) if verdict == "pending"]
-    numbers = {old: new for new, old in enumerate(kept)}
-    numbers[BROKEN] = len(kept)
+    pending = [i for i, verdict in enumerate(automaton.verdicts) if verdict == "pending"]
+    numbers = {old: new for new, old in enumerate(pending)}
+    numbers[BROKEN] = len(pending)
     for index, verdict in enumerate(automaton.verdicts):
         if verdict != "pending":
-            numbers[index] = len(kept) + (verdict == "satisfied")
+            numbers[index] = len(pending) + (verdict == "satisfied")
     return Chart(
         automaton.template,
         {i: part for i, part in enumerate(parts(rule.sentence)) if part is not None},
         automaton.letters,
-        tuple(automaton.states[i] for i in kept),
-        tuple(tuple(numbers[after] for after in automaton.moves[i]) for i in kept),
+        tuple(automaton.states[i] for i in pending),
+        tuple(tuple(numbers[after] for after in automaton.moves[i]) for i in pending),
         numbers[0],
     )
 
@@ -140,17 +140,17 @@ def words(demanded: Kind, template: Template, state: State) -> tuple[str, ...]:
         state: one that has not decided.
     """
     enforced = state.phase in (Phase.INSIDE, Phase.LAST_RUN)
-    said = []
+    phrases = []
     if state.phase is Phase.OUTSIDE and template.scope in _FROM_THE_START:
-        said.append(START)
+        phrases.append(START)
     elif template.scope is not None:
-        said.append(_PHASES[state.phase])
+        phrases.append(_PHASES[state.phase])
     if enforced:
         idle = "waiting" if template.condition else "nothing more is owed"
-        said.append(_counted(demanded, state.counted) if state.counted else idle)
+        phrases.append(_counter_words(demanded, state.counted) if state.counted else idle)
     if state.held:
-        said.append("condition was true")
-    return tuple(said)
+        phrases.append("condition was true")
+    return tuple(phrases)
 
 
 START = "start"
@@ -169,7 +169,7 @@ COUNTING = (Kind.WITHIN, Kind.FOR, Kind.AFTER, Kind.NOT_AFTER)
 """The demands whose counter counts ticks."""
 
 
-def _counted(demanded: Kind, count: int) -> str:
+def _counter_words(demanded: Kind, count: int) -> str:
     match demanded:
         case Kind.IMMEDIATELY:
             raise AssertionError("it counts nothing")

@@ -99,14 +99,14 @@ def _specs(
     """
     prefix, instance = names
     ft, pt = printing.text(rule.ft_infinite, dialect), printing.text(rule.pt, dialect)
-    kept = f"(G (!{instance}.violated))"
+    safe = f"(G (!{instance}.violated))"
     unmet = demanded.demand.kind in (Kind.EVENTUALLY, Kind.FINALLY)
     if demanded.demand.kind is Kind.EVENTUALLY:
-        kept = f"({kept} & (G (F (!{instance}.unmet))))"
+        safe = f"({safe} & (G (F (!{instance}.unmet))))"
     ends = f"(!{instance}.violated{f' & !{instance}.unmet' if unmet else ''})"
-    found = [
+    specs = [
         Spec(f"{prefix}_ft", ft, "the requirement, on infinite traces: what you want to know"),
-        Spec(f"{prefix}_ft_is_monitor", f"({kept} <-> {ft})", "expected true: FT is the module"),
+        Spec(f"{prefix}_ft_is_monitor", f"({safe} <-> {ft})", "expected true: FT is the module"),
         Spec(
             f"{prefix}_pt_is_monitor",
             f"(G ({pt} <-> {ends}))",
@@ -114,9 +114,9 @@ def _specs(
         ),
     ]
     if not unmet:
-        told = "expected true: nothing is left for the end to decide, so PT everywhere is FT"
-        found.append(Spec(f"{prefix}_pt_is_ft", f"((G {pt}) <-> {ft})", told))
-    return found
+        comment = "expected true: nothing is left for the end to decide, so PT everywhere is FT"
+        specs.append(Spec(f"{prefix}_pt_is_ft", f"((G {pt}) <-> {ft})", comment))
+    return specs
 
 
 TARGET = Target("smv", "a model with the monitor as a module, for NuSMV and nuXmv", emit, refuse)

@@ -117,8 +117,8 @@ def _scope_variables(obligation: Obligation) -> Iterator[Variable]:
     more, _ = _PHASES[obligation.scope]
     if not _is_everywhere(obligation):
         values = ", ".join(("outside", "inside", *([more] if more else [])))
-        told = "where the tick before lies"
-        yield Variable("phase", f"{{{values}}}", "outside", _plain("now"), told)
+        comment = "where the tick before lies"
+        yield Variable("phase", f"{{{values}}}", "outside", _plain("now"), comment)
     if obligation.condition is ConditionKind.TRIGGER:
         yield Variable(
             "held",
@@ -168,10 +168,10 @@ def _counter(obligation: Obligation) -> _Counter:
             comment = "the tick before was a trigger"
             return _flag("triggered", comment, broken="enforced & open & !response")
         case Kind.EVENTUALLY:
-            left = _left(obligation)
-            return _at_the_end(_flag("unmet", "no response yet", broken=left), "!response")
+            over = _interval_over(obligation)
+            return _at_the_end(_flag("unmet", "no response yet", broken=over), "!response")
         case Kind.FINALLY:
-            return _finally(_left(obligation))
+            return _finally(_interval_over(obligation))
         case Kind.ALWAYS:
             return _flag("due", "there was a trigger", broken="due & !response", due=True)
         case Kind.UNTIL:
@@ -194,15 +194,17 @@ def _counter(obligation: Obligation) -> _Counter:
 _DUE = Definition("due", _plain("triggered | (enforced & open)"), "a demand is open at this tick")
 
 
-def _left(obligation: Obligation) -> str:
+def _interval_over(obligation: Obligation) -> str:
     """The interval has ended, with the tick before, and a demand is open."""
     return "FALSE" if obligation.scope is None else "!enforced & open"
 
 
-def _flag(kept: str | None, comment: str = "", *, broken: str, due: bool = False) -> _Counter:
-    """One bit: whether a demand is open; `kept` is for the next tick."""
+def _flag(carry: str | None, comment: str = "", *, broken: str, due: bool = False) -> _Counter:
+    """One bit: whether a demand is open; `carry` is for the next tick."""
     broken_at = Definition("broken", _plain(broken), "at this tick")
-    opened = () if kept is None else (Variable("open", "boolean", "FALSE", _plain(kept), comment),)
+    opened = (
+        () if carry is None else (Variable("open", "boolean", "FALSE", _plain(carry), comment),)
+    )
     return _Counter(opened, (*([_DUE] if due else []), broken_at))
 
 
@@ -211,13 +213,13 @@ def _at_the_end(counter: _Counter, missing: str) -> _Counter:
     return _Counter(counter.variables, (_DUE, unmet, *counter.definitions))
 
 
-def _finally(left: str) -> _Counter:
+def _finally(over: str) -> _Counter:
     """`open`: there was a trigger; the response at the tick before is the last of an interval."""
     answered = Variable(
         "answered", "boolean", "FALSE", _plain("response"), "the response held at the tick before"
     )
     opened = Variable("open", "boolean", "FALSE", _plain("due"), "there was a trigger")
-    broken = "FALSE" if left == "FALSE" else f"{left} & !answered"
+    broken = "FALSE" if over == "FALSE" else f"{over} & !answered"
     counter = _Counter((opened, answered), (Definition("broken", _plain(broken), "at its end"),))
     return _at_the_end(counter, "!response")
 
@@ -226,7 +228,7 @@ def _count(most: int, cases: Cases, comment: str) -> Variable:
     return Variable("count", f"0..{most}", "0", cases, comment)
 
 
-_COUNTED = Definition(
+_DUE_BY_COUNT = Definition(
     "due", _plain("triggered | (enforced & count > 0)"), "a demand is open at this tick"
 )
 
@@ -238,7 +240,7 @@ def _within(n: int) -> _Counter:
         "ticks that the oldest open trigger has seen",
     )
     broken = Definition("broken", _plain(f"due & !response & count = {n}"), "the deadline")
-    return _Counter((count,), (_COUNTED, broken))
+    return _Counter((count,), (_DUE_BY_COUNT, broken))
 
 
 def _for(n: int) -> _Counter:
@@ -252,7 +254,7 @@ def _for(n: int) -> _Counter:
         ),
         "ticks that the newest trigger is still owed",
     )
-    return _Counter((count,), (_COUNTED, Definition("broken", _plain("due & !response"))))
+    return _Counter((count,), (_DUE_BY_COUNT, Definition("broken", _plain("due & !response"))))
 
 
 def _after(n: int) -> _Counter:
@@ -272,7 +274,7 @@ def _after(n: int) -> _Counter:
     too_early = f"(count < {n + 1} & response)"
     too_late = f"(count = {n + 1} & (clashes | !response))"
     broken = Definition("broken", _plain(f"due & ({too_early} | {too_late})"))
-    return _Counter((count, clash), (_COUNTED, clashes, broken))
+    return _Counter((count, clash), (_DUE_BY_COUNT, clashes, broken))
 
 
 def _not_after(n: int) -> _Counter:
@@ -283,18 +285,18 @@ def _not_after(n: int) -> _Counter:
         "ticks since the trigger, while no response has come",
     )
     broken = Definition("broken", _plain(f"enforced & response & count = {n + 1}"))
-    return _Counter((count,), (_COUNTED, broken))
+    return _Counter((count,), (_DUE_BY_COUNT, broken))
 
 
 def _register(n: int) -> _Counter:
     """Each trigger forbids the response at a tick of its own, so each is remembered."""
-    kept = "enforced & !response"
+    carry = "enforced & !response"
     ago = [
         Variable(
             f"ago_{k}",
             "boolean",
             "FALSE",
-            _plain(f"{kept} & {'triggered' if k == 1 else f'ago_{k - 1}'}"),
+            _plain(f"{carry} & {'triggered' if k == 1 else f'ago_{k - 1}'}"),
             f"a trigger {k} tick{'s' if k > 1 else ''} ago, and no response since",
         )
         for k in range(1, n + 2)

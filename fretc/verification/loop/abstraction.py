@@ -33,7 +33,7 @@ class Numbers(NamedTuple):
     """Messages that were lost since the last that was not."""
     still: Any
     """Ends of cells since the wheels have zero, up to `braking + 1`; -1: they move."""
-    asked: Any
+    requested: Any
     """1: a stop is requested, whether anyone is told or not; 0: none is."""
     silent: Any
     """Ticks from the last message to the next tick."""
@@ -97,7 +97,7 @@ INITIAL = Numbers(-1, NONE, 0, None, 0, 0)
 def begins(now: Numbers, times: Times, logic: Logic) -> Any:
     """Before the first tick."""
     standing = now.still == times.braking + 1
-    quiet = logic.both(now.losses == 0, now.asked == 0, now.silent == 0)
+    quiet = logic.both(now.losses == 0, now.requested == 0, now.silent == 0)
     return logic.both(now.open == -1, now.age == NONE, standing, quiet)
 
 
@@ -116,49 +116,49 @@ def relation(now: Numbers, then: Numbers, choice: Choice, times: Times, logic: L
             both(now.open >= 0, then.open == now.open + 1),
         ),
     )
-    released = both(then.asked == 0, then.open == -1, then.age == NONE)
-    asked = both(
-        then.asked == 1,
+    released = both(then.requested == 0, then.open == -1, then.age == NONE)
+    request = both(
+        then.requested == 1,
         either(then.open == -1, opened),
         _requested(now, then, choice, times, logic),
     )
     message = _message(now, then, choice, times, logic)
-    return both(sampled, message, ranges, either(released, asked))
+    return both(sampled, message, ranges, either(released, request))
 
 
 def _message(now: Numbers, then: Numbers, choice: Choice, times: Times, logic: Logic) -> Any:
     """What becomes of the message: a change is always told, and silence has an end."""
     both, either, no = logic.both, logic.either, logic.no
     quiet = both(
-        then.asked == now.asked, now.silent < times.heartbeat, then.silent == now.silent + 1
+        then.requested == now.requested, now.silent < times.heartbeat, then.silent == now.silent + 1
     )
     lost = both(choice.lost, now.losses < times.lost, then.losses == now.losses + 1)
-    kept = both(no(choice.lost), then.losses == 0)
+    delivered = both(no(choice.lost), then.losses == 0)
     return either(
         both(no(choice.sent), quiet, then.losses == now.losses),
-        both(choice.sent, then.silent == 1, either(lost, kept)),
+        both(choice.sent, then.silent == 1, either(lost, delivered)),
     )
 
 
 def _requested(now: Numbers, then: Numbers, choice: Choice, times: Times, logic: Logic) -> Any:
     """What becomes of the request in a tick in which a stop is requested."""
     both, either, no = logic.both, logic.either, logic.no
-    none = either(now.asked == 0, now.age == NONE)
+    none = either(now.requested == 0, now.age == NONE)
     unsent, sent = either(no(choice.sent), choice.lost), both(choice.sent, no(choice.lost))
     waiting = both(no(none), now.age >= 0)
-    heard = both(no(none), now.age == ARRIVED)
+    arrived = both(no(none), now.age == ARRIVED)
     k, end = times.cells, times.braking + 1
     return either(
         both(none, unsent, then.age == NONE),
         both(none, sent, then.age == k, k < times.latency),
-        both(none, sent, then.age == ARRIVED, _heard(0, then, choice, times, logic)),
+        both(none, sent, then.age == ARRIVED, _arrival(0, then, choice, times, logic)),
         both(waiting, then.age == now.age + k, then.age < times.latency),
-        both(waiting, then.age == ARRIVED, _heard(now.age, then, choice, times, logic)),
-        both(heard, then.age == ARRIVED, either(then.still >= end, then.still >= now.still + k)),
+        both(waiting, then.age == ARRIVED, _arrival(now.age, then, choice, times, logic)),
+        both(arrived, then.age == ARRIVED, either(then.still >= end, then.still >= now.still + k)),
     )
 
 
-def _heard(age: Any, then: Numbers, choice: Choice, times: Times, logic: Logic) -> Any:
+def _arrival(age: Any, then: Numbers, choice: Choice, times: Times, logic: Logic) -> Any:
     """A request of that age is heard in the cell of the choice; from then on zero is published."""
     both, either = logic.both, logic.either
     k = times.cells
@@ -174,17 +174,17 @@ def _heard(age: Any, then: Numbers, choice: Choice, times: Times, logic: Logic) 
 
 
 @dataclass(frozen=True, slots=True)
-class Covered:
+class Coverage:
     """What following the loop step by step has shown."""
 
     steps: int
     longest: int
     """The most ticks for which a demand is open; -1: none ever is."""
-    strange: tuple[Numbers, Numbers] | None
+    uncovered: tuple[Numbers, Numbers] | None
     """A step of the loop that is none of the twin."""
 
 
-def covered(loop: Loop, limit: int, longest: int) -> Covered:
+def covered(loop: Loop, limit: int, longest: int) -> Coverage:
     """Whether every step of the loop is one of the twin, over all states.
 
     Args:
@@ -199,9 +199,9 @@ def covered(loop: Loop, limit: int, longest: int) -> Covered:
     assert channel.heartbeat or not channel.edge
     times = times_of(channel)
     begin = INITIAL._replace(still=channel.stands)
-    seen: set[tuple[Node, int, int]] = {(loop.initial, begin.open, begin.age)}
+    visited: set[tuple[Node, int, int]] = {(loop.initial, begin.open, begin.age)}
     allowed: dict[tuple[Numbers, Numbers], bool] = {}
-    waiting, steps, most = list(seen), 0, -1
+    waiting, steps, most = list(visited), 0, -1
     for node, open_, age in waiting:
         now = _numbers(open_, age, node)
         for tick, after in loop.steps(node):
@@ -212,22 +212,22 @@ def covered(loop: Loop, limit: int, longest: int) -> Covered:
             if (now, then) not in allowed:
                 allowed[now, then] = _is_step(now, then, times)
             if not allowed[now, then]:
-                return Covered(steps, most, (now, then))
+                return Coverage(steps, most, (now, then))
             most = max(most, then.open)
             key = (after, then.open, then.age)
-            if key not in seen and then.open <= longest:
-                if len(seen) >= limit:
+            if key not in visited and then.open <= longest:
+                if len(visited) >= limit:
                     raise TooManyStatesError(limit)
-                seen.add(key)
+                visited.add(key)
                 waiting.append(key)
-    return Covered(steps, most, None)
+    return Coverage(steps, most, None)
 
 
 def _followed(now: Numbers, tick: Tick, after: Node, channel: Channel) -> Numbers:
     """What the twin remembers of a step of the loop."""
     if not tick.requested:
         return _numbers(-1, NONE, after)
-    age = now.age if now.asked else NONE
+    age = now.age if now.requested else NONE
     if age == NONE and tick.sent:
         age = 0
     if age >= 0:

@@ -23,7 +23,7 @@ from fretc.verification.engines.sandbox import Limits, Stopped
 from fretc.verification.interceptor.file import otherwise
 from fretc.verification.interceptor.machine import Settings
 from fretc.verification.loop.model import Channel
-from fretc.verification.loop.search import Case, Found, search
+from fretc.verification.loop.search import Case, Results, search
 from fretish.bindings.declarations import Assumed, Form, Interception, Planner, Requests
 from fretish.clock import in_words
 from fretish.expressions import names
@@ -54,22 +54,22 @@ class Setup:
 
 def loop(rule: Rule, setup: Setup, limits: Limits) -> tuple[Evidence, ...]:
     """Both claims: the requirement is kept, and the stop is released."""
-    made = case(rule, setup)
-    if isinstance(made, str):
-        found: Found | Stopped = Stopped(made)
+    problem = case(rule, setup)
+    if isinstance(problem, str):
+        results: Results | Stopped = Stopped(problem)
     else:
-        found = processes.confined(limits, search, made)
-    if isinstance(found, Stopped):
-        found = Found(NotChecked(found.reason), NotChecked(found.reason))
-    told = () if isinstance(made, str) else tuple(assumptions(rule, setup, made))
+        results = processes.confined(limits, search, problem)
+    if isinstance(results, Stopped):
+        results = Results(NotChecked(results.reason), NotChecked(results.reason))
+    premises = () if isinstance(problem, str) else tuple(assumptions(rule, setup, problem))
     return (
-        _evidence(rule, setup, KEPT, found.kept, told),
-        _evidence(rule, setup, RELEASED, found.released, told),
+        _evidence(rule, setup, KEPT, results.kept, premises),
+        _evidence(rule, setup, RELEASED, results.released, premises),
     )
 
 
 def _evidence(
-    rule: Rule, setup: Setup, claim: str, result: Result, told: tuple[str, ...]
+    rule: Rule, setup: Setup, claim: str, result: Result, premises: tuple[str, ...]
 ) -> Evidence:
     return Evidence(
         rule.id,
@@ -77,7 +77,7 @@ def _evidence(
         claim,
         result,
         f"fretc, explicit states; Spot {automata.version()}",
-        told,
+        premises,
         artefacts(setup),
     )
 
@@ -85,7 +85,7 @@ def _evidence(
 def artefacts(setup: Setup) -> dict[str, str]:
     """SHA-256 of each text."""
     texts = [setup.monitor, *([setup.interceptor] if setup.interceptor else [])]
-    return {named.name: sha256(named.text) for named in texts}
+    return {text.name: sha256(text.text) for text in texts}
 
 
 # The case -------------------------------------------------------------------------------------
@@ -100,12 +100,12 @@ def case(rule: Rule, setup: Setup) -> Case | str:
         return "the bindings assume nothing of the loop (`[assume]`)"
     if assumed.stands not in {name.id for name in names(rule.sentence.response)}:
         return f"its response does not speak of `{assumed.stands}`, which is what the loop decides"
-    wrong = otherwise(setup.interceptor.text, interception)
-    if wrong is not None:
-        return wrong
-    known = channel(rule, interception, assumed)
-    if isinstance(known, str):
-        return known
+    deviation = otherwise(setup.interceptor.text, interception)
+    if deviation is not None:
+        return deviation
+    declared = channel(rule, interception, assumed)
+    if isinstance(declared, str):
+        return declared
     return Case(
         rule.id,
         rule.ft_infinite,
@@ -113,15 +113,15 @@ def case(rule: Rule, setup: Setup) -> Case | str:
         target.text(rule),
         setup.interceptor.text,
         settings(interception),
-        known,
+        declared,
         assumed.stands,
     )
 
 
 def settings(interception: Interception) -> Settings:
     """The options of the interceptor, in ticks of its timer."""
-    made = options(interception)
-    return Settings(**{field.name: getattr(made, field.name) for field in fields(Settings)})
+    core_options = options(interception)
+    return Settings(**{field.name: getattr(core_options, field.name) for field in fields(Settings)})
 
 
 def channel(rule: Rule, interception: Interception, assumed: Assumed) -> Channel | str:
@@ -158,16 +158,18 @@ def cell_of(tick: int, interception: Interception, assumed: Assumed) -> int:
 # Assumptions ----------------------------------------------------------------------------------
 
 
-def assumptions(rule: Rule, setup: Setup, made: Case, *, any_time: bool = False) -> Iterator[str]:
+def assumptions(
+    rule: Rule, setup: Setup, problem: Case, *, any_time: bool = False
+) -> Iterator[str]:
     """What the verdict takes for granted, in words, with where each is declared.
 
     Args:
         rule: the requirement.
         setup: with what is declared.
-        made: the case of both.
+        problem: the case of both.
         any_time: the verdict holds whatever latency, losses and braking time are.
     """
-    interception, assumed, channel = setup.interception, setup.assumed, made.channel
+    interception, assumed, channel = setup.interception, setup.assumed, problem.channel
     assert interception is not None
     assert assumed is not None
     assert rule.clock is not None
@@ -189,7 +191,7 @@ def assumptions(rule: Rule, setup: Setup, made: Case, *, any_time: bool = False)
         period = in_words(interception.period)
         yield f"the interceptor's timer rings once in each {period} (`period`, [interceptor])"
     yield from _rounded(interception, assumed, tick, any_time=any_time)
-    if not made.settings.stop_timeout:
+    if not problem.settings.stop_timeout:
         yield "the safety function never falls silent: there is no `stop_timeout` ([interceptor])"
 
 
@@ -225,11 +227,11 @@ def _rounded(
     """Durations that are no whole number of cells, or of ticks: the longer one is proved."""
     cell = cell_of(tick, interception, assumed)
     cells = "whole cells of the model"
-    for name, duration, unit, whole in (
+    for name, duration, unit, grid in (
         ("latency", 0 if any_time else assumed.latency, cell, cells),
         ("braking", 0 if any_time else assumed.braking, cell, cells),
         ("heartbeat", assumed.heartbeat, tick, "whole ticks of the clock"),
     ):
         if duration % unit:
             longer = in_words(ticks(duration, unit) * unit)
-            yield f"`{name}` of {in_words(duration)} counts as {longer}, {whole}"
+            yield f"`{name}` of {in_words(duration)} counts as {longer}, {grid}"

@@ -143,9 +143,9 @@ class Loop:
         self.environment = environment
         self._place = environment.atoms.index(environment.stands)
         self._letters = {stands: environment.letters(stands) for stands in (False, True)}
-        self._heard = [Heard.MOVE, Heard.STAND, *([Heard.SCAN] if channel.scans else [])]
-        self._known: dict[Wheels, dict[Wheels, Word]] = {}
-        self._judged: dict[tuple[Hashable, Hashable, Valuation], tuple[Hashable, ...]] = {}
+        self._inputs = [Heard.MOVE, Heard.STAND, *([Heard.SCAN] if channel.scans else [])]
+        self._passages: dict[Wheels, dict[Wheels, Word]] = {}
+        self._judgements: dict[tuple[Hashable, Hashable, Valuation], tuple[Hashable, ...]] = {}
         watching = observer.save() if observer else None
         wheels = Wheels(gate.initial, channel.stands, ())
         self.initial = Node(safety.save(), watching, wheels, 0, False, 0)
@@ -181,8 +181,8 @@ class Loop:
         requested = bool(triggered or owed)
         same = self.channel.edge and requested == node.requested
         for sent, losses in self._fates(node, same):
-            told = (bool(triggered), bool(owed), requested, sent, same and sent is not None)
-            tick = Tick(letter, *told, bool(violated))
+            facts = (bool(triggered), bool(owed), requested, sent, same and sent is not None)
+            tick = Tick(letter, *facts, bool(violated))
             wheels, silent = self._begun(node.wheels, tick, still), self._silence(node, sent)
             yield tick, Node(safety, observer, wheels, losses, requested, silent)
 
@@ -194,16 +194,16 @@ class Loop:
         """What is heard on a way from one end of a tick to the next; None: a cell ends."""
         stands = self.channel.stands if tick.letter[self._place] else before.wheels.still
         rest: Word | None = self._passed(self._begun(before.wheels, tick, stands))[after.wheels]
-        found: list[Heard | None] = []
+        events: list[Heard | None] = []
         while rest is not None:
-            found.append(rest[0])
+            events.append(rest[0])
             rest = rest[1]
-        return tuple(found[-2::-1])  # the first one stands for nothing
+        return tuple(events[-2::-1])  # the first one stands for nothing
 
     def _judge(self, node: Node, letter: Valuation) -> tuple[Hashable, ...]:
         key = (node.safety, node.observer, letter)
-        found = self._judged.get(key)
-        if found is None:
+        judgement = self._judgements.get(key)
+        if judgement is None:
             self._safety.load(node.safety)
             verdict, _ = self._safety.step(letter)
             triggered, owed = self._safety.demands()
@@ -213,9 +213,9 @@ class Loop:
                 verdict, _ = self._observer.step(letter)
                 watching = self._observer.save()
             saved = self._safety.save()
-            found = (saved, watching, triggered, owed, verdict == "violated")
-            self._judged[key] = found
-        return found
+            judgement = (saved, watching, triggered, owed, verdict == "violated")
+            self._judgements[key] = judgement
+        return judgement
 
     def _fates(self, node: Node, same: bool) -> list[tuple[bool | None, int]]:
         """What becomes of the message, and how many are lost in a row then.
@@ -229,8 +229,8 @@ class Loop:
         lost: list[tuple[bool | None, int]] = [(False, node.losses + 1)]
         if same and not beat:
             return quiet
-        said = [(True, 0), *(lost if node.losses < self.channel.lost else [])]
-        return [*quiet, *said] if same and node.silent < beat else said
+        sent = [(True, 0), *(lost if node.losses < self.channel.lost else [])]
+        return [*quiet, *sent] if same and node.silent < beat else sent
 
     def _silence(self, node: Node, sent: bool | None) -> int:
         """Ticks without a message, at the next tick."""
@@ -242,10 +242,10 @@ class Loop:
 
     def _passed(self, wheels: Wheels) -> dict[Wheels, Word]:
         """How it can stand at the next tick, each with a word of what is heard on the way."""
-        found = self._known.get(wheels)
-        if found is None:
-            found = self._known[wheels] = self._passing(wheels)
-        return found
+        passage = self._passages.get(wheels)
+        if passage is None:
+            passage = self._passages[wheels] = self._passing(wheels)
+        return passage
 
     def _passing(self, wheels: Wheels) -> dict[Wheels, Word]:
         layer: dict[tuple[Wheels, bool], Word] = {}
@@ -265,45 +265,45 @@ class Loop:
     def _at_once(self, wheels: Wheels, word: Word) -> tuple[Wheels, Word]:
         """What is sent without latency is heard at the very instant of the tick."""
         while wheels.queue:
-            heard = _message(wheels.queue)
+            event = _message(wheels.queue)
             moved = wheels.still < 0
-            wheels, word = self._take(wheels, heard), (heard, word)
+            wheels, word = self._take(wheels, event), (event, word)
             if moved and wheels.still == 0:
                 wheels = wheels._replace(still=1)
         return wheels, word
 
     def _closed(self, layer: dict[tuple[Wheels, bool], Word]) -> dict[tuple[Wheels, bool], Word]:
         """Any number of messages, in any order but that of the queue."""
-        found = dict(layer)
+        closure = dict(layer)
         waiting = list(layer)
         for key in waiting:
             wheels, enough = key
             queued = [_message(wheels.queue)] if wheels.queue else []
-            for heard in (*queued, *self._heard):
-                commanded = heard in (Heard.MOVE, Heard.STAND)
-                after = self._take(wheels, heard), enough or commanded
-                if after not in found:
-                    found[after] = (heard, found[key])
+            for event in (*queued, *self._inputs):
+                commanded = event in (Heard.MOVE, Heard.STAND)
+                after = self._take(wheels, event), enough or commanded
+                if after not in closure:
+                    closure[after] = (event, closure[key])
                     waiting.append(after)
-        return found
+        return closure
 
-    def _take(self, wheels: Wheels, heard: Heard) -> Wheels:
-        gate, said = self.gate.hear(wheels.gate, heard)
-        queue = wheels.queue[1:] if heard in (Heard.STOP, Heard.RELEASE) else wheels.queue
-        if said is None:
+    def _take(self, wheels: Wheels, event: Heard) -> Wheels:
+        gate, output = self.gate.hear(wheels.gate, event)
+        queue = wheels.queue[1:] if event in (Heard.STOP, Heard.RELEASE) else wheels.queue
+        if output is None:
             return Wheels(gate, wheels.still, queue)
-        return Wheels(gate, -1 if said else max(wheels.still, 0), queue)
+        return Wheels(gate, -1 if output else max(wheels.still, 0), queue)
 
     def _older(self, layer: dict[tuple[Wheels, bool], Word]) -> dict[tuple[Wheels, bool], Word]:
         """A cell ends: without those in which a message is in flight for too long."""
-        found: dict[tuple[Wheels, bool], Word] = {}
+        result: dict[tuple[Wheels, bool], Word] = {}
         for ((gate, still, queue), enough), word in layer.items():
             if queue and queue[0][1] + 1 >= self.channel.latency:
                 continue
             older = tuple((requested, age + 1) for requested, age in queue)
             later = min(still + 1, self.channel.stands) if still >= 0 else still
-            found.setdefault((Wheels(gate, later, older), enough), (None, word))
-        return found
+            result.setdefault((Wheels(gate, later, older), enough), (None, word))
+        return result
 
 
 def _message(queue: Queue) -> Heard:

@@ -52,17 +52,17 @@ class Terms:
         assert isinstance(last.value, ast.Tuple)
         signals = last.value.elts[place]
         assert isinstance(signals, ast.Call)
-        told = {keyword.arg: self._term(keyword.value, names) for keyword in signals.keywords}
-        return tuple(told[name] for name in SIGNALS)
+        terms = {keyword.arg: self._term(keyword.value, names) for keyword in signals.keywords}
+        return tuple(terms[name] for name in SIGNALS)
 
     def _literals(self, monitor: ast.ClassDef) -> dict[str, int]:
         for part in monitor.body:
             match part:
                 case ast.Assign([ast.Name("LITERALS")], value):
-                    given: tuple[tuple[str, str, bool], ...] = ast.literal_eval(value)
+                    literals: tuple[tuple[str, str, bool], ...] = ast.literal_eval(value)
                     return {
                         name: self._number("literal", proposition, positive)
-                        for name, proposition, positive in given
+                        for name, proposition, positive in literals
                     }
         return {}
 

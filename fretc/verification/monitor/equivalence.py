@@ -62,7 +62,7 @@ class Refuted:
 
     word: tuple[Valuation, ...]
     expected: Judgement
-    found: Judgement
+    actual: Judgement
     shortest: bool = True
     """No shorter trace tells them apart; False where there were too many pairs to know."""
 
@@ -128,7 +128,7 @@ class _Reference:
     def of(cls, automaton: Automaton, letters: Mapping[Valuation, Letter]) -> _Reference:
         numbers = {letter: number for number, letter in enumerate(automaton.letters)}
         broken: Judgement = ("violated", False)
-        judged = (
+        judgements = (
             (verdict, accepts(automaton.template, state))
             for state, verdict in zip(automaton.states, automaton.verdicts, strict=True)
         )
@@ -136,22 +136,22 @@ class _Reference:
             tuple(letters),
             automaton.moves,
             tuple(numbers[letter] for letter in letters.values()),
-            (*judged, broken),
+            (*judgements, broken),
         )
 
 
 def _compared(machine: Machine, reference: _Reference, limit: int) -> Proved | Refuted | NotChecked:
     """Whether they are equal, by classes of states; if not, a shortest word, by all pairs."""
     start = machine.save()
-    found = _in_lock_step(machine, reference, _Classes(len(reference.moves)), limit)
-    if not isinstance(found, Refuted):
-        return found
+    result = _in_lock_step(machine, reference, _Classes(len(reference.moves)), limit)
+    if not isinstance(result, Refuted):
+        return result
     machine.load(start)
     shortest = _in_lock_step(machine, reference, _Pairs(), limit)
-    return shortest if isinstance(shortest, Refuted) else replace(found, shortest=False)
+    return shortest if isinstance(shortest, Refuted) else replace(result, shortest=False)
 
 
-class _Known(Protocol):
+class _Visited(Protocol):
     """The pairs of states that need not be looked at again."""
 
     def add(self, state: int, saved: Hashable) -> bool:
@@ -162,13 +162,13 @@ class _Pairs:
     """Every pair for itself."""
 
     def __init__(self) -> None:
-        self._seen: set[tuple[int, Hashable]] = set()
+        self._pairs: set[tuple[int, Hashable]] = set()
 
     def add(self, state: int, saved: Hashable) -> bool:
         """Whether the pair is new; it is known from now on."""
-        before = len(self._seen)
-        self._seen.add((state, saved))
-        return len(self._seen) > before
+        before = len(self._pairs)
+        self._pairs.add((state, saved))
+        return len(self._pairs) > before
 
 
 class _Classes:
@@ -200,11 +200,11 @@ class _Classes:
 
 
 def _in_lock_step(
-    machine: Machine, reference: _Reference, known: _Known, limit: int
+    machine: Machine, reference: _Reference, visited: _Visited, limit: int
 ) -> Proved | Refuted | NotChecked:
     """Breadth first through the pairs that are new, from the present state of the machine."""
     start = (0, machine.save())
-    known.add(*start)
+    visited.add(*start)
     pairs = [start]
     origins: list[tuple[int, Valuation] | None] = [None]
     steps = 0
@@ -212,16 +212,16 @@ def _in_lock_step(
         row = reference.moves[state]
         for valuation, letter in zip(reference.valuations, reference.letters, strict=True):
             machine.load(saved)
-            found = machine.step(valuation)
+            judgement = machine.step(valuation)
             steps += 1
             after = row[letter]
             expected = reference.judgements[after]
-            if found != expected:
-                return Refuted((*_word(origins, place), valuation), expected, found)
+            if judgement != expected:
+                return Refuted((*_word(origins, place), valuation), expected, judgement)
             if expected[0] == "violated":
                 continue
             reached = machine.save()
-            if known.add(after, reached):
+            if visited.add(after, reached):
                 pairs.append((after, reached))
                 origins.append((place, valuation))
         if len(pairs) > limit:

@@ -71,10 +71,10 @@ class Stepped:
 
     def step(self, letter: Valuation) -> Judgement:
         """The verdict as the text's own step tells it, and FRET's finite verdict."""
-        told = self._step(**{p: letter[i] for p, i in self._parameters})
+        verdicts = self._step(**{p: letter[i] for p, i in self._parameters})
         rail = self._rail
         signals, marks = rail.signals()[self._place], rail.marks()[self._place]
-        verdict = told if self._alone else told[self._place]
+        verdict = verdicts if self._alone else verdicts[self._place]
         return str(verdict), marks.broken < 0 and not signals.fails
 
     def demands(self) -> tuple[bool, bool]:

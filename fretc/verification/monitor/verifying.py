@@ -52,7 +52,7 @@ class Disagreement:
 
     word: tuple[tuple[Truth, ...], ...]
     """The values of `atoms`; None: unknown."""
-    what: str = "its column program and its steps differ"
+    fault: str = "its column program and its steps differ"
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,7 +65,7 @@ class Verified:
     result: Proved | Refuted | NotChecked | Disagreement
     compared: int = 0
     """Ticks of drawn traces on which the column program agreed with the steps."""
-    beside: int = 0
+    compared_states: int = 0
     """States in which it was compared with the text that fretc writes; 0: it is that text."""
 
 
@@ -92,12 +92,14 @@ def verified(
     except Exception as error:
         reason = f"it cannot be executed: {type(error).__name__}: {error}"
         return Verified(rule.id, (), NotChecked(reason))
-    return _shown(rule, text, monitor, limit, others)
+    return _compared(rule, text, monitor, limit, others)
 
 
-def _shown(rule: Rule, text: str, monitor: Monitor, limit: int, others: Sequence[Rule]) -> Verified:
+def _compared(
+    rule: Rule, text: str, monitor: Monitor, limit: int, others: Sequence[Rule]
+) -> Verified:
     """What is known of a text that may be executed."""
-    places = [i for i, known in enumerate(monitor.REQUIREMENTS) if known.id == rule.id]
+    places = [i for i, each in enumerate(monitor.REQUIREMENTS) if each.id == rule.id]
     if not places:
         return Verified(rule.id, (), NotChecked("the monitor is of other requirements"))
     place = places[0]
@@ -106,52 +108,52 @@ def _shown(rule: Rule, text: str, monitor: Monitor, limit: int, others: Sequence
     result = prove(machine, rule.sentence, rule.ticks or 0, atoms, limit)
     if not isinstance(result, Proved):
         return Verified(rule.id, atoms, result)
-    (stated,) = load("written", target.text(rule)).REQUIREMENTS
-    if tuple(monitor.REQUIREMENTS[place]) != tuple(stated):
+    (expected,) = load("written", target.text(rule)).REQUIREMENTS
+    if tuple(monitor.REQUIREMENTS[place]) != tuple(expected):
         reason = "it decides the same, but states another sentence or deadline"
         return Verified(rule.id, atoms, NotChecked(reason))
     compared, word = _columns_compared(monitor, place, atoms, rule.ticks or 0)
     if word is not None:
         return Verified(rule.id, atoms, Disagreement(word), compared)
-    if _is_written(text, monitor, (*others, rule)):
+    if _is_generated(text, monitor, (*others, rule)):
         return Verified(rule.id, atoms, result, compared)
-    beside = _beside_its_own(rule, text, monitor, place, atoms, limit)
-    if isinstance(beside, int):
-        return Verified(rule.id, atoms, result, compared, beside)
-    return Verified(rule.id, atoms, beside, compared)
+    compared_states = _compared_with_generated(rule, text, monitor, place, atoms, limit)
+    if isinstance(compared_states, int):
+        return Verified(rule.id, atoms, result, compared, compared_states)
+    return Verified(rule.id, atoms, compared_states, compared)
 
 
-def _is_written(text: str, monitor: Monitor, rules: Sequence[Rule]) -> bool:
+def _is_generated(text: str, monitor: Monitor, rules: Sequence[Rule]) -> bool:
     """Whether it is what fretc writes for these rules, or for some of them, but for comments."""
-    known = {rule.id: rule for rule in rules}
+    by_id = {rule.id: rule for rule in rules}
     ids = [requirement.id for requirement in monitor.REQUIREMENTS]
-    if not all(id in known for id in ids):
+    if not all(id in by_id for id in ids):
         return False
-    written = target.text(*(known[id] for id in ids))
-    return ast.dump(own(written)) == ast.dump(own(text))
+    generated = target.text(*(by_id[id] for id in ids))
+    return ast.dump(own(generated)) == ast.dump(own(text))
 
 
-def _beside_its_own(
+def _compared_with_generated(
     rule: Rule, text: str, monitor: Monitor, place: int, atoms: Sequence[str], limit: int
 ) -> int | Disagreement | NotChecked:
     """In how many states it tells the same as the text that fretc writes for the rule."""
-    written = target.text(rule)
+    generated = target.text(rule)
     if len(atoms) > rails.MOST_PROPOSITIONS:
         most = rails.MOST_PROPOSITIONS
         return NotChecked(
             f"it is not the text that fretc writes, and {len(atoms)} propositions, more than "
             f"{most}, are too many to compare both with unknown values"
         )
-    found = rails.compared(monitor, place, load("written", written), atoms, limit)
-    match found:
+    comparison = rails.compared(monitor, place, load("written", generated), atoms, limit)
+    match comparison:
         case None:
             return NotChecked(f"with unknown values there are more than {limit} states")
-        case rails.Apart(word, what):
-            told = f"the text that fretc writes tells another {what}"
-            return Disagreement(word, told)
+        case rails.Apart(word, signal):
+            fault = f"the text that fretc writes tells another {signal}"
+            return Disagreement(word, fault)
         case rails.Same(states):
             terms = Terms()
-            if terms.of(text, place) == terms.of(written, 0):
+            if terms.of(text, place) == terms.of(generated, 0):
                 return states
             return NotChecked(
                 "its column program is not the one that fretc writes: it agrees with the steps on "
@@ -165,8 +167,8 @@ def _demand_monitor(text: str) -> None:
         tree = ast.parse(text)
     except (SyntaxError, ValueError, RecursionError) as error:
         raise NotAMonitorError(f"it is no Python: {error}") from None
-    named = (node.target for node in tree.body if isinstance(node, ast.AnnAssign))
-    if not any(isinstance(target, ast.Name) and target.id == "MONITOR" for target in named):
+    targets = (node.target for node in tree.body if isinstance(node, ast.AnnAssign))
+    if not any(isinstance(target, ast.Name) and target.id == "MONITOR" for target in targets):
         raise NotAMonitorError("it names no `MONITOR`")
 
 
@@ -183,9 +185,9 @@ def _columns_compared(
     for number in range(count):
         odds = 0.02 if number % 2 else 0.0
         drawn = {name: _drawn(choose, length, bound, odds) for name in atoms}
-        wrong = _first_difference(monitor, place, drawn, length)
-        if wrong is not None:
-            return 0, tuple(_rows(drawn, wrong + 1))
+        tick = _first_difference(monitor, place, drawn, length)
+        if tick is not None:
+            return 0, tuple(_rows(drawn, tick + 1))
     return count * length, None
 
 
@@ -208,9 +210,9 @@ def _first_difference(
     values = [truths(columns[name], length) for name in monitor.PROPOSITIONS]
     for tick in range(length):
         monitor.advance([tuple([column[tick] for column in values])])
-        for rail, told in ((monitor.must, must), (monitor.may, may)):
-            found = [bool(value) for value in rail.signals()[place]]
-            if found != [bool(column >> tick & 1) for column in told]:
+        for rail, expected in ((monitor.must, must), (monitor.may, may)):
+            actual = [bool(value) for value in rail.signals()[place]]
+            if actual != [bool(column >> tick & 1) for column in expected]:
                 return tick
     return None
 

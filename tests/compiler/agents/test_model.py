@@ -6,7 +6,7 @@ from itertools import pairwise
 import pytest
 
 from compiler.agents.gwendolen import Agent, Change, read
-from compiler.agents.model import Intention, Model, Stage, State, told
+from compiler.agents.model import Intention, Model, Stage, State, narration
 from compiler.logic import formula as f
 from compiler.logic.kripke import Explored, TooManyStatesError, check
 from fretish.diagnostics.diagnostic import Diagnostic
@@ -75,7 +75,7 @@ def test_the_counterexample_of_the_guards_is_a_run_of_the_model() -> None:
     assert states[0] == model.initial
     for before, after in pairwise(states):
         assert after in [state for _, state in model.steps(before)]
-    said = told(model, found, lasso.states)
+    said = narration(model, found, lasso.states)
     lost = said.index("drops +near: there is nothing to do")
     assert "does release; the environment shows near" in said[:lost]
     assert "removes halted" in said[lost:]
@@ -234,7 +234,7 @@ def test_a_percept_that_waits_is_not_noticed_twice() -> None:
     state = replace(model.initial, percepts=near, stage=Stage.PERCEIVE, in_turn=True)
     ((_, noticed),) = model.steps(state)
     assert events(noticed) == ["the percept +near"]
-    again = replace(noticed, told=False, stage=Stage.PERCEIVE)
+    again = replace(noticed, up_to_date=False, stage=Stage.PERCEIVE)
     ((_, still),) = model.steps(again)
     assert events(still) == ["the percept +near"]
 

@@ -103,25 +103,25 @@ def test_small_times_say_nothing_of_long_ones_where_the_core_is_another() -> Non
 def test_a_twin_that_promises_too_much_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
     """Held against the loop with one lost message less than there is."""
     loop = Parts.of(case(WITHIN.format(9), Settings(), Channel(1, lost=2))).loop
-    assert covered(loop, 10**5, 9).strange is None
+    assert covered(loop, 10**5, 9).uncovered is None
     loop.channel = replace(loop.channel, lost=1)
     monkeypatch.setattr(Loop, "_fates", lambda *_: [(True, 0), (False, 2)])
-    strange = covered(loop, 10**5, 9).strange
-    assert strange is not None
-    assert strange[1].losses == 2
+    uncovered = covered(loop, 10**5, 9).uncovered
+    assert uncovered is not None
+    assert uncovered[1].losses == 2
 
 
 def test_a_twin_whose_heart_beats_too_fast_is_found() -> None:
     loop = Parts.of(
         case(WITHIN.format(9), Settings(), Channel(1, lost=1, edge=True, heartbeat=3))
     ).loop
-    assert covered(loop, 10**5, 9).strange is None
+    assert covered(loop, 10**5, 9).uncovered is None
     right = looptwin.times_of
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(looptwin, "times_of", lambda known: right(known)._replace(heartbeat=2))
-        strange = covered(loop, 10**5, 9).strange
-    assert strange is not None
-    assert (strange[0].silent, strange[1].silent) == (2, 3)
+        uncovered = covered(loop, 10**5, 9).uncovered
+    assert uncovered is not None
+    assert (uncovered[0].silent, uncovered[1].silent) == (2, 3)
 
 
 def test_an_invariant_that_is_too_strong_is_not_proved(monkeypatch: pytest.MonkeyPatch) -> None:
