@@ -18,15 +18,15 @@ if __name__ == "__main__" and not sys.flags.safe_path:
 beside it first. `from __future__ import annotations` is an import, too, and can only come before
 it: so generated files have none, and neither have the modules that they are made of."""
 _MODULES = ("verdicts", "columns", "stepping", "outcomes", "tables", "command")
-"""Of `monitors.kernel`, each after those that it needs."""
+"""The modules of `monitors.kernel`, each after those that it needs."""
 
 
 @dataclass(frozen=True, slots=True)
 class Runtime:
-    """Modules as one."""
+    """Several modules as one text."""
 
     imports: str
-    """Of the standard library only, below what keeps others from coming in its place."""
+    """Imports of the standard library only, below the statements that keep others out."""
     text: str
 
 

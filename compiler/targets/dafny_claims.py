@@ -1,4 +1,4 @@
-"""What a file of `--emit dafny` claims, and what of the closed loop it can say at all."""
+"""The claims of a file of `--emit dafny`, and how far they cover the closed loop."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ CHANNELS = (
     ("Scan", "scan", "ScanHeard"),
     ("Command", "command", "CommandHeard"),
 )
-"""What an interceptor hears: in names of lemmas, in names of its numbers, and in its events."""
+"""The inputs of an interceptor: their names in lemmas, in its numbers, and its events."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,12 +38,12 @@ class Delay:
 
     @property
     def total(self) -> int:
-        """What the bound of the requirement must not be below."""
+        """The least bound that the requirement may have."""
         return self.reach + self.braking
 
 
 def loopless(rule: Rule, declarations: Declarations | None) -> str | None:
-    """Why nothing is said of the closed loop; None where something is."""
+    """Why the file has no claim about the closed loop; None where it has one."""
     if declarations is None or declarations.interceptor is None:
         return "the bindings have no [interceptor], and the plain form waits for a command to stop"
     if declarations.interceptor.form is Form.EVENT:
@@ -59,7 +59,7 @@ def loopless(rule: Rule, declarations: Declarations | None) -> str | None:
 
 
 def delay(rule: Rule, declarations: Declarations | None) -> Delay | str | None:
-    """What [assume] amounts to, or why it is no number of ticks; None where there is none."""
+    """The delay under [assume], or why it is no number of ticks; None without [assume]."""
     assumed = declarations.assumed if declarations else None
     if assumed is None:
         return None
@@ -75,7 +75,7 @@ def delay(rule: Rule, declarations: Declarations | None) -> Delay | str | None:
 
 @dataclass(frozen=True, slots=True)
 class Claim:
-    """What is known once every lemma and method of the file is verified."""
+    """A claim that holds once Dafny verifies every lemma and method of the file."""
 
     layer: Layer
     sentence: str

@@ -64,14 +64,14 @@ def requirement(entry: Requirement, rule: Rule | None) -> dict[str, Any]:
 
 
 def _own(entry: Requirement) -> dict[str, dict[str, str]]:
-    """What FRET has no field for, so that it is there again when the file is imported."""
+    """Fields that FRET lacks, for `fretc import` of the same file."""
     texts = {"title": entry.title, "text": entry.text}
     own = {name: text for name, text in texts.items() if text}
     return {OWN: own} if own else {}
 
 
 def _status(entry: Requirement) -> str:
-    """FRET's own status where it still says the same, else the nearest."""
+    """FRET's own status where it still means the same, else the nearest."""
     status = entry.fret.get("status", "")
     if STATUSES.get(status, "draft") == entry.status:
         return status

@@ -18,7 +18,7 @@ from fretc.logs.mcap.container import Stream
 from fretc.logs.mcap.damage import LATEST
 from fretc.logs.mcap.payloads import Payloads, Places
 from fretc.logs.messages.decoding import Decode, decoder, is_single, shape, stamp
-from fretc.logs.messages.layouts import Found, Group, Layout, Layouts, Shape, Where
+from fretc.logs.messages.layouts import Group, Layout, Layouts, Location, Shape, Where
 from fretc.logs.messages.probes import trusted
 from fretc.logs.messages.vectorized import nearest, samples, siblings
 from fretc.logs.signals.samples import EXACT, Numbers, Times, Values, widest
@@ -54,7 +54,10 @@ class Extract:
     @classmethod
     def empty(cls, count: int, signals: Iterable[Signal], single: Container[str] = ()) -> Extract:
         """Of messages that are still to be read; `single` are signals of 32-bit floats."""
-        kinds = {one.name: "f4" if one.name in single and _chosen(one) else "f8" for one in signals}
+        kinds = {
+            signal.name: "f4" if signal.name in single and _chosen(signal) else "f8"
+            for signal in signals
+        }
         return cls(
             {name: np.full(count, np.nan, kind) for name, kind in kinds.items()},
             np.zeros(count, bool),
@@ -62,12 +65,14 @@ class Extract:
             np.zeros(count, bool),
         )
 
-    def put(self, signal: Signal, at: int | Places, found: float | Values) -> None:
+    def put(self, signal: Signal, at: int | Places, numbers: float | Values) -> None:
         """What the signal is in some messages."""
-        wide = isinstance(found, int) or (isinstance(found, np.ndarray) and found.dtype == EXACT)
+        wide = isinstance(numbers, int) or (
+            isinstance(numbers, np.ndarray) and numbers.dtype == EXACT
+        )
         if wide:
             self.values[signal.name] = self.values[signal.name].astype(EXACT, copy=False)
-        self.values[signal.name][at] = found
+        self.values[signal.name][at] = numbers
 
     def near(self, signal: Signal, least: float | None) -> None:
         """Some messages state a least distance."""
@@ -86,10 +91,10 @@ class Extraction:
     def __init__(self, stream: Stream, signals: Sequence[Signal]) -> None:
         self.signals = list(signals)
         """Those that can be read; one with something wrong is taken out."""
-        self.wrong: dict[str, Diagnostic] = {}
+        self.diagnostics: dict[str, Diagnostic] = {}
         self._checks = _CHECKED
-        found = decoder(stream)
-        self._decode: Decode | None = None if isinstance(found, str) else found
+        decode = decoder(stream)
+        self._decode: Decode | None = None if isinstance(decode, str) else decode
         self._single: frozenset[str] = frozenset()
         """Signals of 32-bit floats."""
         if self._decode is not None:
@@ -97,9 +102,9 @@ class Extraction:
         self._shape = _shape(stream, self._decode)
         self._sought: tuple[Where, ...] | None = None
         """What the layouts were made for: less, once a signal was refused."""
-        if isinstance(found, str):
+        if isinstance(decode, str):
             for signal in signals:
-                self._refuse(signal, findings.unknown_encoding(signal, found))
+                self._refuse(signal, findings.unknown_encoding(signal, decode))
 
     @property
     def reads(self) -> bool:
@@ -124,7 +129,7 @@ class Extraction:
 
     def _refuse(self, signal: Signal, diagnostic: Diagnostic) -> None:
         self.signals.remove(signal)
-        self.wrong[signal.name] = diagnostic
+        self.diagnostics[signal.name] = diagnostic
 
     # By the official decoder
 
@@ -169,11 +174,11 @@ class Extraction:
         wanted = self._wanted(self._shape)
         if wanted != self._sought:
             self._sought, self._layouts = wanted, Layouts(self._shape, wanted)
-        left: list[int] = []
+        rest: list[int] = []
         for group in self._layouts.groups(payloads):
-            if not self._taken(payloads, group, extract):
-                left.extend(group.rows.tolist())
-        return sorted(left)
+            if not self._read_group(payloads, group, extract):
+                rest.extend(group.rows.tolist())
+        return sorted(rest)
 
     def _wanted(self, shape: Shape) -> tuple[Where, ...]:
         wanted: dict[Where, None] = {}
@@ -185,7 +190,7 @@ class Extraction:
         wanted.update(dict.fromkeys(_stamp_places(shape)))
         return tuple(wanted)
 
-    def _taken(self, payloads: Payloads, group: Group, extract: Extract) -> bool:
+    def _read_group(self, payloads: Payloads, group: Group, extract: Extract) -> bool:
         """Read the messages of one layout, unless the official decoder reads them otherwise."""
         if group.layout is None or self._shape is None:
             return False
@@ -202,9 +207,9 @@ class Extraction:
     def _agrees(self, row: int, payloads: Payloads, layout: Layout) -> bool:
         """Whether both ways read the same of one message."""
         slow, fast = (Extract.empty(1, self.signals, self._single) for _ in range(2))
-        before = len(self.wrong)
+        before = len(self.diagnostics)
         self._one_by_one(0, bytes(payloads.payload(row)), slow)
-        if len(self.wrong) != before or not slow.decoded[0]:
+        if len(self.diagnostics) != before or not slow.decoded[0]:
             return False
         self._fill(payloads, np.array([row]), layout, np.zeros(1, np.int64), fast)
         return (
@@ -222,20 +227,22 @@ class Extraction:
     ) -> None:
         """Put what the messages `rows` hold at the places `to` of the extract."""
         extract.decoded[to] = True
-        found = layout.found
+        locations = layout.locations
         single = {
             where: payloads.gathered(rows, field.at, field.dtype, None)
-            for where, field in found.items()
+            for where, field in locations.items()
             if field.count is None
         }
         for signal in self.signals:
-            beside = {name: _numbers(single[name,]) for name in siblings(signal)}
-            field = found[signal.path.fields]
+            sibling_values = {name: _numbers(single[name,]) for name in siblings(signal)}
+            field = locations[signal.path.fields]
             if field.count is None:
                 values = _matrix(single[signal.path.fields])
-                extract.put(signal, to, samples(signal, values, beside))
+                extract.put(signal, to, samples(signal, values, sibling_values))
             else:
-                extract.put(signal, to, self._reduced(signal, payloads, rows, field, beside))
+                extract.put(
+                    signal, to, self._reduced(signal, payloads, rows, field, sibling_values)
+                )
             if (RANGE_MIN,) in single and signal.reduce in (Reduce.MIN, Reduce.OUTLINE):
                 extract.near(signal, nearest(signal, _numbers(single[RANGE_MIN,])))
         places = _stamp_places(self._shape) if self._shape is not None else ()
@@ -249,24 +256,24 @@ class Extraction:
         signal: Signal,
         payloads: Payloads,
         rows: Places,
-        field: Found,
-        beside: Mapping[str, Numbers],
+        field: Location,
+        sibling_values: Mapping[str, Numbers],
     ) -> Values:
         """A signal of an array, block by block; shape (rows,)."""
         values: list[Values] = [np.zeros(0, np.float32)]
         step = max(1, _BLOCK // max(1, field.count or 0))
         for first in range(0, len(rows), step):
             block = slice(first, first + step)
-            taken = payloads.gathered(rows[block], field.at, field.dtype, field.count)
-            some = {name: numbers[block] for name, numbers in beside.items()}
-            values.append(samples(signal, _matrix(taken), some))
+            gathered = payloads.gathered(rows[block], field.at, field.dtype, field.count)
+            some = {name: numbers[block] for name, numbers in sibling_values.items()}
+            values.append(samples(signal, _matrix(gathered), some))
         return np.concatenate(values)
 
 
 def _shape(stream: Stream, decode: Decode | None) -> Shape | None:
     """How the messages are laid out; None where that is not certain."""
-    found = shape(stream) if decode is not None else None
-    return found if decode and found and trusted(found, decode) else None
+    layout = shape(stream) if decode is not None else None
+    return layout if decode and layout and trusted(layout, decode) else None
 
 
 def _reads(shape: Shape, signal: Signal) -> bool:

@@ -71,7 +71,7 @@ class Column:
     logs: array[int] = field(default_factory=lambda: array("q"))
     times: array[int] = field(default_factory=lambda: array("q"))
     values: dict[str, Series] = field(default_factory=dict)
-    wrong: dict[str, Diagnostic] = field(default_factory=dict)
+    diagnostics: dict[str, Diagnostic] = field(default_factory=dict)
     """Why there are no samples of a signal."""
     types: dict[str, None] = field(default_factory=dict)
     """Of its messages, in the order in which they came."""
@@ -95,7 +95,7 @@ class Column:
     def refuse(self, signal: Signal, diagnostic: Diagnostic) -> None:
         """No samples of this signal."""
         self.signals.remove(signal)
-        self.wrong[signal.name] = diagnostic
+        self.diagnostics[signal.name] = diagnostic
         self.values.pop(signal.name, None)
 
     def raw(self) -> tuple[Times, Times]:
@@ -245,13 +245,13 @@ class Columns:
         column.types[short_type(stream.schema.name) if stream.schema else ""] = None
         extract = self._extract(column, stream, payloads)
         times, dated = self._times(column, extract, logs, publishes)
-        kept = times < LATEST
-        column.undecoded += int((~kept).sum())
-        column.logs.frombytes(logs[kept].tobytes())
-        column.times.frombytes(times[kept].tobytes())
-        column.timeless.extend((~dated[kept]).tobytes())
+        usable = times < LATEST
+        column.undecoded += int((~usable).sum())
+        column.logs.frombytes(logs[usable].tobytes())
+        column.times.frombytes(times[usable].tobytes())
+        column.timeless.extend((~dated[usable]).tobytes())
         for signal in column.signals:
-            column.values.setdefault(signal.name, Series()).add(extract.values[signal.name][kept])
+            column.values.setdefault(signal.name, Series()).add(extract.values[signal.name][usable])
 
     def _extract(self, column: Column, stream: Stream, payloads: Payloads) -> Extract:
         """What the signals ask for; one with something wrong gets no samples."""
@@ -263,8 +263,8 @@ class Columns:
         extraction = self._extractions[id]
         extract = extraction.extract(payloads)
         for signal in tuple(column.signals):
-            if signal.name in extraction.wrong:
-                column.refuse(signal, extraction.wrong[signal.name])
+            if signal.name in extraction.diagnostics:
+                column.refuse(signal, extraction.diagnostics[signal.name])
         if extraction.reads:
             column.undecoded += int((~extract.decoded).sum())
         for name, least in extract.nearest.items():
@@ -302,17 +302,17 @@ class Columns:
         column = self.topics.get(self.clock.topic or "")
         return np.sort(np.array(column.times if column else [], np.int64))
 
-    def span(self, whole: Gap) -> Gap:
-        """First and last message of the bound topics, else of all; else those of the `whole` log.
+    def span(self, log: Gap) -> Gap:
+        """First and last message of the bound topics, else of all; else those of the `log` log.
 
         A topic counts if the declared clock gives the time of any of its messages. Other topics
         than the bound ones count by log time only: an index knows no other time of them.
         """
-        known = [column for column in self.topics.values() if column.placed]
-        times = [c.times for c in known if c.bound]
+        columns = [column for column in self.topics.values() if column.placed]
+        times = [c.times for c in columns if c.bound]
         if not times and self.clock.time is TimeSource.LOG_TIME:
-            times = [c.times for c in known]
-        return (min(map(min, times)), max(map(max, times))) if times else whole
+            times = [c.times for c in columns]
+        return (min(map(min, times)), max(map(max, times))) if times else log
 
     def on_clock(self, gap: Gap) -> Gap:
         """A span of log times, on the declared clock: between the messages around it."""
@@ -331,19 +331,23 @@ class Columns:
 
     def findings(self) -> list[Diagnostic]:
         """About single topics: what is missing first, then what is odd."""
-        found = [wrong for signal in self._wanted if (wrong := self._wrong(signal)) is not None]
+        diagnostics = [
+            diagnostic
+            for signal in self._wanted
+            if (diagnostic := self._problem(signal)) is not None
+        ]
         if self.clock.topic and not self.ticks().size:
-            found.append(self._absent(self.clock.topic, self._clock_place(self.clock.topic)))
+            diagnostics.append(self._absent(self.clock.topic, self._clock_place(self.clock.topic)))
         for topic, signal in {signal.path.topic: signal for signal in self._wanted}.items():
             if topic in self.topics:
-                found += self._oddities(self.topics[topic], signal)
-        return found
+                diagnostics += self._oddities(self.topics[topic], signal)
+        return diagnostics
 
-    def _wrong(self, signal: Signal) -> Diagnostic | None:
+    def _problem(self, signal: Signal) -> Diagnostic | None:
         column = self.topics.get(signal.path.topic)
         if column is None or not column.logs:
             return self._absent(signal.path.topic, signal.span)
-        return column.wrong.get(signal.name)
+        return column.diagnostics.get(signal.name)
 
     def _absent(self, topic: str, span: Span | None) -> Diagnostic:
         if topic in self.topics:
@@ -361,16 +365,16 @@ class Columns:
         return self._source.span(start, start + len(topic) + 2) if start >= 0 else None
 
     def _oddities(self, column: Column, signal: Signal) -> list[Diagnostic]:
-        found, count = [], len(column.logs)
+        diagnostics, count = [], len(column.logs)
         if len(column.types) > 1 and signal.type is None:
-            found.append(findings.several_types(signal, list(column.types)))
+            diagnostics.append(findings.several_types(signal, list(column.types)))
         if column.undecoded:
-            found.append(findings.bad_messages(signal, column.undecoded, count))
+            diagnostics.append(findings.bad_messages(signal, column.undecoded, count))
         if late := column.late():
-            found.append(findings.out_of_order(signal, late, count))
+            diagnostics.append(findings.out_of_order(signal, late, count))
         if column.unstamped:
-            found.append(findings.unstamped(signal, self._shift()))
-        return found
+            diagnostics.append(findings.unstamped(signal, self._shift()))
+        return diagnostics
 
     def _shift(self) -> int:
         """By how many nanoseconds header stamps are away from log times, in the middle."""

@@ -72,7 +72,7 @@ class SafetyFunction:
 
 
 class Gate:
-    """The interceptor: hears /gwendolen_control and /cmd_vel, says /cmd_vel_filtered."""
+    """The interceptor: from /gwendolen_control and /cmd_vel to /cmd_vel_filtered."""
 
     def __init__(self, bus: Bus, interceptor: Interceptor, period: float, epoch: int) -> None:
         """`period` in seconds, 0: it has no timer."""

@@ -37,7 +37,7 @@ _WEAKEN = Options(weaken=True)
 
 @deep
 def refusal(rule: Rule, options: Options = DEFAULT) -> Diagnostic | None:
-    """F601 for what AJPF or the agent cannot say; F614 where the agent would not do its duty."""
+    """F601 for what AJPF or the agent cannot express; F614 where the agent is not proved right."""
     refused = ajpf.refusal(rule, options)
     if refused is not None:
         return refused
@@ -47,21 +47,21 @@ def refusal(rule: Rule, options: Options = DEFAULT) -> Diagnostic | None:
 
 @dataclass(frozen=True, slots=True)
 class CheckedAgent:
-    """An agent, and what the model says of its texts."""
+    """An agent, and the evidence of the model about its texts."""
 
     sif: Sif
     evidence: tuple[Evidence, ...]
 
     @property
     def is_proved(self) -> bool:
-        """Whether all of it is as it has to be."""
+        """Whether every line of the evidence is proved."""
         return all(isinstance(line.result, Proved) for line in self.evidence)
 
 
 def forms(rule: Rule) -> tuple[Sif, ...] | Diagnostic:
-    """The agents that may be made: one that asks for the whole condition, and one that does not.
+    """The possible agents: one that checks the whole condition, and one that does not.
 
-    One where that is the same; F601 where there is none.
+    Only one where both are the same; F601 where there is none.
     """
     asking, bare = sif(rule), sif(rule, guarded=False)
     if isinstance(asking, Diagnostic):
@@ -75,7 +75,7 @@ def forms(rule: Rule) -> tuple[Sif, ...] | Diagnostic:
 def checked_agent(
     rule: Rule, options: Options = DEFAULT, limit: int | None = None
 ) -> CheckedAgent | Diagnostic:
-    """The first form of the agent that is shown to keep its requirement, the guarded one first.
+    """The first form of the agent that is proved to keep its requirement, the guarded one first.
 
     Args:
         rule: one that `ajpf.refusal` does not refuse, with the same options.
@@ -83,7 +83,7 @@ def checked_agent(
         limit: how many states are explored of each form.
 
     Returns:
-        Where no form is shown to keep it, the guarded one; F601 where there is none at all.
+        The guarded form where none is proved to keep it; F601 where there is no form.
     """
     from compiler.agents.checking import STATES, agent_evidence
 
@@ -148,7 +148,7 @@ def package(rule: Rule) -> str:
 
 
 def texts(rule: Rule, form: Sif, options: Options = DEFAULT) -> dict[str, str]:
-    """What the model looks at, and what is emitted: by the names of the files."""
+    """The texts that the model examines and the bundle contains, by the names of the files."""
     return {
         "SIF.gwen": _agent(rule, form, form.plans, "the agent of"),
         "SIF_mutant.gwen": _agent(
@@ -180,7 +180,7 @@ def _plan(plan: Reaction) -> str:
 
 
 def _configuration(rule: Rule, form: Sif, options: Options) -> dict[str, str]:
-    """What MCAPL and Java PathFinder read beside."""
+    """The further files for MCAPL and Java PathFinder."""
     name = package(rule)
     texts = {
         "Env.java": render(
@@ -201,7 +201,7 @@ def _configuration(rule: Rule, form: Sif, options: Options) -> dict[str, str]:
 
 
 def _checks(rule: Rule, options: Options) -> list[dict[str, str]]:
-    """What AJPF is asked, and what it is to say."""
+    """The checks for AJPF, each with its expected answer."""
     main, *controls = ajpf.properties(rule, options)
     return [
         _check("requirement", main, "SIF", main.key, main.expected, main.why),
@@ -270,7 +270,7 @@ def _atom(rule: Rule, form: Sif, name: str) -> dict[str, Any]:
 
 
 def _binding(declarations: Declarations | None, name: str) -> dict[str, Any]:
-    """What the proposition is in messages; nothing where it is not bound."""
+    """The binding of the proposition to messages; empty where it is not bound."""
     bound = declarations.propositions.get(name) if declarations else None
     if declarations is None or bound is None:
         return {}
@@ -280,7 +280,7 @@ def _binding(declarations: Declarations | None, name: str) -> dict[str, Any]:
 
 
 def _comparisons(declarations: Declarations, expression: e.Expression) -> Iterator[dict[str, Any]]:
-    """Each comparison of a number from messages with a number that is written down."""
+    """Each comparison of a number from messages with a constant."""
     if isinstance(expression, e.Comparison):
         left, op, right = expression.left, expression.op, expression.right
         if isinstance(left, e.Quantity | e.Number):
@@ -311,7 +311,7 @@ def _refuse_weak(rule: Rule) -> Diagnostic | None:
 
 @deep
 def remark(rule: Rule, options: Options = DEFAULT) -> Diagnostic | None:
-    """What is to be known of the properties (F605, F606, F607); else of the agent (F615)."""
+    """A warning about the properties (F605, F606, F607); else about the agent (F615)."""
     warning = ajpf.remark(rule, options)
     agent = checked_agent(rule, options) if warning is None else warning
     if not isinstance(agent, CheckedAgent) or not agent.sif.over_responds:

@@ -67,7 +67,7 @@ _ENTERED = {
 
 @dataclass(frozen=True, slots=True)
 class ExpectedProperty:
-    """One property of a file: `key: text`, what AJPF is expected to say of it, and why."""
+    """One property of a file: `key: text`, the expected answer of AJPF, and why."""
 
     key: str
     text: str
@@ -99,7 +99,7 @@ def properties(rule: Rule, options: Options = DEFAULT) -> tuple[ExpectedProperty
 
 
 def weakened(rule: Rule, options: Options = DEFAULT) -> str | None:
-    """What is lost where less is emitted than the requirement says, in words; None: nothing is."""
+    """The loss in words, where the property is weaker than the requirement; None: no loss."""
     if not options.weaken or not _can_be_weakened(rule):
         return None
     loss = (
@@ -122,7 +122,7 @@ def _can_be_weakened(rule: Rule) -> bool:
     return isinstance(rule.sentence.timing, s.Within) and not negates
 
 
-# What is refused --------------------------------------------------------------------------------
+# Refusals ---------------------------------------------------------------------------------------
 
 
 @deep
@@ -206,7 +206,7 @@ def _levels(text: str) -> int:
     return deepest
 
 
-# What is said -----------------------------------------------------------------------------------
+# The formulas -----------------------------------------------------------------------------------
 
 
 def _formula(rule: Rule, options: Options) -> f.Formula | None:
@@ -262,7 +262,7 @@ def _key(id: str) -> str:
 
 
 def remark(rule: Rule, options: Options = DEFAULT) -> Diagnostic | None:
-    """F605, F606, F607: what AJPF's verdict will not mean, or will be in any case."""
+    """F605, F606, F607: limits of AJPF's verdict on the property."""
     loss = weakened(rule, options)
     if loss is not None:
         message = f"the property of {rule.id} is weaker than the requirement: {loss}"

@@ -1,19 +1,19 @@
-"""Run AJPF on the files beside this one, compare what it says with `manifest.json`, and keep it.
+"""Run AJPF on the files of this folder, and compare its answers with `manifest.json`.
 
 Usage: AJPF_HOME=/path/to/mcapl JAVA_HOME=/path/to/jdk-11 python3 run.py [--agent FILE]
 
 `--agent FILE` checks an agent of your own in place of `SIF.gwen`, which may be that file, edited.
 Exit status 0: every verdict is the expected one; 1: AJPF refutes the requirement; 2: AJPF, Java or
-a file of the bundle is missing or changed; 3: something is not shown. Of the environment are read:
+a file of the bundle is missing or changed; 3: something is not shown. Environment variables:
 AJPF_HOME, the folder of MCAPL; JAVA_HOME, if java and javac are not on PATH; AJPF_JAVA_OPTIONS,
-options of java. It needs Java 11; javac may be newer. What AJPF printed is kept in `logs/`, and
-`result.json` is what fretc reads.
+options of java. It needs Java 11; javac may be newer. `logs/` keeps the output of AJPF, and
+fretc reads `result.json`.
 """
 
 import os
 import sys
 
-if __name__ == "__main__":  # what stands beside this file is no library
+if __name__ == "__main__":  # no file of this folder is a library
     folder = os.path.dirname(os.path.realpath(__file__))
     sys.path = [place for place in sys.path if os.path.realpath(place) != folder]
 
@@ -40,12 +40,12 @@ ANTLR = "antlr-4.13"
 
 
 class UnusableError(Exception):
-    """What keeps AJPF from being run at all."""
+    """AJPF cannot run; the text says why."""
 
 
 @dataclass(frozen=True)
 class Tools:
-    """Whatever is run, and what it is."""
+    """The programs that run.py calls, and their versions."""
 
     java: str
     version: str
@@ -113,7 +113,7 @@ def main(arguments: Sequence[str]) -> int:
     return status
 
 
-# What is run -----------------------------------------------------------------------------------
+# Running ---------------------------------------------------------------------------------------
 
 
 def digest(path: Path) -> str:
@@ -122,7 +122,7 @@ def digest(path: Path) -> str:
 
 
 def intact(here: Path, own: Path | None) -> dict[str, Any]:
-    """The manifest, once every file of it is the one that was made; but for one's own agent."""
+    """The manifest, after a check that its files are unchanged; except an agent of the user."""
     try:
         manifest: dict[str, Any] = json.loads((here / "manifest.json").read_text(encoding="utf-8"))
         files, checks = manifest["files"], manifest["checks"]
@@ -144,7 +144,7 @@ def intact(here: Path, own: Path | None) -> dict[str, Any]:
 
 
 def digests(here: Path, manifest: Mapping[str, Any], own: Path | None) -> dict[str, str]:
-    """SHA-256 of all that AJPF reads, by its name; of one's own agent by its path."""
+    """SHA-256 of each file that AJPF reads, by its name; of the user's own agent by its path."""
     by_name = {name: digest(here / name) for name in sorted(manifest["files"])}
     return by_name if own is None else {**by_name, str(own): digest(own)}
 
@@ -165,7 +165,7 @@ def alone(here: Path) -> IO[str]:
 
 
 def check_name(own: Path, name: str) -> None:
-    """One's own agent has the name of which the properties speak: AJPF crashes on another."""
+    """Demand of the user's own agent the name in the properties: AJPF crashes on another."""
     match = re.search(r"^\s*:name:\s*(\S+)", own.read_text(encoding="utf-8"), re.MULTILINE)
     if match is None or match[1] != name:
         fault = f"is called `{match[1]}`" if match else "has no `:name:`"
@@ -258,7 +258,7 @@ def prepared(here: Path, check: Mapping[str, Any], own: Path | None) -> Path:
 def ask(
     here: Path, command: Sequence[str], check: Mapping[str, Any], timeout: float
 ) -> dict[str, Any]:
-    """What AJPF says of one key: the check itself, and its answer."""
+    """Ask AJPF about one key: the check and its answer."""
     log = here / "logs" / f"{check['jpf']}.txt"
     began, status = time.monotonic(), 0
     why = ""
@@ -290,7 +290,7 @@ def ask(
     }
 
 
-# What AJPF says --------------------------------------------------------------------------------
+# Answers of AJPF -------------------------------------------------------------------------------
 
 RESULTS = re.compile(r"^=+ results\s*$", re.MULTILINE)
 EXPLAINED = (
@@ -300,10 +300,10 @@ EXPLAINED = (
 
 
 def verdict(text: str, status: int) -> tuple[str, str]:
-    """What a whole output says. What is not clearly a verdict is none.
+    """The verdict of a whole output; ERROR where it is not clear.
 
-    A complaint of a parser beats everything: AJPF goes on with another property than the one in
-    the file.
+    A complaint of a parser overrides any verdict: AJPF goes on with another property than the one
+    in the file.
     """
     for sign, why in EXPLAINED:
         if sign in text:
@@ -344,11 +344,11 @@ def states(text: str) -> dict[str, int]:
 
 
 def trace(text: str) -> dict[str, Any] | None:
-    """The run that breaks a property, a row for each state of the program; None: it is not told.
+    """The run that breaks a property, a row for each state of the program; None: there is none.
 
-    What a state changes is logged after its `New State is N`; what it does not mention is as it
-    was on the way there, and None before it is first mentioned. An action is logged before the
-    state that it leads to.
+    AJPF logs the changes of a state after its `New State is N`; other values stay as they were on
+    the way there, and are None before their first change. It logs an action before the state that
+    the action leads to.
     """
     path = [int(state) for state in _path(text)]
     if not path:
@@ -392,7 +392,7 @@ def folded(path: Sequence[int]) -> tuple[list[int], int | None]:
 
 
 def logged(text: str) -> tuple[dict[int, dict[str, bool]], dict[int, str]]:
-    """Of each new state, what became true or false in it, and the action that led there."""
+    """Of each new state, its changes of truth values, and the action that led there."""
     changes: dict[int, dict[str, bool]] = {}
     actions: dict[int, str] = {}
     state, action = None, ""
@@ -417,11 +417,11 @@ def logged(text: str) -> tuple[dict[int, dict[str, bool]], dict[int, str]]:
     return changes, actions
 
 
-# What is said of it ----------------------------------------------------------------------------
+# The result ------------------------------------------------------------------------------------
 
 
 def conclusion(answers: Sequence[Mapping[str, Any]]) -> tuple[int, str]:
-    """What all verdicts together show: an exit status, and words."""
+    """The conclusion from all verdicts: an exit status, and words."""
     if any(check["role"] == "requirement" and check["told"] == VIOLATED for check in answers):
         return REFUTED, "AJPF refutes the requirement"
     if any(check["told"] != check["expected"] for check in answers):
@@ -438,7 +438,7 @@ def result(
     answers: Sequence[Mapping[str, Any]],
     status: int,
 ) -> dict[str, Any]:
-    """What fretc reads; its schema is `ajpf-result.schema.json`."""
+    """The result for fretc; its schema is `ajpf-result.schema.json`."""
     files = {name: ran_on[name] for name in sorted(manifest["files"])}
     return {
         "schema": SCHEMA,
@@ -471,7 +471,7 @@ def commit(home: Path) -> str | None:
 
 
 def write(here: Path, content: Mapping[str, Any]) -> None:
-    """The result appears whole, or not at all."""
+    """Write a complete result, or none."""
     place = here / "result.json.new"
     place.write_text(f"{json.dumps(content, indent=2)}\n", encoding="utf-8")
     place.replace(here / "result.json")

@@ -43,7 +43,7 @@ class Reaction:
 
 @dataclass(frozen=True, slots=True)
 class Sif:
-    """The agent of one requirement, and what its environment draws."""
+    """The agent of one requirement, and the percepts of its environment."""
 
     agent: str
     percepts: tuple[str, ...]
@@ -51,11 +51,11 @@ class Sif:
     responses: tuple[str, ...]
     plans: tuple[Reaction, ...]
     mutant: tuple[Reaction, ...]
-    """The plans without what makes the response true."""
+    """The plans without the deeds that make the response true."""
     released: bool
     """Whether the response is taken back when the trigger goes."""
     over_responds: bool
-    """Whether plans do not ask for the rest of the condition, and so respond without it too."""
+    """Whether plans skip the rest of the condition, and so respond without it too."""
 
 
 Term = tuple[tuple[str, bool], ...]
@@ -142,7 +142,7 @@ def _responses(rule: Rule) -> tuple[str, ...] | Diagnostic:
 
 
 def _percepts(sentence: s.Sentence) -> tuple[str, ...]:
-    """What is drawn freely: everything that says when, and nothing that says what."""
+    """The propositions of scope, condition and stop condition, which the environment draws."""
     assert sentence.condition is not None
     timing = sentence.timing
     expressions = [
@@ -188,7 +188,7 @@ def _is_belief(rule: Rule, *names: str) -> bool:
 
 
 def _answer(rule: Rule, name: str) -> tuple[Deed, ...]:
-    """An action, and the belief that it was done; the action itself where that is what is meant."""
+    """An action and the belief that it was done; only the action where that is the response."""
     if not _is_belief(rule, name):
         return (Action(name),)
     return Action(_action(rule, name)), Change("+", name)
@@ -203,7 +203,7 @@ def _action(rule: Rule, name: str) -> str:
 def _reactions(
     terms: tuple[Term, ...], answer: tuple[Deed, ...], last: Guard | None
 ) -> tuple[Reaction, ...]:
-    """A plan for each event that can make a term true; `last` tells that it was answered."""
+    """A plan for each event that can make a term true; the guard `last` blocks a second answer."""
     plans = [
         Reaction(
             Change("+" if positive else "-", name),

@@ -34,7 +34,7 @@ from fretish.syntax import ScopeKind
 MOST_STATES = 100_000
 """A larger automaton is not written: no tool would read it."""
 PLACES = ("mode", "condition", "response", "stop")
-"""What the places of a letter are called."""
+"""The names of the places of a letter."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,7 +45,7 @@ class Chart:
     inputs: Mapping[int, f.Formula]
     """The expressions that the sentence has, by their place in a letter."""
     letters: tuple[Letter, ...]
-    """Those that can occur, and perhaps more, which no valuation of the propositions has."""
+    """All letters that can occur, and perhaps some that no valuation of the propositions has."""
     states: tuple[State, ...]
     """Those that have not decided."""
     moves: tuple[tuple[int, ...], ...]
@@ -127,15 +127,15 @@ def _cached(kind: Template, letters: tuple[Letter, ...]) -> Automaton:
 
 @deep
 def kind(rule: Rule) -> Kind:
-    """What is demanded; `only` scopes demand the dual of their timing."""
+    """The kind of the demand; `only` scopes demand the dual of their timing."""
     return obligation(rule.sentence, rule.ticks or 0).demand.kind
 
 
 def words(demanded: Kind, template: Template, state: State) -> tuple[str, ...]:
-    """What a state remembers, for people; the last but `condition was true` is of its counter.
+    """The memory of a state in words; its counter comes last, but before `condition was true`.
 
     Args:
-        demanded: what `kind` says of the rule.
+        demanded: the `kind` of the rule.
         template: of its sentence.
         state: one that has not decided.
     """
@@ -154,7 +154,7 @@ def words(demanded: Kind, template: Template, state: State) -> tuple[str, ...]:
 
 
 START = "start"
-"""What the state before the first tick is called, where no other tick leads to it."""
+"""The name of the state before the first tick, where no other tick leads to it."""
 _FROM_THE_START = (None, ScopeKind.BEFORE, ScopeKind.ONLY_AFTER)
 """The scopes in which no tick lies before an interval."""
 _PHASES: Mapping[Phase, str] = {

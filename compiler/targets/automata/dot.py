@@ -1,8 +1,7 @@
 """`--emit dot`: the automaton of a requirement as a picture, for Graphviz.
 
-What a state is, is said in words and by its shape, never by a colour alone. States that count ticks
-are one node (`compiler.targets.automata.folding`). Source of the language: Graphviz, The DOT
-Language.
+Words and shapes distinguish states, never a colour alone. States that count ticks are one node
+(`compiler.targets.automata.folding`). Source of the language: Graphviz, The DOT Language.
 """
 
 from __future__ import annotations
@@ -27,7 +26,7 @@ from fretish.meaning import meaning
 from fretish.reading.recursion import deep
 
 _LONGEST = 32
-"""Characters of an expression that stands on edges; a longer one is named, and told below."""
+"""Characters of an expression on an edge; a longer one gets a name, and stands below."""
 _WIDTH = 76
 """Characters of a line below the picture."""
 

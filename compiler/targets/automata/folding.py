@@ -1,7 +1,7 @@
-"""A chart that stays small: states that differ in what they have counted are one node.
+"""A chart that stays small: states that differ in their counter only are one node.
 
 A bound of 1 000 ticks is one node `open: k = 1..1000` with conditions on k, and changes of k, on
-its edges, so that a person can read it, and lose nothing.
+its edges: readable, and nothing is lost.
 """
 
 from __future__ import annotations
@@ -85,7 +85,7 @@ class _Folding:
             return "start"
         counted = state.counted
         if self.registers:
-            counted = 0  # its triggers are told by conditions on edges
+            counted = 0  # conditions on edges show its triggers
         elif self.demanded in COUNTING:
             counted = (counted > 0) - (counted < 0)
         return state.phase, state.held, counted
@@ -103,7 +103,7 @@ class _Folding:
         return Folded(tuple(nodes), tuple(edges), self.names[self.chart.start])
 
     def _count(self, index: int) -> int | None:
-        """What a state has counted: k ticks, or the register of its triggers."""
+        """The counter of a state: k ticks, or the register of its triggers."""
         if index >= len(self.chart.states):
             return None
         count = self.chart.states[index].counted
@@ -119,7 +119,7 @@ class _Folding:
         state = self.chart.states[members[0]]
         phrases = list(words(self.demanded, self.chart.template, state))
         counts = sorted(k for index in members if (k := self._count(index)) is not None)
-        if counts and not self.registers:  # the ticks of one state are k of all of them
+        if counts and not self.registers:  # one k stands for the ticks of all members
             word = 1 if self.scoped else 0
             phrases[word] = "owed" if self.demanded is Kind.FOR else OPEN[state.counted < 0]
         return Node(
@@ -179,7 +179,7 @@ def _ago(ticks: int) -> str:
 
 
 def _without_twin(picture: Folded) -> Folded:
-    """Without the start, where another node accepts as it does and has the same edges."""
+    """The picture without its start, where another node accepts alike and has the same edges."""
     by_name = {node.name: node for node in picture.nodes}
     start = by_name[picture.start]
     if start.words != (START,):

@@ -1,7 +1,7 @@
 """The counter automaton of a sentence as a module of NuSMV, symbol by symbol.
 
-It says what `compiler.formalization.reference` says: the phase of the scope, the trigger of the
-condition, the count of the timing. A state is that before a tick; `violated` already knows the tick
+It mirrors `compiler.formalization.reference`: the phase of the scope, the trigger of the
+condition, the count of the timing. A state is the one before a tick; `violated` includes the tick
 itself.
 """
 
@@ -40,7 +40,7 @@ class Definition:
 
 @dataclass(frozen=True, slots=True)
 class Module:
-    """What stands between `MODULE` and the next one."""
+    """One `MODULE` of the file."""
 
     parameters: tuple[str, ...]
     variables: tuple[Variable, ...]
@@ -48,10 +48,10 @@ class Module:
 
 
 def monitor(obligation: Obligation) -> Module:
-    """The module of a sentence; its parameters are those of its expressions that it has.
+    """The module of a sentence; its parameters are the expressions that the sentence has.
 
-    Its definitions `violated` (a demand is broken, for good) and, with `eventually` and
-    `finally`, `unmet` (a demand is open that the end of the interval would break).
+    It defines `violated` (a demand is broken, for good) and, with `eventually` and `finally`,
+    `unmet` (a demand is open that the end of the interval would break).
     """
     counter = _counter(obligation)
     stops = obligation.demand.kind in (Kind.UNTIL, Kind.BEFORE)
@@ -109,7 +109,7 @@ _PHASES: Mapping[ScopeKind | None, tuple[str, Cases]] = {
 
 
 def _is_everywhere(obligation: Obligation) -> bool:
-    """No phase is needed: not even the first tick is told apart."""
+    """Whether it needs no phase: not even the first tick differs."""
     return obligation.scope is None and obligation.condition is not None
 
 
@@ -200,7 +200,7 @@ def _interval_over(obligation: Obligation) -> str:
 
 
 def _flag(carry: str | None, comment: str = "", *, broken: str, due: bool = False) -> _Counter:
-    """One bit: whether a demand is open; `carry` is for the next tick."""
+    """One bit: whether a demand is open; `carry` is its value for the next tick."""
     broken_at = Definition("broken", _plain(broken), "at this tick")
     opened = (
         () if carry is None else (Variable("open", "boolean", "FALSE", _plain(carry), comment),)
@@ -278,7 +278,7 @@ def _after(n: int) -> _Counter:
 
 
 def _not_after(n: int) -> _Counter:
-    """With one trigger an interval, a count tells when it was."""
+    """With one trigger an interval, a count gives its time."""
     count = _count(
         n + 1,
         ((f"!due | response | count = {n + 1}", "0"), ("TRUE", "count + 1")),

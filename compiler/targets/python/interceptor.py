@@ -48,7 +48,7 @@ def refuse(options: Options) -> Diagnostic | None:
 
 
 def remarks(options: Options) -> tuple[Diagnostic, ...]:
-    """F630 to F633: what can go wrong although the node does what it is told to."""
+    """F630 to F633: dangers that remain although the node works as declared."""
     declared = options.declarations
     if declared is None or declared.interceptor is None:
         return ()
@@ -102,7 +102,7 @@ def _unwatched(node: Interception) -> Iterator[Diagnostic]:
 
 
 def _short_hold(declared: Declarations, node: Interception) -> Iterator[Diagnostic]:
-    """Requests may be lost, `lost` in a row, before one is heard."""
+    """Requests may be lost, `lost` in a row, before one arrives."""
     assumed, period = declared.assumed, declared.clock.period
     if assumed is None or not assumed.lost or period is None:
         return
@@ -185,11 +185,11 @@ _STATUSES = {
     1: "3 no ROS master has answered, 4 ROS has ended it: another node has taken its name, say",
     2: "4 ROS has ended it",
 }
-"""What else `--help` says of how the node ends, for each ROS."""
+"""Further exit statuses of the node in `--help`, for each ROS."""
 
 
 def _summary(node: Interception) -> str:
-    """What `--help` says."""
+    """The summary in `--help`."""
     when = (
         f"Every {_duration(node.period)}, on each command and at once on a request to stop"
         if node.form is Form.TIMER

@@ -84,11 +84,11 @@ _ASKS_FOR_FIRST = re.compile(r'^[^"].*\bFTP\b')
 
 
 def remark(rule: Rule) -> Diagnostic | None:
-    """F203: whatever has happened, what follows can still make the verdict either way.
+    """F203: after any prefix of a run, both verdicts are still possible.
 
-    So it is with 12 of FRET's 288 templates: a demand for ever later at each trigger, on a stretch
-    that ends with the run. Source: Pnueli, Zaks, PSL model checking and run-time verification via
-    testers, FM 2006 (monitorability).
+    This holds for 12 of FRET's 288 templates: each trigger demands a response at some later time,
+    on a stretch that ends with the run. Source: Pnueli, Zaks, PSL model checking and run-time
+    verification via testers, FM 2006 (monitorability).
     """
     sentence = rule.sentence
     scope = sentence.scope.kind if sentence.scope else None
@@ -154,7 +154,7 @@ def text(*rules: Rule) -> str:
 
 
 def _digest(code: Program, rules: Sequence[Rule]) -> str:
-    """Of all that gives the cells of a rail their meaning."""
+    """SHA-256 of everything that the meaning of a rail's cells depends on."""
     identities = [(rule.id, rule.fingerprint, rule.ticks) for rule in rules]
     return hashlib.sha256(repr((__version__, identities, code)).encode()).hexdigest()
 
@@ -164,7 +164,7 @@ def _tuple(names: Sequence[str]) -> str:
 
 
 def _slots(code: Program) -> list[str]:
-    """All that a rail keeps, numbers in names in their order."""
+    """The slots of a rail, numbers in names in their order."""
     marks = {name for signals in code.requirements for name in marks_of(signals.prefix)}
     names = {"doubt", "tick", *(cell.name for cell in code.cells), *marks}
     return sorted(names, key=_natural)
@@ -241,7 +241,7 @@ _RESERVED = frozenset(
     "weak_previous once historically since released since_from since_between released_between "
     "SATISFIED VIOLATED PENDING".split()
 )
-"""What the generated functions call their own, and what they call."""
+"""Names in the generated functions: their locals and the functions that they call."""
 
 
 def parameters_of(names: Iterable[str], prefixes: Iterable[str]) -> dict[str, str]:

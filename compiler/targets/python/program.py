@@ -1,8 +1,8 @@
 """Past-time formulas → straight-line Python: tick by tick, and over columns of whole traces.
 
 A rail computes everything from literals: a proposition or its negation. Negations are pushed down
-to them, so every value is monotone in the literals, and the same code tells what holds for certain
-and what may hold. Where a negation meets a temporal operator, its dual is computed.
+to them, so every value is monotone in the literals, and the same code computes what holds for
+certain and what may hold. Where a negation meets a temporal operator, its dual is computed.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ _OR, _AND, _ATOMIC = range(3)
 """How tight Python's operators bind; a column's do in the same order."""
 
 SIGNALS, MARKS = Signals._fields, Marks._fields
-"""What a rail tells, and the ticks that it remembers, of each requirement."""
+"""The signals of a rail, and the ticks that it remembers, for each requirement."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,7 +57,7 @@ class RequirementSignals:
 
     @property
     def marks(self) -> tuple[str, ...]:
-        """Those of `MARKS` that change: what can never be true is not looked for."""
+        """The `MARKS` that can change: those whose signal can ever be true."""
         sources = zip(MARKS, ("breach", "doom", "trigger", "owed"), strict=True)
         return tuple(mark for mark, signal in sources if self.step[signal] != "False")
 
@@ -73,7 +73,7 @@ class Literal:
 
 @dataclass(frozen=True, slots=True)
 class Program:
-    """What a rail keeps, does at each tick, and then tells; and the same over columns."""
+    """A rail's cells, its steps at each tick and its signals; and the same over columns."""
 
     literals: tuple[Literal, ...]
     cells: tuple[Cell, ...]
@@ -122,7 +122,7 @@ def locals_of(parameters: Iterable[str]) -> frozenset[str]:
 
 
 def negation(parameter: str) -> str:
-    """What the negation of a proposition is called."""
+    """The name of the negation of a proposition."""
     return f"not_{parameter}"
 
 
@@ -150,7 +150,7 @@ _TRUE, _FALSE = _Text("True", "every"), _Text("False", "0")
 
 @dataclass(slots=True)
 class _Part:
-    """What one temporal operator keeps and does."""
+    """The cells and the code of one temporal operator."""
 
     name: str
     comment: str
@@ -161,7 +161,7 @@ class _Part:
 
 @dataclass(slots=True)
 class _Counter:
-    """Ticks since a witness of `left S right`; `most` grows until all who ask are known."""
+    """Ticks since a witness of `left S right`; `most` is the largest bound of all its users."""
 
     name: str
     left: _Text
@@ -220,7 +220,7 @@ def _otherwise(condition: str, statement: str, last: str) -> tuple[str, ...]:
 
 @dataclass(slots=True)
 class _Writer:
-    """Walks formulas from the leaves up and writes one part for each temporal operator."""
+    """One walk over formulas from the leaves up: one part for each temporal operator."""
 
     parameters: Mapping[str, str]
     prefixes: Iterable[str]

@@ -54,7 +54,7 @@ class Arena:
         Raises:
             BrokenError: the data is no such data, or holds more than it should.
         """
-        got = unpack_into(compression, packed, self.target(size), whole=whole)
-        if got > size:
+        length = unpack_into(compression, packed, self.target(size), whole=whole)
+        if length > size:
             raise BrokenError("a chunk has another size than it states")
-        return got == size
+        return length == size

@@ -199,11 +199,11 @@ def _decompressor() -> ZstdDecompressor:
 
 
 def _zstd_into(packed: memoryview, target: memoryview, *, whole: bool) -> int:
-    got = 0
+    filled = 0
     with _decompressor().stream_reader(packed) as stream:
-        while got < len(target) and (more := stream.readinto(target[got:])):
-            got += more
-        return got + len(stream.read(1)) if whole else got
+        while filled < len(target) and (more := stream.readinto(target[filled:])):
+            filled += more
+        return filled + len(stream.read(1)) if whole else filled
 
 
 _CODECS: dict[str, Callable[[bytes, int], bytes]] = {
@@ -267,28 +267,28 @@ def _summary(stream: BufferedReader, at: int, footer: bytes) -> Summary:
     covered = zlib.crc32(HEAD.pack(Opcode.FOOTER, len(footer)), zlib.crc32(data))
     if crc and crc != zlib.crc32(footer[: _FOOTER.size - 4], covered):
         return damaged
-    found = Summary(start, sound=True, footer=at, after=after)
+    result = Summary(start, sound=True, footer=at, after=after)
     try:
         for opcode, begin, end in frames(data):
-            _note(found, opcode, data[begin:end])
+            _note(result, opcode, data[begin:end])
     except BrokenError:
         return damaged
-    return found
+    return result
 
 
-def _note(found: Summary, opcode: int, content: bytes) -> None:
+def _note(result: Summary, opcode: int, content: bytes) -> None:
     match opcode:
         case Opcode.STATISTICS:
-            found.statistics = parse(Statistics.read, content)
+            result.statistics = parse(Statistics.read, content)
         case Opcode.CHUNK_INDEX:
             chunk = _chunk_index(content)
-            found.chunks[chunk.chunk_start_offset] = chunk
+            result.chunks[chunk.chunk_start_offset] = chunk
         case Opcode.SCHEMA:
             schema = parse(Schema.read, content)
-            found.schemas[schema.id] = schema
+            result.schemas[schema.id] = schema
         case Opcode.CHANNEL:
             channel = parse(Channel.read, content)
-            found.channels[channel.id] = channel
+            result.channels[channel.id] = channel
 
 
 def _chunk_index(content: bytes) -> ChunkIndex:

@@ -58,8 +58,8 @@ def contents(stream: BufferedReader, size: int, sink: Sink, integrity: Integrity
     walk = Walk(stream, size, sink)
     walk.run()
     if walk.damages.span is None:
-        kept = tuple((damage, None) for damage in walk.damages.kept)
-        return Contents(kept, None, walk.cut, walk.checked)
+        certain = tuple((damage, None) for damage in walk.damages.certain)
+        return Contents(certain, None, walk.cut, walk.checked)
     damages, span = tuple(walk.settled()), walk.damages.span
     return Contents(damages, span, walk.cut, walk.checked, walk.unprotected)
 
@@ -67,10 +67,10 @@ def contents(stream: BufferedReader, size: int, sink: Sink, integrity: Integrity
 def _by_index(stream: BufferedReader, index: Index, sink: Sink, integrity: Integrity) -> Contents:
     projection = Projection(stream, index, sink)
     projection.run()
-    known = index.data_crc if integrity is Integrity.HASH else 0
-    if known and _crc32(stream, index.data_end) != known:
+    crc = index.data_crc if integrity is Integrity.HASH else 0
+    if crc and _crc32(stream, index.data_end) != crc:
         raise BrokenError("its data has another CRC than it states")
-    unprotected = projection.checked.without_crc > 0 and not known
+    unprotected = projection.checked.without_crc > 0 and not crc
     statistics = index.statistics
     span = statistics.message_start_time, statistics.message_end_time
     if integrity is Integrity.HASH:

@@ -44,39 +44,42 @@ class Index:
     """The byte at which the summary begins."""
 
 
-def indexed(stream: BufferedReader, size: int, found: Summary | None) -> Index | None:
+def indexed(stream: BufferedReader, size: int, summary: Summary | None) -> Index | None:
     """The index of a file of `size` bytes; None where anything about it is unusual.
 
     Args:
         stream: the file.
         size: its bytes.
-        found: what its end states.
+        summary: what its end states.
     """
-    if found is None or not found.sound or found.after != size or found.statistics is None:
+    if summary is None or not summary.sound or summary.after != size or summary.statistics is None:
         return None
-    statistics, chunks = found.statistics, tuple(found.chunks[at] for at in sorted(found.chunks))
+    statistics, chunks = (
+        summary.statistics,
+        tuple(summary.chunks[at] for at in sorted(summary.chunks)),
+    )
     if not chunks:
         return None
     streams = {
-        id: Stream(channel, found.schemas.get(channel.schema_id))
-        for id, channel in found.channels.items()
+        id: Stream(channel, summary.schemas.get(channel.schema_id))
+        for id, channel in summary.channels.items()
     }
     counts = statistics.channel_message_counts
     if (
         statistics.chunk_count != len(chunks)
         or not 0 < statistics.message_count == sum(counts.values())
         or not streams.keys() >= {id for id, count in counts.items() if count}
-        or any(one.schema is None and one.channel.schema_id for one in streams.values())
+        or any(each.schema is None and each.channel.schema_id for each in streams.values())
         or not all(map(_is_usual, chunks))
         or statistics.message_start_time != min(chunk.message_start_time for chunk in chunks)
         or statistics.message_end_time != max(chunk.message_end_time for chunk in chunks)
     ):
         return None
     try:
-        end = _between(stream, found, chunks)
+        end = _between(stream, summary, chunks)
     except BrokenError:
         return None
-    return Index(chunks, streams, statistics, *end, found.end) if end is not None else None
+    return Index(chunks, streams, statistics, *end, summary.end) if end is not None else None
 
 
 def _is_usual(chunk: ChunkIndex) -> bool:
@@ -95,12 +98,12 @@ def _is_usual(chunk: ChunkIndex) -> bool:
 
 
 def _between(
-    stream: BufferedReader, found: Summary, chunks: tuple[ChunkIndex, ...]
+    stream: BufferedReader, summary: Summary, chunks: tuple[ChunkIndex, ...]
 ) -> tuple[int, int] | None:
     """Where the data ends, and its CRC; None where something unusual is between the chunks."""
     at, end = len(MAGIC), None
     for chunk in (*chunks, None):
-        wall = found.end if chunk is None else chunk.chunk_start_offset
+        wall = summary.end if chunk is None else chunk.chunk_start_offset
         if at > wall or end is not None:
             return None
         for place, opcode, content in _records(stream, at, wall):
@@ -109,7 +112,7 @@ def _between(
             if opcode == Opcode.DATA_END:
                 end = place, parse(DataEnd.read, content).data_section_crc
             elif opcode not in _PASSED_BY and not is_known(
-                opcode, content, found.schemas, found.channels
+                opcode, content, summary.schemas, summary.channels
             ):
                 return None
         if chunk is not None:

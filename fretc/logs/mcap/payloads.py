@@ -64,5 +64,5 @@ class Payloads:
         shape, strides = (
             ((places,), (1,)) if count is None else ((places, count), (1, kind.itemsize))
         )
-        taken = np.ndarray(shape, kind, self.data.data, 0, strides)[self.starts[rows] + at]
-        return taken != 0 if dtype == "?" else taken
+        numbers = np.ndarray(shape, kind, self.data.data, 0, strides)[self.starts[rows] + at]
+        return numbers != 0 if dtype == "?" else numbers

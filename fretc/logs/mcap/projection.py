@@ -51,7 +51,7 @@ Entries = NDArray[np.uint64]
 
 
 @dataclass(slots=True)
-class _Found:
+class _Batch:
     """Messages of one channel in the arena."""
 
     entries: list[Entries] = field(default_factory=list)
@@ -66,17 +66,17 @@ class Projection:
     def __init__(self, stream: BufferedReader, index: Index, sink: Sink) -> None:
         self._stream, self._index, self._sink = stream, index, sink
         streams = index.streams
-        self._wanted = {id for id, one in streams.items() if sink.wants(one.channel.topic)}
+        self._wanted = {id for id, each in streams.items() if sink.wants(each.channel.topic)}
         self._arena = Arena()
         self._packed = bytearray(2**20)
         self._longest: Counter[int] = Counter(dict.fromkeys(self._wanted, _SLACK))
-        self._found: defaultdict[int, _Found] = defaultdict(_Found)
+        self._batches: defaultdict[int, _Batch] = defaultdict(_Batch)
         self._counts: Counter[int] = Counter()
         self._unpacked = self._crc_checked = self._without_crc = 0
-        some = [one.schema for one in streams.values() if one.schema is not None]
+        some = [each.schema for each in streams.values() if each.schema is not None]
         self._schemas = {schema.id: schema for schema in some}
-        self._channels = {id: one.channel for id, one in streams.items()}
-        self._known: set[tuple[int, bytes]] = set()
+        self._channels = {id: each.channel for id, each in streams.items()}
+        self._verified: set[tuple[int, bytes]] = set()
         """Records in chunks that declare what the summary does."""
         self._met: set[int] = set()
         """Channels of which a message was found."""
@@ -107,11 +107,11 @@ class Projection:
                 if self._arena.used >= SIZE:
                     self._hand_on()
         self._hand_on()
-        stated = self._index.statistics.channel_message_counts
+        counts = self._index.statistics.channel_message_counts
         for id, stream in self._index.streams.items():
             if id not in self._wanted:
-                self._sink.count(stream, stated.get(id, 0))
-            elif self._counts[id] != stated.get(id, 0):
+                self._sink.count(stream, counts.get(id, 0))
+            elif self._counts[id] != counts.get(id, 0):
                 raise BrokenError("a topic holds another number of messages than is stated")
 
     # One chunk
@@ -152,9 +152,9 @@ class Projection:
             self._tiled(base, needed, size, places)
         span = chunk.message_start_time, chunk.message_end_time
         for id, some, _ in entries:
-            found = self._found[id]
-            found.entries.append(some)
-            found.limits.append((len(some) // 2, base, base + needed, *span))
+            batch = self._batches[id]
+            batch.entries.append(some)
+            batch.limits.append((len(some) // 2, base, base + needed, *span))
         self._arena.used += needed
 
     def _declared(self, base: int, needed: int, until: int) -> None:
@@ -176,15 +176,15 @@ class Projection:
 
     def _as_declared(self, opcode: int, content: bytes) -> None:
         """Hold a record that declares something against the summary."""
-        if (opcode, content) not in self._known:
+        if (opcode, content) not in self._verified:
             if not is_known(opcode, content, self._schemas, self._channels):
                 raise BrokenError("a chunk declares what its summary does not")
-            self._known.add((opcode, content))
+            self._verified.add((opcode, content))
 
     def _places(self, chunk: ChunkIndex) -> Places:
         """Where the messages of a chunk begin, by its index, in the order of the file."""
-        found = self._entries(chunk, chunk.message_index_offsets.keys())
-        return np.sort(np.concatenate([some[1::2] for _, some, _ in found]).astype(np.int64))
+        entries = self._entries(chunk, chunk.message_index_offsets.keys())
+        return np.sort(np.concatenate([some[1::2] for _, some, _ in entries]).astype(np.int64))
 
     def _tiled(self, base: int, needed: int, size: int, places: Places) -> None:
         """Hold the records of a chunk that no CRC protects against its index, as far as unpacked.
@@ -254,8 +254,8 @@ class Projection:
         if len(head) < size:
             raise BrokenError("a record is cut off")
         start, end, unpacked, crc, length = CHUNK.unpack_from(head, HEAD.size)
-        stated = (*HEAD.unpack_from(head), start, end, unpacked, length)
-        if stated != (
+        record = (*HEAD.unpack_from(head), start, end, unpacked, length)
+        if record != (
             Opcode.CHUNK,
             chunk.chunk_length - HEAD.size,
             chunk.message_start_time,
@@ -308,20 +308,20 @@ class Projection:
     def _hand_on(self) -> None:
         """Give the messages in the arena to the sink, topic by topic."""
         topics: defaultdict[str, list[int]] = defaultdict(list)
-        for id in self._found:
+        for id in self._batches:
             topics[self._index.streams[id].channel.topic].append(id)
         for ids in topics.values():
             parts = [(self._index.streams[id], self._messages(id)) for id in ids]
             for stream, messages in parts if len(parts) == 1 else _by_turns(parts):
                 self._sink.add_all(stream, messages)
-        self._found.clear()
+        self._batches.clear()
         self._arena.clear()
 
     def _messages(self, id: int) -> Messages:
         """Those of one channel, in the order of the file."""
-        found = self._found[id]
-        entries = np.concatenate(found.entries)
-        counts, *of_chunks = np.array(found.limits, np.uint64).T
+        batch = self._batches[id]
+        entries = np.concatenate(batch.entries)
+        counts, *of_chunks = np.array(batch.limits, np.uint64).T
         bases, limits, first, last = (
             np.repeat(some, counts.astype(np.int64)) for some in of_chunks
         )

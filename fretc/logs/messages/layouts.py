@@ -29,7 +29,7 @@ _PADDING = 7
 """Bytes that may follow the last field of CDR."""
 _MOST_CHECKS = 64
 """A message with more lengths than so is of no layout that others share."""
-_MOST_KNOWN = 64
+_MOST_LAYOUTS = 64
 """Layouts of a stream that are kept: messages that all differ are held against each of them."""
 
 
@@ -38,7 +38,7 @@ class LayoutError(ValueError):
 
 
 @dataclass(frozen=True, slots=True)
-class Found:
+class Location:
     """A wanted field within a payload."""
 
     at: int
@@ -56,7 +56,7 @@ class Layout:
     """Bytes of the payload."""
     marks: tuple[tuple[int, str, int], ...]
     """Places, types and values of the lengths on the way, and of what marks plain CDR."""
-    found: Mapping[Where, Found]
+    locations: Mapping[Where, Location]
     texts: tuple[tuple[int, int], ...] = ()
     """Places and lengths of what the decoder reads as UTF-8, and refuses where it is not."""
 
@@ -66,7 +66,7 @@ class Shape:
 
     def __init__(self, name: str, types: Types, *, cdr: bool) -> None:
         self.name, self.types, self.cdr = name, types, cdr
-        self._asked: dict[Where, Field | None] = {}
+        self._fields: dict[Where, Field | None] = {}
 
     def number(self, where: Where) -> Field | None:
         """The number, or the array of numbers, at that place of each message.
@@ -74,9 +74,9 @@ class Shape:
         None also for a time of ROS 1 that stands in the message itself: its decoder carries
         nanoseconds over into seconds.
         """
-        if where not in self._asked:
-            self._asked[where] = self._number(where)
-        return self._asked[where]
+        if where not in self._fields:
+            self._fields[where] = self._number(where)
+        return self._fields[where]
 
     def _number(self, where: Where) -> Field | None:
         name = self.name
@@ -129,10 +129,10 @@ class Shape:
             raise LayoutError("the payload is cut off") from None
         if not 0 <= len(payload) - walk.at <= (_PADDING if self.cdr else 0):
             raise LayoutError("the payload has another length than its fields")
-        missing = [where for where in wanted if where not in walk.found]
-        if missing:
-            raise LayoutError(f"there are no numbers in `{'.'.join(missing[0])}`")
-        return Layout(len(payload), tuple(walk.marks), walk.found, tuple(walk.texts))
+        absent = [where for where in wanted if where not in walk.locations]
+        if absent:
+            raise LayoutError(f"there are no numbers in `{'.'.join(absent[0])}`")
+        return Layout(len(payload), tuple(walk.marks), walk.locations, tuple(walk.texts))
 
 
 class _Walk:
@@ -143,7 +143,7 @@ class _Walk:
     ) -> None:
         self.at = 0
         self.marks: list[tuple[int, str, int]] = []
-        self.found: dict[Where, Found] = {}
+        self.locations: dict[Where, Location] = {}
         self.texts: list[tuple[int, int]] = []
         self._payload, self._types, self._wanted, self._cdr = payload, types, wanted, cdr
         if cdr:
@@ -179,7 +179,7 @@ class _Walk:
         if self._cdr and count != 0:  # what is not there needs no alignment
             self.at += -(self.at - 4) % size
         if where in self._wanted:
-            self.found[where] = Found(self.at, dtype, count)
+            self.locations[where] = Location(self.at, dtype, count)
         self.at += size if count is None else size * count
 
     def _text(self, length: int) -> None:
@@ -220,36 +220,36 @@ class Layouts:
 
     def __init__(self, shape: Shape, wanted: Sequence[Where]) -> None:
         self._shape, self._wanted = shape, wanted
-        self._known: dict[int, list[Layout]] = {}
-        """By size; not more than `_MOST_KNOWN` of all sizes."""
+        self._layouts: dict[int, list[Layout]] = {}
+        """By size; not more than `_MOST_LAYOUTS` of all sizes."""
         self._count = 0
 
     def groups(self, payloads: Payloads) -> Iterator[Group]:
         """All messages, those of one layout together."""
-        left = np.arange(len(payloads))
+        rest = np.arange(len(payloads))
         if self._count:
             for size in np.unique(payloads.sizes).tolist():
-                for layout in self._known.get(size, ()):
-                    same = _same(payloads, left, layout)
-                    yield from _split(payloads, left[same], layout, new=False)
-                    left = left[~same]
-        while len(left):
+                for layout in self._layouts.get(size, ()):
+                    same = _same(payloads, rest, layout)
+                    yield from _split(payloads, rest[same], layout, new=False)
+                    rest = rest[~same]
+        while len(rest):
             try:
-                layout = self._shape.layout(payloads.payload(int(left[0])), self._wanted)
+                layout = self._shape.layout(payloads.payload(int(rest[0])), self._wanted)
             except LayoutError:
-                yield Group(left[:1], None)
-                left = left[1:]
+                yield Group(rest[:1], None)
+                rest = rest[1:]
                 continue
             self._keep(layout)
-            same = _same(payloads, left, layout)
+            same = _same(payloads, rest, layout)
             same[0] = True
-            rows, left = left[same], left[~same]
+            rows, rest = rest[same], rest[~same]
             yield from _split(payloads, rows, layout, new=True)
 
     def _keep(self, layout: Layout) -> None:
-        if self._count < _MOST_KNOWN and len(layout.marks) <= _MOST_CHECKS:
+        if self._count < _MOST_LAYOUTS and len(layout.marks) <= _MOST_CHECKS:
             self._count += 1
-            self._known.setdefault(layout.size, []).append(layout)
+            self._layouts.setdefault(layout.size, []).append(layout)
 
 
 def _split(payloads: Payloads, rows: Places, layout: Layout, *, new: bool) -> Iterator[Group]:

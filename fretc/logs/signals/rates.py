@@ -32,7 +32,7 @@ def slow_topics(
         signals: names of declared signals.
     """
     tick = _tick(declarations.clock, recording)
-    told: set[str] = set()
+    slow: set[str] = set()
     for name in signals:
         signal = declarations.signals[name]
         topic = recording.topics.get(signal.path.topic)
@@ -42,9 +42,9 @@ def slow_topics(
         if signal.max_age is not None and period > signal.max_age:
             yield _too_old(signal, period, signal.max_age)
         elif tick is not None and period > tick * _JITTER and _is_regular(signal, topic):
-            if topic.name in told:
+            if topic.name in slow:
                 continue
-            told.add(topic.name)
+            slow.add(topic.name)
             yield _slow(signal, period, declarations.clock, tick)
 
 

@@ -45,10 +45,10 @@ def scaled(value: _Number, scale: Fraction) -> _Number:
         return value * _float(scale.numerator) / _float(scale.denominator)
 
 
-def _float(whole: int) -> float:
+def _float(number: int) -> float:
     """The nearest float of a number above 0; infinite where that is too large."""
     try:
-        return float(whole)
+        return float(number)
     except OverflowError:
         return inf
 
@@ -57,8 +57,8 @@ def widest(values: NDArray[Any]) -> Values:
     """Numbers of any kind as floats that hold them; 32-bit floats stay what they are."""
     if values.dtype == np.float32:
         return values.astype(np.float32, copy=False)
-    whole = values.dtype.kind in "iu" and values.dtype.itemsize == 8 and values.size > 0
-    if whole and (int(values.max()) >= WHOLE or int(values.min()) <= -WHOLE):
+    integers = values.dtype.kind in "iu" and values.dtype.itemsize == 8 and values.size > 0
+    if integers and (int(values.max()) >= WHOLE or int(values.min()) <= -WHOLE):
         return values.astype(EXACT)
     with np.errstate(invalid="ignore"):  # signalling NaN
         return values.astype(EXACT if values.dtype == EXACT else np.float64)

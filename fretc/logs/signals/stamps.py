@@ -41,12 +41,12 @@ def placed(times: Times, lost: NDArray[np.bool_]) -> Times:
 
     As they are where all are lost.
     """
-    known = np.flatnonzero(~lost)
-    if not len(known):
+    good = np.flatnonzero(~lost)
+    if not len(good):
         return times
-    before = np.searchsorted(known, np.arange(len(times)), "right") - 1
-    found: Times = times[known[before.clip(0)]]
-    return found
+    before = np.searchsorted(good, np.arange(len(times)), "right") - 1
+    result: Times = times[good[before.clip(0)]]
+    return result
 
 
 def still(times: Times) -> int:

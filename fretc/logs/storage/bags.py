@@ -38,7 +38,7 @@ NOWHERE = -1
 
 
 @dataclass(frozen=True, slots=True)
-class Found:
+class BagContents:
     """What a bag has given."""
 
     span: Gap | None
@@ -47,7 +47,7 @@ class Found:
     notes: tuple[Diagnostic, ...]
 
 
-def read(file: str, same: str, start: bytes, sink: Sink, place: Span) -> Found | Diagnostic:
+def read(file: str, same: str, start: bytes, sink: Sink, place: Span) -> BagContents | Diagnostic:
     """All messages of a bag, in order of time.
 
     Args:
@@ -83,11 +83,11 @@ def read(file: str, same: str, start: bytes, sink: Sink, place: Span) -> Found |
     damages = tuple(way.settled())
     if way.span is None:
         return (
-            refusals.bad_bag(damages[0][0].what, place, indexed=bag)
+            refusals.bad_bag(damages[0][0].description, place, indexed=bag)
             if damages
-            else Found(None, (), ())
+            else BagContents(None, (), ())
         )
-    return Found(way.span, damages, (refusals.unchecked(place, way.assumed),))
+    return BagContents(way.span, damages, (refusals.unchecked(place, way.assumed),))
 
 
 def ends(file: str) -> Gap | None:
@@ -192,7 +192,7 @@ class _Way:
     def run(self) -> None:
         """Read everything."""
         connections = list(self._reader.connections)
-        stated = self._stated_counts(connections)
+        counts = self._stated_counts(connections)
         try:
             for connection in connections:
                 stream = self._stream(connection)
@@ -206,12 +206,12 @@ class _Way:
         except Exception as error:  # the reader trusts each byte, and each may be wrong
             self._damage(f"it cannot be read further: {_reason(error)}", follows=True)
             return
-        if stated != self._counts:
-            there, held = sum(stated.values()), sum(self._counts.values())
-            what = f"it states {there} messages and holds {held}"
-            if there == held:
-                what = "its topics hold other numbers of messages than it states"
-            self._damage(what, code=Code.COUNT_MISMATCH)
+        if counts != self._counts:
+            expected, received = sum(counts.values()), sum(self._counts.values())
+            description = f"it states {expected} messages and holds {received}"
+            if expected == received:
+                description = "its topics hold other numbers of messages than it states"
+            self._damage(description, code=Code.COUNT_MISMATCH)
 
     def _stated_counts(self, connections: list[Any]) -> dict[int, int]:
         if not self._bag:
@@ -234,23 +234,25 @@ class _Way:
     def check(self, file: str) -> None:
         """What only a database can tell about itself."""
         for ending in ("-wal", "-journal"):
-            beside = Path(file + ending)
-            if beside.exists() and beside.stat().st_size:
-                self._damage(f"`{beside.name}` beside it holds messages that are not in it yet")
+            companion = Path(file + ending)
+            if companion.exists() and companion.stat().st_size:
+                self._damage(f"`{companion.name}` beside it holds messages that are not in it yet")
         listed = self._reader.metadata.message_count
         if listed != sum(self._counts.values()) and not self._damages:
-            what = f"it holds {listed} messages, some of them of no topic"
-            self._damage(what, code=Code.COUNT_MISMATCH)
+            description = f"it holds {listed} messages, some of them of no topic"
+            self._damage(description, code=Code.COUNT_MISMATCH)
         try:
-            (said,) = self._reader.dbconn.execute("PRAGMA integrity_check(1)").fetchone()
+            (result,) = self._reader.dbconn.execute("PRAGMA integrity_check(1)").fetchone()
         except Exception as error:  # it trusts each byte, and each may be wrong
-            said = _reason(error)
-        if said != "ok":
-            self._damage(f"the database is damaged: {str(said)[:200]}")
+            result = _reason(error)
+        if result != "ok":
+            self._damage(f"the database is damaged: {str(result)[:200]}")
 
-    def _damage(self, what: str, *, follows: bool = False, code: Code = Code.DAMAGED_CHUNK) -> None:
-        if all(damage.what != what for damage, _ in self._damages):
-            self._damages.append((Damage(NOWHERE, what, code=code), follows))
+    def _damage(
+        self, description: str, *, follows: bool = False, code: Code = Code.DAMAGED_CHUNK
+    ) -> None:
+        if all(damage.description != description for damage, _ in self._damages):
+            self._damages.append((Damage(NOWHERE, description, code=code), follows))
 
     def settled(self) -> Iterator[tuple[Damage, Gap | None]]:
         """All damages, with the time that each has cost."""
@@ -282,10 +284,10 @@ class _Way:
         name, kind, text = connection.msgtype, connection.msgdef.format, connection.msgdef.data
         encoding = {"MSG": "ros1msg" if self._bag else "ros2msg", "IDL": "ros2idl"}.get(kind.name)
         if encoding is None:
-            encoding, known = "ros2msg", _standard(name)
-            if known is None:
+            encoding, standard = "ros2msg", _standard(name)
+            if standard is None:
                 return None
-            text = known
+            text = standard
             self.assumed.append(name)
         if self._bag:
             name = name.replace("/msg/", "/")
@@ -312,23 +314,23 @@ def _stores() -> tuple[Any, ...]:
     return tuple(get_typestore(store) for store in Stores if store.name.startswith("ROS2_"))
 
 
-def _closure(known: Mapping[str, Any], name: str) -> dict[str, Any]:
+def _closure(fields: Mapping[str, Any], name: str) -> dict[str, Any]:
     """The fields of a type, and of all types in it."""
-    found: dict[str, Any] = {}
-    left = [name]
-    while left:
-        one = left.pop()
-        if one in found or one not in known:
+    closure: dict[str, Any] = {}
+    queue = [name]
+    while queue:
+        name_ = queue.pop()
+        if name_ in closure or name_ not in fields:
             continue
-        found[one] = known[one][1]
-        left += [part for _, kind in known[one][1] for part in _names(kind)]
-    return found
+        closure[name_] = fields[name_][1]
+        queue += [part for _, kind in fields[name_][1] for part in _names(kind)]
+    return closure
 
 
 def _names(kind: Any) -> Iterator[str]:
     """The types that a field is made of."""
-    node, what = kind
-    while not isinstance(what, str) and not isinstance(what[0], str):
-        node, what = what[0]
+    node, inner = kind
+    while not isinstance(inner, str) and not isinstance(inner[0], str):
+        node, inner = inner[0]
     if node.name == "NAME":
-        yield what
+        yield inner

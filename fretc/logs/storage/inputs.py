@@ -96,12 +96,12 @@ def opened(path: str, *, whole: bool = True) -> Iterator[Input | Diagnostic]:
     """
     with ExitStack() as stack:
         try:
-            found = _opened(path, stack, whole=whole)
+            log = _opened(path, stack, whole=whole)
         except FileNotFoundError:
-            found = refusals.no_such_file(Source(shown(path), "").span())
+            log = refusals.no_such_file(Source(shown(path), "").span())
         except OSError as error:
-            found = refusals.unreadable(error, Source(shown(path), "").span())
-        yield found
+            log = refusals.unreadable(error, Source(shown(path), "").span())
+        yield log
 
 
 def _opened(path: str, stack: ExitStack, *, whole: bool) -> Input | Diagnostic:
@@ -119,23 +119,23 @@ def _opened(path: str, stack: ExitStack, *, whole: bool) -> Input | Diagnostic:
 
     def changed() -> bool:
         try:
-            found = (os.fstat(stream.fileno()), os.stat(path))
+            statuses = (os.fstat(stream.fileno()), os.stat(path))
         except OSError:
             return True
-        return any(_mark(now) != _mark(before) for now in found)
+        return any(_mark(now) != _mark(before) for now in statuses)
 
     digest = _Digest(stream.fileno(), before.st_size)
     same = f"/proc/self/fd/{stream.fileno()}"
     return Input(stream, before.st_size, digest.result, digest.begin, path, same, changed)
 
 
-def _mark(found: os.stat_result) -> tuple[int, ...]:
+def _mark(status: os.stat_result) -> tuple[int, ...]:
     """What a write or another file of that name changes.
 
     Whoever may write to a file can set `st_mtime` back, but `st_ctime` only by the machine's clock.
     """
-    times = found.st_mtime_ns, found.st_ctime_ns
-    return (found.st_dev, found.st_ino, found.st_size, *times)
+    times = status.st_mtime_ns, status.st_ctime_ns
+    return (status.st_dev, status.st_ino, status.st_size, *times)
 
 
 class _Digest:
@@ -147,7 +147,7 @@ class _Digest:
     def __init__(self, descriptor: int, size: int) -> None:
         self._descriptor, self._size = descriptor, size
         self._thread: threading.Thread | None = None
-        self._found: str | OSError = ""
+        self._result: str | OSError = ""
 
     def begin(self) -> None:
         if self._thread is None:
@@ -159,9 +159,9 @@ class _Digest:
         self.begin()
         assert self._thread is not None
         self._thread.join()
-        if isinstance(self._found, OSError):
-            raise self._found
-        return self._found
+        if isinstance(self._result, OSError):
+            raise self._result
+        return self._result
 
     def _run(self, own: int) -> None:
         digest, block, at = hashlib.sha256(), memoryview(bytearray(_HASHED)), 0
@@ -172,9 +172,9 @@ class _Digest:
                     raise OSError(None, "it became shorter while it was read")
                 digest.update(block[:read])
                 at += read
-            self._found = digest.hexdigest()
+            self._result = digest.hexdigest()
         except OSError as error:
-            self._found = error
+            self._result = error
         finally:
             os.close(own)
 

@@ -38,7 +38,7 @@ class Numbered:
         self.counted = 0
         """Messages so far."""
         self._sink = sink
-        self._known: dict[Hashable, Stream] = {}
+        self._streams: dict[Hashable, Stream] = {}
         self._of_file: dict[int, tuple[Stream, Stream]] = {}
 
     def next_file(self) -> None:
@@ -47,17 +47,17 @@ class Numbered:
 
     def declare(self, stream: Stream) -> None:
         """A stream of the file."""
-        self._sink.declare(self._one(stream))
+        self._sink.declare(self._renumbered(stream))
 
     def add(self, stream: Stream, log_time: int, publish_time: int, payload: memoryview) -> None:
         """One whole message."""
         self.counted += 1
-        self._sink.add(self._one(stream), log_time, publish_time, payload)
+        self._sink.add(self._renumbered(stream), log_time, publish_time, payload)
 
     def add_all(self, stream: Stream, messages: Messages) -> None:
         """Whole messages of one stream."""
         self.counted += len(messages.starts)
-        self._sink.add_all(self._one(stream), messages)
+        self._sink.add_all(self._renumbered(stream), messages)
 
     def wants(self, topic: str) -> bool:
         """Whether more than the number of its messages is asked for."""
@@ -66,9 +66,9 @@ class Numbered:
     def count(self, stream: Stream, count: int) -> None:
         """So many messages of a stream that is not wanted."""
         self.counted += count
-        self._sink.count(self._one(stream), count)
+        self._sink.count(self._renumbered(stream), count)
 
-    def _one(self, stream: Stream) -> Stream:
+    def _renumbered(self, stream: Stream) -> Stream:
         """The same stream under a number of the whole run."""
         of_file = self._of_file.get(stream.channel.id)
         if of_file is not None and of_file[0] is stream:
@@ -76,15 +76,15 @@ class Numbered:
         channel, schema = stream.channel, stream.schema
         definition = (schema.name, schema.encoding, schema.data) if schema is not None else None
         key = (channel.topic, channel.message_encoding, definition)
-        if key not in self._known:
-            number = len(self._known) + 1
-            self._known[key] = Stream(
+        if key not in self._streams:
+            number = len(self._streams) + 1
+            self._streams[key] = Stream(
                 replace(channel, id=number, schema_id=number if schema is not None else 0),
                 replace(schema, id=number) if schema is not None else None,
             )
-        one = self._known[key]
-        self._of_file[channel.id] = stream, one
-        return one
+        renumbered = self._streams[key]
+        self._of_file[channel.id] = stream, renumbered
+        return renumbered
 
 
 def around(parts: Sequence[Part | None], i: int) -> tuple[int | None, int | None]:

@@ -45,13 +45,13 @@ def no_protocol_package(protocol: str, why: str, place: Span) -> Diagnostic:
     reason = why.strip().partition("\n")[0][:200]
     packages = {"s3": "s3fs", "s3a": "s3fs", "gs": "gcsfs", "gcs": "gcsfs"}
     packages |= {"az": "adlfs", "abfs": "adlfs", "http": "aiohttp", "https": "aiohttp"}
-    known = packages.get(protocol.lower())
+    package = packages.get(protocol.lower())
     return Diagnostic(
         Code.MISSING_EXTRA,
         f"what is at `{protocol}://` cannot be read: {reason}",
         place,
-        f"install its package: pip install {known}"
-        if known
+        f"install its package: pip install {package}"
+        if package
         else "what each protocol needs is in fsspec's documentation",
     )
 
@@ -130,13 +130,13 @@ def bad_metadata(place: Span) -> Diagnostic:
     )
 
 
-def part_of_a_run(i: int, count: int, whole: str, place: Span) -> Diagnostic:
-    """One file of several is read as if it were a run of its own; `whole` is what to name."""
+def part_of_a_run(i: int, count: int, run: str, place: Span) -> Diagnostic:
+    """One file of several is read as if it were a run of its own; `run` is what to name."""
     return Diagnostic(
         Code.SPLIT_LOG,
         f"it is file {i + 1} of {count} of one run, and judged alone",
         place,
-        f"name {whole}: its files are one log",
+        f"name {run}: its files are one log",
         Severity.NOTE,
     )
 

@@ -1,10 +1,10 @@
 """Layer BOUNDS: how long an answer takes at most, for every latency, loss and braking time.
 
 The closed loop has a twin in whole numbers (`fretc.verification.loop.abstraction`). z3 proves an
-inductive invariant of it with the times left open: a demand is open for less than any D with `D *
+inductive invariant of it for all times: a demand is open for less than any D with `D *
 tick >= lost * heartbeat + latency + braking` and `D * tick > lost * heartbeat`, where requests at
-every tick have a heartbeat of a tick. Beside the proof, the twin is held against the texts at small
-times, and the texts show by a run that under the declared times less is not enough.
+every tick have a heartbeat of a tick. Beside the proof, the twin is compared with the texts at
+small times, and a run of the texts shows that under the declared times a lower bound fails.
 
 Source: Manna, Pnueli, Temporal verification of reactive systems: safety, 1995, chapter 1
 (invariance).
@@ -46,7 +46,7 @@ from fretc.verification.loop.abstraction import (
 )
 from fretc.verification.loop.layer import Setup, artefacts, assumptions, case
 from fretc.verification.loop.model import Channel
-from fretc.verification.loop.search import Case, NotALoopError, Parts, reach, as_table
+from fretc.verification.loop.search import Case, NotALoopError, Parts, as_table, reach
 from fretc.verification.monitor.statements import is_same
 from fretish import syntax as s
 from fretish.clock import in_words
@@ -58,14 +58,14 @@ _MORE = "as many more, at least one, as `latency` and `braking` fill together"
 ANSWERED = f"every demand is answered within `lost` ticks and {_MORE}"
 INSTALL = "z3 is not installed: pip install 'fretc[bounds]'"
 _SMALL = ((1, 0, 0, 0), (1, 1, 1, 1), (2, 1, 1, 2), (1, 2, 2, 0), (3, 4, 1, 2))
-"""Cells to a tick, latency, losses in a row, braking: where the twin is held against the texts."""
+"""Cells to a tick, latency, losses in a row, braking: for comparing the twin with the texts."""
 _QUERY = 20_000
 """Milliseconds for each query of z3."""
 
 
 @dataclass(frozen=True, slots=True)
 class Question:
-    """What another process needs to know."""
+    """The question for another process."""
 
     case: Case
     sentence: s.Sentence
@@ -76,7 +76,7 @@ class Question:
 
     @property
     def unknown(self) -> str | None:
-        """Why small times do not speak for all of them; None: they do."""
+        """Why small times do not represent all times; None: they do."""
         if is_original(self.case.interceptor):
             return None
         return (
@@ -132,11 +132,11 @@ def _ticks(amount: int) -> str:
     return f"{amount} tick{'' if amount == 1 else 's'}"
 
 
-# What can be asked ----------------------------------------------------------------------------
+# The question ---------------------------------------------------------------------------------
 
 
 def question(rule: Rule, setup: Setup) -> Question | str:
-    """What is to be proved, or why nothing can be."""
+    """The question to prove, or why there is none."""
     problem = case(rule, setup)
     if isinstance(problem, str):
         return problem
@@ -170,7 +170,7 @@ def _answers(sentence: s.Sentence, stands: str) -> bool:
 
 
 def search(query: Question) -> Answer:
-    """Prove the invariant, hold the twin against the texts, and look for the least bound."""
+    """Prove the invariant, compare the twin with the texts, and look for the least bound."""
     if find_spec("z3") is None:
         return Answer(NotChecked(INSTALL), NotChecked(INSTALL))
     try:
@@ -189,7 +189,7 @@ def search(query: Question) -> Answer:
 
 
 def _covered(query: Question) -> tuple[int, int]:
-    """How many steps of how many loops were held against the twin.
+    """How many steps of how many loops were compared with the twin.
 
     Raises:
         NotALoopError: one of them is no step of the twin.
@@ -214,7 +214,7 @@ def _covered(query: Question) -> tuple[int, int]:
 
 
 def _channel(declared: Channel, cells: int, latency: int, lost: int, braking: int) -> Channel:
-    """Small times; a heartbeat is made short, too, and stays one."""
+    """Small times; a heartbeat becomes short, too, and stays above 0."""
     return replace(
         declared,
         cells=cells,
@@ -226,7 +226,7 @@ def _channel(declared: Channel, cells: int, latency: int, lost: int, braking: in
 
 
 def _short(settings: Settings) -> Settings:
-    """The same with short times: what the twin says does not depend on them."""
+    """The same settings with short times: the twin does not depend on them."""
     return replace(
         settings,
         hold=min(settings.hold, 2),
@@ -257,7 +257,7 @@ def _with(query: Question, timing: s.Timing) -> Case:
 
 
 def _least(query: Question) -> Result:
-    """Whether the bound is enough, with the least one that is."""
+    """Whether the bound is enough, with the least bound that is."""
     endless = _endless(query)
     coverage = covered(Parts.of(endless).loop, endless.limit, longest=_formula(endless.channel) + 1)
     least = coverage.longest + 1
@@ -295,10 +295,10 @@ def _violating(query: Question) -> Any:
 
 
 def _proved(declared: Times) -> tuple[str | None, str]:
-    """What keeps the invariant from being proved, if anything does; and z3's version.
+    """Why the invariant is not proved, None if it is; and z3's version.
 
     Args:
-        declared: of these, `cells` and `heartbeat` count; the others are left open.
+        declared: only `cells` and `heartbeat` count; z3 treats the others as unknowns.
     """
     import z3
 
@@ -345,11 +345,11 @@ def _proved(declared: Times) -> tuple[str | None, str]:
 
 
 def _invariant(at: Numbers, times: Times, bound: Any, logic: Any) -> Any:
-    """Why an answer comes in time: what is true at the end of each tick.
+    """The invariant at the end of each tick: why an answer comes in time.
 
-    While all requests since a stop is requested are lost, that is for no longer than it takes to
-    send as many; the first that is not lost is in flight for less than the latency; and from when
-    it is heard on, the wheels have zero. A demand that is open is no older than its request.
+    At most `lost` requests of a stop are lost in a row; the first other one is in flight for less
+    than the latency; from its arrival on, the wheels have zero. An open demand is no older than
+    its request.
     """
     k, beat, both, either = times.cells, times.heartbeat, logic.both, logic.either
     passed, tried = k * (at.open + 1), k * beat * times.lost

@@ -1,7 +1,7 @@
 """Layer LOOP: monitor, interceptor and any environment, under the assumptions of the bindings.
 
-What is explored are the texts themselves: the monitor as the safety function that requests stops,
-the monitor that fretc makes of the sentence as the observer, and the steps of the interceptor. The
+It explores the texts themselves: the monitor as the safety function that requests stops, the
+monitor that fretc makes of the sentence as the observer, and the steps of the interceptor. The
 model between them is `fretc.verification.loop.model`, and its durations are whole cells, rounded
 up.
 """
@@ -31,12 +31,12 @@ from fretish.expressions import names
 KEPT = "monitor, interceptor and any environment together keep the requirement"
 RELEASED = "the stop is released once no demand begins any more"
 _FINEST = 20
-"""Cells to a tick, where the interceptor has no timer that says what a cell is."""
+"""Cells to a tick, where the interceptor has no timer to define a cell."""
 
 
 @dataclass(frozen=True, slots=True)
 class Named:
-    """A text that is looked at, and the name that evidence has for it."""
+    """A text under verification, and its name in evidence."""
 
     name: str
     text: str
@@ -92,7 +92,7 @@ def artefacts(setup: Setup) -> dict[str, str]:
 
 
 def case(rule: Rule, setup: Setup) -> Case | str:
-    """What is to be searched, or why nothing can be."""
+    """The case to search, or why there is none."""
     interception, assumed = setup.interception, setup.assumed
     if interception is None or setup.interceptor is None:
         return "the bindings declare no interceptor (`[interceptor]`)"
@@ -125,7 +125,7 @@ def settings(interception: Interception) -> Settings:
 
 
 def channel(rule: Rule, interception: Interception, assumed: Assumed) -> Channel | str:
-    """What is assumed, in cells; or why no cell can be found."""
+    """The assumptions in cells; or why no cell fits."""
     tick = rule.clock.period if rule.clock else None
     if tick is None:
         return "the clock has no period: it ticks with messages"
@@ -148,7 +148,7 @@ def channel(rule: Rule, interception: Interception, assumed: Assumed) -> Channel
 
 
 def cell_of(tick: int, interception: Interception, assumed: Assumed) -> int:
-    """Nanoseconds: a period of the timer; without one whatever measures the durations best."""
+    """Nanoseconds: a period of the timer; without a timer the unit that fits the durations best."""
     if interception.form is Form.TIMER:
         return interception.period
     exact = gcd(tick, assumed.latency, assumed.braking)
@@ -161,12 +161,12 @@ def cell_of(tick: int, interception: Interception, assumed: Assumed) -> int:
 def assumptions(
     rule: Rule, setup: Setup, problem: Case, *, any_time: bool = False
 ) -> Iterator[str]:
-    """What the verdict takes for granted, in words, with where each is declared.
+    """The assumptions of the verdict in words, each with its place of declaration.
 
     Args:
         rule: the requirement.
-        setup: with what is declared.
-        problem: the case of both.
+        setup: the declarations.
+        problem: the case of rule and setup.
         any_time: the verdict holds whatever latency, losses and braking time are.
     """
     interception, assumed, channel = setup.interception, setup.assumed, problem.channel
@@ -196,7 +196,7 @@ def assumptions(
 
 
 def _messages(assumed: Assumed, tick: int, *, any_time: bool) -> Iterator[str]:
-    """What is said of stop messages."""
+    """The assumptions about stop messages."""
     yield (
         f"the safety function steps at every tick of {in_words(tick)} and sends its request "
         f"{_when(assumed)}"
@@ -224,7 +224,7 @@ def _when(assumed: Assumed) -> str:
 def _rounded(
     interception: Interception, assumed: Assumed, tick: int, *, any_time: bool
 ) -> Iterator[str]:
-    """Durations that are no whole number of cells, or of ticks: the longer one is proved."""
+    """Durations that are no whole number of cells, or of ticks: the proof rounds them up."""
     cell = cell_of(tick, interception, assumed)
     cells = "whole cells of the model"
     for name, duration, unit, grid in (

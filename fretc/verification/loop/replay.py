@@ -1,7 +1,7 @@
-"""A run of the closed loop as a table, made by running the texts once more from their beginning.
+"""A run of the closed loop as a table, from a second run of the texts from their beginning.
 
-What the model says of a run is believed only so far as the texts themselves do it: monitors are
-stepped without being stopped and put back, the interceptor without encoded states.
+The texts must do what the model says of the run: this replay steps monitors without saving and
+restoring their states, and the interceptor without encoded states.
 """
 
 from __future__ import annotations
@@ -18,12 +18,12 @@ from monitors.kernel.verdicts import VIOLATED, Truth
 from monitors.loading import load
 
 EXTRA = ("request", "delivered", "halt", "wheels")
-"""The columns beside the propositions: what is requested, what of it was heard last in the tick;
-at the end of the tick, whether the interceptor is halted and whether the wheels have to move."""
+"""The columns beside the propositions: the request, and its last delivery in the tick; at the end
+of the tick, whether the interceptor is halted and whether the wheels have to move."""
 
 
 class Moment(NamedTuple):
-    """A tick, and what is heard before the next."""
+    """A tick, and the events before the next one."""
 
     tick: Tick
     events: tuple[Heard | None, ...]
@@ -43,7 +43,7 @@ class Watched:
 
 
 def moments(loop: Loop, start: Node, run: Sequence[tuple[Tick, Node]]) -> tuple[Moment, ...]:
-    """The run with what is heard in it."""
+    """The run with its events."""
     timeline, before = [], start
     for tick, after in run:
         timeline.append(Moment(tick, loop.word(before, tick, after)))
@@ -58,7 +58,7 @@ def replayed(
     loop: Loop,
     cycle: int | None = None,
 ) -> tuple[Trace, bool]:
-    """The run as a table, and whether the observer says at its last tick that it is violated.
+    """The run as a table, and whether the observer finds a violation at its last tick.
 
     Raises:
         AssertionError: the texts do not do what the model says.
@@ -85,7 +85,7 @@ class _Again:
         self.violated = False
 
     def row(self, moment: Moment) -> tuple[Truth, ...]:
-        """One tick of all of them."""
+        """Run one tick of all texts; its row of the table."""
         tick = moment.tick
         self._sample(tick)
         self._step(self._safety, tick)

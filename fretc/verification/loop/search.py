@@ -1,7 +1,7 @@
-"""What the closed loop can do: a shortest violation, a run that owes for ever, a stop that stays.
+"""Exploration of the closed loop: a shortest violation, an endless debt, a stop that stays.
 
-All of it is reachability in a finite graph (`fretc.verification.loop.model`); what no finite run
-shows is asked of Spot. A run that is found is run again through the texts before it is told.
+All of it is reachability in a finite graph (`fretc.verification.loop.model`); Spot searches for
+endless runs. The texts replay each run before a result contains it.
 """
 
 from __future__ import annotations
@@ -21,9 +21,9 @@ from fretc.verification.monitor.text_check import strange
 from monitors.loading import load
 
 MOST_ATOMS = 8
-"""Each doubles the letters of a tick."""
+"""Each proposition doubles the letters of a tick."""
 LONGEST = 250
-"""Ticks: a longer bound is not given to Spot, which expands it."""
+"""Ticks: Spot expands bounds, so it gets no longer one."""
 
 _HALT, _TRIGGER = f.Atom("_halt_"), f.Atom("_trigger_")  # no names of FRETish
 RELEASE = f.implies(
@@ -41,13 +41,13 @@ class Case:
     safety: str
     """The text of the monitor that requests stops."""
     observer: str
-    """The text of the monitor that tells violations."""
+    """The text of the monitor that detects violations."""
     interceptor: str
     settings: Settings
     channel: Channel
     stands: str
     limit: int = 10**6
-    """The most states that are looked at."""
+    """The most states of the exploration."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,7 +59,7 @@ class Results:
 
 
 class NotALoopError(Exception):
-    """The case cannot be explored; it says why."""
+    """The case cannot be explored; the text says why."""
 
 
 def search(case: Case) -> Results:
@@ -112,7 +112,7 @@ class Parts:
 
 
 def watched(text: str, requirement: str) -> Watched:
-    """A monitor of the requirement; its text is executed only where it is laid out as ours are."""
+    """A monitor of the requirement; only a text in the layout of fretc is executed."""
     reason = strange(text)
     if reason is not None:
         raise NotALoopError(f"of the monitor: {reason}")
@@ -128,7 +128,7 @@ def watched(text: str, requirement: str) -> Watched:
 
 @dataclass(frozen=True, slots=True)
 class Reached:
-    """Every state that comes before a violation, or the ways to a nearest violation."""
+    """The result of an exploration: its size, and a shortest run to a violation, if any."""
 
     states: int
     steps: int
@@ -210,7 +210,7 @@ def _release_result(parts: Parts, runs: Runs) -> Result:
 def as_table(
     parts: Parts, run: tuple[tuple[Tick, Node], ...], cycle: int | None = None
 ) -> tuple[Trace, bool]:
-    """The run as a table, run again through the texts; and whether it violates the requirement."""
+    """The run as a table, replayed by the texts; and whether it violates the requirement."""
     visible = moments(parts.loop, parts.loop.initial, run)
     return replayed(visible, parts.safety, parts.observer, parts.loop, cycle)
 
@@ -218,7 +218,7 @@ def as_table(
 # Endless runs ---------------------------------------------------------------------------------
 
 Labelled = tuple[frozenset[str], Node]
-"""A state of a Kripke structure: what was true at the last tick, and how the loop stands now."""
+"""A state of a Kripke structure: the atoms of the last tick, and the node of the loop."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -227,7 +227,7 @@ class Runs:
 
     loop: Loop
     visible: frozenset[str]
-    """The atoms that states are told apart by."""
+    """The atoms that distinguish states."""
     explored: Explored[Labelled]
 
     @classmethod

@@ -1,8 +1,8 @@
 """The column program of a monitor's text as terms: equal terms are equal columns of any trace.
 
-Each name stands for what it was given, each parameter for the proposition that it is a literal of.
-So two programs of the same terms differ in the names of their variables and in nothing else, and
-whatever is shown of the one at all lengths of a trace holds of the other.
+A name stands for its assigned term, a parameter for its literal. So two programs with equal terms
+differ in the names of their variables only, and a proof about one, at all lengths of a trace, holds
+of the other.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from fretc.verification.monitor.text_check import own
 
 @dataclass(slots=True)
 class Terms:
-    """Terms as numbers, one for each that differs: texts are compared that share this table."""
+    """Terms as numbers, equal for equal terms; texts to compare share one table."""
 
     _numbers: dict[tuple[object, ...], int] = field(default_factory=dict)
 

@@ -34,7 +34,7 @@ satisfies the sentence, as FRET judges finite traces, if it ends here."""
 
 
 class Machine(Protocol):
-    """A monitor that can be stopped, put back and stepped."""
+    """A monitor whose state can be saved, restored and stepped."""
 
     def save(self) -> Hashable:
         """Everything that its further steps depend on, and nothing else."""
@@ -48,10 +48,10 @@ class Machine(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class Proved:
-    """They say the same at every tick of every trace, up to the first violation."""
+    """Both judge every tick of every trace alike, up to the first violation."""
 
     states: int
-    """Pairs of a state of the automaton and one of the monitor that had to be looked at."""
+    """Compared pairs of a state of the automaton and one of the monitor."""
     steps: int
     """Steps of the monitor that were compared."""
 
@@ -64,12 +64,12 @@ class Refuted:
     expected: Judgement
     actual: Judgement
     shortest: bool = True
-    """No shorter trace tells them apart; False where there were too many pairs to know."""
+    """Whether no shorter trace shows the difference; False where there were too many pairs."""
 
 
 @dataclass(frozen=True, slots=True)
 class NotChecked:
-    """Nothing is known."""
+    """There is no result."""
 
     reason: str
 
@@ -83,15 +83,15 @@ def prove(
 ) -> Proved | Refuted | NotChecked:
     """Compare a monitor with the reference automaton of its sentence.
 
-    Below a violation nothing is compared: it is a monitor's last word.
+    After a violation nothing is compared: a monitor's verdict is then final.
 
     Args:
-        machine: the monitor, before its first tick; it is left in any state.
+        machine: the monitor, before its first tick; its state afterwards is arbitrary.
         sentence: a checked sentence.
         ticks: what its duration counts; without meaning where it has none.
         atoms: the order of the values in a letter, by the names that formulas have for them;
             at least every atom of the sentence.
-        limit: the most states of the automaton, and the most pairs that are looked at.
+        limit: the most states of the automaton, and the most pairs of states.
 
     Raises:
         KeyError: an atom of the sentence is not among `atoms`.
@@ -172,7 +172,7 @@ class _Pairs:
 
 
 class _Classes:
-    """Sets of states that must be equal if all pairs are: what follows from others is known.
+    """Sets of states that must be equal if all pairs are: a pair that follows from others is known.
 
     There are no more new pairs than states on both sides together, where the pairs that can be
     reached may be as many as their product.

@@ -25,12 +25,12 @@ ENGINE = "fretc, lock step with the counter automaton of the sentence"
 def evidence(
     rule: Rule, name: str, text: str, limits: Limits, others: Sequence[Rule] = ()
 ) -> v.Evidence:
-    """What can be shown of a monitor's text.
+    """The evidence about a monitor's text.
 
     Args:
         rule: its requirement.
         name: of the file.
-        text: what says to be its monitor, maybe beside others.
+        text: that of its monitor, maybe with monitors of other rules.
         limits: of the process that it is executed in.
         others: rules that the text may be of, too.
 
@@ -43,7 +43,7 @@ def evidence(
 
 
 def as_result(outcome: Verified) -> v.Result:
-    """In the form that all layers share."""
+    """The result in the form that all layers share."""
     match outcome.result:
         case Proved(states, steps):
             return v.Proved(
@@ -54,8 +54,8 @@ def as_result(outcome: Verified) -> v.Result:
             length = f"{len(word)} tick{'' if len(word) == 1 else 's'}"
             kind = "the shortest trace" if shortest else "a trace"
             detail = (
-                f"{kind} that shows it has {length}; after it, {_judgement(*actual)}, and should be "
-                f"{_judgement(*expected)}"
+                f"{kind} that shows it has {length}; after it, {_judgement(*actual)}, and should "
+                f"be {_judgement(*expected)}"
             )
             return v.Counterexample(detail, v.Trace(outcome.atoms, word))
         case Disagreement(word, fault):
@@ -68,7 +68,7 @@ def as_result(outcome: Verified) -> v.Result:
 
 
 def _comparison(outcome: Verified) -> str:
-    """What else was compared of a text that is not the one that fretc writes."""
+    """The further comparisons for a text that differs from the one that fretc writes."""
     if not outcome.compared_states:
         return ""
     return (

@@ -1,9 +1,9 @@
-"""Whether two monitors tell the same of every trace, whatever of it is unknown.
+"""Whether two monitors have the same signals on every trace, with unknown values too.
 
 A monitor is two runs of one code, its rails: an unknown counts as false on the one and as true on
 the other. Each rail of the one monitor goes in lock step with that of the other over all letters,
 unknown values among them, until no new pair of states appears. At each step all signals are
-compared, and what is noted in marks.
+compared, and all marks.
 """
 
 from __future__ import annotations
@@ -27,15 +27,15 @@ Letter = tuple[Truth, ...]
 
 @dataclass(frozen=True, slots=True)
 class Same:
-    """They tell the same of every trace."""
+    """The monitors agree on every trace."""
 
     states: int
-    """Pairs of states of both rails that were looked at."""
+    """Compared pairs of states of both rails."""
 
 
 @dataclass(frozen=True, slots=True)
 class Apart:
-    """A shortest trace of one rail at whose last tick they tell something else."""
+    """A shortest trace of one rail at whose last tick the monitors differ."""
 
     word: tuple[Letter, ...]
     signal: str
@@ -52,7 +52,7 @@ def compared(
         place: of the requirement among those of the machine.
         reference: a monitor of one requirement.
         atoms: the order of the values in a letter; at least the propositions of both.
-        limit: the most pairs of states that are looked at; with more, nothing is known: None.
+        limit: the most pairs of states; with more the result is None.
     """
     states = 0
     for doubt in (False, True):

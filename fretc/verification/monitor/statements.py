@@ -1,4 +1,4 @@
-"""Statements of a text, held against those that fretc writes."""
+"""Statements of a text, compared with those that fretc writes."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from functools import cache
 
 
 class StrangeError(Exception):
-    """What is not as the generator writes it."""
+    """The text is not as the generator writes it."""
 
 
 def demand(right: bool, node: ast.AST) -> None:

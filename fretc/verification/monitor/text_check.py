@@ -30,7 +30,7 @@ from fretish.reading.text_encoding import is_utf8
 from monitors.source_text import kernel
 
 _OF_RAILS = frozenset({"CELLS", "advance", "signals", "marks"})
-"""What else a rail has."""
+"""The other names of a rail."""
 
 
 def strange(text: str) -> str | None:
@@ -50,7 +50,7 @@ def strange(text: str) -> str | None:
 
 
 def own(text: str) -> ast.Module:
-    """What of a monitor's text stands below the run time; it is laid out as fretc writes it."""
+    """The part of a monitor's text below the run time; `strange` has checked its layout."""
     return ast.parse(text.partition(kernel().text)[2])
 
 
@@ -81,7 +81,7 @@ def _check_module(module: ast.Module) -> None:
 
 
 def _check_annotations(module: ast.Module, title: str) -> None:
-    """They are evaluated when the text is executed: those that the generator writes do nothing."""
+    """Python evaluates annotations when it executes the text: only harmless ones are allowed."""
     allowed = {*_ANNOTATIONS, f"{title}Rail"}
     for node in ast.walk(module):
         match node:
@@ -107,7 +107,7 @@ def _is_plain(node: ast.ClassDef) -> bool:
 
 
 def _rail(node: ast.ClassDef) -> tuple[Rail, ast.stmt]:
-    """The names of a rail, once all of it but `advance` is known to be as it should."""
+    """The names of a rail, after a check of all of it but `advance`."""
     body = below_docstring(node)
     demand(len(body) == 6, node)
     slots, cells, initial, advance, signals, marks = body
@@ -130,7 +130,7 @@ def _rail(node: ast.ClassDef) -> tuple[Rail, ast.stmt]:
 
 
 def _prefixes(signals: ast.stmt, marks: ast.stmt) -> tuple[str, ...]:
-    """The prefixes of the requirements, from what a rail tells of them."""
+    """The prefixes of the requirements, from the signals of a rail."""
     prefixes = tuple(
         node.attr.removesuffix("_trigger")
         for node in ast.walk(signals)
@@ -181,7 +181,7 @@ def _is_initial(node: ast.expr) -> bool:
 
 
 def _monitor(node: ast.ClassDef, rail: str, names: Rail) -> Mapping[str, str]:
-    """Its propositions with their parameters, once it is known to be as it should."""
+    """The propositions of a monitor with their parameters, after a check of all of it."""
     body = below_docstring(node)
     demand(len(body) == 10, node)
     program, requirements, propositions, literals, rail_binding, must, may, step, run, columns = (
@@ -224,7 +224,7 @@ def _check_requirements(node: ast.stmt, prefixes: Sequence[str]) -> None:
 
 
 def _inputs(node: ast.stmt, prefixes: Sequence[str]) -> Mapping[str, str]:
-    """The parameter of each proposition: the one that the generator makes of its name."""
+    """The parameter of each proposition: the one that the generator derives from its name."""
     match node:
         case ast.AnnAssign(ast.Name("PROPOSITIONS"), _, ast.Dict(keys, values)):
             names = names_in(ast.Tuple([key for key in keys if key is not None]))
@@ -255,7 +255,7 @@ def _literals(node: ast.stmt, inputs: Mapping[str, str]) -> tuple[str, ...]:
 
 
 def _check_step(body: Sequence[ast.stmt], inputs: Sequence[str], prefixes: Sequence[str]) -> None:
-    """Both rails take the row, and what they remember is told."""
+    """Check that both rails take the row, and that the verdicts follow from their marks."""
     fork = " or ".join(f"{name} is None" for name in inputs)
     text = f"row = ({', '.join(inputs)}{',' * (len(inputs) == 1)})\n"
     text += f"if {fork}:\n    self._fork()\n" if inputs else ""
@@ -277,7 +277,7 @@ def _check_step(body: Sequence[ast.stmt], inputs: Sequence[str], prefixes: Seque
 
 
 def _forms(prefix: str) -> Iterator[tuple[str, str | None]]:
-    """When a requirement is violated, and when it is satisfied: what can never be is left out."""
+    """When a requirement is violated, and when satisfied: the possible forms of both."""
     for doom in (False, True):
         violated, possible = (
             f"{rail}.{prefix}_broken >= 0" + f" or {rail}.{prefix}_doomed >= 0" * doom

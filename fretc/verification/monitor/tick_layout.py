@@ -78,7 +78,7 @@ def _carried(statements: Sequence[ast.stmt], rail: Rail) -> Iterator[str]:
 def _check_end(
     statements: Sequence[ast.stmt], rail: Rail, carried: Iterable[str], bound: frozenset[str]
 ) -> None:
-    """What is done after the last row: cells and marks go back, signals are told."""
+    """Check the end of `advance`: it stores cells and marks, and assigns signals."""
     pending = {f"self.{name} = {name}" for name in ("tick", *carried)}
     opened = {f"{p}_open = {p}_last if self.{p}_owed else -1": p for p in rail.prefixes}
     assigned: set[str] = set()

@@ -2,14 +2,14 @@
 
 The text is executed, stepped over every letter and compared with the counter automaton of the
 sentence (`fretc.verification.monitor.equivalence`). Its steps must depend on nothing but its cells,
-propositions and constants: that is read off its tree first
-(`fretc.verification.monitor.text_check`), so a step that looks at the number of the tick cannot
-hide. The automaton knows verdicts of known values. What else a monitor tells (triggers, answers,
-open demands, marks; all of it with unknown values too) is compared with the text that fretc writes
-for the sentence, state by state (`fretc.verification.monitor.rails`), and its column program with
-the one in that text, term by term (`fretc.verification.monitor.column_terms`); for the text itself
-nothing is left to compare. Its column program is also compared with its steps on drawn traces, some
-of which have unknown values: that shows where they differ.
+propositions and constants: `fretc.verification.monitor.text_check` checks that on its tree first,
+so a step that looks at the number of the tick cannot hide. The automaton knows verdicts of known
+values only. The other signals of a monitor (triggers, answers, open demands, marks; all of them
+with unknown values too) are compared with the text that fretc writes for the sentence, state by
+state (`fretc.verification.monitor.rails`), and its column program with the one in that text, term
+by term (`fretc.verification.monitor.column_terms`); the text that fretc writes needs neither. The
+column program is also compared with the steps on random traces, some with unknown values: that
+shows where they differ.
 """
 
 from __future__ import annotations
@@ -43,12 +43,12 @@ MOST_STATES = 10**6
 
 
 class NotAMonitorError(Exception):
-    """The text cannot be executed as a generated monitor; it says why."""
+    """The text cannot be executed as a generated monitor; the message says why."""
 
 
 @dataclass(frozen=True, slots=True)
 class Disagreement:
-    """A trace at whose last tick it tells something else than it should."""
+    """A trace at whose last tick the signals of the monitor are wrong."""
 
     word: tuple[tuple[Truth, ...], ...]
     """The values of `atoms`; None: unknown."""
@@ -57,7 +57,7 @@ class Disagreement:
 
 @dataclass(frozen=True, slots=True)
 class Verified:
-    """What could be shown of one requirement's monitor."""
+    """The result for one requirement's monitor."""
 
     requirement: str
     atoms: tuple[str, ...]
@@ -76,9 +76,9 @@ def verified(
 
     Args:
         rule: one that a monitor can be made of, on its own clock.
-        text: what says to be its monitor, maybe beside others.
-        limit: the most states that are looked at.
-        others: rules that the text may be of, too; of a text that fretc writes for several.
+        text: that of its monitor, maybe with monitors of other rules.
+        limit: the most states of the exploration.
+        others: further rules that the text may implement.
 
     Raises:
         NotAMonitorError: the text is no generated monitor.
@@ -98,7 +98,7 @@ def verified(
 def _compared(
     rule: Rule, text: str, monitor: Monitor, limit: int, others: Sequence[Rule]
 ) -> Verified:
-    """What is known of a text that may be executed."""
+    """The result for a text that is safe to execute."""
     places = [i for i, each in enumerate(monitor.REQUIREMENTS) if each.id == rule.id]
     if not places:
         return Verified(rule.id, (), NotChecked("the monitor is of other requirements"))
@@ -124,7 +124,7 @@ def _compared(
 
 
 def _is_generated(text: str, monitor: Monitor, rules: Sequence[Rule]) -> bool:
-    """Whether it is what fretc writes for these rules, or for some of them, but for comments."""
+    """Whether fretc writes this text for some of these rules, but for comments."""
     by_id = {rule.id: rule for rule in rules}
     ids = [requirement.id for requirement in monitor.REQUIREMENTS]
     if not all(id in by_id for id in ids):
@@ -136,7 +136,7 @@ def _is_generated(text: str, monitor: Monitor, rules: Sequence[Rule]) -> bool:
 def _compared_with_generated(
     rule: Rule, text: str, monitor: Monitor, place: int, atoms: Sequence[str], limit: int
 ) -> int | Disagreement | NotChecked:
-    """In how many states it tells the same as the text that fretc writes for the rule."""
+    """In how many states it agrees with the text that fretc writes for the rule."""
     generated = target.text(rule)
     if len(atoms) > rails.MOST_PROPOSITIONS:
         most = rails.MOST_PROPOSITIONS
@@ -162,7 +162,7 @@ def _compared_with_generated(
 
 
 def _demand_monitor(text: str) -> None:
-    """It is Python, and names a monitor."""
+    """Demand that it is Python and names a monitor."""
     try:
         tree = ast.parse(text)
     except (SyntaxError, ValueError, RecursionError) as error:
@@ -194,7 +194,7 @@ def _columns_compared(
 def _first_difference(
     monitor: Monitor, place: int, columns: Mapping[str, Column], length: int
 ) -> int | None:
-    """The first tick of which both programs do not tell the same signals, on either rail."""
+    """The first tick at which the signals of both programs differ, on either rail."""
     every = (1 << length) - 1
     try:
         must, may = (
