@@ -1,4 +1,4 @@
-"""A secret key of the user: only this user can sign with it."""
+"""A secret key of the user, which shows that fretc wrote a file for this user."""
 
 from __future__ import annotations
 

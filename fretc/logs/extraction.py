@@ -1,8 +1,8 @@
-"""Payloads of one stream → the numbers that its signals ask for, many messages at once.
+"""Payloads of one stream → the numbers of its signals, many messages at once.
 
-Fields are taken from their places in the payloads. Made-up messages and the first real ones are
-decoded by the official decoder too, and where that says anything else, it reads the whole stream:
-it is slower, and the reference.
+Fields are read from their places in the payloads. The official decoder, slower and the reference,
+also decodes made-up messages and the first real ones; where it disagrees, it reads the whole
+stream.
 """
 
 from __future__ import annotations
@@ -28,24 +28,24 @@ from fretish.bindings.declarations import Reduce, Signal
 from fretish.diagnostics.diagnostic import Diagnostic
 
 _CHECKED = 8
-"""Layouts of a stream of which the official decoder reads three messages too."""
+"""Layouts of a stream that are compared with the official decoder on three messages."""
 _BLOCK = 2**17
-"""Numbers of an array field that are taken at once: the passes over them stay within the cache."""
+"""Numbers of an array field in one block: the passes over them stay within the cache."""
 _FEW = 512
-"""Bytes; fewer are decoded sooner than taken from their places. Two channels of one topic may send
-by turns, and then each message comes alone."""
+"""Bytes; decoding fewer is faster than reading places. Two channels of one topic may send by turns,
+and then each message comes alone."""
 _SECONDS = ("int32", "uint32")
-"""What a stamp may be made of: no sum of seconds and nanoseconds is too large."""
+"""Types of a stamp's fields for which no sum of seconds and nanoseconds overflows."""
 _STAMPS = (("sec", "nanosec"), ("secs", "nsecs"))
 """Names of the fields of a stamp, in ROS 2 and in ROS 1."""
 
 
 @dataclass(slots=True)
 class Extract:
-    """What some messages of a stream hold, all in their order."""
+    """The contents of some messages of a stream, in their order."""
 
     values: dict[str, Values]
-    """Of each signal, shape (messages,), as recorded; NaN where unknown, or not decoded."""
+    """The values of each signal, shape (messages,), as recorded; NaN where unknown."""
     decoded: NDArray[np.bool_]
     stamps: Times
     stamped: NDArray[np.bool_]
@@ -53,7 +53,7 @@ class Extract:
 
     @classmethod
     def empty(cls, count: int, signals: Iterable[Signal], single: Container[str] = ()) -> Extract:
-        """Of messages that are still to be read; `single` are signals of 32-bit floats."""
+        """An extract to fill; `single` are signals of 32-bit floats."""
         kinds = {
             signal.name: "f4" if signal.name in single and _chosen(signal) else "f8"
             for signal in signals
@@ -66,7 +66,7 @@ class Extract:
         )
 
     def put(self, signal: Signal, at: int | Places, numbers: float | Values) -> None:
-        """What the signal is in some messages."""
+        """Store the numbers of a signal in some messages."""
         wide = isinstance(numbers, int) or (
             isinstance(numbers, np.ndarray) and numbers.dtype == EXACT
         )
@@ -75,13 +75,13 @@ class Extract:
         self.values[signal.name][at] = numbers
 
     def near(self, signal: Signal, least: float | None) -> None:
-        """Some messages state a least distance."""
+        """Note the least distance that some messages state."""
         if least is not None:
             self.nearest[signal.name] = min(least, self.nearest.get(signal.name, least))
 
 
 def _chosen(signal: Signal) -> bool:
-    """Whether its samples are numbers of the log, and not computed of them."""
+    """Whether its samples are numbers of the log, not results of a computation."""
     return signal.reduce not in (Reduce.MEAN, Reduce.OUTLINE)
 
 
@@ -90,7 +90,7 @@ class Extraction:
 
     def __init__(self, stream: Stream, signals: Sequence[Signal]) -> None:
         self.signals = list(signals)
-        """Those that can be read; one with something wrong is taken out."""
+        """The readable signals; the others have a diagnostic."""
         self.diagnostics: dict[str, Diagnostic] = {}
         self._checks = _CHECKED
         decode = decoder(stream)
@@ -101,7 +101,7 @@ class Extraction:
             self._single = frozenset(s.name for s in signals if is_single(stream, s.path.fields))
         self._shape = _shape(stream, self._decode)
         self._sought: tuple[Where, ...] | None = None
-        """What the layouts were made for: less, once a signal was refused."""
+        """The fields of the present layouts: fewer, once a signal was refused."""
         if isinstance(decode, str):
             for signal in signals:
                 self._refuse(signal, findings.unknown_encoding(signal, decode))
@@ -112,13 +112,13 @@ class Extraction:
         return self._decode is not None
 
     def extract(self, payloads: Payloads) -> Extract:
-        """What the messages hold."""
+        """The contents of the messages."""
         extract = Extract.empty(len(payloads), self.signals, self._single)
         if self._decode is None:
             return extract
         slow: Sequence[int] = range(len(payloads))
         if self._shape is not None and payloads.sizes.sum() >= _FEW:
-            if not self._placed(self._shape):  # one message tells which signals have no place
+            if not self._placed(self._shape):  # one message shows which signals have no place
                 self._one_by_one(0, bytes(payloads.payload(0)), extract)
                 slow = slow[1:]
             if self._placed(self._shape):
@@ -162,14 +162,14 @@ class Extraction:
     # By places
 
     def _placed(self, shape: Shape) -> bool:
-        """Whether all that is asked for has a place; where not, each message has to be seen."""
+        """Whether every wanted field has a place; if not, each message must be decoded."""
         return all(_reads(shape, signal) for signal in self.signals) and all(
             field is not None and field.type in _SECONDS
             for field in map(shape.number, _stamp_places(shape))
         )
 
     def _at_once(self, payloads: Payloads, extract: Extract) -> Sequence[int]:
-        """Read all messages that fit a layout; gives the rows that are left."""
+        """Read all messages that fit a layout; returns the remaining rows."""
         assert self._shape is not None
         wanted = self._wanted(self._shape)
         if wanted != self._sought:
@@ -225,7 +225,7 @@ class Extraction:
     def _fill(
         self, payloads: Payloads, rows: Places, layout: Layout, to: Places, extract: Extract
     ) -> None:
-        """Put what the messages `rows` hold at the places `to` of the extract."""
+        """Put the contents of the messages `rows` at the places `to` of the extract."""
         extract.decoded[to] = True
         locations = layout.locations
         single = {
@@ -271,13 +271,13 @@ class Extraction:
 
 
 def _shape(stream: Stream, decode: Decode | None) -> Shape | None:
-    """How the messages are laid out; None where that is not certain."""
+    """The layout of the messages; None where it is not certain."""
     layout = shape(stream) if decode is not None else None
     return layout if decode and layout and trusted(layout, decode) else None
 
 
 def _reads(shape: Shape, signal: Signal) -> bool:
-    """Whether the signal's fields are numbers, or arrays where it takes them for arrays."""
+    """Whether the signal's fields are numbers, or arrays where its path needs arrays."""
     field, path = shape.number(signal.path.fields), signal.path
     return (
         field is not None

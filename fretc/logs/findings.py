@@ -1,7 +1,7 @@
-"""What there is to say about a log: one function for each message (F400 to F418).
+"""Diagnostics about a log: one function for each message (F400 to F418).
 
-`place` is the log itself; what concerns one signal points at its line of the bindings. Times are
-nanoseconds.
+`place` is the log itself; a diagnostic about one signal points at its line of the bindings. Times
+are nanoseconds.
 """
 
 from __future__ import annotations
@@ -53,11 +53,11 @@ _PACKED = {
     b"BZh": ("bzip2", "bunzip2"),
     b"PK\x03\x04": ("zip", "unzip"),
 }
-"""What compressed files begin with, and what unpacks them."""
+"""First bytes of compressed files, and the command that unpacks them."""
 
 
 def not_a_log(start: bytes, place: Span) -> Diagnostic:
-    """Another kind of file, told by its first bytes."""
+    """Another kind of file, by its first bytes."""
     for magic, (codec, command) in _PACKED.items():
         if start.startswith(magic):
             return Diagnostic(
@@ -109,7 +109,7 @@ def too_long(length: int, ticks: int, clock: Clock, place: Span) -> Diagnostic:
 
 
 def damaged(damage: Damage, gap: Gap | None, origin: int, place: Span) -> Diagnostic:
-    """One place; the gap that it has left is told in seconds from `origin`."""
+    """One damaged place; its gap is in seconds from `origin`."""
     if damage.code in (Code.TRUNCATED_LOG, Code.REINDEXED) and gap is not None:
         description = (
             damage.description if damage.at < 0 else f"the log breaks off after byte {damage.at}"
@@ -137,7 +137,7 @@ def damaged(damage: Damage, gap: Gap | None, origin: int, place: Span) -> Diagno
 
 
 def few(diagnostics: list[Diagnostic], place: Span) -> list[Diagnostic]:
-    """Not more than a page of them."""
+    """At most a page of diagnostics; the last one counts the rest."""
     if len(diagnostics) <= _MOST:
         return diagnostics
     more = f"the log is damaged in {len(diagnostics) - _MOST} more places"
@@ -178,7 +178,7 @@ def no_field(signal: Signal, error: FieldError) -> Diagnostic:
 
 
 def never_stated(signal: Signal, paths: Collection[str]) -> Diagnostic:
-    """The messages may leave out the field that the signal asks for, and all of them do."""
+    """Every message leaves out the field of the signal, as their type allows."""
     name = ".".join(signal.path.fields)
     numbers = [path.removesuffix("[:]") for path in paths]
     near = suggestion(name, numbers)
@@ -288,7 +288,7 @@ def zero_stamps(
 def still_clock(
     topic: str, place: Span | None, same: int, count: int, time: TimeSource
 ) -> Diagnostic:
-    """F420: many messages in a row have one time."""
+    """F420: many messages in a row have the same time."""
     return Diagnostic(
         Code.STILL_CLOCK,
         f"the clock of `{topic}` stands still: {same} of {count} messages have the {time} of "

@@ -1,4 +1,4 @@
-"""The first messages of topics in JSON: only they tell which fields such messages have."""
+"""The first messages of topics in JSON: only they show which fields such messages have."""
 
 from __future__ import annotations
 
@@ -6,11 +6,11 @@ from fretc.logs.mcap.container import Stream
 from fretc.logs.mcap.messages import Messages, Sink
 
 _MOST, _MOST_BYTES = 20, 2**20
-"""Messages of a topic, and bytes of them, that are kept."""
+"""The most messages of a topic, and the most bytes of them."""
 
 
 class Examples:
-    """Hands every message on, and keeps the first ones of topics in JSON."""
+    """A sink that passes every message on, and keeps the first ones of topics in JSON."""
 
     def __init__(self, sink: Sink) -> None:
         self._sink = sink
@@ -43,7 +43,7 @@ class Examples:
         self._sink.add_all(stream, messages)
 
     def wants(self, topic: str) -> bool:
-        """Whether more than the number of its messages is asked for."""
+        """Whether the messages themselves are wanted, not only their number."""
         return self._sink.wants(topic)
 
     def count(self, stream: Stream, count: int) -> None:
@@ -51,7 +51,7 @@ class Examples:
         self._sink.count(stream, count)
 
     def _open(self, stream: Stream) -> list[bytes] | None:
-        """Where more of its messages go; None where no more are kept."""
+        """The list for further messages of a stream; None where it is full or not wanted."""
         examples = self._examples.get(stream.channel.topic)
         full = examples is None or len(examples) >= _MOST or sum(map(len, examples)) >= _MOST_BYTES
         return None if full else examples

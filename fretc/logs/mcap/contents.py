@@ -1,7 +1,7 @@
 """The messages of one MCAP file: by its index, or record by record.
 
-By its index only what is wanted is read, where the index explains the whole file. In any other file
-each record is looked at: that names what is damaged, and when.
+Where the index explains the whole file, only the wanted parts are read. In any other file each
+record is read: that shows damaged places and their times.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from fretc.logs.signals.samples import Gap
 
 @dataclass(frozen=True, slots=True)
 class Contents:
-    """What was found in one file, apart from its messages."""
+    """Facts about one file, apart from its messages."""
 
     damages: tuple[tuple[Damage, Gap | None], ...]
     """Damaged places, with the time that each has cost; None where it cost nothing."""
@@ -35,7 +35,7 @@ class Contents:
     unprotected: bool = False
     """Whether messages were read that no CRC covers."""
     summary_sha256: str = ""
-    """Of what tells one log from another where it is not hashed (`_identity`)."""
+    """Identifies a log that is not hashed (`_identity`)."""
 
 
 def contents(stream: BufferedReader, size: int, sink: Sink, integrity: Integrity) -> Contents:

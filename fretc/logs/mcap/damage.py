@@ -1,4 +1,4 @@
-"""Damaged places of a log, and the time whose messages each of them has cost.
+"""Damaged places of a log, each with the time whose messages it has cost.
 
 Times are nanoseconds, log times.
 """
@@ -20,7 +20,7 @@ _HOUR = 3600 * 10**9
 
 @dataclass(slots=True)
 class Damage:
-    """A place of the file whose messages are lost, or may be."""
+    """A place of the file whose messages are, or may be, lost."""
 
     at: int
     description: str
@@ -40,18 +40,18 @@ class Damage:
 
 
 class Damages:
-    """What was found on the way through a log, held in the end against its summary."""
+    """The damages from one walk through a log, compared at its end with the summary."""
 
     def __init__(self) -> None:
         self.certain: list[Damage] = []
         self.span: Gap | None = None
-        """The earliest and the latest of the whole messages, in whatever order they came."""
+        """The earliest and the latest of the whole messages, in any order."""
         self._last: int | None = None
         self._doubtful: list[Damage] = []
         self._waiting: list[Damage] = []
-        """Those after which no message has come yet."""
+        """The damages after which no message has come yet."""
         self._open: Damage | None = None
-        """The one of them that takes in what is found damaged next."""
+        """The one of them that the next damaged place is merged into."""
 
     def passed(self, log_time: int) -> None:
         """A whole message has come."""
@@ -80,9 +80,9 @@ class Damages:
         anywhere: bool = False,
         code: Code = Code.DAMAGED_CHUNK,
     ) -> None:
-        """Keep one; of several without a message between them the first one tells.
+        """Keep a damage; it joins the one before it where no message lies between them.
 
-        That the log breaks off is told all the same.
+        The break at the end of a log is always one of its own.
         """
         located = not lossless and not anywhere
         if located and self._open is not None and code is not Code.TRUNCATED_LOG:
@@ -99,7 +99,7 @@ class Damages:
         self._keep(damage)
 
     def doubt(self, at: int, description: str) -> None:
-        """Keep one, unless the summary shows in the end that nothing is missing."""
+        """Note a damage that counts unless the summary shows that nothing is missing."""
         self._doubtful.append(self._new(at, description))
 
     def _new(self, at: int, description: str) -> Damage:
@@ -113,7 +113,7 @@ class Damages:
                 damage.certain = True
                 self.certain.append(damage)
 
-    # What they have cost
+    # Their cost
 
     def settled(
         self, summary: Summary, complete: Collection[int], counts: Counter[int], size: int
@@ -122,7 +122,7 @@ class Damages:
 
         Args:
             summary: what the file states about itself.
-            complete: where the chunks begin that were read whole.
+            complete: the first bytes of the chunks that were read whole.
             counts: how many messages were found on each channel.
             size: bytes of the file.
         """
@@ -132,7 +132,7 @@ class Damages:
         return [(damage, _gap(damage, span)) for damage in self.certain]
 
     def _compare_chunks(self, summary: Summary, complete: Collection[int]) -> None:
-        """Each chunk that the index names was read whole."""
+        """Check that each chunk of the index was read whole."""
         places = {damage.at: damage for damage in self._doubtful}
         places |= {at: damage for damage in self.certain for at in (damage.at, *damage.also)}
         for at, index in summary.chunks.items():
@@ -146,7 +146,7 @@ class Damages:
                 self.add(at, "a chunk that its index names is not there", span)
 
     def _compare_counts(self, summary: Summary, counts: Counter[int], size: int) -> None:
-        """As many messages were read as the statistics state."""
+        """Check that as many messages were read as the statistics state."""
         statistics = summary.statistics
         if statistics is None:
             self._keep(*self._doubtful)
@@ -181,7 +181,7 @@ class Damages:
 
 
 def _gap(damage: Damage, span: Gap) -> Gap | None:
-    """What one damage has cost, within the time of the whole log."""
+    """The time that one damage has cost, within the time of the whole log."""
     if damage.lossless:
         return None
     if damage.anywhere:

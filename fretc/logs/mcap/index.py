@@ -1,8 +1,8 @@
 """Where the messages of a log are, by its own index, where that explains every byte of the file.
 
-What the index says is taken for true only if the file leaves no doubt: one part behind the other,
-each of a kind that is known, and as many chunks and messages as are stated. In any other log each
-record has to be looked at (`fretc.logs.mcap.walk`).
+The index is trusted only if the file leaves no doubt: one part behind the other, each of a known
+kind, and as many chunks and messages as stated. In any other log each record must be read
+(`fretc.logs.mcap.walk`).
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ _PASSED_BY = frozenset({Opcode.HEADER, Opcode.ATTACHMENT, Opcode.METADATA})
 
 @dataclass(frozen=True, slots=True)
 class Index:
-    """A log whose summary tells where everything is."""
+    """A log whose summary gives the place of everything."""
 
     chunks: tuple[ChunkIndex, ...]
     """In the order of the file."""
@@ -50,7 +50,7 @@ def indexed(stream: BufferedReader, size: int, summary: Summary | None) -> Index
     Args:
         stream: the file.
         size: its bytes.
-        summary: what its end states.
+        summary: that of its end.
     """
     if summary is None or not summary.sound or summary.after != size or summary.statistics is None:
         return None
@@ -83,7 +83,7 @@ def indexed(stream: BufferedReader, size: int, summary: Summary | None) -> Index
 
 
 def _is_usual(chunk: ChunkIndex) -> bool:
-    """Whether it can be read by its index: it tells where its messages are."""
+    """Whether the chunk can be read by its index, which gives the places of its messages."""
     first, last = chunk.chunk_start_offset, chunk.chunk_start_offset + chunk.chunk_length
     return (
         bool(chunk.message_index_offsets)
@@ -121,7 +121,7 @@ def _between(
 
 
 def _records(stream: BufferedReader, at: int, wall: int) -> Iterator[tuple[int, int, bytes]]:
-    """Place, kind and content of what stands there; of large records no content.
+    """Place, kind and content of each record; of large records no content.
 
     Raises:
         BrokenError: the last one goes on beyond the wall.
@@ -139,7 +139,7 @@ def _records(stream: BufferedReader, at: int, wall: int) -> Iterator[tuple[int, 
 def is_known(
     opcode: int, content: bytes, schemas: Mapping[int, Schema], channels: Mapping[int, Channel]
 ) -> bool:
-    """Whether a record declares a topic or its messages, and as the summary does.
+    """Whether a record declares a topic or its messages in the same way as the summary.
 
     Raises:
         BrokenError: it cannot be read.

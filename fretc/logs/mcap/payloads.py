@@ -46,7 +46,7 @@ class Payloads:
         return [bytes(data[start:end]) for start, end in places]
 
     def gathered(self, rows: Places, at: int, dtype: str, count: int | None) -> NDArray[np.generic]:
-        """What stands `at` bytes from the start of each of the rows.
+        """The numbers `at` bytes from the start of each row.
 
         Args:
             rows: shape (k,); in each of their payloads the place exists.

@@ -92,7 +92,7 @@ class Walk:
         self._all_covered = False
         """Whether the whole data section has the CRC that it states."""
         self._crc: int | None = 0
-        """Of the data up to here; None once a part was jumped over."""
+        """The CRC of the data up to here; None after a jump over a part."""
 
     def run(self) -> None:
         """Read everything."""
@@ -124,7 +124,7 @@ class Walk:
 
     @property
     def checked(self) -> Checked:
-        """What was looked at: everything, and these chunks are whole."""
+        """The checks: every record, and these chunks are whole."""
         chunks = len(self._whole)
         return Checked(
             by_index=False,
@@ -136,7 +136,7 @@ class Walk:
     # Records
 
     def _data(self, truncated: bool) -> int:
-        """Walk through the data section; where it ended."""
+        """Walk through the data section; returns its end."""
         at, end = len(MAGIC), self._summary.end
         walls = self._walls()
         self._stream.seek(0)
@@ -169,7 +169,7 @@ class Walk:
     def _walls(self) -> list[int]:
         """Where a record must end: where the index says that a chunk begins, and at the end.
 
-        An index that leads into a chunk that is where another one says is not believed.
+        An index entry that points into another chunk does not count.
         """
         walls, reach = [], 0
         for at in sorted(at for at in self._summary.chunks if at < self._summary.end):
@@ -307,9 +307,9 @@ class Walk:
         return min(start, end), end
 
     def _inside(self, at: int, data: bytes, *, has_crc: bool) -> tuple[Messages, str]:
-        """The messages of a chunk, and what is wrong with the record after the last of them.
+        """The messages of a chunk, and the fault of the record after the last of them.
 
-        The length of the last one may be what is wrong: then that is not all of it. The chunk's
+        The fault may be the length of the last message, which is then incomplete. The chunk's
         definitions are noted.
         """
         starts: list[int] = []
@@ -336,7 +336,7 @@ class Walk:
         return Messages.of(data, starts, ends), fault
 
     def _check(self, messages: Messages, span: Gap) -> None:
-        """What a CRC does not protect is held against the `span` that the chunk states."""
+        """Check messages that no CRC protects against the `span` that the chunk states."""
         times = messages.logs
         if ((times < span[0]) | (times > span[1])).any():
             raise BrokenError("a message is of another time than its chunk states")
@@ -344,7 +344,7 @@ class Walk:
             raise BrokenError("a message is of a topic that is not declared")
 
     def _at_once(self, messages: Messages) -> bool:
-        """Hand on all messages of a chunk, topic by topic; not where one of them is odd."""
+        """Pass on all messages of a chunk, topic by topic; not where one of them is odd."""
         ids = np.unique(messages.channels).tolist()
         streams = [self._streams[id] for id in ids if id in self._streams]
         topics = {stream.channel.topic for stream in streams}
@@ -361,7 +361,7 @@ class Walk:
         return True
 
     def _index(self, content: bytes) -> None:
-        """Hold the index of a chunk against the messages in it; its CRC tells which is right."""
+        """Compare the index of a chunk with the messages in it; its CRC shows which is right."""
         if len(content) < INDEX.size:
             raise BrokenError("a record cannot be read")
         channel, length = INDEX.unpack_from(content)

@@ -22,7 +22,7 @@ from fretc.logs.signals.signals import Sparse, fields, optional_field
 from fretish.bindings.declarations import short_type
 
 Decode = Callable[[bytes], object]
-"""From a payload to an object with the message's fields; it raises whatever it likes."""
+"""From a payload to an object with the message's fields; it may raise any exception."""
 
 _STAMPS = (("sec", "nanosec"), ("secs", "nsecs"))
 """Names of the fields of a stamp, in ROS 2 and in ROS 1."""
@@ -30,7 +30,7 @@ _SPARSE_STAMPS = (("seconds", "nanos"), ("sec", "nsec"))
 """Those of google.protobuf.Timestamp, and of Foxglove's JSON and Gazebo's messages."""
 _LAID_OUT = ("ros1msg", "ros2msg", "ros2idl")
 _EXTRAS = {"protobuf": ("mcap-protobuf-support", "protobuf"), "cdr": ("rosbags", "bags")}
-"""What decodes an encoding, and the extra that installs it."""
+"""The package that decodes an encoding, and the extra that installs it."""
 
 _NAME = r"[A-Za-z][A-Za-z0-9_]*"
 _ROS1_TYPE = re.compile(rf"{_NAME}/{_NAME}")
@@ -56,7 +56,7 @@ class MissingExtra(str):
 
 
 def decoder(stream: Stream) -> Decode | str:
-    """What decodes the messages of a stream, or why nothing does."""
+    """The decoder of the messages of a stream, or why there is none."""
     encoding, schema = stream.channel.message_encoding, stream.schema
     if schema is None and encoding != "json":
         return "its messages have no definition"
@@ -86,7 +86,7 @@ def decoder(stream: Stream) -> Decode | str:
 
 
 def shape(stream: Stream) -> Shape | None:
-    """How the messages of a stream are laid out; None where only its decoder knows."""
+    """The shape of the messages of a stream; None where only its decoder knows it."""
     schema = stream.schema
     if schema is None or schema.encoding not in _LAID_OUT:
         return None
@@ -130,7 +130,7 @@ def numbers(stream: Stream, payloads: Sequence[bytes] = ()) -> tuple[str, ...] |
 
     Args:
         stream: of messages.
-        payloads: some of them; those of JSON tell what their schema leaves open.
+        payloads: some of them; those in JSON show fields that their schema leaves open.
 
     Returns:
         None where its messages cannot be read.
@@ -173,10 +173,10 @@ def _plain(payload: bytes) -> bytes:
 
 @lru_cache(_MOST)
 def _ros1(name: str, data: bytes) -> Decode:
-    """With the decoder that is made of the fields alone.
+    """A decoder from the fields alone.
 
-    It makes Python code of the definition and runs it: constants, comments and names of any
-    other kind would run too.
+    The library turns the definition into Python code and runs it: constants, comments and names
+    of any other kind would run too.
 
     Raises:
         ValueError: something else is in the definition, or it is too large.

@@ -1,4 +1,4 @@
-"""Message definitions of ROS 1 and ROS 2: text → what stands in a payload, in its order.
+"""Message definitions of ROS 1 and ROS 2: text → the fields of a payload, in their order.
 
 Sources: ROS 2 interface definitions, https://docs.ros.org/en/humble/Concepts/Basic/About-Interfaces.html;
 ROS 1 messages, https://wiki.ros.org/msg.
@@ -26,7 +26,7 @@ NUMBERS: Mapping[str, str] = {
 """NumPy's name of each primitive type."""
 
 _ALIASES = {True: {"byte": "int8", "char": "uint8"}, False: {"byte": "uint8", "char": "int8"}}
-"""What ROS 1 (True) and the decoder of ROS 2 take these for."""
+"""The meaning of these types in ROS 1 (True) and in the decoder of ROS 2."""
 
 TEXTS = frozenset({"string"})
 _TIMES = {
@@ -39,12 +39,12 @@ _ROS2_TIMES = {
     "builtin_interfaces/Time": (("sec", "uint32"), ("nanosec", "uint32")),
     "builtin_interfaces/Duration": (("sec", "uint32"), ("nanosec", "uint32")),
 }
-"""What the decoder of ROS 2 takes them for where the definition leaves them out."""
+"""Their fields in the decoder of ROS 2 where the definition leaves them out."""
 
 _DEEPEST = 50
-"""Levels of messages within messages; what is deeper may hold itself, and never ends."""
+"""Levels of messages within messages; deeper types may contain themselves."""
 _MOST_FIELDS = 10_000
-"""Of a message, with those of the messages in it."""
+"""Fields of a message, with those of the messages in it."""
 
 _NAME = re.compile(r"\w+/(?:msg/)?\w+")
 _SEPARATOR = re.compile(r"={3,}\s*")
@@ -56,11 +56,11 @@ _FIELD = re.compile(
 
 
 _MOST_ELEMENTS = 2**20
-"""Of a message, with all elements of its arrays of fixed length, and of those in them."""
+"""Elements of a message, in all of its arrays of fixed length, nested ones too."""
 
 
 class DefinitionError(ValueError):
-    """The definition holds something that is not laid out here."""
+    """The definition has something that this module does not know."""
 
 
 class TooLargeError(DefinitionError):

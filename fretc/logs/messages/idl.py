@@ -120,7 +120,7 @@ def _bare(section: str) -> str:
 
 
 def _decoder_kind(kind: Any) -> Any:
-    """The kind of a field, as the decoder should take it."""
+    """The kind of a field for the decoder."""
     from rosbags.interfaces import Nodetype
 
     node, detail = kind

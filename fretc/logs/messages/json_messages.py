@@ -41,7 +41,7 @@ class Object(Sparse):
         return tuple(self._values)
 
     def field(self, name: str) -> object:
-        """What it states; any field may be left out."""
+        """The value of a field; any field may be left out."""
         value = self._values.get(name)
         if value is None:
             raise UnstatedError
@@ -89,7 +89,7 @@ def _int(text: str) -> int:
     return value
 
 
-# Which numbers there are
+# Paths of numbers
 
 
 def schema_paths(schema: bytes) -> tuple[str, ...]:

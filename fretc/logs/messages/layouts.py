@@ -1,9 +1,8 @@
-"""Where in a payload the wanted fields stand: found once, then checked for many messages at once.
+"""The places of wanted fields in payloads: one walk, then a check of many messages at once.
 
 Fields stand one after the other, and strings and arrays have their lengths before them. Messages
-of one topic mostly have the same lengths, and so the same layout: the first of them is walked,
-and the others are held against the lengths that were met on the way. Nothing is decoded that is not
-wanted.
+of one topic mostly have the same lengths, and so the same layout: a walk through the first of them
+collects the lengths, and the others are compared with these. Only wanted fields are decoded.
 
 Sources: OMG DDSI-RTPS and CDR (plain CDR, XCDR version 1); ROS 1 serialization,
 https://wiki.ros.org/roscpp/Overview/MessagesSerializationAndAdaptingTypes.
@@ -28,9 +27,9 @@ _LENGTH = struct.Struct("<I")
 _PADDING = 7
 """Bytes that may follow the last field of CDR."""
 _MOST_CHECKS = 64
-"""A message with more lengths than so is of no layout that others share."""
+"""A message with more lengths shares its layout with no other."""
 _MOST_LAYOUTS = 64
-"""Layouts of a stream that are kept: messages that all differ are held against each of them."""
+"""The most layouts kept of a stream: each message is compared with all of them."""
 
 
 class LayoutError(ValueError):
@@ -39,7 +38,7 @@ class LayoutError(ValueError):
 
 @dataclass(frozen=True, slots=True)
 class Location:
-    """A wanted field within a payload."""
+    """The place of a wanted field within a payload."""
 
     at: int
     """Its first byte."""
@@ -50,15 +49,15 @@ class Location:
 
 @dataclass(frozen=True, slots=True)
 class Layout:
-    """What all messages of one shape have in common."""
+    """The places that many messages share."""
 
     size: int
     """Bytes of the payload."""
     marks: tuple[tuple[int, str, int], ...]
-    """Places, types and values of the lengths on the way, and of what marks plain CDR."""
+    """Places, types and values of all lengths, and of the mark of plain CDR."""
     locations: Mapping[Where, Location]
     texts: tuple[tuple[int, int], ...] = ()
-    """Places and lengths of what the decoder reads as UTF-8, and refuses where it is not."""
+    """Places and lengths of texts; the decoder refuses those that are not UTF-8."""
 
 
 class Shape:
@@ -99,7 +98,7 @@ class Shape:
         return field is not None and not field.many
 
     def numbers(self) -> tuple[Where, ...]:
-        """All places of which `number` knows."""
+        """All places at which `number` finds a field."""
         places: list[Where] = []
         below: list[tuple[Where, str]] = [((), self.name)]
         for where, name in below:
@@ -158,7 +157,7 @@ class _Walk:
             self.at += 1
         for field in self._types[name]:
             self._field(field, (*where, field.name))
-        if self.at > len(self._payload):  # said here, lest an array of them goes on
+        if self.at > len(self._payload):  # raised here, or an array of them would go on
             raise LayoutError("the payload is cut off")
 
     def _field(self, field: Field, where: Where) -> None:
@@ -196,7 +195,7 @@ class _Walk:
         return int(length)
 
     def _bounded(self, count: int) -> int:
-        """Each element of an array takes a byte at least, or it is not counted one by one."""
+        """The count, after a check: each element takes at least a byte of the payload."""
         if count > len(self._payload):
             raise LayoutError("the payload is cut off")
         return count
@@ -216,7 +215,7 @@ class Group:
 
 
 class Layouts:
-    """The layouts of the messages of one stream, as they are met."""
+    """The layouts of the messages of one stream, collected on the way."""
 
     def __init__(self, shape: Shape, wanted: Sequence[Where]) -> None:
         self._shape, self._wanted = shape, wanted
@@ -253,7 +252,7 @@ class Layouts:
 
 
 def _split(payloads: Payloads, rows: Places, layout: Layout, *, new: bool) -> Iterator[Group]:
-    """Those whose texts only the decoder can judge go to it."""
+    """Messages with texts beyond ASCII go to the decoder, which checks them."""
     plain = _plain(payloads, rows, layout)
     if plain.any():
         yield Group(rows[plain], layout, new)

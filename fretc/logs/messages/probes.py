@@ -1,7 +1,7 @@
-"""Messages made up of a definition: layouts are held against the official decoder with them.
+"""Made-up messages of a definition: they compare layouts with the official decoder.
 
-What a log holds may hide an error: where all is zero, a byte too far reads the same. Made-up
-messages have other bytes everywhere, and lengths that move what follows.
+Messages of a log may hide an error: where all bytes are zero, a wrong place reads the same. Made-up
+messages have different bytes everywhere, and lengths that move the following fields.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from fretc.logs.messages.layouts import Location, Shape
 from fretc.logs.signals.samples import Numbers
 
 _PROBES = 8
-"""So many that each length takes each place between two numbers of 8 bytes."""
+"""Enough for each length to take each place between two numbers of 8 bytes."""
 _LARGEST = 2**18
 """Bytes of a made-up message; one that would be longer is not made."""
 
@@ -108,7 +108,7 @@ class _Probe:
         self.payload += text
 
     def _next_length(self, most: int) -> int:
-        """A length: another one in each message, and at each place of it."""
+        """A length that differs from message to message, and from place to place."""
         self._next += 1
         return self._next % most
 

@@ -18,7 +18,7 @@ from fretc.logs.signals.signals import Sparse, UnstatedError
 _MOST = 2000
 """Fields of one topic that are listed."""
 _MOST_STEPS = 20_000
-"""Messages within messages that are looked at."""
+"""The most messages within messages to visit."""
 
 
 class Message(Sparse):
@@ -46,7 +46,7 @@ class Message(Sparse):
 
 
 def decoder(stream: Stream) -> Callable[[bytes], Message]:
-    """What decodes the messages of a stream.
+    """The decoder of the messages of a stream.
 
     Raises:
         ModuleNotFoundError: the extra `protobuf` is not installed.

@@ -1,4 +1,4 @@
-"""Signals of many messages at once: what `fretc.logs.signals.signals.sample` says of each of them.
+"""Signals of many messages at once; equal to `fretc.logs.signals.signals.sample` of each.
 
 Numbers are in the unit of the field, clearances in metres; NaN is unknown.
 """
@@ -22,11 +22,11 @@ from fretish.expressions import MIRRORED
 
 Truths = NDArray[np.bool_]
 Between = Callable[["Values", slice | NDArray[np.intp]], Truths]
-"""Which elements are measurements; told with the values are the messages that they are of."""
+"""From values and the messages that they belong to: which elements are measurements."""
 
 
 def siblings(signal: Signal) -> tuple[str, ...]:
-    """The fields beside the signal's own that are read with it, and must be there."""
+    """Further fields that the signal needs beside its own."""
     names = {name.id for name in e.names(signal.valid)} - {"x"} if signal.valid else set()
     if signal.reduce is Reduce.OUTLINE:
         names |= {"angle_min", "angle_increment"}
@@ -64,11 +64,11 @@ def samples(signal: Signal, values: Values, sibling_values: Mapping[str, Numbers
 def _plain(
     signal: Signal, values: Values, sibling_values: Mapping[str, Numbers], result: Values
 ) -> Truths:
-    """Fill in the messages of which the least or the greatest measurement is soon seen.
+    """Fill in the messages whose least or greatest measurement is easy to find.
 
-    These are most: one of their elements makes them unknown, or they hold a measurement and
-    nothing that takes precedence over it. Elements that are dropped never do, nor does what is far
-    over the least, or near over the greatest.
+    These are most: one of their elements makes them unknown, or they have a measurement and
+    nothing that takes precedence over it. Dropped elements never do, nor does far over the least,
+    or near over the greatest.
     """
     if signal.reduce not in (Reduce.MIN, Reduce.MAX):
         return np.zeros(len(values), bool)
@@ -104,13 +104,13 @@ def _ends(reduce: Reduce, values: Values, between: Between) -> tuple[Values, Tru
 
 
 _WEAKER = {Reduce.MIN: Reading.FAR, Reduce.MAX: Reading.NEAR}
-"""What counts only where nothing was measured."""
+"""The reading that counts only where nothing was measured."""
 
 
 def _classes(
     invalid: Invalid, values: Values, between: Between
 ) -> Iterator[tuple[Reading, Callable[[], Truths]]]:
-    """What each kind of element that is no measurement means, and which elements are of it."""
+    """Each kind of element that is no measurement: its meaning, and its elements."""
     yield invalid.nan, lambda: np.isnan(values)
     yield invalid.positive_infinity, lambda: np.isposinf(values)
     yield invalid.negative_infinity, lambda: np.isneginf(values)
@@ -118,9 +118,9 @@ def _classes(
 
 
 def _between(signal: Signal, sibling_values: Mapping[str, Numbers], count: int) -> Between | None:
-    """Tells which elements are measurements, of 32-bit floats that are compared with such.
+    """A test for measurements among 32-bit floats, by comparison with such floats.
 
-    None where it takes more to say.
+    None where that is not enough.
     """
     bounds = [] if signal.valid is None else _bounds(signal.valid)
     if bounds is None:
@@ -171,7 +171,7 @@ def _without_x(part: e.Expression) -> bool:
 
 
 def _samples(signal: Signal, values: Values, sibling_values: Mapping[str, Numbers]) -> Values:
-    """`samples`, whatever the elements are."""
+    """`samples` for any elements."""
     valid = _valid(signal, values, sibling_values)
     readings, unknown = _readings(signal, unrounded(signal, values), valid)
     result = _reduced(signal, readings, sibling_values)
@@ -204,7 +204,7 @@ def _spread(numbers: Numbers, width: int) -> Numbers:
 
 
 def _readings(signal: Signal, values: Values, valid: Truths) -> tuple[Values, Truths]:
-    """The elements with what is far or near put in; and which messages are unknown."""
+    """The elements with infinities for far and near; and which messages are unknown."""
     invalid = signal.invalid
     readings, unknown = values.copy(), np.zeros(len(values), bool)
     for reading, chosen in _classes(invalid, values, lambda _, __: valid):
@@ -280,7 +280,7 @@ def _usual(signal: Signal, readings: Numbers, starts: Numbers, increments: Numbe
 
 
 def _same_directions(rows: Places, starts: Numbers, increments: Numbers) -> Iterator[Places]:
-    """Messages of which the beams have the same directions."""
+    """Groups of messages whose beams have the same directions."""
     while len(rows):
         same = (starts[rows] == starts[rows[0]]) & (increments[rows] == increments[rows[0]])
         yield rows[same]

@@ -34,12 +34,12 @@ COMPARE: dict[str, Callable[..., NDArray[np.bool_]]] = {
 
 
 class ExpressionError(ValueError):
-    """The expression cannot be evaluated where it stands; the text says why."""
+    """The expression cannot be evaluated; the text says why."""
 
 
 @dataclass(frozen=True, slots=True)
 class Scope:
-    """What the names of an expression stand for, at `length` points.
+    """The values of an expression's names, at `length` points.
 
     `numbers` have shape (length,), or one element for all points; NaN is unknown. Times their
     `scales` (1 where none is given) they are in base units. Quantities are read in `unit` or its
@@ -68,7 +68,7 @@ class Measure:
 
     @property
     def plain(self) -> Values:
-        """What arithmetic computes with: 64-bit floats."""
+        """The values as 64-bit floats, for arithmetic."""
         return self.values.astype(np.float64, copy=False)
 
 
@@ -160,13 +160,13 @@ def compared(op: str, left: Term, right: Term) -> tuple[NDArray[np.bool_], NDArr
 # Constants
 
 _HALVES = WHOLE // 2
-"""From here on every 64-bit float is a whole number, and what lies between two of them is none."""
+"""From here on every 64-bit float is a whole number; below its double also the reverse."""
 _BEYOND = 2**64
 """From here on nothing was recorded as a whole number."""
 
 
 def _substitute(constant: Fraction, measure: Measure, op: str) -> Values:
-    """What stands for a constant that `measure op constant` compares."""
+    """The value to compare in `measure op constant`, in the kind of the measure."""
     exact, kind = constant / measure.scale, measure.values.dtype
     if not _HALVES <= abs(exact) < (_BEYOND if kind == EXACT else WHOLE) or kind == np.float32:
         return _nearest(exact, kind)
@@ -191,7 +191,7 @@ def _nearest(exact: Fraction, kind: np.dtype[Any]) -> Values:
     return np.array([min(finite, key=lambda each: abs(Fraction(float(each)) - exact))], np.float32)
 
 
-# What is computed
+# Computation
 
 
 def _arithmetic(op: e.ArithmeticOperator, left: Term, right: Term) -> Term:
@@ -218,7 +218,7 @@ def _double(value: Term) -> Term:
 
 
 def _without_exact(value: Term) -> Term:
-    """Without whole numbers beyond 64-bit floats: an end of them and of a constant may be none."""
+    """The term in 64-bit floats: the least of whole numbers and a constant need not be whole."""
     exact = isinstance(value, Measure) and value.values.dtype == EXACT
     return _double(value) if exact else value
 

@@ -74,7 +74,7 @@ def evaluate(proposition: Proposition, declarations: Declarations, recording: Re
     return Steps(steps.times[in_time], steps.states[in_time])
 
 
-# Truth at given points
+# Truth at points
 
 
 def truth(expression: e.Expression, scope: Scope) -> States:
@@ -138,7 +138,7 @@ class History:
     scales: Mapping[str, Fraction]
 
     def with_times(self, times: Sequence[Times]) -> History:
-        """The same with an event at each of the times that has none; those there are stay."""
+        """The same with further events at these times."""
         extra = np.setdiff1d(np.concatenate([self.times[:0], *times]), self.times)
         if not len(extra):
             return self
@@ -155,7 +155,7 @@ class History:
 
 
 def history_of(signals: Mapping[str, Signal], recording: Recording) -> History:
-    """What the signals are at each time at which `evaluate` looks at them."""
+    """The signals at each time that `evaluate` needs."""
     samples = {name: recording.samples.get(name, _NONE) for name in signals}
     gaps = _merged(recording.gaps)
     fixed = [recording.start_ns, *(edge for gap in gaps for edge in gap)]
@@ -267,7 +267,7 @@ def _durations(expression: e.Expression) -> Iterator[e.Persistence]:
 
 
 def _at(steps: Steps, times: Times) -> States:
-    """What the step function is at each of the times, none of them before its first step."""
+    """The states of the step function at times that are not before its first step."""
     return steps.states[np.searchsorted(steps.times, times, "right") - 1]
 
 

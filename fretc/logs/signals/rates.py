@@ -10,7 +10,7 @@ from fretish.clock import Clock
 from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
 
 _JITTER = 1.1
-"""A topic of 10 Hz has steps a little above 100 ms too."""
+"""A topic of 10 Hz also has steps a little above 100 ms."""
 _FEW = 10
 """Fewer messages have no rate."""
 _EVENTS = 3
@@ -23,8 +23,8 @@ def slow_topics(
     """F315 for each signal that grows too old between messages, and each topic slower than ticks.
 
     Half of the steps between its messages are longer than `max_age`, or (by a tenth) than a tick.
-    Of a topic that comes only when something happens, and whose samples count until the next one,
-    nothing is told.
+    A topic that comes only when something happens, and whose samples count until the next one,
+    gets no warning.
 
     Args:
         declarations: clock and signals.

@@ -201,7 +201,7 @@ def _number(value: object, name: str) -> float:
 
 
 def _exact(value: float | Real | np.bool_) -> float:
-    """As a float; a whole number of 64 bits that a 64-bit float may not hold stays what it is."""
+    """As a float; a whole number of 64 bits beyond 64-bit floats stays an integer."""
     if isinstance(value, int | np.integer):
         integer = int(value)
         if WHOLE <= integer < 2**64 or -(2**63) <= integer <= -WHOLE:
@@ -236,7 +236,7 @@ def _element(value: object, name: str) -> float:
     return _exact(value)
 
 
-# What the elements mean
+# The meaning of elements
 
 
 def _valid(signal: Signal, message: object, values: Values) -> NDArray[np.bool_]:
@@ -265,7 +265,7 @@ def unrounded(signal: Signal, values: Values) -> Values:
 
 
 def _readings(signal: Signal, values: Values, valid: NDArray[np.bool_]) -> Values | None:
-    """The elements with what is far or near put in; NaN where one is dropped.
+    """The elements with infinities for far and near; NaN where one is dropped.
 
     None when an element makes the whole sample unknown.
     """

@@ -1,4 +1,4 @@
-"""Thresholds: the comparisons of a proposition that hold a measured number against a constant.
+"""Thresholds: the comparisons of a proposition between a measured number and a constant.
 
 Numbers are in the base unit of their dimension.
 """
@@ -32,7 +32,7 @@ class Threshold:
     unit: str
     """The base unit of both sides; empty for a plain number."""
     limit: e.Expression
-    """What the bound was written as."""
+    """The bound as it is written."""
 
     @property
     def comparison(self) -> e.Comparison:

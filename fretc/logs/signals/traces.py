@@ -122,7 +122,7 @@ def _states(
 
 
 def complete_from(proposition: Proposition, recording: Recording) -> int:
-    """From when on what is unknown of it is told by the log, not by a topic yet to begin."""
+    """From when on all its signals have begun, or messages are lost: unknowns count from there."""
     samples = [recording.samples.get(name) for name in proposition.signals]
     begins = [
         int(signal.times[0]) if signal is not None and len(signal.times) else recording.end_ns
@@ -137,8 +137,8 @@ def states_at(
 ) -> States:
     """The state of each tick, shape (ticks,).
 
-    `begun` is when the log began, from where on the first tick sees, and when all the signals had:
-    what is unknown only because a topic is yet to begin says nothing of the first tick.
+    `begun` has the begin of the log, from where on the first tick sees, and `complete_from`: an
+    unknown before the begin of a topic does not make the first tick unknown.
     """
     before, upto = _windows(steps.times, ticks)
     if begun is not None and len(ticks):
@@ -147,9 +147,9 @@ def states_at(
 
 
 def first_before(steps: Steps, begun: tuple[int, int], upto: NDArray[np.intp]) -> NDArray[np.intp]:
-    """From which step on the first tick sees, where it sees those below `upto`; `begun` as above.
+    """The first step that the first tick sees, of those below `upto`; `begun` as above.
 
-    From the first one that tells something; where none does, the last one alone.
+    It is the first step that is known or counts as unknown; if there is none, the last one.
     """
     first = int(np.searchsorted(steps.times, begun[0], "left"))
     informative = (steps.states[first:] != UNKNOWN) | (steps.times[first:] >= begun[1])
@@ -160,7 +160,7 @@ def first_before(steps: Steps, begun: tuple[int, int], upto: NDArray[np.intp]) -
 def combined(
     steps: Steps, before: NDArray[np.intp], upto: NDArray[np.intp], proposition: Proposition
 ) -> States:
-    """What ticks see of the steps `before <= i < upto`, each of shape (ticks,)."""
+    """The states of ticks that see the steps `before <= i < upto`, each of shape (ticks,)."""
     states = steps.states
     result = np.where(before > 0, states[before - 1], UNKNOWN).astype(np.int8)
     filled = upto > before

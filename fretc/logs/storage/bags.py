@@ -1,8 +1,8 @@
 """Bags: ROS 1's `.bag` and rosbag2's `.db3`, read with rosbags; their messages go to a sink.
 
-Neither format has check sums: a changed byte within a message cannot be seen, and that is said.
-What is read ends where the reader ends; what the bag states (how many messages, up to when) is
-held against what came. Times are nanoseconds, log times.
+Neither format has check sums: a changed byte within a message cannot be seen, and a note says so.
+Reading ends where the reader ends; the number and the times of its messages are compared with
+those that the bag states. Times are nanoseconds, log times.
 """
 
 from __future__ import annotations
@@ -28,18 +28,18 @@ from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.source import Span
 
 BAG, DB3 = b"#ROSBAG V", b"SQLite format 3\0"
-"""What the files begin with."""
+"""The first bytes of the files."""
 _LEAST = 2**20
-"""Bytes that a value of a database may have, however small the database is."""
+"""Bytes that a value of any database may have, even of a small one."""
 _STEPS = 20_000
-"""Of SQLite's machine between two looks: some tenths of a millisecond."""
+"""Steps of SQLite's machine between two checks of the time: tenths of a millisecond."""
 NOWHERE = -1
-"""Where a damage is that has no byte."""
+"""The place of a damage without a byte."""
 
 
 @dataclass(frozen=True, slots=True)
 class BagContents:
-    """What a bag has given."""
+    """The contents of a bag, apart from its messages."""
 
     span: Gap | None
     """The first and the last of its whole messages."""
@@ -52,13 +52,13 @@ def read(file: str, same: str, start: bytes, sink: Sink, place: Span) -> BagCont
 
     Args:
         file: its path.
-        same: another path of it, which cannot become that of another file meanwhile.
+        same: another path of the same open file, which no other file can take over.
         start: its first bytes, `BAG` or `DB3`.
-        sink: what takes the messages.
+        sink: receives the messages.
         place: the bag, as the user named it.
 
     Returns:
-        What it has given; or what keeps the whole bag from being read.
+        Its contents; or why the bag cannot be read.
     """
     try:
         import rosbags  # noqa: F401
@@ -107,7 +107,7 @@ def _bag(file: str) -> Any:
     from rosbags.rosbag1 import Reader
 
     class Bounded(Reader):
-        """Its chunks unpack to as much as the chunks of MCAP may."""
+        """Its chunks have the same limit as the chunks of MCAP."""
 
         def read_chunk(self) -> Any:
             chunk = super().read_chunk()
@@ -117,7 +117,7 @@ def _bag(file: str) -> Any:
 
 
 def _unpacked(official: Callable[[bytes], bytes], packed: bytes) -> bytes:
-    """What is in a chunk of a ROS 1 bag.
+    """The contents of a chunk of a ROS 1 bag.
 
     Raises:
         BrokenError: it is more than such a chunk can hold.
@@ -139,9 +139,9 @@ def _unpacked(official: Callable[[bytes], bytes], packed: bytes) -> bytes:
 
 @contextmanager
 def _limited(size: int) -> Iterator[None]:
-    """Databases that are opened meanwhile make no value that is larger than their file.
+    """A context in which databases make no value larger than their file.
 
-    Between the steps of a query Python looks whether too much time has gone by.
+    Between the steps of a query Python checks whether too much time has passed.
     """
     import apsw
 
@@ -176,7 +176,7 @@ class _Way:
         """Types whose definition the bag does not carry."""
         self._reader, self._sink, self._bag = reader, sink, bag
         self._damages: list[tuple[Damage, bool]] = []
-        """Each with whether it has cost all that came after it, or may have cost anything."""
+        """Each with True if it has cost everything after it; False: it may have cost anything."""
         self._streams: dict[int, Stream] = {}
         self._stated = self._ends()
         self._counts: dict[int, int] = {}
@@ -232,7 +232,7 @@ class _Way:
         self._sink.add(self._streams[id], time, time, memoryview(payload))
 
     def check(self, file: str) -> None:
-        """What only a database can tell about itself."""
+        """Checks that only a database allows."""
         for ending in ("-wal", "-journal"):
             companion = Path(file + ending)
             if companion.exists() and companion.stat().st_size:

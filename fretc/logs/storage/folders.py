@@ -1,4 +1,4 @@
-"""A run in several files: what the `metadata.yaml` of a rosbag2 folder lists.
+"""A run in several files: the `metadata.yaml` of a rosbag2 folder.
 
 Times are nanoseconds, log times.
 
@@ -38,7 +38,7 @@ class Folder:
     span: Gap | None
     """The first and the last message of the run."""
     spans: Mapping[str, Gap]
-    """Of single files, where it states them."""
+    """The spans of single files, where it states them."""
     compressed: str
     """`file` or `message`: how its files are packed; nothing where they are not."""
 

@@ -1,4 +1,4 @@
-"""A run in several files: what each of them has given, and what was lost between them.
+"""A run in several files: the contents of each, and the losses between them.
 
 Times are nanoseconds, log times.
 """
@@ -18,21 +18,21 @@ from fretish.diagnostics.diagnostic import Diagnostic
 
 @dataclass(frozen=True, slots=True)
 class Part:
-    """What one file has given."""
+    """The contents of one file, apart from its messages."""
 
     sha256: str
-    """Of its bytes; of its summary, where it was read by its index alone."""
+    """The SHA-256 of its bytes; of its summary, where it was read by its index alone."""
     size: int
     span: Gap | None
     """The first and the last of its whole messages; None of a file without any."""
     damages: tuple[tuple[Damage, Gap | None], ...]
     notes: tuple[Diagnostic, ...] = ()
-    """What else there is to say."""
+    """Further diagnostics."""
     checked: Checked = EVERYTHING
 
 
 class Numbered:
-    """Hands every message on, and numbers the streams of several files as those of one."""
+    """A sink that passes messages on, and numbers the streams of several files as one log."""
 
     def __init__(self, sink: Sink) -> None:
         self.counted = 0
@@ -60,7 +60,7 @@ class Numbered:
         self._sink.add_all(self._renumbered(stream), messages)
 
     def wants(self, topic: str) -> bool:
-        """Whether more than the number of its messages is asked for."""
+        """Whether the messages themselves are wanted, not only their number."""
         return self._sink.wants(topic)
 
     def count(self, stream: Stream, count: int) -> None:
@@ -99,8 +99,8 @@ def widened(
 ) -> Iterator[tuple[Damage, Gap | None]]:
     """The damages of one file, where its run goes on around it.
 
-    A file that breaks off does not tell how far it went: as far as the next one begins. So each
-    loss that touches an end of its file goes on to the messages of the files around it.
+    A file that breaks off may have gone on until the next one begins. So each loss that touches an
+    end of its file extends to the messages of the files around it.
 
     Args:
         part: the file.

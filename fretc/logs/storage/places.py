@@ -1,4 +1,4 @@
-"""Where logs may be looked for that somebody else has named: evidence tells where its logs are."""
+"""Places that logs may be opened from: evidence of somebody else names places of its logs."""
 
 from __future__ import annotations
 
@@ -12,10 +12,10 @@ from fretc.logs.storage.inputs import is_url
 
 @dataclass(frozen=True, slots=True)
 class Places:
-    """What may be opened.
+    """The places that may be opened.
 
-    Files below the present folder and below folders that the user names, `https`, and whatever
-    begins with a URL that the user names.
+    Files below the present folder and below folders that the user names, `https`, and URLs below
+    one that the user names.
     """
 
     allowed: Sequence[str] = ()

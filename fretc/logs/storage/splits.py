@@ -1,4 +1,4 @@
-"""ROS 1 bags that belong together: the files of one run, and what a bag was before its reindexing.
+"""ROS 1 bags that belong together: the files of one run, and a bag with its backup.
 
 `rosbag record --split` writes `run_0.bag`, `run_1.bag`, and so on; the last one is called
 `run_2.bag.active` until the recorder has closed it. Such a run goes by the name `run_*.bag`.
@@ -18,18 +18,18 @@ from fretc.logs.storage.bags import ends
 from fretc.logs.storage.folders import Folder
 
 ACTIVE = ".bag.active"
-"""How the name of a bag ends that its recorder has not closed."""
+"""The ending of a bag that its recorder has not closed."""
 _FILE = re.compile(r"(?P<run>.+)_(?P<number>\d+)\.bag(\.active)?", re.DOTALL)
 _RUN = re.compile(r"(?P<run>.+)_\*\.bag", re.DOTALL)
 _SOON = 10**9
-"""From one file to the next of a run; files that are farther apart are runs of their own."""
+"""The most time between two files of a run; files farther apart are runs of their own."""
 _BACKUP = re.compile(r".+\.orig\.bag|.+\.bag\.orig\.active", re.DOTALL)
 _HEADER = 4096
 """Bytes that the header of a bag is padded to."""
 
 
 def split(path: str) -> Folder | None:
-    """The run that a bag is a file of; None where it is one of its own.
+    """The run that a bag belongs to; None where the bag is a whole run.
 
     Files of one name are one run if their numbers follow each other, none comes twice (`run_1.bag`
     and `run_01.bag`), and each begins where the one before it ends: names alone could be those of
@@ -56,7 +56,7 @@ def split(path: str) -> Folder | None:
 
 
 def run_name(run: Folder) -> str:
-    """What the run is called: `runs/run_*.bag`."""
+    """The name of the run: `runs/run_*.bag`."""
     match = _FILE.fullmatch(run.files[0])
     assert match is not None
     name = f"{match['run']}_*.bag"
@@ -74,7 +74,7 @@ def _in_time(parent: str, files: Sequence[str]) -> bool:
 
 
 def is_backup(path: str) -> bool:
-    """Whether it is what `rosbag reindex` leaves of a bag, beside the bag that it has made."""
+    """Whether it is the backup of a bag by `rosbag reindex`, beside the new bag."""
     root, name = os.path.split(path)
     if not _BACKUP.fullmatch(name):
         return False
@@ -84,9 +84,9 @@ def is_backup(path: str) -> bool:
 
 
 def unclosed_backup(path: str) -> str | None:
-    """The name of what a bag was before `rosbag reindex`, if its recorder had not closed it.
+    """The name of a bag's backup by `rosbag reindex`, if its recorder had not closed it.
 
-    Then the chunk that was being written is not in the bag.
+    Then the last, unfinished chunk is not in the bag.
 
     Raises:
         OSError: it cannot be read.

@@ -58,7 +58,7 @@ def _client(scheme: str, **arguments: Any) -> Any:
 
 
 class Stream:
-    """All that is at a URL, in pieces as they come; the next one is waited for so long."""
+    """The bytes at a URL, in pieces as they come; it waits for each at most `PATIENCE`."""
 
     def __init__(self, system: Any, url: str) -> None:
         self._loop = system.loop
@@ -81,7 +81,7 @@ class Stream:
 
 
 async def _answer(system: Any, url: str) -> Any:
-    """What a server says to a question for all of it; the body is still to come."""
+    """The response of a server to a request for all of it, before its body."""
     import aiohttp
 
     session = await system.set_session()
@@ -104,7 +104,7 @@ def _redirects(scheme: str) -> Any:
 
 
 async def _check_answer(session: object, context: object, request: Any) -> None:
-    """An answer to a question for a part is read as a whole: it is no longer than that part."""
+    """Refuse an answer that is longer than the requested part: it would be read as a whole."""
     part = _RANGE.fullmatch(request.headers.get("Range", ""))
     answer = request.response
     if part is None or (answer.status != 206 and "Content-Range" not in answer.headers):
