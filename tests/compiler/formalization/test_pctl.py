@@ -17,8 +17,8 @@ from tests import meaning
 
 def rule(sentence: str) -> Rule:
     ((requirement,), _) = requirements(Source("r.fret", sentence))
-    formalized, said = formalize(requirement, None)
-    assert formalized is not None, said
+    formalized, diagnostics = formalize(requirement, None)
+    assert formalized is not None, diagnostics
     return formalized
 
 

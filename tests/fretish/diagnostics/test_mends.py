@@ -24,12 +24,12 @@ def texts(module: Path) -> Iterator[str]:
     tree = ast.parse(module.read_text("utf-8"))
     inner = {id(part) for node in ast.walk(tree) if isinstance(node, ast.JoinedStr)
              for part in node.values}  # fmt: skip
-    said = {id(n.value) for n in ast.walk(tree) if isinstance(n, ast.Expr)}
+    statements = {id(n.value) for n in ast.walk(tree) if isinstance(n, ast.Expr)}
     for node in ast.walk(tree):
         if isinstance(node, ast.JoinedStr):
             parts = (p.value if isinstance(p, ast.Constant) else "X" for p in node.values)
             yield "".join(map(str, parts))
-        elif isinstance(node, ast.Constant) and id(node) not in inner | said:
+        elif isinstance(node, ast.Constant) and id(node) not in inner | statements:
             yield str(node.value)
 
 

@@ -212,7 +212,7 @@ def test_graphviz_draws_it(sentence: str, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("sentence", "told"),
+    ("sentence", "message"),
     [
         (PROBABLE, "F601 DOT cannot express the probability of R1"),
         (LOOKING_BACK, "F601 DOT cannot express the predicate `persisted` of R1"),
@@ -222,5 +222,5 @@ def test_graphviz_draws_it(sentence: str, tmp_path: Path) -> None:
         ),
     ],
 )
-def test_it_is_refused(sentence: str, told: str) -> None:
-    assert refused("dot", sentence).startswith(told)
+def test_it_is_refused(sentence: str, message: str) -> None:
+    assert refused("dot", sentence).startswith(message)

@@ -20,15 +20,17 @@ USUAL = Settings(hold=4, stop_timeout=24)
 DECLARED = Channel(2, latency=2, lost=1, braking=4)
 
 
-def asked(
+def question(
     sentence: str, settings: Settings = USUAL, channel: Channel = DECLARED, core: str = CORE
 ) -> Question:
-    made = rule(sentence)
-    return Question(case(sentence, settings, channel, core), made.sentence, made.ticks, HUNDRED_MS)
+    parsed = rule(sentence)
+    return Question(
+        case(sentence, settings, channel, core), parsed.sentence, parsed.ticks, HUNDRED_MS
+    )
 
 
 def test_a_bound_that_is_long_enough() -> None:
-    found = search(asked(WITHIN.format(4)))
+    found = search(question(WITHIN.format(4)))
     assert isinstance(found.answered, Proved)
     assert found.answered.detail.startswith("by an inductive invariant; ")
     assert found.enough == Proved(
@@ -38,7 +40,7 @@ def test_a_bound_that_is_long_enough() -> None:
 
 
 def test_a_bound_that_is_a_tick_too_short_is_shown_by_a_run() -> None:
-    found = search(asked(WITHIN.format(3)))
+    found = search(question(WITHIN.format(3)))
     assert isinstance(found.answered, Proved), "the law holds all the same"
     assert isinstance(found.enough, Counterexample)
     assert found.enough.detail == "the least that is kept is 4 ticks (400 ms)"
@@ -47,7 +49,7 @@ def test_a_bound_that_is_a_tick_too_short_is_shown_by_a_run() -> None:
 
 
 def test_without_a_bound_the_least_is_told() -> None:
-    found = search(asked(EVENTUALLY))
+    found = search(question(EVENTUALLY))
     assert found.enough == Proved("the least that is kept is 4 ticks (400 ms)")
 
 
@@ -63,7 +65,7 @@ def test_without_a_bound_the_least_is_told() -> None:
     ],
 )
 def test_the_least_bound_is_the_one_that_is_proved(channel: Channel, least: int) -> None:
-    found = search(asked(EVENTUALLY, Settings(), channel))
+    found = search(question(EVENTUALLY, Settings(), channel))
     assert isinstance(found.enough, Proved)
     assert found.enough.detail.startswith(f"the least that is kept is {least} tick")
 
@@ -73,7 +75,7 @@ def test_a_loop_that_does_something_else_is_not_checked() -> None:
         CORE, "return after, ZERO if halted(after, options) else command", "return after, command"
     )
     reason = NotChecked("the loop does what its model in whole numbers does not")
-    assert search(asked(WITHIN.format(4), core=wrong)) == Answer(reason, reason)
+    assert search(question(WITHIN.format(4), core=wrong)) == Answer(reason, reason)
 
 
 FORGETS = (
@@ -92,12 +94,14 @@ def test_small_times_say_nothing_of_long_ones_where_the_core_is_another() -> Non
     core = CORE
     for old, new in FORGETS:
         core = edited(core, old, new)
-    small = search(asked(WITHIN.format(4), Settings(hold=1), core=core))
+    small = search(question(WITHIN.format(4), Settings(hold=1), core=core))
     assert isinstance(small.enough, Proved), "under the declared times it is as good as any"
     assert isinstance(small.answered, NotChecked)
     assert small.answered.reason.startswith("the interceptor's core is not the one that fretc")
     large = Channel(1, latency=2, lost=40, braking=4)
-    assert not isinstance(search(asked(EVENTUALLY, Settings(hold=1), large, core)).enough, Proved)
+    assert not isinstance(
+        search(question(EVENTUALLY, Settings(hold=1), large, core)).enough, Proved
+    )
 
 
 def test_a_twin_that_promises_too_much_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -130,11 +134,11 @@ def test_an_invariant_that_is_too_strong_is_not_proved(monkeypatch: pytest.Monke
 
     real = bounds._invariant
     monkeypatch.setattr(bounds, "_invariant", too_strong)
-    found = search(asked(EVENTUALLY, Settings(), Channel(1)))
+    found = search(question(EVENTUALLY, Settings(), Channel(1)))
     assert found.answered == NotChecked("of the invariant: a step does not keep it")
 
 
 def test_without_z3_it_is_told_how_to_get_it(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(bounds, "find_spec", lambda _: None)
     reason = NotChecked("z3 is not installed: pip install 'fretc[bounds]'")
-    assert search(asked(EVENTUALLY)) == Answer(reason, reason)
+    assert search(question(EVENTUALLY)) == Answer(reason, reason)

@@ -124,19 +124,19 @@ def test_nothing_is_asked_below_a_violation() -> None:
 def test_satisfied_is_for_ever_and_must_be_said_at_once() -> None:
     sentence = read("the sw shall within 1 tick satisfy q")
 
-    said = ("satisfied", True)
+    judgement = ("satisfied", True)
     right: Table = {
         (0, False): (1, PENDING),
-        (0, True): (2, said),
+        (0, True): (2, judgement),
         (1, False): (1, VIOLATED),
-        (1, True): (2, said),
-        (2, False): (2, said),
-        (2, True): (2, said),
+        (1, True): (2, judgement),
+        (2, False): (2, judgement),
+        (2, True): (2, judgement),
     }
     late: Table = right | {(0, True): (2, PENDING)}
     assert isinstance(prove(tabled(right), sentence, 1, ("q",)), Proved)
     assert prove(tabled(late), sentence, 1, ("q",)) == Refuted(
-        ((True,),), expected=said, actual=PENDING
+        ((True,),), expected=judgement, actual=PENDING
     )
 
 
@@ -208,9 +208,9 @@ def test_no_shorter_word_tells_the_two_apart() -> None:
     assert isinstance(found, Refuted)
 
     def judged(monitor: Monitor, word: tuple[Valuation, ...]) -> list[Judgement]:
-        said = [monitor.step(letter) for letter in word]
-        lost = [k for k, judgement in enumerate(said) if judgement == VIOLATED]
-        return said[: lost[0] + 1] if lost else said
+        judgements = [monitor.step(letter) for letter in word]
+        lost = [k for k, judgement in enumerate(judgements) if judgement == VIOLATED]
+        return judgements[: lost[0] + 1] if lost else judgements
 
     for length in range(1, len(found.word)):
         for word in product(LETTERS, repeat=length):
