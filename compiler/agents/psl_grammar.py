@@ -123,8 +123,8 @@ def formula(text: JoinedText) -> tuple[f.Formula, tuple[Span, ...]]:
     if reader.tokens:
         tail = reader.tokens[0]
         mend = _DROPPED.get(tail.text, "a property ends with its formula")
-        shown = tail.text
-        raise misread(f"AJPF drops `{shown}` and all that follows it in silence", tail.span, mend)
+        word = tail.text
+        raise misread(f"AJPF drops `{word}` and all that follows it in silence", tail.span, mend)
     return tree, tuple(reader.strings)
 
 

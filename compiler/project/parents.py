@@ -322,10 +322,16 @@ def _spec_object(spec: Any, names: Mapping[str, str], source: str) -> Parent:
         names.get(attribute.definition_ref, ""): _value(attribute)
         for attribute in spec.attributes or ()
     }
-    named = {name: values[name] for name in _NAMES if name in values}
-    id = named.get("ReqIF.ForeignID") or named.get("UID") or spec.identifier
-    title = named.get("ReqIF.Name") or named.get("ReqIF.ChapterName") or named.get("TITLE")
-    text = named.get("ReqIF.Text") or "\n".join(v for n, v in values.items() if n not in _NAMES)
+    attributes = {name: values[name] for name in _NAMES if name in values}
+    id = attributes.get("ReqIF.ForeignID") or attributes.get("UID") or spec.identifier
+    title = (
+        attributes.get("ReqIF.Name")
+        or attributes.get("ReqIF.ChapterName")
+        or attributes.get("TITLE")
+    )
+    text = attributes.get("ReqIF.Text") or "\n".join(
+        v for n, v in values.items() if n not in _NAMES
+    )
     return _parent(id, title or spec.long_name, text, source)
 
 

@@ -83,12 +83,12 @@ class _Folding:
     def _key(self, index: int, state: State) -> object:
         if index == self.chart.start:
             return "start"
-        counted = state.counted
+        count = state.counted
         if self.registers:
-            counted = 0  # conditions on edges show its triggers
+            count = 0  # conditions on edges show its triggers
         elif self.demanded in COUNTING:
-            counted = (counted > 0) - (counted < 0)
-        return state.phase, state.held, counted
+            count = (count > 0) - (count < 0)
+        return state.phase, state.held, count
 
     def result(self) -> Folded:
         edges = [

@@ -208,8 +208,8 @@ def _flag(carry: str | None, comment: str = "", *, broken: str, due: bool = Fals
     return _Counter(opened, (*([_DUE] if due else []), broken_at))
 
 
-def _at_the_end(counter: _Counter, missing: str) -> _Counter:
-    unmet = Definition("unmet", _plain(f"due & {missing}"), "and would fail if the interval ended")
+def _at_the_end(counter: _Counter, absence: str) -> _Counter:
+    unmet = Definition("unmet", _plain(f"due & {absence}"), "and would fail if the interval ended")
     return _Counter(counter.variables, (_DUE, unmet, *counter.definitions))
 
 

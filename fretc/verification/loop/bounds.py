@@ -360,9 +360,9 @@ def _invariant(at: Numbers, times: Times, bound: Any, logic: Any) -> Any:
     still = either(at.still >= times.braking + 1, at.still >= since)
     arrival = both(at.age == ARRIVED, at.still >= 1, still)
     released = both(at.requested == 0, at.open == -1, at.age == NONE)
-    asked = both(at.requested == 1, at.open >= -1, at.open < bound, either(lost, flying, arrival))
+    request = both(at.requested == 1, at.open >= -1, at.open < bound, either(lost, flying, arrival))
     ranges = both(
         *(at.losses >= 0, at.losses <= times.lost, at.silent >= 0, at.silent <= beat),
         *(at.still >= -1, at.still <= times.braking + 1),
     )
-    return both(ranges, either(released, asked))
+    return both(ranges, either(released, request))

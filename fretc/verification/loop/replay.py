@@ -143,7 +143,7 @@ class _Again:
 
 def _in_words(moment: Moment) -> str:
     """`a stop is requested, and the message is lost; a command to move is heard`."""
-    return "; ".join((*_message(moment.tick), *_in_cells(moment.events)))
+    return "; ".join((*_message(moment.tick), *_deliveries(moment.events)))
 
 
 def _message(tick: Tick) -> Iterator[str]:
@@ -157,7 +157,6 @@ def _message(tick: Tick) -> Iterator[str]:
         yield f"{request}, and the message is{' sent again, and' if tick.again else ''} lost"
 
 
-def _in_cells(events: Sequence[Heard | None]) -> Iterator[str]:
-    """What is heard, without rings of the timer, which are as many in each tick."""
-    told = [one.value for one in events if one is not None and one is not Heard.RING]
-    yield from told
+def _deliveries(events: Sequence[Heard | None]) -> Iterator[str]:
+    """The events without rings of the timer, which are as many in each tick."""
+    yield from (event.value for event in events if event is not None and event is not Heard.RING)
