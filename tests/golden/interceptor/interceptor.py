@@ -188,7 +188,7 @@ def hear_scan(state: State, options: Options) -> tuple[State, Velocity | None]:
 
 
 def ring(state: State, options: Options) -> tuple[State, Velocity | None]:
-    """Time passes: the last messages grow older, and one owed zero fewer is left.
+    """Time passes: the last messages grow older, and `held` counts down.
 
     pre: within(state, options)
     post: within(__return__[0], options)
