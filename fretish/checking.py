@@ -1,4 +1,4 @@
-"""What the grammar cannot say: which words are reserved, and what is a number or a truth value."""
+"""Checks beyond the grammar: reserved words, and numbers where truth values are needed."""
 
 from __future__ import annotations
 
@@ -68,7 +68,7 @@ def calls(expression: e.Expression) -> Iterator[str]:
 def check_names(sentence: Sentence) -> Diagnostic | None:
     """F109 for the first name that is a reserved word."""
     for expression in conditions(sentence):
-        for id, span in _named(expression):
+        for id, span in _names(expression):
             if id in RESERVED:
                 return Diagnostic(
                     Code.RESERVED,
@@ -79,7 +79,7 @@ def check_names(sentence: Sentence) -> Diagnostic | None:
     return None
 
 
-def _named(expression: e.Expression) -> Iterator[tuple[str, Span | None]]:
+def _names(expression: e.Expression) -> Iterator[tuple[str, Span | None]]:
     waiting = [expression]
     while waiting:
         part = waiting.pop()
@@ -91,15 +91,15 @@ def _named(expression: e.Expression) -> Iterator[tuple[str, Span | None]]:
 def check_response_kinds(sentence: Sentence) -> Diagnostic | None:
     """F112 for the first place where a number meets a truth value."""
     for expression in conditions(sentence):
-        wrong = _check_kinds(expression, sentence.span)
-        if wrong is not None:
-            return wrong
+        mistake = _check_kinds(expression, sentence.span)
+        if mistake is not None:
+            return mistake
     return None
 
 
-def _check_kinds(whole: e.Expression, place: Span | None) -> Diagnostic | None:
+def _check_kinds(expression: e.Expression, place: Span | None) -> Diagnostic | None:
     """A name may be either: its kind is what its place asks for."""
-    waiting: list[tuple[e.Expression, bool, Span | None]] = [(whole, True, place)]
+    waiting: list[tuple[e.Expression, bool, Span | None]] = [(expression, True, place)]
     while waiting:
         part, boolean, near = waiting.pop()
         here = getattr(part, "span", None) or near
@@ -128,7 +128,7 @@ def _is_boolean(part: e.Expression, expected: bool) -> bool:
             | e.Xor()
             | e.Implies()
             | e.Iff()
-            | e.Held()
+            | e.Persistence()
         ):
             return True
         case _:
@@ -160,10 +160,10 @@ def _takes_truth(name: str, arg: e.Expression, *, last: bool) -> bool:
 
 
 def _wrong_kind(boolean: bool, span: Span | None) -> Diagnostic:
-    wanted, found = ("truth value", "number") if boolean else ("number", "truth value")
+    wanted, actual = ("truth value", "number") if boolean else ("number", "truth value")
     return Diagnostic(
         Code.WRONG_KIND,
-        f"a {wanted} is needed here, and this is a {found}",
+        f"a {wanted} is needed here, and this is a {actual}",
         span,
         help="compare a number: `x > 3`"
         if boolean
@@ -177,28 +177,31 @@ _NUMBERS_BACK = frozenset({"preInt", "preReal"})
 
 
 def temporal_predicates(sentence: Sentence) -> Iterator[Diagnostic]:
-    """F202 for each temporal predicate: formulas that look the other way cannot say it."""
-    said: set[str] = set()
+    """F202 for each temporal predicate: formulas that look the other way cannot express it."""
+    ids: set[str] = set()
     for expression in conditions(sentence):
-        for id, span in _named(expression):
-            if id in said or id not in LOOK_BACK | LOOK_AHEAD | _NUMBERS_BACK:
+        for id, span in _names(expression):
+            if id in ids or id not in LOOK_BACK | LOOK_AHEAD | _NUMBERS_BACK:
                 continue
-            said.add(id)
-            yield _one_way(id, span)
+            ids.add(id)
+            yield _not_formalized(id, span)
 
 
-def _one_way(id: str, span: Span | None) -> Diagnostic:
+def _not_formalized(id: str, span: Span | None) -> Diagnostic:
     if id in _NUMBERS_BACK:
-        what, mend = "it stays in the formulas as it is", "a trace must give the comparison's value"
+        consequence, mend = (
+            "it stays in the formulas as it is",
+            "a trace must give the comparison's value",
+        )
     elif id in LOOK_BACK:
-        what = "PT says what it means, and in FT it stays a proposition"
+        consequence = "PT says what it means, and in FT it stays a proposition"
         mend = "read PT, or check with a monitor"
     else:
-        what = "FT says what it means, and in PT it stays a proposition"
+        consequence = "FT says what it means, and in PT it stays a proposition"
         mend = "read FT; a monitor cannot look ahead"
     return Diagnostic(
         Code.PREDICATE_NOT_FORMALIZED,
-        f"`{id}` looks {'ahead' if id in LOOK_AHEAD else 'back'}: {what}",
+        f"`{id}` looks {'ahead' if id in LOOK_AHEAD else 'back'}: {consequence}",
         span,
         help=mend,
         severity=Severity.WARNING,

@@ -27,7 +27,7 @@ class TimeSource(StrEnum):
 
 
 class End(StrEnum):
-    """What an obligation is that is open when the log ends."""
+    """The verdict on an obligation that is open when the log ends."""
 
     INCONCLUSIVE = "inconclusive"
     VIOLATED = "violated"
@@ -96,21 +96,21 @@ def in_ticks(sentence: Sentence, clock: Clock | None) -> int | Diagnostic | None
         Ticks, or None for a timing that counts none, or what keeps the duration from being
         a whole number of ticks.
     """
-    counted = duration(sentence.timing)
-    if counted is None or clock is None or counted.unit == "tick":
-        return counted.amount if counted else None
+    bound = duration(sentence.timing)
+    if bound is None or clock is None or bound.unit == "tick":
+        return bound.amount if bound else None
     if clock.period is None:
-        return _no_time(counted, clock)
-    exact = Fraction(counted.amount * NANOSECONDS[counted.unit], clock.period)
+        return _no_time(bound, clock)
+    exact = Fraction(bound.amount * NANOSECONDS[bound.unit], clock.period)
     if exact.denominator == 1:
         return int(exact)
     if clock.rounding is Rounding.EXACT:
-        return _inexact(counted, clock, exact)
+        return _inexact(bound, clock, exact)
     fewer = _fewer_is_stricter(sentence)
     if fewer is None:
-        return _no_stricter_side(sentence, counted, clock, exact)
+        return _no_stricter_side(sentence, bound, clock, exact)
     ticks = int(exact) if fewer else int(exact) + 1
-    return ticks or _inexact(counted, clock, exact)
+    return ticks or _inexact(bound, clock, exact)
 
 
 def _fewer_is_stricter(sentence: Sentence) -> bool | None:
@@ -130,30 +130,30 @@ def _fewer_is_stricter(sentence: Sentence) -> bool | None:
 
 def assumed_ticks(sentence: Sentence, clock: Clock | None) -> Diagnostic | None:
     """F312: the sentence counts seconds and no clock says how long a tick is."""
-    counted = duration(sentence.timing)
-    if clock is not None or counted is None or counted.unit == "tick":
+    bound = duration(sentence.timing)
+    if clock is not None or bound is None or bound.unit == "tick":
         return None
     return Diagnostic(
         Code.NO_CLOCK,
-        f"no clock says what a tick is: `{written(counted)}` is read as {counted.amount} ticks, "
+        f"no clock says what a tick is: `{duration_text(bound)}` is read as {bound.amount} ticks, "
         "as FRET does",
-        counted.span,
+        bound.span,
         help='declare `[clock]` with `tick = "100 ms"` in bindings.toml, or write ticks',
         severity=Severity.WARNING,
     )
 
 
-def written(counted: Duration) -> str:
+def duration_text(bound: Duration) -> str:
     """`1 tick`, `3 seconds`."""
-    return f"{counted.amount} {counted.unit}{'' if counted.amount == 1 else 's'}"
+    return f"{bound.amount} {bound.unit}{'' if bound.amount == 1 else 's'}"
 
 
-def _inexact(counted: Duration, clock: Clock, exact: Fraction) -> Diagnostic:
+def _inexact(bound: Duration, clock: Clock, exact: Fraction) -> Diagnostic:
     assert clock.period is not None
     return Diagnostic(
         Code.INEXACT_DURATION,
-        f"{written(counted)} is {_exactly(exact)} ticks of {in_words(clock.period)}",
-        counted.span,
+        f"{duration_text(bound)} is {_exactly(exact)} ticks of {in_words(clock.period)}",
+        bound.span,
         help="use a whole number of ticks, or a finer `tick`"
         if clock.rounding is Rounding.CONSERVATIVE
         else "use a whole number of ticks, a finer `tick`, or "
@@ -162,18 +162,20 @@ def _inexact(counted: Duration, clock: Clock, exact: Fraction) -> Diagnostic:
 
 
 def _no_stricter_side(
-    sentence: Sentence, counted: Duration, clock: Clock, exact: Fraction
+    sentence: Sentence, bound: Duration, clock: Clock, exact: Fraction
 ) -> Diagnostic:
     odds = sentence.probability
-    what = "`after`" if isinstance(sentence.timing, After) or odds is None else f"`{odds.op}`"
-    found = _inexact(counted, clock, exact)
-    return replace(found, message=f"{found.message}, and {what} has no stricter side to round to")
+    part = "`after`" if isinstance(sentence.timing, After) or odds is None else f"`{odds.op}`"
+    inexact = _inexact(bound, clock, exact)
+    return replace(
+        inexact, message=f"{inexact.message}, and {part} has no stricter side to round to"
+    )
 
 
-def _no_time(counted: Duration, clock: Clock) -> Diagnostic:
+def _no_time(bound: Duration, clock: Clock) -> Diagnostic:
     return Diagnostic(
         Code.MESSAGE_CLOCK,
-        f"the clock ticks with {clock}: it cannot count {counted.unit}s",
-        counted.span,
+        f"the clock ticks with {clock}: it cannot count {bound.unit}s",
+        bound.span,
         help='count ticks, or declare a period: `tick = "100 ms"`',
     )

@@ -61,15 +61,15 @@ def requirements(source: Source) -> tuple[tuple[Requirement, ...], tuple[Diagnos
     of its file where its id cannot be read either.
     """
     found: list[Requirement] = []
-    wrong: list[Diagnostic] = []
+    diagnostics: list[Diagnostic] = []
     pairs = _pairs(source)
     if isinstance(pairs, Diagnostic):
         return (_unread(source, source.span(), pairs),), (pairs,)
     for header, wording in pairs:
         requirement, mistakes = _requirement(source, header, wording, alone=len(pairs) == 1)
-        wrong.extend(mistakes)
+        diagnostics.extend(mistakes)
         found.append(requirement)
-    return tuple(found), tuple(wrong)
+    return tuple(found), tuple(diagnostics)
 
 
 def _pairs(source: Source) -> list[tuple[Span | None, Span]] | Diagnostic:
@@ -104,11 +104,11 @@ def _requirement(
     if isinstance(tables, Diagnostic):
         return _unread(source, wording, tables, header.text, alone=alone), (tables,)
     data = tables.data
-    wrong = tuple(_mistakes(tables, alone=alone))
-    if wrong:
+    mistakes = tuple(_mistakes(tables, alone=alone))
+    if mistakes:
         id = data.get("id")
-        known = str(id) if _fits("id", id) else _called(source, wording, alone=alone)
-        return Requirement(known, wording, header=tables, mistakes=wrong), wrong
+        name = str(id) if _fits("id", id) else _called(source, wording, alone=alone)
+        return Requirement(name, wording, header=tables, mistakes=mistakes), mistakes
     return (
         Requirement(
             id=data.get("id", stem),
@@ -140,9 +140,9 @@ def _unread(
     source: Source, wording: Span, why: Diagnostic, header: str = "", *, alone: bool = True
 ) -> Requirement:
     """A requirement whose header is no TOML; a line that looks like its id still names it."""
-    named = _ID_LINE.search(header)
-    known = named["id"] if named else _called(source, wording, alone=alone)
-    return Requirement(known, wording, mistakes=(why,))
+    match = _ID_LINE.search(header)
+    id = match["id"] if match else _called(source, wording, alone=alone)
+    return Requirement(id, wording, mistakes=(why,))
 
 
 def _mistakes(tables: Tables, *, alone: bool) -> Iterator[Diagnostic]:

@@ -1,6 +1,6 @@
 """Boolean and arithmetic expressions: the same tree in sentences and in bindings.
 
-A sentence never holds a `Quantity` or a `Held`; a binding never holds a temporal predicate.
+A sentence never holds a `Quantity` or a `Persistence`; a binding never holds a temporal predicate.
 Spans do not compare: two expressions are equal when they say the same, wherever they stand.
 """
 
@@ -134,7 +134,7 @@ class Call:
 
 
 @dataclass(frozen=True, slots=True)
-class Held:
+class Persistence:
     """`arg for 200 ms`: arg has been true, without a break, for that long (nanoseconds)."""
 
     arg: Expression
@@ -156,7 +156,7 @@ Expression = (
     | Implies
     | Iff
     | Call
-    | Held
+    | Persistence
 )
 
 
@@ -179,7 +179,7 @@ def children(expression: Expression) -> tuple[Expression, ...]:
     match expression:
         case Truth() | Name() | Number() | Quantity():
             return ()
-        case Not(arg) | Negation(arg) | Held(arg):
+        case Not(arg) | Negation(arg) | Persistence(arg):
             return (arg,)
         case And(args) | Or(args):
             return args

@@ -1,6 +1,6 @@
-"""The meaning of a sentence in English, made from its tree.
+"""The meaning of a sentence in English, from its tree.
 
-Says what FRETish leaves to be known: which ticks trigger, whether the trigger itself counts,
+It states what FRETish only implies: which ticks trigger, whether the trigger itself counts,
 what happens at the end of a scope. Source: SEMANTICS of FRETish, section 3.
 """
 
@@ -25,9 +25,9 @@ def meaning(sentence: s.Sentence, ticks: int | None, clock: Clock | None) -> str
     q = f"`{expression(sentence.response)}`"
     negated = sentence.scope is not None and sentence.scope.kind.negates
     say = _forbidden if negated else _demanded
-    counted = (span(ticks or 0, clock), span((ticks or 0) + 1, clock))
+    lengths = (span(ticks or 0, clock), span((ticks or 0) + 1, clock))
     when = _when(sentence.condition, sentence.scope)
-    demand = say(sentence.timing, q, close, counted)
+    demand = say(sentence.timing, q, close, lengths)
     return f"{where}: {when}, {demand}.{_odds(sentence.probability)}"
 
 
@@ -69,11 +69,11 @@ def _when(condition: s.Condition | None, scope: s.Scope | None) -> str:
             assert_never(condition.kind)
 
 
-_Counted = tuple[str, str]
+_Lengths = tuple[str, str]
 """The duration, and one tick more, in words."""
 
 
-def _demanded(timing: s.Timing, q: str, close: str, counted: _Counted) -> str:
+def _demanded(timing: s.Timing, q: str, close: str, lengths: _Lengths) -> str:
     match timing:
         case s.Immediately():
             return f"{q} must be true at that same tick"
@@ -88,12 +88,12 @@ def _demanded(timing: s.Timing, q: str, close: str, counted: _Counted) -> str:
         case s.Never():
             return _at_all(q, "false", close)
         case s.Within():
-            return _soon(q, "true", close, counted[0])
+            return _soon(q, "true", close, lengths[0])
         case s.For():
-            return _for(q, "true", close, counted[0])
+            return _for(q, "true", close, lengths[0])
         case s.After():
             return (
-                f"{q} must be false at that tick and for the next {counted[0]}, or until {close} "
+                f"{q} must be false at that tick and for the next {lengths[0]}, or until {close} "
                 f"ends, and true at the tick after those, if {close} has it"
             )
         case s.Until(stop):
@@ -104,7 +104,7 @@ def _demanded(timing: s.Timing, q: str, close: str, counted: _Counted) -> str:
             assert_never(timing)
 
 
-def _forbidden(timing: s.Timing, q: str, close: str, counted: _Counted) -> str:
+def _forbidden(timing: s.Timing, q: str, close: str, lengths: _Lengths) -> str:
     """The negated timing, which `only` scopes demand; its forms are duals."""
     match timing:
         case s.Immediately():
@@ -120,13 +120,13 @@ def _forbidden(timing: s.Timing, q: str, close: str, counted: _Counted) -> str:
         case s.Never():
             return _at_some(q, "true", close)
         case s.Within():
-            return _for(q, "false", close, counted[0])
+            return _for(q, "false", close, lengths[0])
         case s.For():
-            return _soon(q, "false", close, counted[0])
+            return _soon(q, "false", close, lengths[0])
         case s.After():
             return (
-                f"{q} must be true at that tick or within the next {counted[0]}, or else be false "
-                f"for the next {counted[1]} (nothing is required if {close} ends before that)"
+                f"{q} must be true at that tick or within the next {lengths[0]}, or else be false "
+                f"for the next {lengths[1]} (nothing is required if {close} ends before that)"
             )
         case s.Until(stop):
             return _ahead_of(q, "false", close, expression(stop))

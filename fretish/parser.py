@@ -24,7 +24,7 @@ from fretish.checking import check_depth, check_names, check_response_kinds
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.diagnostics.source import Span
 from fretish.syntax_errors import (
-    Met,
+    Lexeme,
     Unexpected,
     bad_duration,
     bad_probability,
@@ -67,7 +67,7 @@ def parse(text: Span) -> s.Sentence | Diagnostic:
             return error.orig_exc.diagnostic
         raise
     checks = (check_depth, check_names, check_response_kinds)
-    return next((wrong for check in checks if (wrong := check(sentence))), sentence)
+    return next((mistake for check in checks if (mistake := check(sentence))), sentence)
 
 
 class _MistakeError(Exception):
@@ -282,14 +282,14 @@ class _Build(Transformer_NonRecursive[Token, Any]):
 
     def start(self, meta: Any, children: list[Any]) -> s.Sentence:
         *parts, response = _parts(children)
-        found = {type(part): part for part in parts}
-        timing, timing_span = found.get(_Timed, (s.Eventually(written=False), None))
-        component, component_span, article = found[_Component]
+        by_type = {type(part): part for part in parts}
+        timing, timing_span = by_type.get(_Timed, (s.Eventually(explicit=False), None))
+        component, component_span, article = by_type[_Component]
         return s.Sentence(
-            scope=found.get(s.Scope),
-            condition=found.get(s.Condition),
+            scope=by_type.get(s.Scope),
+            condition=by_type.get(s.Condition),
             component=component,
-            probability=found.get(s.Probability),
+            probability=by_type.get(s.Probability),
             timing=timing,
             response=response,
             span=_meta_span(meta),
@@ -315,8 +315,8 @@ def _unexpected(error: UnexpectedToken, text: Span) -> Diagnostic:
     before = _word_before(token, text)
     return explain(
         Unexpected(
-            _met(token, text),
-            _met(before, text) if before is not None else None,
+            _lexeme(token, text),
+            _lexeme(before, text) if before is not None else None,
             frozenset(error.accepts or error.expected),
             text,
         )
@@ -333,10 +333,10 @@ def _word_before(token: Token, text: Span) -> Token | None:
     return before
 
 
-def _met(token: Token, text: Span) -> Met:
+def _lexeme(token: Token, text: Span) -> Lexeme:
     if token.type == "$END":
         end = len(text.text.rstrip())
-        return Met(token.type, text.part(end, end))
+        return Lexeme(token.type, text.part(end, end))
     assert token.start_pos is not None
     assert token.end_pos is not None
-    return Met(token.type, text.part(token.start_pos, token.end_pos))
+    return Lexeme(token.type, text.part(token.start_pos, token.end_pos))

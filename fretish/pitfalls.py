@@ -20,7 +20,7 @@ _ENDS = (
 def surprises(sentence: s.Sentence) -> Iterator[Diagnostic]:
     """F204-F208, each with what is meant and how to say the other thing."""
     yield from _edge(sentence.condition)
-    if isinstance(sentence.timing, s.Eventually) and not sentence.timing.written:
+    if isinstance(sentence.timing, s.Eventually) and not sentence.timing.explicit:
         yield _warning(
             Code.NO_TIMING,
             "without a timing the response is required at some time, however late",

@@ -8,7 +8,7 @@ from typing import assert_never
 
 from fretish import expressions as e
 from fretish import syntax as s
-from fretish.clock import written
+from fretish.clock import duration_text
 from fretish.keywords import RESERVED
 from fretish.reading.recursion import deep
 
@@ -84,18 +84,18 @@ def timing(tree: s.Timing) -> str:
             return "at the next timepoint"
         case s.Finally():
             return "finally"
-        case s.Eventually(stated):
-            return "eventually" if stated else ""
+        case s.Eventually(explicit):
+            return "eventually" if explicit else ""
         case s.Always():
             return "always"
         case s.Never():
             return "never"
         case s.Within(duration):
-            return f"within {written(duration)}"
+            return f"within {duration_text(duration)}"
         case s.For(duration):
-            return f"for {written(duration)}"
+            return f"for {duration_text(duration)}"
         case s.After(duration):
-            return f"after {written(duration)}"
+            return f"after {duration_text(duration)}"
         case s.Until(stop):
             return f"until {expression(stop)}"
         case s.Before(stop):
@@ -112,7 +112,7 @@ def identifier(id: str) -> str:
 
 @deep
 def expression(tree: e.Expression) -> str:
-    """FRETish, or the language of bindings for what only they can say."""
+    """The text in FRETish; in the language of bindings where FRETish has no such operator."""
     return _at(tree, _IFF)
 
 
@@ -138,7 +138,7 @@ def _ranked(tree: e.Expression) -> tuple[int, str]:
             return _SIGN, f"-{_at(arg, _SIGN)}"
         case e.Not(arg):
             return _NOT, f"!{_at(arg, _OPERAND)}"
-        case e.Held(arg, duration):
+        case e.Persistence(arg, duration):
             return _IFF, f"{_at(arg, _OR)} for {duration} ns"
         case e.And(args):
             return _AND, " & ".join(_at(arg, _NOT) for arg in args)

@@ -91,7 +91,7 @@ class Finally:
 class Eventually:
     """At some point from the trigger on; also what a sentence without timing means."""
 
-    written: bool = True
+    explicit: bool = True
     """False where the sentence gives no timing (FRET's key `null`)."""
 
 
@@ -194,7 +194,7 @@ def condition_key(sentence: Sentence) -> str:
 def timing_key(sentence: Sentence) -> str:
     """FRET's key of the timing: `null`, `immediately`, `within`, ..."""
     timing = sentence.timing
-    if isinstance(timing, Eventually) and not timing.written:
+    if isinstance(timing, Eventually) and not timing.explicit:
         return "null"
     return type(timing).__name__.lower()
 

@@ -14,7 +14,7 @@ from fretish.keywords import KEYWORDS
 
 
 @dataclass(frozen=True, slots=True)
-class Met:
+class Lexeme:
     """A word of the text, and its kind in the grammar: `ID`, `NUMBER`, `SATISFY`, ..."""
 
     kind: str
@@ -35,8 +35,8 @@ class Met:
 class Unexpected:
     """The first word that does not fit."""
 
-    met: Met
-    before: Met | None
+    lexeme: Lexeme
+    before: Lexeme | None
     accepts: frozenset[str]
     """The kinds of word that would have fitted."""
     text: Span
@@ -89,7 +89,7 @@ _SHALL = ("should", "must", "will", "shal", "has", "needs")
 
 
 def explain(unexpected: Unexpected) -> Diagnostic:
-    """The most telling thing to say; the last rule always has something."""
+    """The diagnostic of the first rule that applies; the last rule always does."""
     for rule in _RULES:
         diagnostic = rule(unexpected)
         if diagnostic is not None:
@@ -167,23 +167,23 @@ def bad_probability(span: Span) -> Diagnostic:
     )
 
 
-# Rules, the most telling first -----------------------------------------------------------------
+# Rules, the most specific first ----------------------------------------------------------------
 
 
 def _unit(u: Unexpected) -> Diagnostic | None:
     if not u.wants(*_UNITS):
         return None
-    known = "write ticks, microseconds, milliseconds, seconds, minutes or hours: `within 3 seconds`"
-    if u.met.kind != "ID":
-        return Diagnostic(Code.BAD_DURATION, "a duration needs a unit", u.met.span, help=known)
-    near = _UNIT_NAMES.get(u.met.word.lower()) or suggestion(
-        u.met.word, [word for word in KEYWORDS if word.endswith("s")], cutoff=0.72
+    mend = "write ticks, microseconds, milliseconds, seconds, minutes or hours: `within 3 seconds`"
+    if u.lexeme.kind != "ID":
+        return Diagnostic(Code.BAD_DURATION, "a duration needs a unit", u.lexeme.span, help=mend)
+    near = _UNIT_NAMES.get(u.lexeme.word.lower()) or suggestion(
+        u.lexeme.word, [word for word in KEYWORDS if word.endswith("s")], cutoff=0.72
     )
     return Diagnostic(
         Code.BAD_DURATION,
-        f"a duration needs a unit, and `{u.met.word}` is none",
-        u.met.span,
-        help=f"did you mean `{near}`?" if near else known,
+        f"a duration needs a unit, and `{u.lexeme.word}` is none",
+        u.lexeme.span,
+        help=f"did you mean `{near}`?" if near else mend,
     )
 
 
@@ -196,7 +196,7 @@ def _number(u: Unexpected) -> Diagnostic | None:
     return Diagnostic(
         Code.BAD_DURATION,
         "a duration begins with a number in digits",
-        u.met.span,
+        u.lexeme.span,
         help=f"write such as `{u.before.word} N seconds`",
     )
 
@@ -204,23 +204,23 @@ def _number(u: Unexpected) -> Diagnostic | None:
 def _other_language(u: Unexpected) -> Diagnostic | None:
     """Operators as other languages spell them."""
     before = u.before.word if u.before is not None else ""
-    doubled = {"&": "&", "|": "|", "=": "="}.get(u.met.word) if before == u.met.word else None
+    doubled = {"&": "&", "|": "|", "=": "="}.get(u.lexeme.word) if before == u.lexeme.word else None
     if doubled is not None and u.before is not None:
-        span = u.before.span.to(u.met.span)
+        span = u.before.span.to(u.lexeme.span)
         return _instead(span, doubled)
-    if u.met.kind in ("AND", "OR"):
+    if u.lexeme.kind in ("AND", "OR"):
         return _word_for_operator(u)
-    spelt = _OPERATORS.get(u.met.word.lower())
+    spelt = _OPERATORS.get(u.lexeme.word.lower())
     if spelt is None or not u.wants("ID", "_AMPERSAND") or u.wants("SHALL", "WHENEVER"):
         return None
-    return _instead(u.met.span, spelt)
+    return _instead(u.lexeme.span, spelt)
 
 
 def _word_for_operator(u: Unexpected) -> Diagnostic | None:
     """`p and q`: the words join conditions only, each with a word of its own."""
     if u.before is None or u.wants("ID"):
         return None
-    return _instead(u.met.span, "&" if u.met.kind == "AND" else "|")
+    return _instead(u.lexeme.span, "&" if u.lexeme.kind == "AND" else "|")
 
 
 def _instead(span: Span, spelt: str) -> Diagnostic:
@@ -234,31 +234,31 @@ def _instead(span: Span, spelt: str) -> Diagnostic:
 
 def _chain(u: Unexpected) -> Diagnostic | None:
     """`3 < x < 5`."""
-    if u.met.kind not in _COMPARISONS or not u.wants("_AMPERSAND"):
+    if u.lexeme.kind not in _COMPARISONS or not u.wants("_AMPERSAND"):
         return None
     return Diagnostic(
         Code.NOT_FRETISH,
         "comparisons do not chain",
-        u.met.span,
+        u.lexeme.span,
         help="write each by itself, and join them by `&`",
     )
 
 
 def _number_form(u: Unexpected) -> Diagnostic | None:
     """`.5` and `007`."""
-    if u.met.kind == "_DOT" and u.wants("NUMBER"):
+    if u.lexeme.kind == "_DOT" and u.wants("NUMBER"):
         return Diagnostic(
             Code.NOT_FRETISH,
             "a number begins with a digit",
-            u.met.span,
+            u.lexeme.span,
             help="write a 0 before the point",
         )
-    if u.met.kind != "NUMBER" or u.before is None or u.before.kind != "NUMBER":
+    if u.lexeme.kind != "NUMBER" or u.before is None or u.before.kind != "NUMBER":
         return None
     return Diagnostic(
         Code.NOT_FRETISH,
         "a number does not begin with 0",
-        u.before.span.to(u.met.span),
+        u.before.span.to(u.lexeme.span),
         help="leave the leading zeros out",
     )
 
@@ -275,12 +275,14 @@ def _superfluous(u: Unexpected) -> Diagnostic | None:
         "THE": u.wants("MODE", "ID"),
         "MODE": u.wants("SHALL", "_AMPERSAND"),
     }
-    if not fits.get(u.met.kind, False) or (u.met.kind == "THE" and u.wants("SHALL")):
+    if not fits.get(u.lexeme.kind, False) or (u.lexeme.kind == "THE" and u.wants("SHALL")):
         return None
-    if u.met.kind == "THE" and (u.before is None or u.before.kind not in ("IN", "DURING", "MODE")):
+    if u.lexeme.kind == "THE" and (
+        u.before is None or u.before.kind not in ("IN", "DURING", "MODE")
+    ):
         return None
     return Diagnostic(
-        Code.NOT_FRETISH, reasons[u.met.kind], u.met.span, help=f"leave `{u.met.word}` out"
+        Code.NOT_FRETISH, reasons[u.lexeme.kind], u.lexeme.span, help=f"leave `{u.lexeme.word}` out"
     )
 
 
@@ -299,30 +301,30 @@ def _globally(u: Unexpected) -> Diagnostic | None:
 
 def _mode(u: Unexpected) -> Diagnostic | None:
     """`in p & q`."""
-    if u.met.kind not in ("_AMPERSAND", "_BAR", *_COMPARISONS) or not u.wants("MODE"):
+    if u.lexeme.kind not in ("_AMPERSAND", "_BAR", *_COMPARISONS) or not u.wants("MODE"):
         return None
     return Diagnostic(
         Code.NOT_FRETISH,
         "a mode is one name",
-        u.met.span,
+        u.lexeme.span,
         help="for an expression write `while p & q` in place of `in`",
     )
 
 
 def _shall(u: Unexpected) -> Diagnostic | None:
-    if not u.wants("SHALL") or u.met.word.lower() not in _SHALL:
+    if not u.wants("SHALL") or u.lexeme.word.lower() not in _SHALL:
         return None
     return Diagnostic(
         Code.MISSPELT,
-        f"a requirement says `shall`, not `{u.met.word}`",
-        u.met.span,
+        f"a requirement says `shall`, not `{u.lexeme.word}`",
+        u.lexeme.span,
         help="write `shall`",
     )
 
 
 def _misspelt(u: Unexpected) -> Diagnostic | None:
     """A name stands where only a key word fits, and one key word is near."""
-    suspects = [u.met] if not u.wants("ID") else []
+    suspects = [u.lexeme] if not u.wants("ID") else []
     if u.before is not None and u.wants("SHALL"):
         suspects.append(u.before)
     for suspect in suspects:
@@ -339,35 +341,35 @@ def _misspelt(u: Unexpected) -> Diagnostic | None:
 
 def _order(u: Unexpected) -> Diagnostic | None:
     """The parts of a sentence have a fixed order."""
-    if u.met.kind in _TIMINGS and u.before is not None and u.before.kind == "SATISFY":
+    if u.lexeme.kind in _TIMINGS and u.before is not None and u.before.kind == "SATISFY":
         return Diagnostic(
             Code.NOT_FRETISH,
             "the timing stands before `satisfy`",
-            u.met.span,
-            help=f"write `{u.met.word}{_AMOUNT.get(u.met.kind, '')} satisfy ...`",
+            u.lexeme.span,
+            help=f"write `{u.lexeme.word}{_AMOUNT.get(u.lexeme.kind, '')} satisfy ...`",
         )
-    if u.met.kind == "WITH" and u.wants("SHALL", "WHENEVER"):
+    if u.lexeme.kind == "WITH" and u.wants("SHALL", "WHENEVER"):
         return Diagnostic(
             Code.NOT_FRETISH,
             "the probability stands after `shall`",
-            u.met.span,
+            u.lexeme.span,
             help="write it there: `shall with probability ... satisfy ...`",
         )
-    if u.met.kind == "PROBABILITY":
+    if u.lexeme.kind == "PROBABILITY":
         return Diagnostic(
             Code.NOT_FRETISH,
             "`with` is missing before `probability`",
-            u.met.span,
+            u.lexeme.span,
             help="write `with probability ...`",
         )
     return None
 
 
 def _missing_satisfy(u: Unexpected) -> Diagnostic | None:
-    if not u.wants("SATISFY") or u.met.kind not in _STARTS_EXPRESSION:
+    if not u.wants("SATISFY") or u.lexeme.kind not in _STARTS_EXPRESSION:
         return None
     end = len(u.text.text.rstrip().rstrip("."))
-    response = u.text.source.span(u.met.span.start, max(u.met.span.end, u.text.start + end))
+    response = u.text.source.span(u.lexeme.span.start, max(u.lexeme.span.end, u.text.start + end))
     return Diagnostic(
         Code.MISSING_SATISFY,
         f"missing `satisfy` before `{response.text}`",
@@ -377,41 +379,43 @@ def _missing_satisfy(u: Unexpected) -> Diagnostic | None:
 
 
 def _missing_component(u: Unexpected) -> Diagnostic | None:
-    starts = u.met.kind == "SHALL" and u.wants("ID")
+    starts = u.lexeme.kind == "SHALL" and u.wants("ID")
     ends = u.before is not None and u.before.kind == "SHALL" and u.wants("ID")
-    if not starts and not (ends and u.met.word.lower() in KEYWORDS):
+    if not starts and not (ends and u.lexeme.word.lower() in KEYWORDS):
         return None
     return Diagnostic(
         Code.MISSING_COMPONENT,
         "there is no component before `shall`",
-        u.met.span if starts or u.before is None else u.before.span,
+        u.lexeme.span if starts or u.before is None else u.before.span,
         help="name what must satisfy the requirement: `the rover shall ...`",
     )
 
 
 def _key_word_as_name(u: Unexpected) -> Diagnostic | None:
-    if not u.wants("ID") or u.met.word.lower() not in KEYWORDS:
+    if not u.wants("ID") or u.lexeme.word.lower() not in KEYWORDS:
         return None
     return Diagnostic(
         Code.RESERVED,
-        f"`{u.met.word}` is a key word of FRETish and cannot be a name",
-        u.met.span,
-        help=f'choose another name, or quote it: `"{u.met.word}"`',
+        f"`{u.lexeme.word}` is a key word of FRETish and cannot be a name",
+        u.lexeme.span,
+        help=f'choose another name, or quote it: `"{u.lexeme.word}"`',
     )
 
 
 def _does_not_fit(u: Unexpected) -> Diagnostic:
     expected = [words for words, kinds in _GROUPS if u.wants(*kinds)]
-    what = "the sentence ends too early" if u.met.at_end else f"`{u.met.word}` does not fit here"
+    message = (
+        "the sentence ends too early" if u.lexeme.at_end else f"`{u.lexeme.word}` does not fit here"
+    )
     return Diagnostic(
         Code.NOT_FRETISH,
-        what,
-        u.met.span,
-        help=f"expected {_one_of(expected)}" if expected else None,
+        message,
+        u.lexeme.span,
+        help=f"expected {_alternatives(expected)}" if expected else None,
     )
 
 
-def _one_of(words: list[str]) -> str:
+def _alternatives(words: list[str]) -> str:
     return words[0] if len(words) == 1 else f"{', '.join(words[:-1])} or {words[-1]}"
 
 

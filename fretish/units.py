@@ -1,4 +1,4 @@
-"""Physical units: what bindings may say after a number, and exact conversion between them.
+"""Physical units of the bindings, and exact conversion between them.
 
 Seven base dimensions; angles count as one, so that radians never pass for plain numbers.
 Source of the factors: The International System of Units (SI Brochure, 9th edition), tables 2-8.
@@ -118,18 +118,18 @@ def number(text: str) -> Fraction:
 def quantity(text: str) -> tuple[Dimension, Fraction] | None:
     """`5 cm` → its dimension and 1/20, exactly, in base units; None where it is no quantity."""
     digits, _, name = text.strip().partition(" ")
-    known = unit(name) if name else ONE
+    measure = unit(name) if name else ONE
     try:
-        return None if known is None else (known.dimension, number(digits) * known.factor)
+        return None if measure is None else (measure.dimension, number(digits) * measure.factor)
     except ValueError:
         return None
 
 
 def base_name(dimension: Dimension) -> str:
     """`m/s` for (1, 0, -1, 0, 0, 0); empty for a plain number."""
-    above = [_power(b, n) for b, n in zip(_BASES, dimension, strict=True) if n > 0]
-    below = [_power(b, -n) for b, n in zip(_BASES, dimension, strict=True) if n < 0]
-    return "/".join(["*".join(above) or ("1" if below else ""), *below])
+    numerator = [_power(b, n) for b, n in zip(_BASES, dimension, strict=True) if n > 0]
+    denominator = [_power(b, -n) for b, n in zip(_BASES, dimension, strict=True) if n < 0]
+    return "/".join(["*".join(numerator) or ("1" if denominator else ""), *denominator])
 
 
 def _power(base: str, exponent: int) -> str:

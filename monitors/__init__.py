@@ -1,1 +1,1 @@
-"""The run time: operators with memory, recorded logs, propositions on a clock, audits, evidence."""
+"""The run time of generated monitors and interceptors; standard library only."""

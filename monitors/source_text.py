@@ -18,15 +18,15 @@ if __name__ == "__main__" and not sys.flags.safe_path:
 beside it first. `from __future__ import annotations` is an import, too, and can only come before
 it: so generated files have none, and neither have the modules that they are made of."""
 _MODULES = ("verdicts", "columns", "stepping", "outcomes", "tables", "command")
-"""Of `monitors.kernel`, each after those that it needs."""
+"""The modules of `monitors.kernel`, each after those that it needs."""
 
 
 @dataclass(frozen=True, slots=True)
 class Runtime:
-    """Modules as one."""
+    """Several modules as one text."""
 
     imports: str
-    """Of the standard library only, below what keeps others from coming in its place."""
+    """Imports of the standard library only, below the statements that keep others out."""
     text: str
 
 
@@ -74,8 +74,8 @@ def _collect(tree: ast.Module, imports: dict[str, set[str]]) -> int:
 def _head(imports: dict[str, set[str]]) -> str:
     plain = [f"import {name}" for name in sorted(imports) if name != "sys" and " " not in name]
     some = [
-        _from(name, sorted(found, key=_constants_first))
-        for name, found in sorted(imports.items())
+        _from(name, sorted(names, key=_constants_first))
+        for name, names in sorted(imports.items())
         if name.startswith("from ")
     ]
     return "\n".join([ALONE, *plain, *some])

@@ -301,12 +301,12 @@ class _Run:
         """A turn of the lidar, with the faults of the scenario."""
         ranges, sensor = self._robot.scan(), self._scenario.lidar
         seconds = (now - EPOCH) / _SECOND
-        says = [o.says for o in sensor.outages if o.at <= seconds < o.at + o.seconds]
+        faults = [o.says for o in sensor.outages if o.at <= seconds < o.at + o.seconds]
         if sensor.nan_first:
             ranges[0] = np.nan
-        if "nan" in says:
+        if "nan" in faults:
             ranges[:] = np.nan
-        if "nothing" not in says:
+        if "nothing" not in faults:
             self._bus.publish(
                 "/scan", messages.laser_scan(now, ranges, self._lidar), now + SCAN_LATENCY
             )

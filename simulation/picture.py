@@ -52,12 +52,12 @@ def animate(mission: Mission) -> bytes:
         track = mission.track[:count]
         line.set_data([p.x for p in track], [p.y for p in track])
         robot.set_xy(_corners(ROBOT, track[-1]))
-        for shown_as, events in ((marks, mission.stops), (hits, mission.touched)):
+        for markers, events in ((marks, mission.stops), (hits, mission.touched)):
             past = [(e.at.x, e.at.y) for e in events if e.seconds <= (count - 1) / 10]
-            shown_as.set_offsets(np.array(past).reshape(-1, 2))
+            markers.set_offsets(np.array(past).reshape(-1, 2))
         canvas.draw()
-        shown = Image.fromarray(np.asarray(canvas.buffer_rgba())).convert("RGB")
-        frames.append(shown.quantize(colors=64))
+        frame = Image.fromarray(np.asarray(canvas.buffer_rgba())).convert("RGB")
+        frames.append(frame.quantize(colors=64))
     image = BytesIO()
     first, *others = frames
     first.save(image, format="GIF", save_all=True, append_images=others, duration=_FRAME, loop=0)
@@ -98,8 +98,8 @@ def _room(axes: Any, mission: Mission) -> None:
         labels["really there, not on the map"] = _MOVED
         ghost = _shape(obstacle, facecolor="none", edgecolor=_INK, lw=1.0, ls=":")
         axes.add_patch(ghost)
-        shown = real[obstacle.name]
-        axes.add_patch(_shape(shown, facecolor=_MOVED, edgecolor=_INK, lw=1.0))
+        moved = real[obstacle.name]
+        axes.add_patch(_shape(moved, facecolor=_MOVED, edgecolor=_INK, lw=1.0))
     walker = mission.scenario.store.walker
     if walker is not None:
         labels["somebody who walks in"] = _MOVED

@@ -24,16 +24,16 @@ class Reader:
         text = rest.partition(_LOOP)[0] if interceptor else monitor
         text = re.sub(r"//[^\n]*", "", text)
         self.known: Scope = {"true": True, "false": False}
-        for told in re.findall(r"^datatype \w+ = (.*)$", text, re.MULTILINE):
-            for name, fields in re.findall(r"(\w+)(?:\(([^)]*)\))?(?: \||$)", told):
+        for datatype in re.findall(r"^datatype \w+ = (.*)$", text, re.MULTILINE):
+            for name, fields in re.findall(r"(\w+)(?:\(([^)]*)\))?(?: \||$)", datatype):
                 self.known[name] = _constructor(name, re.findall(r"(\w+):", fields))
         for name, value in re.findall(r"^const (\w+): \w+ := (.*)$", text, re.MULTILINE):
             self.known[name] = _Parser(_TOKENS.findall(value)).all()(self.known)
         declared = r"^(?:function|predicate) (\w+)\(([^)]*)\)[^{]*?\n\{\n(.*?)\n\}$"
-        for name, told, body in re.findall(declared, text, re.MULTILINE | re.DOTALL):
+        for name, datatype, body in re.findall(declared, text, re.MULTILINE | re.DOTALL):
             if name == "Invariant":  # of the proof
                 continue
-            self.known[name] = self._function(re.findall(r"(\w+):", told), body)
+            self.known[name] = self._function(re.findall(r"(\w+):", datatype), body)
 
     def __getattr__(self, name: str) -> Any:
         return self.known[name]

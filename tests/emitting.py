@@ -9,23 +9,23 @@ from fretish.documents import Requirement
 
 
 def rule(sentence: str, id: str = "R1") -> Rule:
-    made, said = formalize(Requirement(id, Source("r.fret", sentence).span()), None)
-    assert made is not None, said
-    return made
+    result, diagnostics = formalize(Requirement(id, Source("r.fret", sentence).span()), None)
+    assert result is not None, diagnostics
+    return result
 
 
 def emitted(target: str, sentence: str, id: str = "R1") -> dict[str, str]:
     """The texts of the files by their names."""
-    made = rule(sentence, id)
-    told = TARGETS[target].refuse(made)
-    assert told is None, render(told)
-    return {str(file.path): file.text for file in TARGETS[target].emit([made])}
+    subject = rule(sentence, id)
+    refusal = TARGETS[target].refuse(subject)
+    assert refusal is None, render(refusal)
+    return {str(file.path): file.text for file in TARGETS[target].emit([subject])}
 
 
 def refused(target: str, sentence: str) -> str:
-    told = TARGETS[target].refuse(rule(sentence))
-    assert told is not None
-    return render(told)
+    refusal = TARGETS[target].refuse(rule(sentence))
+    assert refusal is not None
+    return render(refusal)
 
 
 SHARING = [

@@ -121,8 +121,8 @@ def check(text: str) -> bool:
         assert 0 <= tree.span.start <= tree.span.end <= len(text), text
         assert render(tree)
         return False
-    rule, said = formalize(Requirement("fuzz", source.span()), None)
-    assert rule is not None, said
+    rule, diagnostics = formalize(Requirement("fuzz", source.span()), None)
+    assert rule is not None, diagnostics
     assert formulas(rule)["ft_infinite"]
     return True
 

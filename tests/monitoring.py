@@ -44,9 +44,9 @@ def rule(sentence: str, id: str = "R1", clock: Clock | None = None) -> Rule:
     """The rule of a sentence."""
     source = Source("r.fret", sentence)
     declared = Declarations(Source("bindings.toml", ""), clock, {}, {}) if clock else None
-    made, said = formalize(Requirement(id, source.span()), declared)
-    assert made is not None, said
-    return made
+    result, diagnostics = formalize(Requirement(id, source.span()), declared)
+    assert result is not None, diagnostics
+    return result
 
 
 def emitted(*sentences: str, clock: Clock | None = None) -> str:

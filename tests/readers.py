@@ -22,7 +22,7 @@ from mcap.records import Channel, Schema
 
 from fretc import cli
 from tests import keys
-from tests.fretc.logs.broken import made, raw
+from tests.fretc.logs.broken import log_of, raw
 from tests.fretc.logs.logs import S, number, write
 from tests.fretc.logs.storage.test_bags import bag, db3, ros1, ros2
 
@@ -131,7 +131,7 @@ def _log(encoding: str, defined: str, name: str, text: str | bytes, payload: byt
     data = text if isinstance(text, bytes) else text.encode()
     channel = Channel(1, "/x", encoding, {}, 1)
     sent = (raw(time * S, payload) for time in (1, 2, 3))
-    return made(Schema(1, data, defined, name), channel, *sent)
+    return log_of(Schema(1, data, defined, name), channel, *sent)
 
 
 def _protobuf() -> bytes:

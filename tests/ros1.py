@@ -75,8 +75,8 @@ def missing() -> str:
         text=True,
         check=False,
     )
-    said = asked.stderr.strip().rpartition("\n")[2]
-    return f"ROS 1 is not installed: {said}" if asked.returncode else ""
+    complaint = asked.stderr.strip().rpartition("\n")[2]
+    return f"ROS 1 is not installed: {complaint}" if asked.returncode else ""
 
 
 def until(what: str, holds: Callable[[], object], seconds: float = SOON) -> None:
@@ -191,8 +191,8 @@ def ended(process: subprocess.Popen[str], number: int = 0, seconds: float = 5.0)
     if number:
         process.send_signal(number)
     try:
-        _, said = process.communicate(timeout=seconds)
+        _, output = process.communicate(timeout=seconds)
     except subprocess.TimeoutExpired:
         process.kill()
         return Ended(None, process.communicate()[1])
-    return Ended(process.returncode, said)
+    return Ended(process.returncode, output)

@@ -85,8 +85,8 @@ class RefusedError(Exception):
 def monitor(folder: Path) -> Callable[[list[str]], int]:
     """The generated monitor's own command."""
     put(folder, {"r.fret": SENTENCE})
-    status, said, _ = command(folder, "r.fret", "--emit", "monitor")
-    assert status == 0, said
+    status, output, _ = command(folder, "r.fret", "--emit", "monitor")
+    assert status == 0, output
     spec = importlib.util.spec_from_file_location("r_monitor", folder / "build/r_monitor.py")
     assert spec is not None
     assert spec.loader is not None
@@ -108,25 +108,25 @@ def hold(run: Callable[[list[str]], int], path: Path, data: bytes) -> str:
     except RefusedError:
         expected = "refused"
     for engine in ("columns", "online"):
-        status, out, told = _ran(run, [str(path), "--format", "json", "--engine", engine])
+        status, out, complaint = _ran(run, [str(path), "--format", "json", "--engine", engine])
         if expected == "refused":
             assert (status, out) == (2, ""), f"{path}: {status} {out[:500]}"
-            assert told.endswith("\n"), f"{path}: {told[:500]!r}"
-            assert told[:-1].isprintable(), f"{path}: {told[:500]!r}"
-            assert len(told) < 1000 + len(str(path)), f"{path}: {told[:500]!r}"
+            assert complaint.endswith("\n"), f"{path}: {complaint[:500]!r}"
+            assert complaint[:-1].isprintable(), f"{path}: {complaint[:500]!r}"
+            assert len(complaint) < 1000 + len(str(path)), f"{path}: {complaint[:500]!r}"
         else:
-            assert not told, f"{path}: {expected}, but {told[:500]}"
+            assert not complaint, f"{path}: {expected}, but {complaint[:500]}"
             assert json.loads(out)["verdict"] == expected, f"{path}: {expected}, but {out[:500]}"
             assert status == {"satisfied": 0, "violated": 1, "no data": 3}[expected], path
     return expected
 
 
 def _ran(run: Callable[[list[str]], int], arguments: list[str]) -> tuple[int, str, str]:
-    out, told = (io.TextIOWrapper(io.BytesIO(), "utf-8") for _ in range(2))
-    with redirect_stdout(out), redirect_stderr(told):
+    out, errors = (io.TextIOWrapper(io.BytesIO(), "utf-8") for _ in range(2))
+    with redirect_stdout(out), redirect_stderr(errors):
         status = run(arguments)
     texts = []
-    for stream in (out, told):
+    for stream in (out, errors):
         stream.flush()
         assert isinstance(stream.buffer, io.BytesIO)
         texts.append(stream.buffer.getvalue().decode())
@@ -163,11 +163,11 @@ def rows(data: bytes) -> list[tuple[bool | None, ...]]:
         raise RefusedError
     start = "".join(lines[0].split())[:2]
     try:
-        told = list(_objects(lines) if start in ('{"', "{}") else _records(lines))
+        records = list(_objects(lines) if start in ('{"', "{}") else _records(lines))
     except (ValueError, RecursionError, csv.Error) as error:
         raise RefusedError from error
-    _check_ticks([dict(pairs).get("tick", _NONE) for pairs in told])
-    return [(_truth(pairs, "p"), _truth(pairs, "q")) for pairs in told]
+    _check_ticks([dict(pairs).get("tick", _NONE) for pairs in records])
+    return [(_truth(pairs, "p"), _truth(pairs, "q")) for pairs in records]
 
 
 _NONE = object()
@@ -316,8 +316,8 @@ def fuzzed(folder: Path, count: int, seed: int) -> dict[str, int]:
     found: dict[str, int] = {}
     for i in range(count):
         try:
-            said = hold(run, folder / "t.csv", mutated(chance))
+            outcome = hold(run, folder / "t.csv", mutated(chance))
         except AssertionError as error:
             raise AssertionError(f"tables, seed {seed}, number {i}: {error}") from error
-        found[said] = found.get(said, 0) + 1
+        found[outcome] = found.get(outcome, 0) + 1
     return found

@@ -12,7 +12,7 @@ from mcap.records import Channel, Chunk, Header, Schema
 from rosbags.rosbag1 import Writer
 
 from tests.costs import MEMORY, SECONDS, cost
-from tests.fretc.logs.broken import FLOAT, TOPIC, ended, made, raw
+from tests.fretc.logs.broken import FLOAT, TOPIC, ended, log_of, raw
 from tests.fretc.logs.conformance import MAGIC, framed
 from tests.fretc.logs.logs import S
 
@@ -95,8 +95,8 @@ def test_a_chain_of_xor_that_ajpf_would_have_to_write_out_is_too_large(tmp_path:
 @pytest.mark.parametrize("timing", ["within", "for", "after"])
 def test_a_duration_without_end_is_not_drawn(tmp_path: Path, timing: str) -> None:
     sentence = f"whenever p the sw shall {timing} 999999999999999 ticks satisfy q"
-    said = hold(tmp_path, {"r.fret": sentence}, "explain", "r.fret")
-    assert said.startswith("F670 the picture of r would have more than 100000 ticks")
+    output = hold(tmp_path, {"r.fret": sentence}, "explain", "r.fret")
+    assert output.startswith("F670 the picture of r would have more than 100000 ticks")
 
 
 # Logs
@@ -106,7 +106,7 @@ def log(encoding: str, defined: str, name: str, text: str) -> bytes:
     payload = b"\0\1\0\0" + bytes(64)
     schema = Schema(1, text.encode(), defined, name)
     channel = Channel(1, "/x", encoding, {}, 1)
-    return made(schema, channel, *(raw(time * S, payload) for time in (1, 2, 3)))
+    return log_of(schema, channel, *(raw(time * S, payload) for time in (1, 2, 3)))
 
 
 def tree(prefix: str, many: str, last: str) -> str:
@@ -185,7 +185,7 @@ ENDLESS = (
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
-    ("statements", "said"),
+    ("statements", "message"),
     [
         (
             (
@@ -200,14 +200,14 @@ ENDLESS = (
     ids=["a computed value", "an endless view"],
 )
 def test_a_database_that_computes_is_refused(
-    tmp_path: Path, statements: tuple[str, ...], said: str
+    tmp_path: Path, statements: tuple[str, ...], message: str
 ) -> None:
     path = tmp_path / "made.db3"
     with sqlite3.connect(path) as database:
         for statement in statements:
             database.execute(statement)
     database.close()
-    assert hold(tmp_path, {"log.db3": path.read_bytes()}, "info", "log.db3").startswith(said)
+    assert hold(tmp_path, {"log.db3": path.read_bytes()}, "info", "log.db3").startswith(message)
 
 
 # YAML, JSON, ReqIF

@@ -1,8 +1,8 @@
 """The layer AGENT of `fretc verify`: the texts of an agent and of its properties, in a model.
 
-What is looked at is text: the `.gwen` and `.psl` that MCAPL would read, not the requirement that
-they were made from. A verdict never stands alone: beside a property are its controls, which are to
-be violated, and an agent without the response, which is to break it.
+It examines texts: the `.gwen` and `.psl` that MCAPL would read, not the requirement behind them.
+A verdict comes with two checks of the check: the controls of a property, which must be violated,
+and an agent without the response, which must violate the property.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 
 from compiler.agents import gwendolen, psl
 from compiler.agents.gwendolen import Action, Agent, Change
-from compiler.agents.model import Model, State, told
+from compiler.agents.model import Model, State, narration
 from compiler.agents.psl import Property
 from compiler.agents.psl_printing import property_text
 from compiler.agents.vacuity import bare, demanded
@@ -37,9 +37,9 @@ from fretish.diagnostics.source import Source
 from fretish.reading.recursion import deep
 
 STATES = 200_000
-"""More are not explored, unless the caller says so."""
+"""The exploration stops at so many states, unless the caller asks for more."""
 CONTROLS = ("reach", "resp", "stop")
-"""`<key>_reach` is a control of `<key>`: it is to be violated."""
+"""`<key>_reach` is a control of `<key>`: it must be violated."""
 _ATOM = re.compile(r"(?P<modality>[A-Za-z]+)\((?P<agent>\w+),(?P<literal>.*)\)", re.DOTALL)
 _PERCEPT = re.compile(r"[a-z][A-Za-z0-9_]*(?:\([A-Za-z0-9_,. -]+\))?", re.ASCII)
 
@@ -78,12 +78,12 @@ def agent_evidence(
     sif, mutant, properties = (
         Source(name, files[name]) for name in ("SIF.gwen", "SIF_mutant.gwen", "SIF.psl")
     )
-    found = _checked(sif, properties, percepts, limit, mutant)
-    if isinstance(found, Diagnostic):
-        reason = f"{found.code.number} {found.message}"
+    evidence = _checked(sif, properties, percepts, limit, mutant)
+    if isinstance(evidence, Diagnostic):
+        reason = f"{evidence.code.number} {evidence.message}"
         claim = f"the agent of {rule.id} has its properties"
         return (Evidence(rule.id, Layer.AGENT, claim, NotChecked(reason), "fretc"),)
-    return tuple(replace(line, requirement=rule.id) for line in found)
+    return tuple(replace(line, requirement=rule.id) for line in evidence)
 
 
 def _checked(
@@ -93,9 +93,9 @@ def _checked(
     limit: int,
     mutant: Source | None,
 ) -> tuple[Evidence, ...] | Diagnostic:
-    said = psl.read(properties)
-    if isinstance(said, Diagnostic):
-        return said
+    props = psl.read(properties)
+    if isinstance(props, Diagnostic):
+        return props
     drawn: dict[str, None] = {}
     for name in percepts:
         percept = _percept(name)
@@ -105,35 +105,35 @@ def _checked(
     read = gwendolen.read(agent)
     broken = None if mutant is None else gwendolen.read(mutant)
     artefacts = {s.name: sha256(s.text) for s in (agent, properties, mutant) if s is not None}
-    if not said:
+    if not props:
         claim, reason = "the agent has its properties", f"`{properties.name}` has none"
         return (Evidence("agent", Layer.AGENT, claim, NotChecked(reason), "fretc", (), artefacts),)
-    for found in (read, broken):
-        if isinstance(found, Diagnostic) and found.code is not Code.BEYOND_MODEL:
-            return found
-        if isinstance(found, Diagnostic):
-            line = f", line {found.span.line}" if found.span else ""
-            return _unknown(said, f"{found.message} ({agent.name}{line})", artefacts)
+    for reading in (read, broken):
+        if isinstance(reading, Diagnostic) and reading.code is not Code.BEYOND_MODEL:
+            return reading
+        if isinstance(reading, Diagnostic):
+            line = f", line {reading.span.line}" if reading.span else ""
+            return _unknown(props, f"{reading.message} ({agent.name}{line})", artefacts)
     assert isinstance(read, Agent)
-    for prop in said:
-        other = _other_agent(prop, read)
-        if other is not None:
-            return other
+    for prop in props:
+        mismatch = _other_agent(prop, read)
+        if mismatch is not None:
+            return mismatch
     try:
         explored = _Explored.of(Model(read, tuple(drawn)), limit)
         spoilt = broken if isinstance(broken, Agent) else None
-        return tuple(_Lines(said, explored, spoilt, artefacts, limit).all())
+        return tuple(_Lines(props, explored, spoilt, artefacts, limit).all())
     except TooManyStatesError as error:
-        return _unknown(said, f"the agent has {error}", artefacts)
+        return _unknown(props, f"the agent has {error}", artefacts)
 
 
 def _percept(name: str) -> str | Diagnostic:
-    """Spelt as the agent's beliefs are; F613 for what is none."""
+    """The name in the spelling of the agent's beliefs; F613 where it is no percept."""
     if _PERCEPT.fullmatch(name):
         text = f"GWENDOLEN :name: a :Initial Beliefs: {name} :Initial Goals: :Plans: +a : {{True}};"
-        found = gwendolen.read(Source("percept", text))
-        if isinstance(found, Agent):
-            return found.beliefs[0]
+        agent = gwendolen.read(Source("percept", text))
+        if isinstance(agent, Agent):
+            return agent.beliefs[0]
     return Diagnostic(
         Code.BAD_PERCEPT,
         f"`{name}` cannot be a percept",
@@ -143,11 +143,11 @@ def _percept(name: str) -> str | Diagnostic:
 
 def _other_agent(prop: Property, agent: Agent) -> Diagnostic | None:
     for atom in f.atoms(prop.formula):
-        found = _ATOM.fullmatch(atom)
-        if found is not None and found["agent"] != agent.name:
+        match = _ATOM.fullmatch(atom)
+        if match is not None and match["agent"] != agent.name:
             return Diagnostic(
                 Code.OTHER_AGENT,
-                f"{prop.key} speaks of the agent `{found['agent']}`; this one is `{agent.name}`",
+                f"{prop.key} speaks of the agent `{match['agent']}`; this one is `{agent.name}`",
                 prop.span,
                 help="AJPF crashes on an agent that is not there: name the one of `:name:`",
             )
@@ -155,11 +155,11 @@ def _other_agent(prop: Property, agent: Agent) -> Diagnostic | None:
 
 
 def _unknown(
-    said: Sequence[Property], reason: str, artefacts: Mapping[str, str]
+    props: Sequence[Property], reason: str, artefacts: Mapping[str, str]
 ) -> tuple[Evidence, ...]:
     return tuple(
         Evidence(p.key, Layer.AGENT, _claim(p), NotChecked(reason), "fretc", (), artefacts)
-        for p in said
+        for p in props
     )
 
 
@@ -196,19 +196,19 @@ class _Explored:
         return Trace(
             names,
             tuple(tuple(name in label for name in names) for label in labels),
-            told(self.model, self.graph, lasso.states),
+            narration(self.model, self.graph, lasso.states),
             len(lasso.prefix),
         )
 
     def never(self, formula: f.Formula) -> list[str]:
-        """Why atoms of the formula are true in no state, in words."""
+        """For each atom of the formula that is true in no state, why, in words."""
         labels = self.graph.kripke.labels
         absent = [a for a in f.atoms(formula) if not any(a in label for label in labels)]
         return [self._why(atom) for atom in absent]
 
     def _why(self, atom: str) -> str:
-        found = _ATOM.fullmatch(atom)
-        literal = found["literal"] if found else atom
+        match = _ATOM.fullmatch(atom)
+        literal = match["literal"] if match else atom
         deeds = [deed for plan in self.model.agent.plans for deed in plan.deeds]
         if Action(literal) in deeds and atom.startswith("B("):
             return f"`{literal}` is an action, and actions are not believed"
@@ -224,7 +224,7 @@ class _Lines:
     properties: tuple[Property, ...]
     explored: _Explored
     mutant: Agent | None
-    """An agent that is to break the properties; None: one is made for each."""
+    """An agent that must violate the properties; None: each property gets one of its own."""
     artefacts: Mapping[str, str]
     limit: int
 
@@ -264,22 +264,22 @@ class _Lines:
     def _vacuous(self, prop: Property) -> str | None:
         for conditions, rest in bare(prop.formula):
             if self.explored.violation(rest) is None:
-                told = "; ".join(self.explored.never(f.And(conditions)))
-                because = f": {told}" if told else ""
-                named = " and ".join(f"`{_text(condition)}`" for condition in conditions)
-                return f"never true where it counts: {named}{because}"
+                reasons = "; ".join(self.explored.never(f.And(conditions)))
+                because = f": {reasons}" if reasons else ""
+                condition_text = " and ".join(f"`{_text(condition)}`" for condition in conditions)
+                return f"never true where it counts: {condition_text}{because}"
         for other in self.properties:
             if self._main_of(other) == prop and self.explored.violation(other.formula) is None:
-                told = "; ".join(self.explored.never(other.formula))
-                because = f": {told}" if told else ""
+                reasons = "; ".join(self.explored.never(other.formula))
+                because = f": {reasons}" if reasons else ""
                 return f"its control {other.key} holds{because}"
         return None
 
     def _control(self, prop: Property) -> Result:
         lasso = self.explored.violation(prop.formula)
         if lasso is None:
-            told = "; ".join(self.explored.never(prop.formula)) or "every run keeps it"
-            return Vacuous(f"{prop.key} holds: {told}")
+            reasons = "; ".join(self.explored.never(prop.formula)) or "every run keeps it"
+            return Vacuous(f"{prop.key} holds: {reasons}")
         return Proved(f"a run of {len(lasso.states)} stages violates {prop.key}, as it should")
 
     def _of_mutant(self, prop: Property) -> Iterator[Evidence]:
@@ -289,8 +289,8 @@ class _Lines:
             return
         spoilt = _Explored.of(Model(mutant, self.explored.model.percepts), self.limit)
         if spoilt.violation(prop.formula) is None:
-            told = f"that agent keeps {prop.key} too, so that it says nothing of the response"
-            yield self._line(prop, claim, Vacuous(told))
+            detail = f"that agent keeps {prop.key} too, so that it says nothing of the response"
+            yield self._line(prop, claim, Vacuous(detail))
         else:
             yield self._line(prop, claim, Proved(f"it does, within {spoilt.size}"))
 
@@ -318,9 +318,9 @@ def _without(agent: Agent, atoms: frozenset[str]) -> Agent | None:
 
 
 def _assumptions(percepts: Sequence[str]) -> tuple[str, ...]:
-    shown = f"exactly {', '.join(percepts)}, each freely," if percepts else "nothing"
+    draws = f"exactly {', '.join(percepts)}, each freely," if percepts else "nothing"
     return (
-        f"the environment shows {shown} anew at the start, at every action and whenever the "
+        f"the environment shows {draws} anew at the start, at every action and whenever the "
         "agent is idle, for ever (--percept)",
         "percepts that are drawn together are believed one after the other, in any order",
         "intentions take turns, first come, first served, one deed a turn",

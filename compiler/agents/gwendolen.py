@@ -179,7 +179,7 @@ class _Reader:
             )
 
     def beliefs(self, section: Tree[Token]) -> list[str]:
-        found: list[str] = []
+        literals: list[str] = []
         for part in section.children[1:]:
             if isinstance(part, Token):
                 raise misread(
@@ -187,8 +187,8 @@ class _Reader:
                     self.span(part),
                     "MCAPL drops the beliefs behind it: separate them by white space",
                 )
-            found.append(self.unnegated(part))
-        return found
+            literals.append(self.unnegated(part))
+        return literals
 
     def unnegated(self, parent: Tree[Token]) -> str:
         """The literal below, where no `~` may stand before it."""

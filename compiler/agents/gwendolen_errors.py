@@ -1,4 +1,4 @@
-"""What is said of a text that is no Gwendolen, or Gwendolen that the model does not have."""
+"""Diagnostics of texts that are no Gwendolen, or Gwendolen beyond the model."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ _ALL_HEADINGS = (":name:", ":Reasoning Rules:", *HEADINGS)
 
 
 class TrapError(Exception):
-    """Something that is not to be in the text."""
+    """The text has something that is not allowed in it."""
 
     def __init__(self, diagnostic: Diagnostic) -> None:
         super().__init__(diagnostic.message)
@@ -27,15 +27,15 @@ def misread(message: str, span: Span, mend: str) -> TrapError:
     return TrapError(Diagnostic(Code.BAD_AGENT, message, span, mend))
 
 
-def beyond(what: str, span: Span) -> TrapError:
+def beyond(feature: str, span: Span) -> TrapError:
     """F611, to be raised."""
-    return TrapError(_beyond(what, span))
+    return TrapError(_beyond(feature, span))
 
 
-def _beyond(what: str, span: Span) -> Diagnostic:
+def _beyond(feature: str, span: Span) -> Diagnostic:
     return Diagnostic(
         Code.BEYOND_MODEL,
-        f"{what} is Gwendolen, but not in the model of fretc",
+        f"{feature} is Gwendolen, but not in the model of fretc",
         span,
         help="check this agent with AJPF; the model has one agent with beliefs, plans on "
         "`+b` and `-b`, guards `True`, `B b`, `~B b`, and deeds `+b`, `-b` and actions",
@@ -69,30 +69,30 @@ _MORE = re.compile(
     | (?P<a_word_for_messages_or_locks> \.(?:send|received|sent|lock|plan|constraint|n|x)\b)""",
     re.VERBOSE,
 )
-"""What the grammar of MCAPL has beside that of `gwendolen.lark`."""
+"""Features of MCAPL's grammar that `gwendolen.lark` lacks."""
 
 
 def _sign_of_more(source: Source, at: int) -> Diagnostic | None:
-    found = _MORE.match(source.text, at)
-    if found is None:
+    match = _MORE.match(source.text, at)
+    if match is None:
         return None
-    what = str(found.lastgroup).replace("_", " ")
-    return _beyond(what, source.span(at, found.end()))
+    feature = str(match.lastgroup).replace("_", " ")
+    return _beyond(feature, source.span(at, match.end()))
 
 
-_NAMED = re.compile(r":name:\s*\w+\Z")
+_NAME_SECTION = re.compile(r":name:\s*\w+\Z")
 _HEADING = re.compile(r":[A-Za-z][A-Za-z ]*:")
 
 
 def _mistake(source: Source, at: int) -> Diagnostic | None:
-    """What users write and MCAPL does not read."""
+    """Common mistakes of users, which MCAPL does not read."""
     rest = source.text[at:]
     place = source.span(at, at + 1)
     if rest.startswith(("#", "%")):
         return Diagnostic(Code.BAD_AGENT, f"`{rest[0]}` begins no comment", place, _COMMENTS)
     if rest.startswith("/*"):
         return Diagnostic(Code.BAD_AGENT, "the comment has no end", place, "close it with `*/`")
-    if rest.startswith("-") and _NAMED.search(source.text[:at]):
+    if rest.startswith("-") and _NAME_SECTION.search(source.text[:at]):
         mend = "an agent's name has letters, digits and `_` only"
         return Diagnostic(Code.BAD_AGENT, "a `-` stands in the agent's name", place, mend)
     heading = _HEADING.match(rest)
@@ -113,7 +113,7 @@ def _follows_rules(error: UnexpectedToken) -> bool:
 
 
 def _wanted(error: UnexpectedInput) -> str:
-    """What could stand there, in the words of the language."""
+    """What the grammar expects there, in the words of the language."""
     accepted: set[str] = set()
     if isinstance(error, UnexpectedToken):
         accepted = set(error.accepts or error.expected)

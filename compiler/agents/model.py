@@ -4,12 +4,12 @@ States are the stages of the reasoning cycle: perceive; select an intention; pla
 deed. The environment draws each percept anew, freely, at the start, at every action that is not
 silent, and whenever the agent is idle, for ever; it never speaks of anything else.
 
-What is AJPF's own: percepts that are drawn together are believed one after the other, those that
+AJPF's semantics: percepts that are drawn together are believed one after the other, those that
 went first, and each change is a state of its own, which a property sees. A belief raises `+b` only
 when it is new. Events become intentions, and intentions take turns, first come first served, one
 deed a turn. A guard is asked when the event is planned; of the plans that fit, the first in the
 file is taken; without one, the event is dropped.
-What is more than AJPF's: an agent perceives in one of two ways, in all of a run. Either all changes
+Beyond AJPF: an agent perceives in one of two ways throughout a run. Either all changes
 come before anything else is done; or each becomes an intention (unless the same one waits already),
 with a turn of its own after those that wait. MCAPL has rules for both. Percepts that come at once,
 or go at once, are believed in any order; and where a belief was both perceived and added by the
@@ -48,7 +48,7 @@ class Stage(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Notice:
-    """What was perceived and is to be believed, or no longer to be believed, in a turn to come."""
+    """A perceived change of belief that the agent makes in a later turn."""
 
     change: Change
 
@@ -59,11 +59,11 @@ class Notice:
 
 @dataclass(frozen=True, slots=True)
 class Intention:
-    """What is to be done about an event, or about a percept."""
+    """The deeds of the agent for an event, or for a percept."""
 
     event: Change | Notice
     deeds: tuple[Deed | Notice, ...] = ()
-    """Still to be done; of an event, none before a plan has been chosen."""
+    """The deeds left; empty for an event until a plan is chosen."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,8 +72,8 @@ class State:
 
     percepts: Beliefs
     """What the environment shows."""
-    told: bool
-    """Whether the agent has seen that since it was drawn."""
+    up_to_date: bool
+    """Whether the agent has perceived `percepts` since the environment drew them."""
     perceived: Beliefs
     """Beliefs that come from percepts."""
     own: Beliefs
@@ -93,7 +93,7 @@ class State:
 
 
 Step = tuple[str, State]
-"""What happened, in words, and what is then."""
+"""An event, in words, and the state after it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -156,10 +156,10 @@ class Model:
         return frozenset(atom for atom in atoms if "'" not in atom)
 
     def _drawn(self, state: State) -> Iterator[Step]:
-        for shown in self._draws():
-            after = _shown(state, shown)
-            stage = Stage.SLEEP if after.told else Stage.PERCEIVE
-            yield f"the environment shows {_set(shown)}", replace(after, stage=stage)
+        for percepts in self._draws():
+            after = _with_percepts(state, percepts)
+            stage = Stage.SLEEP if after.up_to_date else Stage.PERCEIVE
+            yield f"the environment shows {_set(percepts)}", replace(after, stage=stage)
 
     def _draws(self) -> Iterator[Beliefs]:
         sizes = range(len(self.percepts) + 1)
@@ -177,25 +177,25 @@ class Model:
             if not plan.deeds:
                 break
             chosen = replace(intention, deeds=plan.deeds)
-            said = f"plans {intention.event}"
-            return said, replace(state, current=chosen, stage=Stage.EXECUTE)
-        said = f"drops {intention.event}: there is nothing to do"
-        return said, replace(state, current=None, stage=Stage.PERCEIVE)
+            description = f"plans {intention.event}"
+            return description, replace(state, current=chosen, stage=Stage.EXECUTE)
+        description = f"drops {intention.event}: there is nothing to do"
+        return description, replace(state, current=None, stage=Stage.PERCEIVE)
 
     def _executed(self, state: State) -> Iterator[Step]:
         intention = state.current
         assert intention is not None
         deed, *rest = intention.deeds
-        left = replace(intention, deeds=tuple(rest)) if rest else None
-        after = replace(state, current=left, stage=Stage.PERCEIVE)
+        remaining = replace(intention, deeds=tuple(rest)) if rest else None
+        after = replace(state, current=remaining, stage=Stage.PERCEIVE)
         match deed:
             case Action(name) if name.partition("(")[0] in SILENT:
                 printing = name.partition("(")[0] == "print"
                 yield f"does {name}", after if printing else replace(after, last=name)
             case Action(name):
-                for shown in self._draws():
-                    said = f"does {name}; the environment shows {_set(shown)}"
-                    yield said, _shown(replace(after, last=name), shown)
+                for percepts in self._draws():
+                    description = f"does {name}; the environment shows {_set(percepts)}"
+                    yield description, _with_percepts(replace(after, last=name), percepts)
             case Notice(change):
                 words = "believes" if change.sign == "+" else "no longer believes"
                 for state in _believed(after, change):
@@ -211,18 +211,18 @@ def _set(names: Beliefs) -> str:
     return ", ".join(sorted(names)) or "nothing"
 
 
-def _shown(state: State, percepts: Beliefs) -> State:
-    """The environment keeps silent where it had nothing to show and still has nothing."""
-    told = state.told and not state.percepts and not percepts
-    return replace(state, percepts=percepts, told=told)
+def _with_percepts(state: State, percepts: Beliefs) -> State:
+    """The state with newly drawn percepts; drawing none after none is no news for the agent."""
+    up_to_date = state.up_to_date and not state.percepts and not percepts
+    return replace(state, percepts=percepts, up_to_date=up_to_date)
 
 
 def _perceived(state: State) -> Iterator[Step]:
-    """What is no longer shown goes first, then what is newly shown comes."""
+    """Beliefs without a percept go first; then beliefs of new percepts come."""
     gone = [Change("-", belief) for belief in sorted(state.perceived - state.percepts)]
     come = [Change("+", belief) for belief in sorted(state.percepts - state.perceived)]
-    done = replace(state, told=True, stage=Stage.SELECT)
-    if state.told or not (gone or come):
+    done = replace(state, up_to_date=True, stage=Stage.SELECT)
+    if state.up_to_date or not (gone or come):
         yield "perceives nothing new", done
     elif state.in_turn:
         for first, then in product(permutations(gone), permutations(come)):
@@ -235,14 +235,14 @@ def _perceived(state: State) -> Iterator[Step]:
 
 
 def _noticed(state: State, changes: tuple[Change, ...]) -> State:
-    """An intention for each of them, but for those that wait already."""
+    """One intention for each change, unless the same intention waits already."""
     intentions = (Intention(Notice(change), (Notice(change),)) for change in changes)
     new = [intention for intention in intentions if intention not in state.waiting]
     return replace(state, waiting=(*state.waiting, *new))
 
 
 def _believed(state: State, change: Change) -> tuple[State, ...]:
-    """One percept comes or goes; all that may be where the agent has the belief of its own too."""
+    """One percept comes or goes; several outcomes where the agent has added the belief itself."""
     belief = {change.belief}
     if change.sign == "+":
         new = replace(state, perceived=state.perceived | belief)
@@ -271,7 +271,7 @@ def _added(state: State, belief: str) -> State:
 
 
 def _removed(state: State, belief: str) -> tuple[State, ...]:
-    """All that may be where the belief was perceived too."""
+    """The agent removes a belief; several outcomes where the belief is also perceived."""
     gone = Change("-", belief)
     less = replace(state, own=state.own - {belief})
     neither = replace(less, perceived=state.perceived - {belief})
@@ -286,17 +286,17 @@ def _raised(state: State, event: Change, times: int) -> State:
     return replace(state, waiting=(*state.waiting, *[Intention(event)] * times))
 
 
-def told(model: Model, explored: Explored[State], numbers: tuple[int, ...]) -> tuple[str, ...]:
-    """What happened on the way to each of the states, in words.
+def narration(model: Model, explored: Explored[State], numbers: tuple[int, ...]) -> tuple[str, ...]:
+    """The event before each state of a run, in words.
 
     Args:
         model: whose states they are.
         explored: all of them.
         numbers: a run, from the initial state on.
     """
-    said = ["nothing yet"]
+    actions = ["nothing yet"]
     for before, after in pairwise(numbers):
         wanted = explored.states[after]
         steps = model.steps(explored.states[before])
-        said.append(next(words for words, state in steps if state == wanted))
-    return tuple(said)
+        actions.append(next(words for words, state in steps if state == wanted))
+    return tuple(actions)

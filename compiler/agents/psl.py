@@ -1,8 +1,8 @@
-"""Property files of AJPF (`.psl`), read strictly: what AJPF would repair in silence is a mistake.
+"""Property files of AJPF (`.psl`), read strictly: a text that AJPF would repair is a mistake.
 
-AJPF's own reader takes a file apart line by line and its parser recovers from every error, so that
-a wrong property looks verified. Here a property is either read exactly as AJPF reads it, or F603
-tells what AJPF would have made of it, and where.
+AJPF's own reader splits a file line by line and its parser recovers from every error, so that
+a wrong property looks verified. This reader reads a property exactly as AJPF does, or F603 tells
+how AJPF would misread it, and where.
 Source: the file reader and the property grammar of MCAPL; Dennis et al., Model checking agent
 programming languages, ASE 19 (2012), section 4 (the property specification language).
 """
@@ -13,7 +13,7 @@ import re
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 
-from compiler.agents.psl_grammar import Glued, MisreadError, formula, misread
+from compiler.agents.psl_grammar import JoinedText, MisreadError, formula, misread
 from compiler.logic.formula import Formula
 from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
 from fretish.diagnostics.source import Source, Span
@@ -38,7 +38,7 @@ class Property:
     span: Span = field(compare=False, repr=False)
     """From the key to the end of the formula."""
     remarks: tuple[Diagnostic, ...] = field(default=(), compare=False, repr=False)
-    """Warnings: read as written, and probably not what is meant."""
+    """Warnings about properties that probably do not mean what their author intends."""
 
 
 @deep
@@ -62,12 +62,12 @@ def _read(source: Source) -> tuple[Property, ...] | Diagnostic:
                     f"AJPF takes the last one; the first is in line {first[key.text].line}",
                 )
         return tuple(_property(key, text) for key, text in keyed)
-    except MisreadError as told:
-        return told.diagnostic
+    except MisreadError as error:
+        return error.diagnostic
 
 
-def _property(key: Span, text: Glued) -> Property:
-    said, strings = formula(text)
+def _property(key: Span, text: JoinedText) -> Property:
+    tree, strings = formula(text)
     remarks = tuple(
         Diagnostic(
             Code.BAD_PROPERTY,
@@ -78,10 +78,10 @@ def _property(key: Span, text: Glued) -> Property:
         )
         for string in strings
     )
-    return Property(key.text, said, key.to(text.span(0, len(text.text))), remarks)
+    return Property(key.text, tree, key.to(text.span(0, len(text.text))), remarks)
 
 
-def _keyed(source: Source) -> Iterator[tuple[Span, Glued]]:
+def _keyed(source: Source) -> Iterator[tuple[Span, JoinedText]]:
     """Each key with the text of its formula, put together as AJPF's file reader does it.
 
     A line is split at its colons; one without a colon belongs to the line before it, with nothing
@@ -95,8 +95,8 @@ def _keyed(source: Source) -> Iterator[tuple[Span, Glued]]:
         _refuse_beyond_ascii(line)
         if ":" in line.text:
             if key is not None:
-                yield key, Glued(source, pieces)
-            key, pieces = _key(line), [_told(line)]
+                yield key, JoinedText(source, pieces)
+            key, pieces = _key(line), [_formula_text(line)]
         elif key is not None:
             pieces.append(line)
         elif line.text.strip():
@@ -104,7 +104,7 @@ def _keyed(source: Source) -> Iterator[tuple[Span, Glued]]:
                 "the text stands before the first key", line, "write `KEY: formula` on one line"
             )
     if key is not None:
-        yield key, Glued(source, pieces)
+        yield key, JoinedText(source, pieces)
 
 
 def _lines(source: Source) -> Iterator[Span]:
@@ -113,7 +113,7 @@ def _lines(source: Source) -> Iterator[Span]:
 
 
 def _key(line: Span) -> Span:
-    """What stands before the first colon; AJPF compares it to the letter."""
+    """The text before the first colon; AJPF compares keys letter by letter."""
     key = line.part(0, line.text.index(":"))
     if KEY.fullmatch(key.text):
         return key
@@ -127,8 +127,8 @@ def _key(line: Span) -> Span:
     )
 
 
-def _told(line: Span) -> Span:
-    """What stands behind the first colon."""
+def _formula_text(line: Span) -> Span:
+    """The text behind the first colon."""
     start = line.text.index(":") + 1
     second = line.text.find(":", start)
     if second >= 0:

@@ -73,7 +73,7 @@ _DROPPED = {
 
 
 class MisreadError(Exception):
-    """AJPF would not read it as it is written."""
+    """AJPF would misread the text."""
 
     def __init__(self, diagnostic: Diagnostic) -> None:
         super().__init__(diagnostic.message)
@@ -85,8 +85,8 @@ def misread(message: str, span: Span, mend: str) -> MisreadError:
     return MisreadError(Diagnostic(Code.BAD_PROPERTY, message, span, mend))
 
 
-class Glued:
-    """The text of one formula, its lines put together with nothing between them."""
+class JoinedText:
+    """The text of one formula: its lines, joined without spaces."""
 
     def __init__(self, source: Source, pieces: Sequence[Span]) -> None:
         self.source = source
@@ -112,23 +112,23 @@ class _Token:
     span: Span = field(repr=False)
 
 
-def formula(text: Glued) -> tuple[f.Formula, tuple[Span, ...]]:
+def formula(text: JoinedText) -> tuple[f.Formula, tuple[Span, ...]]:
     """The formula of one property, and the strings in it.
 
     Raises:
         MisreadError: AJPF would repair the text, drop a part of it, or crash.
     """
     reader = _Reader(deque(_tokens(text)), text.span(0, 0))
-    said = reader.formula()
+    tree = reader.formula()
     if reader.tokens:
         tail = reader.tokens[0]
         mend = _DROPPED.get(tail.text, "a property ends with its formula")
-        shown = tail.text
-        raise misread(f"AJPF drops `{shown}` and all that follows it in silence", tail.span, mend)
-    return said, tuple(reader.strings)
+        word = tail.text
+        raise misread(f"AJPF drops `{word}` and all that follows it in silence", tail.span, mend)
+    return tree, tuple(reader.strings)
 
 
-def _tokens(text: Glued) -> Iterator[_Token]:
+def _tokens(text: JoinedText) -> Iterator[_Token]:
     for match in _TOKEN.finditer(text.text):
         kind, span = str(match.lastgroup), text.span(*match.span())
         if kind == "skip":
@@ -174,11 +174,11 @@ class _Reader:
 
     def need(self, sign: str) -> None:
         if not self.take(sign):
-            shown = f"before `{self.next.text}`" if self.tokens else "at the end"
+            place = f"before `{self.next.text}`" if self.tokens else "at the end"
             mend = _DROPPED.get(self.next.text, "")
-            told = "AJPF supplies it, or drops what stands there, in silence"
+            effect = "AJPF supplies it, or drops what stands there, in silence"
             raise misread(
-                f"`{sign}` is missing {shown}", self.next.span, f"{told}{'; ' * bool(mend)}{mend}"
+                f"`{sign}` is missing {place}", self.next.span, f"{effect}{'; ' * bool(mend)}{mend}"
             )
 
     # Operators
@@ -249,13 +249,13 @@ class _Reader:
                 "leave out those that are not needed",
             )
 
-    def _no_formula(self, found: _Token) -> MisreadError:
-        if found.kind == "end":
-            return misread("a formula is missing", found.span, "write it behind the operator")
-        mend = _DROPPED.get(found.text, "an atom is `B(agent,belief)`")
-        if found.text[0] in "URAE" and found.text[1:] in MODALITIES:
-            mend = f"put a space between: `{found.text[0]} {found.text[1:]}`"
-        return misread(f"`{found.text}` cannot begin a formula", found.span, mend)
+    def _no_formula(self, token: _Token) -> MisreadError:
+        if token.kind == "end":
+            return misread("a formula is missing", token.span, "write it behind the operator")
+        mend = _DROPPED.get(token.text, "an atom is `B(agent,belief)`")
+        if token.text[0] in "URAE" and token.text[1:] in MODALITIES:
+            mend = f"put a space between: `{token.text[0]} {token.text[1:]}`"
+        return misread(f"`{token.text}` cannot begin a formula", token.span, mend)
 
     # Atoms
 
@@ -265,15 +265,15 @@ class _Reader:
             words.append(self._word(AGENT, "an agent", "letters, digits and `_`"))
         return ".".join(words)
 
-    def _word(self, pattern: re.Pattern[str], what: str, rule: str) -> str:
-        found = self.next
-        if found.kind == "word" and pattern.fullmatch(found.text) and found.text not in KEY_WORDS:
+    def _word(self, pattern: re.Pattern[str], kind: str, rule: str) -> str:
+        token = self.next
+        if token.kind == "word" and pattern.fullmatch(token.text) and token.text not in KEY_WORDS:
             self.tokens.popleft()
-            return found.text
-        told = f"`{found.text}` is" if self.tokens else "there is"
+            return token.text
+        subject = f"`{token.text}` is" if self.tokens else "there is"
         raise misread(
-            f"{told} no name of {what}",
-            found.span,
+            f"{subject} no name of {kind}",
+            token.span,
             f"AJPF repairs it or crashes: use {rule}, and no key word of AJPF",
         )
 
@@ -284,22 +284,22 @@ class _Reader:
 
     def _arguments(self, closing: str) -> str:
         self._deeper()
-        said = [self._argument()]
+        arguments = [self._argument()]
         while self.take(","):
-            said.append(self._argument())
+            arguments.append(self._argument())
         self.level -= 1
         self.need(closing)
-        return ",".join(said)
+        return ",".join(arguments)
 
     def _argument(self) -> str:
-        found = self.next
-        if found.kind == "number" or (found.kind == "word" and found.text.isdigit()):
+        token = self.next
+        if token.kind == "number" or (token.kind == "word" and token.text.isdigit()):
             self.tokens.popleft()
-            return format(Decimal(repr(float(found.text))).normalize(), "f")
-        if found.kind == "string":
+            return format(Decimal(repr(float(token.text))).normalize(), "f")
+        if token.kind == "string":
             self.tokens.popleft()
-            self.strings.append(found.span)
-            return f"'{found.text[1:-1]}'"
+            self.strings.append(token.span)
+            return f"'{token.text[1:-1]}'"
         if self.take("_"):
             return "_"
         if self.take("["):

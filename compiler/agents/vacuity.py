@@ -1,4 +1,4 @@
-"""Where a property that holds says nothing: what would still hold if less were asked of the model.
+"""Vacuity: whether a property would hold even if it demanded less of the model.
 
 Source: Kupferman, Vardi, Vacuity detection in temporal model checking, STTT 4 (2003); Beer et al.,
 Efficient detection of vacuity in temporal model checking, FMSD 18 (2001).
@@ -13,9 +13,9 @@ Bare = tuple[tuple[f.Formula, ...], f.Formula]
 
 
 def bare(formula: f.Formula) -> tuple[Bare, ...]:
-    """What is left of the formula where nothing follows from its innermost conditions.
+    """The formula without the consequences of its innermost conditions.
 
-    Where that holds as well, the conditions are never true when they are asked. One for each part
+    Where that holds as well, the conditions are never true where they matter. One for each part
     of a conjunction that speaks of all times, and one for the whole where no part does. A condition
     is the left side of an implication, and `a` in `!a | b` where `a` has no temporal operator;
     under a negation there are none, nor are those that only choose among propositions.
@@ -23,8 +23,8 @@ def bare(formula: f.Formula) -> tuple[Bare, ...]:
     flat = _flat(formula)
     parts = flat.args if isinstance(flat, f.And) else (flat,)
     lasting = tuple(part for part in parts if isinstance(part, f.Globally))
-    found = map(_bare, lasting or (flat,))
-    return tuple((conditions, rest) for conditions, rest in found if conditions)
+    reductions = map(_bare, lasting or (flat,))
+    return tuple((conditions, rest) for conditions, rest in reductions if conditions)
 
 
 def _flat(formula: f.Formula) -> f.Formula:
@@ -65,7 +65,7 @@ def _is_plain(formula: f.Formula) -> bool:
 
 
 def demanded(formula: f.Formula, positive: bool = True) -> frozenset[str]:
-    """The atoms that the formula wants true somewhere: those under an even number of negations."""
+    """The atoms that occur positively: under an even number of negations."""
     match formula:
         case f.Atom(name):
             return frozenset({name} if positive else ())

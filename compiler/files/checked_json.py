@@ -1,6 +1,6 @@
-"""A value of a JSON file together with its path: every look into it is checked.
+"""A value of a JSON file together with its path: every access to it is checked.
 
-What is not as it must be raises `MisshapenError` with the path; `fretc/audit/evidence/reader.py`
+A value of the wrong kind raises `MisshapenError` with the path; `fretc/audit/evidence/reader.py`
 turns that into a diagnostic.
 """
 
@@ -16,7 +16,7 @@ T = TypeVar("T")
 _LARGEST = 2**63
 _LONGEST = 10**10
 """Seconds: some three hundred years, more than 64 bits of nanoseconds hold."""
-_SHOWN = 40
+_EXCERPT = 40
 
 
 class MisshapenError(ValueError):
@@ -24,7 +24,7 @@ class MisshapenError(ValueError):
 
 
 def parsed(text: str) -> Shape:
-    """A JSON text that every reader takes for the same: each key once, and finite numbers only.
+    """A JSON text that all readers read alike: each key once, and finite numbers only.
 
     Raises:
         json.JSONDecodeError: it is no JSON.
@@ -38,7 +38,7 @@ def parsed(text: str) -> Shape:
 
 
 def plain(text: str) -> object:
-    """The value of such a text.
+    """The value of a JSON text.
 
     Raises:
         MisshapenError: it is no such text.
@@ -52,17 +52,17 @@ def plain(text: str) -> object:
 
 
 def _distinct(pairs: Sequence[tuple[str, object]]) -> dict[str, object]:
-    known: dict[str, object] = {}
+    fields: dict[str, object] = {}
     for key, value in pairs:
-        if key in known:
-            raise ValueError(f"`{key[:_SHOWN]}` is there twice in one object")
-        known[key] = value
-    return known
+        if key in fields:
+            raise ValueError(f"`{key[:_EXCERPT]}` is there twice in one object")
+        fields[key] = value
+    return fields
 
 
 def _finite(word: str) -> float:
     if not isfinite(float(word)):
-        raise ValueError(f"`{word[:_SHOWN]}` is too large for a number")
+        raise ValueError(f"`{word[:_EXCERPT]}` is too large for a number")
     return float(word)
 
 
@@ -156,22 +156,22 @@ class Shape:
         """Nothing else may be in an object."""
         for key in self._object():
             if key not in keys:
-                raise MisshapenError(f"{self.name} may not have `{key[:_SHOWN]}`")
+                raise MisshapenError(f"{self.name} may not have `{key[:_EXCERPT]}`")
 
     def or_none(self, read: Callable[[Shape], T]) -> T | None:
-        """None for null, else what `read` makes of it."""
+        """None for null, else the result of `read`."""
         return None if self.value is None else read(self)
 
     def wrong(self, wanted: str) -> MisshapenError:
-        """It is something else than was wanted."""
-        return MisshapenError(f"{self.name} must be {wanted}, and is {self._shown()}")
+        """The error of a value that is not `wanted`."""
+        return MisshapenError(f"{self.name} must be {wanted}, and is {self._excerpt()}")
 
     def _object(self) -> dict[str, object]:
         if not isinstance(self.value, dict):
             raise self.wrong("an object")
         return self.value
 
-    def _shown(self) -> str:
+    def _excerpt(self) -> str:
         match self.value:
             case None:
                 return "null"
@@ -185,4 +185,4 @@ class Shape:
                 return "far too large"
             case _:
                 text = str(self.value)
-                return f"`{text[:_SHOWN]}{'…' if len(text) > _SHOWN else ''}`"
+                return f"`{text[:_EXCERPT]}{'…' if len(text) > _EXCERPT else ''}`"

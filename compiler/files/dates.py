@@ -1,4 +1,4 @@
-"""The date that an output carries, where it is to be made again with the same bytes.
+"""The date in an output, for outputs that are reproducible byte by byte.
 
 Source: reproducible-builds.org, SOURCE_DATE_EPOCH specification 1.1.
 """
@@ -18,7 +18,7 @@ def source_date() -> datetime | None:
 
 
 def today() -> str:
-    """The day of `SOURCE_DATE_EPOCH` where that is set, so that a report can be made again; UTC."""
+    """The UTC day of `SOURCE_DATE_EPOCH` where that is set, so that a report is reproducible."""
     return now().date().isoformat()
 
 

@@ -13,7 +13,7 @@ import fastjsonschema
 
 from compiler.files.templating import template_root
 
-_SHOWN = 60
+_EXCERPT = 60
 
 
 def misfit(value: object, name: str) -> str:
@@ -26,7 +26,7 @@ def misfit(value: object, name: str) -> str:
     try:
         _check(name)(value)
     except fastjsonschema.JsonSchemaValueException as error:
-        return _told(error)
+        return _message(error)
     return ""
 
 
@@ -37,22 +37,22 @@ def _check(name: str) -> Callable[[object], object]:
     return check
 
 
-def _told(error: fastjsonschema.JsonSchemaValueException) -> str:
+def _message(error: fastjsonschema.JsonSchemaValueException) -> str:
     name = error.name or ""
     place = name.removeprefix("data").removeprefix(".")
-    whole, about = f"`{place}`" if place else "the whole file", error.definition
+    subject, about = f"`{place}`" if place else "the whole file", error.definition
     match error.rule:
         case "required":
-            missing = next(key for key in about["required"] if key not in error.value)
-            return f"{whole} has no `{missing}`"
+            key = next(key for key in about["required"] if key not in error.value)
+            return f"{subject} has no `{key}`"
         case "additionalProperties":
             unknown = min(key for key in error.value if key not in about["properties"])
-            return f"{whole} has `{_short(unknown)}`, which is unknown"
+            return f"{subject} has `{_short(unknown)}`, which is unknown"
         case "anyOf":
-            return f"{whole} has none of the forms that it may have"
+            return f"{subject} has none of the forms that it may have"
         case _:
             rule = error.message.removeprefix(name).strip()
-            return f"{whole} {rule}{_value(error.value)}"
+            return f"{subject} {rule}{_value(error.value)}"
 
 
 def _value(value: object) -> str:
@@ -62,4 +62,4 @@ def _value(value: object) -> str:
 
 
 def _short(text: str) -> str:
-    return f"{text[:_SHOWN]}…" if len(text) > _SHOWN else text
+    return f"{text[:_EXCERPT]}…" if len(text) > _EXCERPT else text

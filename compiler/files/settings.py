@@ -1,7 +1,7 @@
-"""`[tool.fretc]` of `pyproject.toml`: what holds for a whole project, wherever a command runs.
+"""`[tool.fretc]` of `pyproject.toml`: settings of a whole project, wherever a command runs.
 
-It is sought up to the root of the repository (`.git`) and no further: what lies above may be
-anybody's. Outside of a repository it is sought up to the present folder.
+The search goes up to the root of the repository (`.git`) and no further: a folder above it may
+belong to somebody else. Outside of a repository it ends at the present folder.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ OUTSIDE: ContextVar[tuple[str, ...]] = ContextVar("OUTSIDE", default=())
 
 @dataclass(frozen=True, slots=True)
 class Settings:
-    """What the project says of itself."""
+    """The settings of one project."""
 
     folder: Path
     """Where `pyproject.toml` is; paths in it start there."""
@@ -53,9 +53,9 @@ def settings(folder: str) -> Settings | Diagnostic:
     for place in places:
         path = place / NAME
         if path.is_file():
-            found = _read(path, places[-1])
-            if found is not None:
-                return found
+            result = _read(path, places[-1])
+            if result is not None:
+                return result
     return Settings(start)
 
 
@@ -70,8 +70,8 @@ def _project(start: Path) -> Iterator[Path]:
 
 
 def _read(path: Path, root: Path) -> Settings | Diagnostic | None:
-    """None where the file says nothing about fretc."""
-    source = read_text(_shown(path))
+    """None where the file has no `[tool.fretc]`."""
+    source = read_text(_display_path(path))
     if isinstance(source, Diagnostic):
         return source
     if "tool.fretc" not in source.text:
@@ -79,11 +79,11 @@ def _read(path: Path, root: Path) -> Settings | Diagnostic | None:
     tables = read_tables(source.span(), Code.BAD_SETTINGS, NAME)
     if isinstance(tables, Diagnostic):
         return tables
-    told = tables.data.get("tool", {}).get("fretc")
-    return None if told is None else _settings(path.parent, root, tables, told)
+    table = tables.data.get("tool", {}).get("fretc")
+    return None if table is None else _settings(path.parent, root, tables, table)
 
 
-def _shown(path: Path) -> str:
+def _display_path(path: Path) -> str:
     """The path as a user would write it."""
     try:
         return str(path.relative_to(Path.cwd()))
@@ -91,19 +91,23 @@ def _shown(path: Path) -> str:
         return str(path)
 
 
-def _settings(folder: Path, root: Path, tables: Tables, told: Any) -> Settings | Diagnostic:
-    if not isinstance(told, dict):
-        return _wrong(tables, "`fretc` must be a table", "write `[tool.fretc]`", "tool", "fretc")
-    for key in told:
+def _settings(folder: Path, root: Path, tables: Tables, table: Any) -> Settings | Diagnostic:
+    if not isinstance(table, dict):
+        return _bad_settings(
+            tables, "`fretc` must be a table", "write `[tool.fretc]`", "tool", "fretc"
+        )
+    for key in table:
         if key not in _FIELDS:
             span = tables.place("tool", "fretc", key)
             return unknown_key(Code.BAD_SETTINGS, key, _FIELDS, span, "[tool.fretc]")
-    parents = told.get("parents", [])
+    parents = table.get("parents", [])
     if not isinstance(parents, list) or not all(isinstance(path, str) for path in parents):
         mend = 'write `parents = ["build/hazards/json/index.json"]`'
-        return _wrong(tables, "`parents` must be a list of paths", mend, "tool", "fretc", "parents")
+        return _bad_settings(
+            tables, "`parents` must be a list of paths", mend, "tool", "fretc", "parents"
+        )
     return Settings(folder, tuple(parents), tables, root)
 
 
-def _wrong(tables: Tables, what: str, mend: str, *path: str) -> Diagnostic:
-    return Diagnostic(Code.BAD_SETTINGS, what, tables.place(*path), help=mend)
+def _bad_settings(tables: Tables, message: str, mend: str, *path: str) -> Diagnostic:
+    return Diagnostic(Code.BAD_SETTINGS, message, tables.place(*path), help=mend)

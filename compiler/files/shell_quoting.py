@@ -1,4 +1,4 @@
-"""Names of files in commands that are shown to be pasted: whatever they are, they stay names."""
+"""Quotes of file names in commands for users to paste: no name becomes an option or a command."""
 
 from __future__ import annotations
 

@@ -76,15 +76,15 @@ def quoted(text: str) -> str:
 
 def toml(text: str) -> str:
     """The text as a TOML string, on one line."""
-    return _written("x", text).partition(" = ")[2]
+    return _line("x", text).partition(" = ")[2]
 
 
 def key(name: str) -> str:
     """The name as a TOML key, in quotes where it needs them."""
-    return _written(name, True).rpartition(" = ")[0]
+    return _line(name, True).rpartition(" = ")[0]
 
 
-def _written(name: str, value: object) -> str:
+def _line(name: str, value: object) -> str:
     return tomli_w.dumps({name: value}).removesuffix("\n")
 
 

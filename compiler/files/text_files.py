@@ -1,4 +1,4 @@
-"""Files in and out: text read with its mistakes told, output written whole or not at all."""
+"""Files in and out: text with diagnostics where it cannot be read, output complete or absent."""
 
 from __future__ import annotations
 
@@ -149,11 +149,11 @@ def _fill(temporary: Path, content: str | bytes, *, like: Path) -> None:
     mode = stat.S_IMODE(like.stat().st_mode) if like.exists() else _usual()
     if data.startswith(b"#!"):
         mode |= (mode & _READABLE) >> 2
-    made = os.open(temporary, os.O_CREAT | os.O_EXCL | os.O_NOFOLLOW | os.O_WRONLY, 0o600)
-    with os.fdopen(made, "wb") as file:
+    descriptor = os.open(temporary, os.O_CREAT | os.O_EXCL | os.O_NOFOLLOW | os.O_WRONLY, 0o600)
+    with os.fdopen(descriptor, "wb") as file:
         file.write(data)
         file.flush()
-        os.fchmod(made, mode)
+        os.fchmod(descriptor, mode)
 
 
 def _usual() -> int:
@@ -210,7 +210,7 @@ def file_sha256(path: str) -> str | None:
 
 @dataclass(frozen=True, slots=True)
 class Stamp:
-    """What the file system tells of a regular file: while it is the same, so are the bytes.
+    """The file system's record of a regular file: while it is the same, so are the bytes.
 
     `mtime_ns` can be set back by anybody, `ctime_ns` by the clock of the machine only.
     """
@@ -227,14 +227,18 @@ class Stamp:
 def stamp(path: str) -> Stamp | None:
     """The stamp of a file; None where there is none, or no regular one."""
     try:
-        found = os.stat(path)
+        status = os.stat(path)
     except OSError:
         return None
-    if not stat.S_ISREG(found.st_mode):
+    if not stat.S_ISREG(status.st_mode):
         return None
-    age = time.time_ns() - max(found.st_mtime_ns, found.st_ctime_ns)
+    age = time.time_ns() - max(status.st_mtime_ns, status.st_ctime_ns)
     return Stamp(
-        found.st_size, found.st_mtime_ns, found.st_ctime_ns, found.st_ino, settled=age > _COARSEST
+        status.st_size,
+        status.st_mtime_ns,
+        status.st_ctime_ns,
+        status.st_ino,
+        settled=age > _COARSEST,
     )
 
 

@@ -1,4 +1,4 @@
-"""A key of the user: what is made with it was made by nobody else."""
+"""A secret key of the user, which shows that fretc wrote a file for this user."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ _LENGTH = 32
 
 
 def user_key() -> bytes | Diagnostic:
-    """The key, made when it is first asked for; or why there is none (F920).
+    """The key; the first call creates it. F920 where there can be none.
 
     It lies in the folder for the state of programs, readable by the user only. Source: XDG Base
     Directory Specification 0.8.
@@ -35,13 +35,15 @@ def user_key() -> bytes | Diagnostic:
 
 
 def _folder() -> Path:
-    told = os.environ.get("XDG_STATE_HOME", "")
-    state = Path(told) if os.path.isabs(told) else Path(os.path.expanduser("~/.local/state"))
+    variable = os.environ.get("XDG_STATE_HOME", "")
+    state = (
+        Path(variable) if os.path.isabs(variable) else Path(os.path.expanduser("~/.local/state"))
+    )
     return state / "fretc"
 
 
 def _make(path: Path) -> None:
-    """Whole or not at all, and never in the place of another one."""
+    """Write a complete key or none, and never replace another one."""
     path.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
     temporary = path.with_name(f".{secrets.token_hex(8)}.tmp")
     file = os.open(temporary, os.O_CREAT | os.O_EXCL | os.O_NOFOLLOW | os.O_WRONLY, 0o600)

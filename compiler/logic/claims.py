@@ -1,7 +1,7 @@
-"""What `fretc verify` shows: one line of evidence for each claim, whatever engine made it.
+"""The results of `fretc verify`: one line of evidence for each claim, from any engine.
 
-A result never stands alone: beside it are the claim in words, the assumptions it holds under, the
-engine that found it, and the SHA-256 of each text that was looked at.
+A result comes with the claim in words, the assumptions that it holds under, the engine that found
+it, and the SHA-256 of each text that was examined.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ SCHEMA = "fretc-verification-1"
 
 
 class Layer(StrEnum):
-    """What is looked at, from the monitor outwards; the values are those of `--layer`."""
+    """The object of a claim, from the monitor outwards; the values are those of `--layer`."""
 
     MONITOR = "monitor"
     """The text of the monitor means what its sentence means."""
@@ -26,11 +26,11 @@ class Layer(StrEnum):
     LOOP = "loop"
     """Monitor, interceptor and any environment under named assumptions keep the requirement."""
     BOUNDS = "bounds"
-    """So they do at every bound and latency, not only at those that are declared."""
+    """The same at every bound and latency, not only at the declared ones."""
     AGENT = "agent"
     """The text of the agent has the properties of its property file, in a model of our own."""
     AJPF = "ajpf"
-    """So it has by AJPF's own verdict, as the `run.py` of a bundle has recorded it."""
+    """The same by AJPF's own verdict, which the `run.py` of a bundle has recorded."""
 
 
 ALL, PROVERS = ("verify", "proof"), ("dafny", "crosshair")
@@ -46,7 +46,7 @@ class Trace:
     """Propositions and whatever else helps to read it, as heads of the columns."""
     rows: tuple[tuple[Truth, ...], ...]
     actions: tuple[str, ...] = ()
-    """What happened at each row, in words; empty, or as many as rows."""
+    """The event at each row, in words; empty, or as many as rows."""
     cycle: int | None = None
     """The row to which the last one leads back for ever; None: the run ends."""
 
@@ -61,7 +61,7 @@ class Proved:
     """The claim holds, under the assumptions of its line."""
 
     detail: str
-    """How much was looked at."""
+    """How much was examined."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,19 +70,19 @@ class Counterexample:
 
     detail: str
     trace: Trace | None
-    """None where the engine tells no run."""
+    """None where the engine gives no run."""
 
 
 @dataclass(frozen=True, slots=True)
 class Vacuous:
-    """The claim holds and says nothing: what it speaks of cannot occur."""
+    """The claim holds trivially: its condition cannot occur."""
 
     detail: str
 
 
 @dataclass(frozen=True, slots=True)
 class NotChecked:
-    """Nothing is known."""
+    """There is no result."""
 
     reason: str
 
@@ -92,7 +92,7 @@ Result = Proved | Counterexample | Vacuous | NotChecked
 
 @dataclass(frozen=True, slots=True)
 class Evidence:
-    """One claim, and what is known of it."""
+    """One claim and its result."""
 
     requirement: str
     layer: Layer
@@ -100,16 +100,16 @@ class Evidence:
     """One sentence without a full stop."""
     result: Result
     engine: str
-    """What found it, with its version where it is not fretc itself."""
+    """The engine of the result, with its version where it is not fretc itself."""
     assumptions: tuple[str, ...] = ()
     """Each in words that name its number and where it is declared."""
     artefacts: Mapping[str, str] = field(default_factory=dict)
-    """Name of a file → SHA-256 of the text that was looked at."""
+    """Name of a file → SHA-256 of the text that was examined."""
 
 
 PROVED, COUNTEREXAMPLE, VACUOUS, NOT_CHECKED = "proved", "counterexample", "vacuous", "not checked"
 RESULTS = (PROVED, COUNTEREXAMPLE, VACUOUS, NOT_CHECKED)
-"""What a result is called wherever it is written."""
+"""The name of each kind of result in every output."""
 
 
 def status(result: Result) -> str:
@@ -128,26 +128,26 @@ def status(result: Result) -> str:
 
 
 def document(fretc: str, evidence: Sequence[Evidence]) -> dict[str, Any]:
-    """What `build/verification.json` holds; the same for the same texts, whenever it is made.
+    """The content of `build/verification.json`; equal for equal texts, at any time.
 
     Args:
         fretc: the version of the tool.
         evidence: in its order.
     """
-    return {"schema": SCHEMA, "fretc": fretc, "evidence": [as_record(one) for one in evidence]}
+    return {"schema": SCHEMA, "fretc": fretc, "evidence": [as_record(each) for each in evidence]}
 
 
 def as_record(evidence: Evidence) -> dict[str, Any]:
     """Plain values, in a fixed order of keys."""
     result = evidence.result
-    told = result.reason if isinstance(result, NotChecked) else result.detail
+    detail = result.reason if isinstance(result, NotChecked) else result.detail
     trace = result.trace if isinstance(result, Counterexample) else None
     return {
         "requirement": evidence.requirement,
         "layer": str(evidence.layer),
         "claim": evidence.claim,
         "result": status(result),
-        "detail": told,
+        "detail": detail,
         "assumptions": list(evidence.assumptions),
         "engine": evidence.engine,
         "artefacts": dict(evidence.artefacts),

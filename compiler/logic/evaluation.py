@@ -60,17 +60,17 @@ class _Evaluation:
 
     def __init__(self, columns: Mapping[str, int], ticks: int, every: int) -> None:
         self._columns, self._ticks, self._every = columns, ticks, every
-        self._known: dict[int, tuple[f.Formula, int]] = {}
+        self._cache: dict[int, tuple[f.Formula, int]] = {}
         self.dual = self
 
     def at_each_tick(self, formula: f.Formula) -> int:
         """Its column."""
-        known = self._known.get(id(formula))
-        if known is None:
-            known = self._known[id(formula)] = (formula, self._computed(formula))
-        return known[1]
+        entry = self._cache.get(id(formula))
+        if entry is None:
+            entry = self._cache[id(formula)] = (formula, self._column(formula))
+        return entry[1]
 
-    def _computed(self, formula: f.Formula) -> int:
+    def _column(self, formula: f.Formula) -> int:
         read, negated, every = self.at_each_tick, self._negated, self._every
         match formula:
             case f.Const(value):

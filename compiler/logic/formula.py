@@ -454,14 +454,14 @@ def endless(f: Formula) -> Formula:
 
 def atoms(f: Formula) -> Iterator[str]:
     """The names of all atoms, in the order of their first appearance, without repetitions."""
-    seen: dict[str, None] = {}
+    names: dict[str, None] = {}
     waiting = [f]
     while waiting:
         part = waiting.pop()
         if isinstance(part, Atom):
-            seen[part.name] = None
+            names[part.name] = None
         waiting.extend(reversed(children(part)))
-    return iter(seen)
+    return iter(names)
 
 
 def longest_bound(f: Formula) -> int:

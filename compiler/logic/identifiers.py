@@ -29,19 +29,19 @@ def legal_names(
         prefix: what all names begin with.
     """
     taken = set(reserved)
-    found: dict[str, str] = {}
+    names: dict[str, str] = {}
     everything = tuple(dict.fromkeys(propositions))
     for name in sorted(everything, key=is_compound):
         wanted = prefix + _plain(name)
-        found[name] = next(free for free in _variants(wanted) if free not in taken)
-        taken.add(found[name])
-    return {name: found[name] for name in everything}
+        names[name] = next(free for free in _variants(wanted) if free not in taken)
+        taken.add(names[name])
+    return {name: names[name] for name in everything}
 
 
 def _plain(name: str) -> str:
     """`x_gt_3` for `(x > 3)`; it begins with a letter."""
     if is_compound(name):
-        spelt = _SYMBOL.sub(lambda found: _OPERATORS[found[0]], name)
+        spelt = _SYMBOL.sub(lambda match: _OPERATORS[match[0]], name)
         name = "_".join(re.findall(r"\w+", spelt))
     text = identifier(name)
     return text if re.match("[A-Za-z]", text) else f"v_{text}"

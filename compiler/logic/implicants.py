@@ -14,12 +14,12 @@ Term = Mapping[int, bool]
 """A conjunction: the value of each variable that it names; empty, it is true."""
 
 
-def cover(certain: Sequence[Vector], others: Iterable[Vector]) -> list[Term]:
-    """Few conjunctions of few literals that hold at all of the first and at none of the others.
+def cover(certain: Sequence[Vector], excluded: Iterable[Vector]) -> list[Term]:
+    """A few short conjunctions that hold at all `certain` vectors and at no `excluded` one.
 
-    Vectors that are neither may be covered or not.
+    Any other vector may satisfy them or not.
     """
-    off = set(others)
+    off = set(excluded)
     terms: list[Term] = []
     for vector in certain:
         if any(matches(term, vector) for term in terms):
@@ -27,7 +27,7 @@ def cover(certain: Sequence[Vector], others: Iterable[Vector]) -> list[Term]:
         term = dict(enumerate(vector))
         for place in reversed(range(len(vector))):
             shorter = {i: value for i, value in term.items() if i != place}
-            if not any(matches(shorter, other) for other in off):
+            if not any(matches(shorter, row) for row in off):
                 term = shorter
         terms.append(term)
     return terms

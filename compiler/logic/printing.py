@@ -195,8 +195,8 @@ def for_prism(formula: f.Formula) -> f.Formula:
 @deep
 def text(formula: f.Formula, dialect: Dialect) -> str:
     """The formula in the spelling of a dialect, with as few parentheses as it allows."""
-    spoken = formula if dialect.has_bounded_since else without_bounded_since(formula)
-    return _Printer(dialect).at(spoken, _IFF)
+    plain = formula if dialect.has_bounded_since else without_bounded_since(formula)
+    return _Printer(dialect).at(plain, _IFF)
 
 
 def without_bounded_since(formula: f.Formula) -> f.Formula:
@@ -209,8 +209,8 @@ def without_bounded_since(formula: f.Formula) -> f.Formula:
                 near = f.and_(near, f.once(right, f.Interval(0, hi - lo)))
             if lo == 0:
                 return near
-            kept = f.historically(left, f.Interval(0, lo - 1))
-            return f.and_(kept, f.once(near, f.Interval(lo, lo)))
+            guard = f.historically(left, f.Interval(0, lo - 1))
+            return f.and_(guard, f.once(near, f.Interval(lo, lo)))
         case _:
             return rebuilt
 

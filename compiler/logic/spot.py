@@ -111,8 +111,8 @@ def _hide(formula: Formula, opaque: dict[str, Formula]) -> Formula:
     match formula:
         case Eventually(_, Interval(_, int())) | Globally(_, Interval(_, int())):
             inner = rebuild(formula, lambda part: _hide(part, opaque))
-            known = {bounded: name for name, bounded in opaque.items()}
-            name = known.get(inner) or f"_bounded_{len(opaque)}_"  # no name of FRETish
+            name_of = {bounded: name for name, bounded in opaque.items()}
+            name = name_of.get(inner) or f"_bounded_{len(opaque)}_"  # no name of FRETish
             opaque[name] = inner
             return Atom(name)
         case _:
@@ -175,8 +175,8 @@ def _graph(
         state = graph.new_state(valuation(label))
         assert state == number
     for state, following in enumerate(edges):
-        for other in following:
-            graph.new_edge(state, other)
+        for successor in following:
+            graph.new_edge(state, successor)
     return graph
 
 
@@ -184,15 +184,15 @@ def _valuations(graph: Any, names: dict[str, str]) -> Callable[[frozenset[str]],
     import buddy
 
     variables = {name: buddy.bdd_ithvar(graph.register_ap(p)) for name, p in names.items()}
-    known: dict[frozenset[str], Any] = {}
+    cache: dict[frozenset[str], Any] = {}
 
     def valuation(label: frozenset[str]) -> Any:
         true = label.intersection(variables)
-        if true not in known:
-            known[true] = buddy.bddtrue
+        if true not in cache:
+            cache[true] = buddy.bddtrue
             for name, variable in variables.items():
-                known[true] &= variable if name in true else buddy.bdd_not(variable)
-        return known[true]
+                cache[true] &= variable if name in true else buddy.bdd_not(variable)
+        return cache[true]
 
     return valuation
 

@@ -10,39 +10,39 @@ from fretish.reading.natural_order import natural
 
 
 def unknown_parents(
-    written: Sequence[Requirement],
+    requirements: Sequence[Requirement],
     hazards: Collection[str],
-    above: Collection[str],
+    external: Collection[str],
     file: str | None,
 ) -> Iterator[Diagnostic]:
     """F501 for each parent that is neither a hazard, nor a requirement, here or in another tool.
 
-    Where nothing is read that could declare one, it is said once for all of them.
+    Where no file could declare a parent, one diagnostic stands for all of them.
 
     Args:
-        written: the requirements.
+        requirements: the requirements.
         hazards: ids of the hazards.
-        above: ids of the parents in other tools.
+        external: ids of the parents in other tools.
         file: where the hazards are; None where there are none.
     """
-    ids = [requirement.id for requirement in written]
-    known = [*sorted({*hazards, *above}, key=natural), *ids]
-    unknown = [(r, parent) for r in written for parent in r.parents if parent not in known]
-    if unknown and file is None and not above:
+    ids = [requirement.id for requirement in requirements]
+    declared = [*sorted({*hazards, *external}, key=natural), *ids]
+    unknown = [(r, parent) for r in requirements for parent in r.parents if parent not in declared]
+    if unknown and file is None and not external:
         requirement, parent = unknown[0]
         more = len(unknown) - 1
-        others = (
+        remainder = (
             f" ({more} more {'parent is' if more == 1 else 'parents are'}, too)" if more else ""
         )
         yield _unknown(
             requirement,
             f"there is no `hazards.toml`: the parent `{parent}` of {requirement.id} is declared "
-            f"nowhere{others}",
+            f"nowhere{remainder}",
             "write `hazards.toml` beside the requirements, or name it with `--hazards`",
         )
         return
     for requirement, parent in unknown:
-        near = suggestion(parent, known)
+        near = suggestion(parent, declared)
         yield _unknown(
             requirement,
             f"{requirement.id} names the parent `{parent}`, which is not declared",
@@ -55,14 +55,14 @@ def _unknown(requirement: Requirement, message: str, mend: str) -> Diagnostic:
     return Diagnostic(Code.UNKNOWN_PARENT, message, place, mend, Severity.WARNING)
 
 
-def circles(written: Sequence[Requirement]) -> Iterator[Diagnostic]:
+def circles(requirements: Sequence[Requirement]) -> Iterator[Diagnostic]:
     """F526 for each circle of parents, once, at its first requirement."""
-    by_id = {requirement.id: requirement for requirement in written}
-    told: set[frozenset[str]] = set()
-    for requirement in written:
+    by_id = {requirement.id: requirement for requirement in requirements}
+    earlier: set[frozenset[str]] = set()
+    for requirement in requirements:
         circle = _circle(requirement.id, by_id)
-        if circle and frozenset(circle) not in told:
-            told.add(frozenset(circle))
+        if circle and frozenset(circle) not in earlier:
+            earlier.add(frozenset(circle))
             yield Diagnostic(
                 Code.PARENTS_IN_A_CIRCLE,
                 f"{requirement.id} is its own ancestor: {' → '.join(circle)}",
@@ -72,7 +72,7 @@ def circles(written: Sequence[Requirement]) -> Iterator[Diagnostic]:
 
 
 def _circle(start: str, by_id: dict[str, Requirement]) -> list[str]:
-    """A shortest way from a requirement up to itself; empty where there is none."""
+    """A shortest path from a requirement up to itself; empty where there is none."""
     came: dict[str, str] = {}
     waiting = [start]
     for id in waiting:  # it grows while it is walked: breadth first

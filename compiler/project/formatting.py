@@ -32,27 +32,27 @@ class Formatted:
 
 def formatted(paths: Sequence[str]) -> tuple[tuple[Formatted, ...], tuple[Diagnostic, ...]]:
     """Every file with its sentences canonical; headers and what stands around stay as they are."""
-    done: list[Formatted] = []
-    wrong: list[Diagnostic] = []
+    files: list[Formatted] = []
+    diagnostics: list[Diagnostic] = []
     for path in paths:
         source = read(path)
         if isinstance(source, Diagnostic):
-            wrong.append(source)
+            diagnostics.append(source)
             continue
-        found, mistakes = requirements(source)
-        wrong.extend(mistakes)
+        entries, mistakes = requirements(source)
+        diagnostics.extend(mistakes)
         text = source.text
-        for requirement in sorted(found, key=lambda r: -r.wording.start):
+        for requirement in sorted(entries, key=lambda r: -r.wording.start):
             if requirement.is_free_text:
                 continue
             tree = parse(requirement.wording)
             if isinstance(tree, Diagnostic):
-                wrong.append(tree)
+                diagnostics.append(tree)
                 continue
             span = requirement.wording
             text = text[: span.start] + _wrapped(sentence(tree)) + text[span.end :]
-        done.append(Formatted(path, source.text, text if text.endswith("\n") else f"{text}\n"))
-    return tuple(done), tuple(wrong)
+        files.append(Formatted(path, source.text, text if text.endswith("\n") else f"{text}\n"))
+    return tuple(files), tuple(diagnostics)
 
 
 def _wrapped(text: str) -> str:
@@ -65,5 +65,5 @@ def _wrapped(text: str) -> str:
         break_long_words=False,
         break_on_hyphens=False,
     )
-    whole = "\n".join(lines)
-    return whole if all(line.count('"') % 2 == 0 for line in lines) else text
+    wrapped = "\n".join(lines)
+    return wrapped if all(line.count('"') % 2 == 0 for line in lines) else text

@@ -1,7 +1,7 @@
 """FRET's exchange formats → `.fret` files and `bindings.toml`.
 
-Only what a person wrote is taken over: sentences, names, comments. FRET's formulas are not: they
-are made anew from the sentence, because an export can carry those of an older one.
+The import takes what a person wrote: sentences, names, comments. It takes no formulas of FRET: an
+export can carry those of an older sentence, so fretc derives formulas from the sentence.
 Source: NASA FRET v3.1, its export of requirements and variables (JSON), and its import of CSV.
 """
 
@@ -30,11 +30,11 @@ STATUSES = {"completed": "approved", "deprecated": "retired"}
 
 OWN = "fretc"
 """Where a record of `--emit fret-json` has the title and the text, for which FRET has no field."""
-_KEPT = ("project", "comments", "status", "_id", "reqid")
+_FRET_FIELDS = ("project", "comments", "status", "_id", "reqid")
 _VARIABLE_FIELDS = frozenset(
     "_id project component_name variable_name dataType idType description reqs".split()
 )
-_NOT_KEPT = frozenset({"modeldoc", "completed", "smvCompleted", "r2u2Completed", "_rev"})
+_IGNORED_FIELDS = frozenset({"modeldoc", "completed", "smvCompleted", "r2u2Completed", "_rev"})
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,8 +65,8 @@ def read_export(source: Source, columns: Mapping[str, str]) -> Import:
         source: the file; `.csv` by its name, JSON otherwise.
         columns: for CSV, the names of the columns `id`, `text` and `project`.
     """
-    found = within(len(source.text), source.span(0, 0), lambda: _read(source, columns))
-    return Import((), (found,), 0, 0) if isinstance(found, Diagnostic) else found
+    result = within(len(source.text), source.span(0, 0), lambda: _read(source, columns))
+    return Import((), (result,), 0, 0) if isinstance(result, Diagnostic) else result
 
 
 def _read(source: Source, columns: Mapping[str, str]) -> Import:
@@ -91,11 +91,11 @@ def _from_json(source: Source) -> Import:
     if isinstance(parts, str):
         return _failed(parts, source)
     requirements, variables = parts
-    said: list[Diagnostic] = []
-    found = list(_requirements(requirements, source, said))
-    declared = _variables(variables, source, said)
-    files = [*_documents(found), *_glossary(declared)]
-    return Import(tuple(files), tuple(said), len(found), len(declared))
+    diagnostics: list[Diagnostic] = []
+    entries = list(_requirements(requirements, source, diagnostics))
+    declared = _variables(variables, source, diagnostics)
+    files = [*_documents(entries), *_glossary(declared)]
+    return Import(tuple(files), tuple(diagnostics), len(entries), len(declared))
 
 
 def _parts(data: Any) -> tuple[list[Mapping[str, Any]], list[Mapping[str, Any]]] | str:
@@ -124,23 +124,25 @@ def _records(value: Any) -> list[Mapping[str, Any]]:
 
 
 def _requirements(
-    records: Iterable[Mapping[str, Any]], source: Source, said: list[Diagnostic]
+    records: Iterable[Mapping[str, Any]], source: Source, diagnostics: list[Diagnostic]
 ) -> Iterator[Imported]:
     taken: set[str] = set()
     ids: dict[tuple[str, str], str] = {}
-    kept: list[tuple[str, str, Mapping[str, Any]]] = []
+    entries: list[tuple[str, str, Mapping[str, Any]]] = []
     for number, record in enumerate(records, 1):
         reqid, fulltext = _text(record.get("reqid")), _text(record.get("fulltext")).strip()
         if not fulltext:
-            said.append(_skipped(f"requirement {number} ({reqid or 'no id'}) has no text", source))
+            diagnostics.append(
+                _skipped(f"requirement {number} ({reqid or 'no id'}) has no text", source)
+            )
             continue
         project = _text(record.get("project"))
         wanted = _id(reqid or f"requirement-{number}")
         id = _unique(wanted, project, taken)
         if id != wanted:
             of = f" of project {project}" if project else ""
-            said.append(
-                _told(
+            diagnostics.append(
+                _warning(
                     Code.RENAMED,
                     f"requirement {number} ({reqid}{of}) is imported as `{id}`: `{wanted}` is "
                     "taken, and capitals do not tell ids apart",
@@ -149,11 +151,11 @@ def _requirements(
                 )
             )
         ids[project, reqid] = id
-        kept.append((id, fulltext, record))
-    for id, fulltext, record in kept:
+        entries.append((id, fulltext, record))
+    for id, fulltext, record in entries:
         project = _text(record.get("project"))
         yield Imported(id, _unfenced(fulltext), _header(id, record, ids), project)
-        said.extend(_unread(id, fulltext))
+        diagnostics.extend(_unread(id, fulltext))
 
 
 def _unfenced(text: str) -> str:
@@ -165,31 +167,31 @@ def _header(
     id: str, record: Mapping[str, Any], ids: Mapping[tuple[str, str], str]
 ) -> dict[str, Any]:
     """The `.fret` header; what fretc does not use goes below `fret`."""
-    kept = {key: _text(record.get(key)) for key in _KEPT}
-    if kept["reqid"] == id:
-        del kept["reqid"]
-    stated = _text(record.get("parent_reqid"))
-    named = [part.strip() for part in stated.split(",") if part.strip()]
-    parents = [ids.get((kept["project"], name), name) for name in named]
-    if ", ".join(parents) != stated:
-        kept["parent_reqid"] = stated
+    fret = {key: _text(record.get(key)) for key in _FRET_FIELDS}
+    if fret["reqid"] == id:
+        del fret["reqid"]
+    parent_text = _text(record.get("parent_reqid"))
+    names = [part.strip() for part in parent_text.split(",") if part.strip()]
+    parents = [ids.get((fret["project"], name), name) for name in names]
+    if ", ".join(parents) != parent_text:
+        fret["parent_reqid"] = parent_text
     own = record.get(OWN)
-    told = (
+    own_texts = (
         {name: _text(own.get(name)) for name in ("title", "text")} if isinstance(own, dict) else {}
     )
     header: dict[str, Any] = {
         "id": id,
-        **told,
+        **own_texts,
         "parents": parents,
         "rationale": _text(record.get("rationale")),
-        "status": STATUSES.get(kept["status"], "draft"),
-        "fret": {key: value for key, value in kept.items() if value},
+        "status": STATUSES.get(fret["status"], "draft"),
+        "fret": {key: value for key, value in fret.items() if value},
     }
     return {key: value for key, value in header.items() if value not in ("", [], {})}
 
 
 def _unread(id: str, fulltext: str) -> Iterator[Diagnostic]:
-    """The sentence is taken over as it is, and said to be no FRETish."""
+    """A warning where the imported sentence is no FRETish; it is imported unchanged."""
     source = Source(f"{id} (fulltext)", fulltext)
     if re.fullmatch(r'"[^"]*"', fulltext):
         return
@@ -239,11 +241,11 @@ def _pair(requirement: Imported) -> str:
 
 
 def _variables(
-    records: Iterable[Mapping[str, Any]], source: Source, said: list[Diagnostic]
+    records: Iterable[Mapping[str, Any]], source: Source, diagnostics: list[Diagnostic]
 ) -> dict[str, dict[str, Any]]:
     """`[variable.NAME]` tables: names are those of one folder, whatever project they are of.
 
-    Of several variables of a name the first stays, and what the others say else is told (F530).
+    Of several variables of one name the first stays; F530 names the differences of the others.
     """
     tables: dict[str, dict[str, Any]] = {}
     for record in records:
@@ -253,39 +255,43 @@ def _variables(
         table = _variable(record)
         first = tables.setdefault(name, table)
         if first != table:
-            said.append(_merged(name, first, table, source))
+            diagnostics.append(_merged(name, first, table, source))
     return tables
 
 
 def _variable(record: Mapping[str, Any]) -> dict[str, Any]:
-    """What is kept of a variable."""
-    kept = {
+    """The `[variable.NAME]` table of one record."""
+    fret = {
         key: _plain(value)
         for key, value in sorted(record.items())
-        if key not in _VARIABLE_FIELDS | _NOT_KEPT and value not in ("", None, [], {}, False)
+        if key not in _VARIABLE_FIELDS | _IGNORED_FIELDS and value not in ("", None, [], {}, False)
     }
     table = {
         "component": _text(record.get("component_name")),
         "type": _text(record.get("dataType")),
         "role": _text(record.get("idType")).lower(),
         "text": _text(record.get("description")),
-        "fret": {**kept, **_of_project(record)},
+        "fret": {**fret, **_of_project(record)},
     }
     return {key: value for key, value in table.items() if value}
 
 
 def _merged(
-    name: str, first: Mapping[str, Any], other: Mapping[str, Any], source: Source
+    name: str, first: Mapping[str, Any], second: Mapping[str, Any], source: Source
 ) -> Diagnostic:
     lost = [
-        key for key in ("component", "type", "role", "text") if first.get(key) != other.get(key)
+        key for key in ("component", "type", "role", "text") if first.get(key) != second.get(key)
     ]
-    one, two = first.get("fret", {}), other.get("fret", {})
-    lost += sorted(key for key in {*one, *two} if one.get(key) != two.get(key))
-    what = ", ".join(f"{key} `{other.get(key, two.get(key, ''))}`" for key in lost)
-    return _told(
+    fields, second_fields = first.get("fret", {}), second.get("fret", {})
+    lost += sorted(
+        key for key in {*fields, *second_fields} if fields.get(key) != second_fields.get(key)
+    )
+    differences = ", ".join(
+        f"{key} `{second.get(key, second_fields.get(key, ''))}`" for key in lost
+    )
+    return _warning(
         Code.MERGED_VARIABLE,
-        f"a second variable `{name}` is left out: it has {what}",
+        f"a second variable `{name}` is left out: it has {differences}",
         source,
         "import each project into a folder of its own, or make the two say the same",
     )
@@ -345,9 +351,9 @@ def _from_csv(source: Source, columns: Mapping[str, str]) -> Import:
     chosen = _columns(names, columns, source)
     if isinstance(chosen, Diagnostic):
         return Import((), (chosen,))
-    said: list[Diagnostic] = []
-    found = list(_requirements((_row(row, chosen) for row in rows), source, said))
-    return Import(tuple(_documents(found)), tuple(said), len(found), 0, chosen)
+    diagnostics: list[Diagnostic] = []
+    entries = list(_requirements((_row(row, chosen) for row in rows), source, diagnostics))
+    return Import(tuple(_documents(entries)), tuple(diagnostics), len(entries), 0, chosen)
 
 
 _DELIMITERS = ",;\t"
@@ -370,12 +376,12 @@ def _delimiter(text: str) -> str:
 
 
 def _columns(
-    names: Sequence[str], asked: Mapping[str, str], source: Source
+    names: Sequence[str], options: Mapping[str, str], source: Source
 ) -> dict[str, str] | Diagnostic:
     """Which column is which: as asked for, or by its name."""
     chosen: dict[str, str] = {}
     for part, guesses in _GUESSES.items():
-        wanted = asked.get(part)
+        wanted = options.get(part)
         if wanted is not None and wanted not in names:
             near = suggestion(wanted, names)
             return _bad(
@@ -401,9 +407,11 @@ def _row(row: Mapping[str | None, Any], chosen: Mapping[str, str]) -> dict[str, 
     text = _text(row.get(chosen["text"])).strip()
     if text and isinstance(parse(Source("row", text).span()), Diagnostic):
         text = '"' + text.replace('"', "'") + '"'
-    used = set(chosen.values())
+    chosen_names = set(chosen.values())
     rest = [
-        f"{name}: {value}" for name, value in row.items() if name and name not in used and value
+        f"{name}: {value}"
+        for name, value in row.items()
+        if name and name not in chosen_names and value
     ]
     return {
         "reqid": row.get(chosen.get("id", "")),
@@ -429,8 +437,8 @@ def _bad(why: str, source: Source, mend: str, at: int = 0) -> Diagnostic:
     )
 
 
-def _told(code: Code, what: str, source: Source, mend: str) -> Diagnostic:
-    return Diagnostic(code, what, Source(source.name, "").span(), mend, Severity.WARNING)
+def _warning(code: Code, message: str, source: Source, mend: str) -> Diagnostic:
+    return Diagnostic(code, message, Source(source.name, "").span(), mend, Severity.WARNING)
 
 
 def _skipped(why: str, source: Source) -> Diagnostic:

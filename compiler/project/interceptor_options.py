@@ -35,19 +35,19 @@ def options(interception: Interception) -> Options:
 
 
 ASSUMED = "[interceptor] and [assume]"
-"""What a proof about the closed loop rests on beside texts, as its evidence calls it."""
+"""The name, among the artefacts of a proof about the closed loop, of its assumptions."""
 
 
 def assumed(declarations: Declarations) -> str:
-    """SHA-256 of what the bindings say of the interceptor and of what is assumed; "" if nothing.
+    """SHA-256 of `[interceptor]` and `[assume]`; "" where there is no `[assume]`.
 
-    Their meaning counts, not how it is written; the clock does, for times are told in ticks.
+    Equal meanings have equal digests; the clock is part of it, for times are counted in ticks.
     """
     if declarations.assumed is None:
         return ""
     loop = (declarations.interceptor, declarations.assumed)
-    told = [{**asdict(part), "span": None} if part else None for part in loop]
-    return digest([clock(declarations.clock), *told])
+    tables = [{**asdict(part), "span": None} if part else None for part in loop]
+    return digest([clock(declarations.clock), *tables])
 
 
 def ticks(duration: int, period: int) -> int:
@@ -55,13 +55,13 @@ def ticks(duration: int, period: int) -> int:
     return -(-duration // period)
 
 
-def repetition(given: Assumed, tick: int) -> int | None:
+def repetition(assumption: Assumed, tick: int) -> int | None:
     """Ticks after which a request that does not change is sent again; None: never.
 
     Args:
-        given: what the bindings say of the safety function.
+        assumption: what the bindings say of the safety function.
         tick: of its clock, nanoseconds.
     """
-    if given.requests is Requests.LEVEL:
+    if assumption.requests is Requests.LEVEL:
         return 1
-    return ticks(given.heartbeat, tick) or None
+    return ticks(assumption.heartbeat, tick) or None

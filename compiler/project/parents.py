@@ -47,24 +47,24 @@ class UnreadableError(Exception):
 
 def parents(settings: Settings) -> tuple[Mapping[str, Parent], tuple[Diagnostic, ...]]:
     """Every parent in the documents of the settings, and what is wrong with these."""
-    found: dict[str, Parent] = {}
-    wrong = []
+    by_id: dict[str, Parent] = {}
+    diagnostics = []
     for name in settings.parents:
         reading = partial(_all, settings.folder / name, name)
         try:
             _demand_within(settings, settings.folder / name)
             read = within(_size(settings.folder / name), _place(settings, name), reading)
             if isinstance(read, Diagnostic):
-                wrong.append(read)
+                diagnostics.append(read)
                 continue
             for parent in read:
-                found.setdefault(parent.id, parent)
+                by_id.setdefault(parent.id, parent)
         except ModuleNotFoundError:
-            wrong.append(_missing(settings, name))
+            diagnostics.append(_missing_extra(settings, name))
         except (UnreadableError, OSError) as error:
             why = error.strerror if isinstance(error, OSError) else str(error)
-            wrong.append(_unreadable(settings, name, why or str(error)))
-    return found, tuple(wrong)
+            diagnostics.append(_unreadable(settings, name, why or str(error)))
+    return by_id, tuple(diagnostics)
 
 
 def _demand_within(settings: Settings, path: Path) -> None:
@@ -87,7 +87,9 @@ def _all(path: Path, name: str) -> tuple[Parent, ...]:
 
 def _size(path: Path) -> int:
     """Bytes of a document, or of a folder of documents."""
-    return sum(one.stat().st_size for one in (path.glob("*.yml") if path.is_dir() else [path]))
+    return sum(
+        document.stat().st_size for document in (path.glob("*.yml") if path.is_dir() else [path])
+    )
 
 
 def _unreadable(settings: Settings, name: str, why: str) -> Diagnostic:
@@ -108,7 +110,7 @@ _EXPORTS = {
 }
 
 
-def _missing(settings: Settings, name: str) -> Diagnostic:
+def _missing_extra(settings: Settings, name: str) -> Diagnostic:
     return Diagnostic(
         Code.MISSING_EXTRA,
         f"the parents in `{name}` need `reqif`",
@@ -206,8 +208,8 @@ def _statement(node: Mapping[str, Any]) -> str:
     """Its statement; all other texts of a node whose grammar has none."""
     if "STATEMENT" in node:
         return str(node["STATEMENT"])
-    told = {k: v for k, v in node.items() if k not in _NO_TEXT and not k.startswith("_")}
-    return "\n".join(value for value in told.values() if isinstance(value, str))
+    texts = {k: v for k, v in node.items() if k not in _NO_TEXT and not k.startswith("_")}
+    return "\n".join(value for value in texts.values() if isinstance(value, str))
 
 
 # Doorstop --------------------------------------------------------------------------------------
@@ -227,12 +229,12 @@ def _exports(folder: Path, name: str) -> Iterator[Parent]:
 def _doorstop(path: Path, name: str) -> Iterator[Parent]:
     """The items of one exported document; Doorstop exports the active ones."""
     try:
-        found = loaded(_text(path))
+        document = loaded(_text(path))
     except ValueError as error:
         raise UnreadableError(f"{path.name} is not YAML that is read: {error}") from None
-    if not isinstance(found, dict) or not all(_is_item(item) for item in found.values()):
+    if not isinstance(document, dict) or not all(_is_item(item) for item in document.values()):
         raise UnreadableError(f"{path.name} is no export of Doorstop")
-    for uid, item in found.items():
+    for uid, item in document.items():
         if item.get("active", True):
             yield _parent(str(uid), item.get("header"), item["text"], name)
 
@@ -304,10 +306,10 @@ def _reqif(text: str, name: str) -> Iterator[Parent]:
             for kind in types
             for definition in getattr(kind, "attribute_definitions", None) or ()
         }
-        found = [_spec_object(each, names, name) for each in objects]
+        members = [_spec_object(each, names, name) for each in objects]
     except Exception as error:  # the library has no exception of its own for what it cannot read
         raise UnreadableError(f"the library `reqif` does not take it: {_first(error)}") from None
-    yield from found
+    yield from members
 
 
 def _first(error: Exception) -> str:
@@ -320,10 +322,16 @@ def _spec_object(spec: Any, names: Mapping[str, str], source: str) -> Parent:
         names.get(attribute.definition_ref, ""): _value(attribute)
         for attribute in spec.attributes or ()
     }
-    known = {name: values[name] for name in _NAMES if name in values}
-    id = known.get("ReqIF.ForeignID") or known.get("UID") or spec.identifier
-    title = known.get("ReqIF.Name") or known.get("ReqIF.ChapterName") or known.get("TITLE")
-    text = known.get("ReqIF.Text") or "\n".join(v for n, v in values.items() if n not in _NAMES)
+    attributes = {name: values[name] for name in _NAMES if name in values}
+    id = attributes.get("ReqIF.ForeignID") or attributes.get("UID") or spec.identifier
+    title = (
+        attributes.get("ReqIF.Name")
+        or attributes.get("ReqIF.ChapterName")
+        or attributes.get("TITLE")
+    )
+    text = attributes.get("ReqIF.Text") or "\n".join(
+        v for n, v in values.items() if n not in _NAMES
+    )
     return _parent(id, title or spec.long_name, text, source)
 
 

@@ -59,8 +59,8 @@ def refuse(rule: Rule) -> Diagnostic | None:
         return not_expressible("Dafny", rule, f"the scope `{scope}`", _ELSEWHERE)
     predicate = temporal_predicate(sentence)
     if predicate is not None:
-        what = f"the predicate `{predicate}`, which speaks of other ticks,"
-        return not_expressible("Dafny", rule, what, _ELSEWHERE)
+        part = f"the predicate `{predicate}`, which speaks of other ticks,"
+        return not_expressible("Dafny", rule, part, _ELSEWHERE)
     return None
 
 
@@ -234,7 +234,7 @@ def _fields(atoms: Sequence[str]) -> Mapping[str, str]:
     """
     names: dict[str, str] = {}
     for atom in atoms:
-        worded = _OPERATORS.sub(lambda found: f" {_WORDS[found.group()]} ", atom)
+        worded = _OPERATORS.sub(lambda match: f" {_WORDS[match.group()]} ", atom)
         name = re.sub(r"[^A-Za-z0-9]+", "_", worded).strip("_") or "p"
         name = name if name[0].isalpha() else f"p_{name}"
         if name in _RESERVED or re.fullmatch(r"(array|bv)\d+\??", name):
@@ -294,12 +294,12 @@ def _loop(rule: Rule, declarations: Declarations | None) -> str:
     reason = loopless(rule, declarations)
     if reason is not None:
         return render("dafny/loopless.dfy.j2", reason=reason)
-    known = delay(rule, declarations)
-    fits = isinstance(known, Delay) and rule.ticks is not None and known.total <= rule.ticks
+    declared = delay(rule, declarations)
+    fits = isinstance(declared, Delay) and rule.ticks is not None and declared.total <= rule.ticks
     return render(
         "dafny/loop.dfy.j2",
         trigger=_trigger(rule),
-        declared=known if fits else None,
+        declared=declared if fits else None,
         **_bound(rule),
     )
 

@@ -1,4 +1,4 @@
-"""What a file of `--emit dafny` claims, and what of the closed loop it can say at all."""
+"""The claims of a file of `--emit dafny`, and how far they cover the closed loop."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ CHANNELS = (
     ("Scan", "scan", "ScanHeard"),
     ("Command", "command", "CommandHeard"),
 )
-"""What an interceptor hears: in names of lemmas, in names of its numbers, and in its events."""
+"""The inputs of an interceptor: their names in lemmas, in its numbers, and its events."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,12 +38,12 @@ class Delay:
 
     @property
     def total(self) -> int:
-        """What the bound of the requirement must not be below."""
+        """The least bound that the requirement may have."""
         return self.reach + self.braking
 
 
 def loopless(rule: Rule, declarations: Declarations | None) -> str | None:
-    """Why nothing is said of the closed loop; None where something is."""
+    """Why the file has no claim about the closed loop; None where it has one."""
     if declarations is None or declarations.interceptor is None:
         return "the bindings have no [interceptor], and the plain form waits for a command to stop"
     if declarations.interceptor.form is Form.EVENT:
@@ -59,7 +59,7 @@ def loopless(rule: Rule, declarations: Declarations | None) -> str | None:
 
 
 def delay(rule: Rule, declarations: Declarations | None) -> Delay | str | None:
-    """What [assume] amounts to, or why it is no number of ticks; None where there is none."""
+    """The delay under [assume], or why it is no number of ticks; None without [assume]."""
     assumed = declarations.assumed if declarations else None
     if assumed is None:
         return None
@@ -75,7 +75,7 @@ def delay(rule: Rule, declarations: Declarations | None) -> Delay | str | None:
 
 @dataclass(frozen=True, slots=True)
 class Claim:
-    """What is known once every lemma and method of the file is verified."""
+    """A claim that holds once Dafny verifies every lemma and method of the file."""
 
     layer: Layer
     sentence: str
@@ -97,10 +97,10 @@ def _monitor_claim(rule: Rule) -> Claim:
     timing = rule.sentence.timing
     every = ", for every bound" if s.duration(timing) else ""
     if isinstance(timing, s.Eventually | s.Finally):
-        says = "has an open demand exactly where the definition leaves one unanswered"
+        statement = "has an open demand exactly where the definition leaves one unanswered"
     else:
-        says = "is violated exactly where the definition is"
-    sentence = f"the counter of `{printed(timing)}` {says}, on every sequence of ticks{every}"
+        statement = "is violated exactly where the definition is"
+    sentence = f"the counter of `{printed(timing)}` {statement}, on every sequence of ticks{every}"
     return Claim(Layer.MONITOR, sentence)
 
 
@@ -109,17 +109,19 @@ def _interceptor_claim(declarations: Declarations | None) -> Claim:
         sentence = "the plain interceptor latches the stop, publishes only zero then, and else "
         return Claim(Layer.INTERCEPTOR, f"{sentence}forwards commands unchanged")
     options = core(declarations.interceptor)
-    kept = ["a model of the interceptor publishes only zero while it is halted, and else commands"]
+    contracts = [
+        "a model of the interceptor publishes only zero while it is halted, and else commands"
+    ]
     if not options.event_driven:
-        kept.append(f"a request gives {options.hold} ticks of zero")
-    kept += [
+        contracts.append(f"a request gives {options.hold} ticks of zero")
+    contracts += [
         f"{timeout} ticks without a {channel} halt"
         for _, channel, _ in CHANNELS
         if (timeout := getattr(options, f"{channel}_timeout"))
     ]
     if options.latching:
-        kept.append("a stop is for ever")
-    return Claim(Layer.INTERCEPTOR, "; ".join(kept))
+        contracts.append("a stop is for ever")
+    return Claim(Layer.INTERCEPTOR, "; ".join(contracts))
 
 
 _ASSUMED = (
@@ -134,36 +136,40 @@ def _assumed(declarations: Declarations | None) -> tuple[str, ...]:
     assumed = declarations.assumed if declarations else None
     if assumed is None or assumed.requests is Requests.LEVEL:
         return _ASSUMED
-    requests, heard, stands = _ASSUMED
-    return (requests, f"{heard}; or one from before the trigger is still in force", stands)
+    requests, delivery, stands = _ASSUMED
+    return (requests, f"{delivery}; or one from before the trigger is still in force", stands)
 
 
 def _loop_claims(rule: Rule, declarations: Declarations | None) -> Iterator[Claim]:
     if loopless(rule, declarations) is not None:
         return
-    given = _assumed(declarations)
-    known, bound = delay(rule, declarations), rule.ticks
+    assumptions = _assumed(declarations)
+    declared, bound = delay(rule, declarations), rule.ticks
     every = "for every bound n and every delay reach + braking of at most n"
     sentence = f"never violated, {every}"
     if bound is None:
         sentence = "every trigger is answered within reach + braking ticks, whatever they are"
-    yield Claim(Layer.BOUNDS, sentence, given)
-    if known is not None:
-        yield _declared_claim(known, bound, given)
+    yield Claim(Layer.BOUNDS, sentence, assumptions)
+    if declared is not None:
+        yield _declared_claim(declared, bound, assumptions)
 
 
-def _declared_claim(known: Delay | str, bound: int | None, given: tuple[str, ...]) -> Claim:
+def _declared_claim(
+    declared: Delay | str, bound: int | None, assumptions: tuple[str, ...]
+) -> Claim:
     """The same for the numbers of [assume]."""
     at = "the declared delay" if bound is None else f"the bound of {bound} ticks"
-    if isinstance(known, str):
-        return Claim(Layer.BOUNDS, f"never late at {at}", given, known)
+    if isinstance(declared, str):
+        return Claim(Layer.BOUNDS, f"never late at {at}", assumptions, declared)
     numbers = (
-        f"reach = {known.reach} ticks ([assume] latency and lost)",
-        f"braking = {known.braking} ticks ([assume] braking)",
+        f"reach = {declared.reach} ticks ([assume] latency and lost)",
+        f"braking = {declared.braking} ticks ([assume] braking)",
     )
     if bound is None:
-        sentence = f"every trigger is answered within {known.total} ticks, the declared delay"
-        return Claim(Layer.BOUNDS, sentence, (*given, *numbers))
-    late = f"the declared delay of {known.total} ticks is more than the bound of {bound}"
-    sentence = f"never violated at {at} and the declared delay of {known.total}"
-    return Claim(Layer.BOUNDS, sentence, (*given, *numbers), late if known.total > bound else None)
+        sentence = f"every trigger is answered within {declared.total} ticks, the declared delay"
+        return Claim(Layer.BOUNDS, sentence, (*assumptions, *numbers))
+    late = f"the declared delay of {declared.total} ticks is more than the bound of {bound}"
+    sentence = f"never violated at {at} and the declared delay of {declared.total}"
+    return Claim(
+        Layer.BOUNDS, sentence, (*assumptions, *numbers), late if declared.total > bound else None
+    )

@@ -28,7 +28,7 @@ _SPACE = uuid.UUID("6ba7b811-9dad-11d1-80b4-00c04fd430c8")
 def emit(rules: Sequence[Rule], options: Options = DEFAULT) -> tuple[Artifact, ...]:
     """`fret.json` with all rules: `{"requirements": [...], "variables": [...]}`."""
     content = {
-        "requirements": [requirement(written, rule) for written, rule in _ordered(rules, options)],
+        "requirements": [requirement(entry, rule) for entry, rule in _ordered(rules, options)],
         "variables": variables(rules),
     }
     text = render("fret-json/fret.json.j2", content=content)
@@ -38,56 +38,56 @@ def emit(rules: Sequence[Rule], options: Options = DEFAULT) -> tuple[Artifact, .
 def _ordered(rules: Sequence[Rule], options: Options) -> list[tuple[Requirement, Rule | None]]:
     """Rules and free texts in the order of their files, and of each file."""
     pairs: list[tuple[Requirement, Rule | None]] = [(rule.requirement, rule) for rule in rules]
-    pairs += [(written, None) for written in options.free_texts]
-    files = list(dict.fromkeys(written.wording.source.name for written, _ in pairs))
+    pairs += [(entry, None) for entry in options.free_texts]
+    files = list(dict.fromkeys(entry.wording.source.name for entry, _ in pairs))
     return sorted(
         pairs, key=lambda pair: (files.index(pair[0].wording.source.name), pair[0].wording.start)
     )
 
 
-def requirement(written: Requirement, rule: Rule | None) -> dict[str, Any]:
+def requirement(entry: Requirement, rule: Rule | None) -> dict[str, Any]:
     """FRET's record of one requirement; one without a rule is free text."""
-    kept = written.fret
+    fret = entry.fret
     return {
-        "reqid": kept.get("reqid", written.id),
-        "parent_reqid": kept.get("parent_reqid", ", ".join(written.parents)),
-        "project": kept.get("project", ""),
-        "rationale": written.rationale,
-        "comments": kept.get("comments", ""),
-        "status": _status(written),
-        "fulltext": written.wording.text,
-        **_own(written),
+        "reqid": fret.get("reqid", entry.id),
+        "parent_reqid": fret.get("parent_reqid", ", ".join(entry.parents)),
+        "project": fret.get("project", ""),
+        "rationale": entry.rationale,
+        "comments": fret.get("comments", ""),
+        "status": _status(entry),
+        "fulltext": entry.wording.text,
+        **_own(entry),
         "semantics": semantics(rule) if rule else {"type": "freeForm"},
         "input": {},
-        "_id": _id(written),
+        "_id": _id(entry),
     }
 
 
-def _own(written: Requirement) -> dict[str, dict[str, str]]:
-    """What FRET has no field for, so that it is there again when the file is imported."""
-    texts = {"title": written.title, "text": written.text}
+def _own(entry: Requirement) -> dict[str, dict[str, str]]:
+    """Fields that FRET lacks, for `fretc import` of the same file."""
+    texts = {"title": entry.title, "text": entry.text}
     own = {name: text for name, text in texts.items() if text}
     return {OWN: own} if own else {}
 
 
-def _status(written: Requirement) -> str:
-    """FRET's own status where it still says the same, else the nearest."""
-    kept = written.fret.get("status", "")
-    if STATUSES.get(kept, "draft") == written.status:
-        return kept
-    return _STATUSES.get(written.status, "")
+def _status(entry: Requirement) -> str:
+    """FRET's own status where it still means the same, else the nearest."""
+    status = entry.fret.get("status", "")
+    if STATUSES.get(status, "draft") == entry.status:
+        return status
+    return _STATUSES.get(entry.status, "")
 
 
-def _id(written: Requirement) -> str:
-    name = f"fretc:{written.fret.get('project', '')}/{written.id}"
-    return written.fret.get("_id") or str(uuid.uuid5(_SPACE, name))
+def _id(entry: Requirement) -> str:
+    name = f"fretc:{entry.fret.get('project', '')}/{entry.id}"
+    return entry.fret.get("_id") or str(uuid.uuid5(_SPACE, name))
 
 
 def semantics(rule: Rule) -> dict[str, Any]:
     """FRET's description of a sentence, with our formulas in FRET's spelling."""
     tree = rule.sentence
     base = rule.requirement.wording.start
-    found: dict[str, Any] = {
+    fields: dict[str, Any] = {
         "type": "nasa",
         "scope": {"type": s.scope_key(tree)},
         "condition": s.condition_key(tree),
@@ -105,37 +105,37 @@ def semantics(rule: Rule) -> dict[str, Any]:
         "ftInfAUExpanded": printing.text(rule.ft_infinite, printing.FRET),
         "ptExpanded": printing.text(rule.pt, printing.FRET),
     }
-    found |= _parts(tree)
+    fields |= _parts(tree)
     if rule.pctl is not None:
-        found["pctlExpanded"] = printing.pctl(rule.pctl)
+        fields["pctlExpanded"] = printing.pctl(rule.pctl)
     for name, span in _spans(tree).items():
         if span is not None:
-            found[f"{name}TextRange"] = [span.start - base, span.end - base - 1]
-    return found
+            fields[f"{name}TextRange"] = [span.start - base, span.end - base - 1]
+    return fields
 
 
 def _parts(tree: s.Sentence) -> dict[str, Any]:
     """The fields that only some sentences have."""
-    found: dict[str, Any] = {}
+    fields: dict[str, Any] = {}
     if tree.scope is not None:
-        found["scope_mode"] = expression(tree.scope.mode)
+        fields["scope_mode"] = expression(tree.scope.mode)
     if tree.condition is not None:
         condition = f"({expression(tree.condition.expression)})"
-        found |= {
+        fields |= {
             "qualifier_word": tree.condition.word,
             "pre_condition": condition,
             "regular_condition": condition,
         }
     if isinstance(tree.timing, s.Until | s.Before):
-        found["stop_condition"] = f"({expression(tree.timing.stop)})"
-    counted = s.duration(tree.timing)
-    if counted is not None:
-        found["duration"] = str(counted.amount)
+        fields["stop_condition"] = f"({expression(tree.timing.stop)})"
+    duration = s.duration(tree.timing)
+    if duration is not None:
+        fields["duration"] = str(duration.amount)
     if tree.probability is not None:
-        found["probability_bound"] = [tree.probability.op, tree.probability.digits]
+        fields["probability_bound"] = [tree.probability.op, tree.probability.digits]
     if timing(tree.timing):
-        found["timingText"] = timing(tree.timing)
-    return found
+        fields["timingText"] = timing(tree.timing)
+    return fields
 
 
 def _spans(tree: s.Sentence) -> dict[str, Span | None]:
@@ -159,9 +159,9 @@ def variables(rules: Sequence[Rule]) -> list[dict[str, Any]]:
                 key, _variable(rule.glossary.get(name), project, component, name)
             )
             record["reqs"].append(_id(rule.requirement))
-    used = {name for _, _, name in records}
+    names = {name for _, _, name in records}
     for name, variable in rules[0].glossary.items() if rules else ():
-        if name not in used:
+        if name not in names:
             project = variable.fret.get("project", "")
             record = _variable(variable, project, variable.component, name)
             records[project, variable.component, name] = record
@@ -169,8 +169,8 @@ def variables(rules: Sequence[Rule]) -> list[dict[str, Any]]:
 
 
 def _variable(glossary: Variable | None, project: str, component: str, name: str) -> dict[str, Any]:
-    kept = dict(glossary.fret) if glossary else {}
-    kept.pop("project", None)
+    fret = dict(glossary.fret) if glossary else {}
+    fret.pop("project", None)
     return {
         "project": project,
         "component_name": component,
@@ -184,7 +184,7 @@ def _variable(glossary: Variable | None, project: str, component: str, name: str
         "modeRequirement": "",
         "modeldoc": False,
         "completed": False,
-        **kept,
+        **fret,
         "_id": f"{project}{component}{name}",
     }
 

@@ -80,11 +80,11 @@ def refuse(rule: Rule) -> Diagnostic | None:
 
 def _looks_back(rule: Rule) -> str | None:
     for expression in conditions(rule.sentence):
-        found = next((name for name in calls(expression) if name in LOOK_BACK), None)
-        if found is None and any(name.id == "FTP" for name in e.names(expression)):
-            found = "FTP"
-        if found is not None:
-            return found
+        predicate = next((name for name in calls(expression) if name in LOOK_BACK), None)
+        if predicate is None and any(name.id == "FTP" for name in e.names(expression)):
+            predicate = "FTP"
+        if predicate is not None:
+            return predicate
     return None
 
 
@@ -102,9 +102,9 @@ def _files(rule: Rule) -> Iterator[Artifact]:
     inputs = [
         (name, proposition, chances[name], modules[name]) for proposition, name in names.items()
     ]
-    told = {"id": rule.id, "sentence": wording(rule.requirement), "inputs": inputs}
+    values = {"id": rule.id, "sentence": wording(rule.requirement), "inputs": inputs}
     for ending, more in (("props", {"property": property_(rule.pctl, names)}), ("prism", {})):
-        text = render(f"prism/requirement.{ending}.j2", stem=stem(rule), **told, **more)
+        text = render(f"prism/requirement.{ending}.j2", stem=stem(rule), **values, **more)
         yield Artifact(PurePosixPath(f"{stem(rule)}.{ending}"), text)
 
 
@@ -152,18 +152,18 @@ class _Property:
 
     def _read(self, formula: f.Formula, odds: Callable[[f.Odds], str]) -> str:
         """The text, with each probability within it in place."""
-        found: dict[str, str] = {}
+        hidden: dict[str, str] = {}
 
         def hide(part: f.Formula) -> f.Formula:
             if isinstance(part, f.Odds):
-                name = f"_{len(found)}_"
-                found[name] = odds(part)
+                name = f"_{len(hidden)}_"
+                hidden[name] = odds(part)
                 return f.Atom(name)
             return f.rebuild(part, hide)
 
         atom = self._dialect.atom
         dialect = replace(
-            self._dialect, atom=lambda name: found[name] if name in found else atom(name)
+            self._dialect, atom=lambda name: hidden[name] if name in hidden else atom(name)
         )
         return printing.text(printing.for_prism(hide(formula)), dialect)
 

@@ -54,11 +54,11 @@ class Target:
     emit: Emit
     refuse: Callable[[Rule], Diagnostic | None] = lambda rule: None
     remark: Callable[[Rule], Diagnostic | None] = lambda rule: None
-    """What a user of the output should know; it does not keep it from being made."""
+    """A warning for the user of the output; it does not refuse the output."""
     refuse_project: Callable[[Options], Diagnostic | None] = lambda options: None
-    """Asked once: what keeps the target from being made, whatever the rules are."""
+    """Asked once: a reason to refuse the target for any rules."""
     remarks: Callable[[Options], tuple[Diagnostic, ...]] = lambda options: ()
-    """What to say once, beside what `remark` says of each rule."""
+    """Warnings about the whole output, beside the `remark` on each rule."""
     per_rule: bool = True
     """False where all rules go into one file, for exchange with another tool."""
     weak: Target | None = None

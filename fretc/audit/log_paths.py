@@ -10,7 +10,7 @@ from pathlib import Path
 from compiler.files.text_files import unreadable
 from fretc.logs.storage.folders import METADATA, Folder, folder, is_folder
 from fretc.logs.storage.inputs import STDIN, is_url
-from fretc.logs.storage.splits import ACTIVE, is_backup, named, split
+from fretc.logs.storage.splits import ACTIVE, is_backup, run_name, split
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.source import Source
 
@@ -145,7 +145,7 @@ def _joined(found: dict[str, str]) -> Iterator[str]:
         parts = run and {os.path.realpath(os.path.join(run.path, name)) for name in run.files}
         if run and parts and parts <= found.keys():
             passed |= parts
-            yield named(run)
+            yield run_name(run)
         else:
             yield log
 

@@ -1,8 +1,8 @@
-"""Payloads of one stream → the numbers that its signals ask for, many messages at once.
+"""Payloads of one stream → the numbers of its signals, many messages at once.
 
-Fields are taken from their places in the payloads. Made-up messages and the first real ones are
-decoded by the official decoder too, and where that says anything else, it reads the whole stream:
-it is slower, and the reference.
+Fields are read from their places in the payloads. The official decoder, slower and the reference,
+also decodes made-up messages and the first real ones; where it disagrees, it reads the whole
+stream.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from fretc.logs.mcap.container import Stream
 from fretc.logs.mcap.damage import LATEST
 from fretc.logs.mcap.payloads import Payloads, Places
 from fretc.logs.messages.decoding import Decode, decoder, is_single, shape, stamp
-from fretc.logs.messages.layouts import Found, Group, Layout, Layouts, Shape, Where
+from fretc.logs.messages.layouts import Group, Layout, Layouts, Location, Shape, Where
 from fretc.logs.messages.probes import trusted
 from fretc.logs.messages.vectorized import nearest, samples, siblings
 from fretc.logs.signals.samples import EXACT, Numbers, Times, Values, widest
@@ -28,24 +28,24 @@ from fretish.bindings.declarations import Reduce, Signal
 from fretish.diagnostics.diagnostic import Diagnostic
 
 _CHECKED = 8
-"""Layouts of a stream of which the official decoder reads three messages too."""
+"""Layouts of a stream that are compared with the official decoder on three messages."""
 _BLOCK = 2**17
-"""Numbers of an array field that are taken at once: the passes over them stay within the cache."""
+"""Numbers of an array field in one block: the passes over them stay within the cache."""
 _FEW = 512
-"""Bytes; fewer are decoded sooner than taken from their places. Two channels of one topic may send
-by turns, and then each message comes alone."""
+"""Bytes; decoding fewer is faster than reading places. Two channels of one topic may send by turns,
+and then each message comes alone."""
 _SECONDS = ("int32", "uint32")
-"""What a stamp may be made of: no sum of seconds and nanoseconds is too large."""
+"""Types of a stamp's fields for which no sum of seconds and nanoseconds overflows."""
 _STAMPS = (("sec", "nanosec"), ("secs", "nsecs"))
 """Names of the fields of a stamp, in ROS 2 and in ROS 1."""
 
 
 @dataclass(slots=True)
 class Extract:
-    """What some messages of a stream hold, all in their order."""
+    """The contents of some messages of a stream, in their order."""
 
     values: dict[str, Values]
-    """Of each signal, shape (messages,), as recorded; NaN where unknown, or not decoded."""
+    """The values of each signal, shape (messages,), as recorded; NaN where unknown."""
     decoded: NDArray[np.bool_]
     stamps: Times
     stamped: NDArray[np.bool_]
@@ -53,9 +53,10 @@ class Extract:
 
     @classmethod
     def empty(cls, count: int, signals: Iterable[Signal], single: Container[str] = ()) -> Extract:
-        """Of messages that are still to be read; `single` are signals of 32-bit floats."""
+        """An extract to fill; `single` are signals of 32-bit floats."""
         kinds = {
-            one.name: "f4" if one.name in single and is_chosen(one) else "f8" for one in signals
+            signal.name: "f4" if signal.name in single and is_chosen(signal) else "f8"
+            for signal in signals
         }
         return cls(
             {name: np.full(count, np.nan, kind) for name, kind in kinds.items()},
@@ -64,15 +65,17 @@ class Extract:
             np.zeros(count, bool),
         )
 
-    def put(self, signal: Signal, at: int | Places, found: float | Values) -> None:
-        """What the signal is in some messages."""
-        wide = isinstance(found, int) or (isinstance(found, np.ndarray) and found.dtype == EXACT)
+    def put(self, signal: Signal, at: int | Places, numbers: float | Values) -> None:
+        """Store the numbers of a signal in some messages."""
+        wide = isinstance(numbers, int) or (
+            isinstance(numbers, np.ndarray) and numbers.dtype == EXACT
+        )
         if wide:
             self.values[signal.name] = self.values[signal.name].astype(EXACT, copy=False)
-        self.values[signal.name][at] = found
+        self.values[signal.name][at] = numbers
 
     def near(self, signal: Signal, least: float | None) -> None:
-        """Some messages state a least distance."""
+        """Note the least distance that some messages state."""
         if least is not None:
             self.nearest[signal.name] = min(least, self.nearest.get(signal.name, least))
 
@@ -82,21 +85,21 @@ class Extraction:
 
     def __init__(self, stream: Stream, signals: Sequence[Signal]) -> None:
         self.signals = list(signals)
-        """Those that can be read; one with something wrong is taken out."""
-        self.wrong: dict[str, Diagnostic] = {}
+        """The readable signals; the others have a diagnostic."""
+        self.diagnostics: dict[str, Diagnostic] = {}
         self._checks = _CHECKED
-        found = decoder(stream)
-        self._decode: Decode | None = None if isinstance(found, str) else found
+        decode = decoder(stream)
+        self._decode: Decode | None = None if isinstance(decode, str) else decode
         self._single: frozenset[str] = frozenset()
         """Signals of 32-bit floats."""
         if self._decode is not None:
             self._single = frozenset(s.name for s in signals if is_single(stream, s.path.fields))
         self._shape = _shape(stream, self._decode)
         self._sought: tuple[Where, ...] | None = None
-        """What the layouts were made for: less, once a signal was refused."""
-        if isinstance(found, str):
+        """The fields of the present layouts: fewer, once a signal was refused."""
+        if isinstance(decode, str):
             for signal in signals:
-                self._refuse(signal, findings.unknown_encoding(signal, found))
+                self._refuse(signal, findings.unknown_encoding(signal, decode))
 
     @property
     def reads(self) -> bool:
@@ -104,13 +107,13 @@ class Extraction:
         return self._decode is not None
 
     def extract(self, payloads: Payloads) -> Extract:
-        """What the messages hold."""
+        """The contents of the messages."""
         extract = Extract.empty(len(payloads), self.signals, self._single)
         if self._decode is None:
             return extract
         slow: Sequence[int] = range(len(payloads))
         if self._shape is not None and payloads.sizes.sum() >= _FEW:
-            if not self._placed(self._shape):  # one message tells which signals have no place
+            if not self._placed(self._shape):  # one message shows which signals have no place
                 self._one_by_one(0, bytes(payloads.payload(0)), extract)
                 slow = slow[1:]
             if self._placed(self._shape):
@@ -121,7 +124,7 @@ class Extraction:
 
     def _refuse(self, signal: Signal, diagnostic: Diagnostic) -> None:
         self.signals.remove(signal)
-        self.wrong[signal.name] = diagnostic
+        self.diagnostics[signal.name] = diagnostic
 
     # By the official decoder
 
@@ -154,23 +157,23 @@ class Extraction:
     # By places
 
     def _placed(self, shape: Shape) -> bool:
-        """Whether all that is asked for has a place; where not, each message has to be seen."""
+        """Whether every wanted field has a place; if not, each message must be decoded."""
         return all(_reads(shape, signal) for signal in self.signals) and all(
             field is not None and field.type in _SECONDS
             for field in map(shape.number, _stamp_places(shape))
         )
 
     def _at_once(self, payloads: Payloads, extract: Extract) -> Sequence[int]:
-        """Read all messages that fit a layout; gives the rows that are left."""
+        """Read all messages that fit a layout; returns the remaining rows."""
         assert self._shape is not None
         wanted = self._wanted(self._shape)
         if wanted != self._sought:
             self._sought, self._layouts = wanted, Layouts(self._shape, wanted)
-        left: list[int] = []
+        rest: list[int] = []
         for group in self._layouts.groups(payloads):
-            if not self._taken(payloads, group, extract):
-                left.extend(group.rows.tolist())
-        return sorted(left)
+            if not self._read_group(payloads, group, extract):
+                rest.extend(group.rows.tolist())
+        return sorted(rest)
 
     def _wanted(self, shape: Shape) -> tuple[Where, ...]:
         wanted: dict[Where, None] = {}
@@ -182,7 +185,7 @@ class Extraction:
         wanted.update(dict.fromkeys(_stamp_places(shape)))
         return tuple(wanted)
 
-    def _taken(self, payloads: Payloads, group: Group, extract: Extract) -> bool:
+    def _read_group(self, payloads: Payloads, group: Group, extract: Extract) -> bool:
         """Read the messages of one layout, unless the official decoder reads them otherwise."""
         if group.layout is None or self._shape is None:
             return False
@@ -199,9 +202,9 @@ class Extraction:
     def _agrees(self, row: int, payloads: Payloads, layout: Layout) -> bool:
         """Whether both ways read the same of one message."""
         slow, fast = (Extract.empty(1, self.signals, self._single) for _ in range(2))
-        before = len(self.wrong)
+        before = len(self.diagnostics)
         self._one_by_one(0, bytes(payloads.payload(row)), slow)
-        if len(self.wrong) != before or not slow.decoded[0]:
+        if len(self.diagnostics) != before or not slow.decoded[0]:
             return False
         self._fill(payloads, np.array([row]), layout, np.zeros(1, np.int64), fast)
         return (
@@ -217,22 +220,24 @@ class Extraction:
     def _fill(
         self, payloads: Payloads, rows: Places, layout: Layout, to: Places, extract: Extract
     ) -> None:
-        """Put what the messages `rows` hold at the places `to` of the extract."""
+        """Put the contents of the messages `rows` at the places `to` of the extract."""
         extract.decoded[to] = True
-        found = layout.found
+        locations = layout.locations
         single = {
             where: payloads.gathered(rows, field.at, field.dtype, None)
-            for where, field in found.items()
+            for where, field in locations.items()
             if field.count is None
         }
         for signal in self.signals:
-            beside = {name: _numbers(single[name,]) for name in siblings(signal)}
-            field = found[signal.path.fields]
+            sibling_values = {name: _numbers(single[name,]) for name in siblings(signal)}
+            field = locations[signal.path.fields]
             if field.count is None:
                 values = _matrix(single[signal.path.fields])
-                extract.put(signal, to, samples(signal, values, beside))
+                extract.put(signal, to, samples(signal, values, sibling_values))
             else:
-                extract.put(signal, to, self._reduced(signal, payloads, rows, field, beside))
+                extract.put(
+                    signal, to, self._reduced(signal, payloads, rows, field, sibling_values)
+                )
             if (RANGE_MIN,) in single and signal.reduce in (Reduce.MIN, Reduce.OUTLINE):
                 extract.near(signal, nearest(signal, _numbers(single[RANGE_MIN,])))
         places = _stamp_places(self._shape) if self._shape is not None else ()
@@ -246,28 +251,28 @@ class Extraction:
         signal: Signal,
         payloads: Payloads,
         rows: Places,
-        field: Found,
-        beside: Mapping[str, Numbers],
+        field: Location,
+        sibling_values: Mapping[str, Numbers],
     ) -> Values:
         """A signal of an array, block by block; shape (rows,)."""
         values: list[Values] = [np.zeros(0, np.float32)]
         step = max(1, _BLOCK // max(1, field.count or 0))
         for first in range(0, len(rows), step):
             block = slice(first, first + step)
-            taken = payloads.gathered(rows[block], field.at, field.dtype, field.count)
-            some = {name: numbers[block] for name, numbers in beside.items()}
-            values.append(samples(signal, _matrix(taken), some))
+            gathered = payloads.gathered(rows[block], field.at, field.dtype, field.count)
+            some = {name: numbers[block] for name, numbers in sibling_values.items()}
+            values.append(samples(signal, _matrix(gathered), some))
         return np.concatenate(values)
 
 
 def _shape(stream: Stream, decode: Decode | None) -> Shape | None:
-    """How the messages are laid out; None where that is not certain."""
-    found = shape(stream) if decode is not None else None
-    return found if decode and found and trusted(found, decode) else None
+    """The layout of the messages; None where it is not certain."""
+    layout = shape(stream) if decode is not None else None
+    return layout if decode and layout and trusted(layout, decode) else None
 
 
 def _reads(shape: Shape, signal: Signal) -> bool:
-    """Whether the signal's fields are numbers, or arrays where it takes them for arrays."""
+    """Whether the signal's fields are numbers, or arrays where its path needs arrays."""
     field, path = shape.number(signal.path.fields), signal.path
     return (
         field is not None

@@ -1,7 +1,7 @@
-"""What there is to say about a log: one function for each message (F400 to F418).
+"""Diagnostics about a log: one function for each message (F400 to F418).
 
-`place` is the log itself; what concerns one signal points at its line of the bindings. Times are
-nanoseconds.
+`place` is the log itself; a diagnostic about one signal points at its line of the bindings. Times
+are nanoseconds.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity, suggestio
 from fretish.diagnostics.source import Span
 
 _SECOND = 10**9
-_MOST_TOLD = 20
+_MOST = 20
 
 # The whole file
 
@@ -53,16 +53,16 @@ _PACKED = {
     b"BZh": ("bzip2", "bunzip2"),
     b"PK\x03\x04": ("zip", "unzip"),
 }
-"""What compressed files begin with, and what unpacks them."""
+"""First bytes of compressed files, and the command that unpacks them."""
 
 
 def not_a_log(start: bytes, place: Span) -> Diagnostic:
-    """Another kind of file, told by its first bytes."""
-    for magic, (what, command) in _PACKED.items():
+    """Another kind of file, by its first bytes."""
+    for magic, (codec, command) in _PACKED.items():
         if start.startswith(magic):
             return Diagnostic(
                 Code.NOT_A_LOG,
-                f"it is a whole file compressed with {what}",
+                f"it is a whole file compressed with {codec}",
                 place,
                 f"unpack it first: `{command} FILE`; MCAP compresses within the file",
             )
@@ -88,7 +88,7 @@ def nothing_whole(damage: Damage, place: Span) -> Diagnostic:
     """There are messages, and none of them is whole."""
     return Diagnostic(
         Code.DAMAGED_CHUNK,
-        f"no message of the log can be read: {damage.what}",
+        f"no message of the log can be read: {damage.description}",
         place,
         "copy the log again from where it was recorded",
     )
@@ -109,13 +109,15 @@ def too_long(length: int, ticks: int, clock: Clock, place: Span) -> Diagnostic:
 
 
 def damaged(damage: Damage, gap: Gap | None, origin: int, place: Span) -> Diagnostic:
-    """One place; the gap that it has left is told in seconds from `origin`."""
+    """One damaged place; its gap is in seconds from `origin`."""
     if damage.code in (Code.TRUNCATED_LOG, Code.REINDEXED) and gap is not None:
-        what = damage.what if damage.at < 0 else f"the log breaks off after byte {damage.at}"
+        description = (
+            damage.description if damage.at < 0 else f"the log breaks off after byte {damage.at}"
+        )
         return Diagnostic(
             damage.code,
-            f"{what}: whole messages go {_seconds(gap[0] - origin)} far, and what came then is "
-            "unknown",
+            f"{description}: whole messages go {_seconds(gap[0] - origin)} far, and what came then "
+            "is unknown",
             place,
             "what it shows up to there counts, and nothing counts as satisfied",
             Severity.WARNING,
@@ -127,21 +129,21 @@ def damaged(damage: Damage, gap: Gap | None, origin: int, place: Span) -> Diagno
     where = f"the log is damaged near byte {damage.at}: " if damage.at >= 0 else ""
     return Diagnostic(
         damage.code,
-        f"{where}{damage.what}; {lost}",
+        f"{where}{damage.description}; {lost}",
         place,
         "copy the log again from where it was recorded; nothing counts as shown by a damaged log",
         Severity.WARNING,
     )
 
 
-def few(told: list[Diagnostic], place: Span) -> list[Diagnostic]:
-    """Not more than a page of them."""
-    if len(told) <= _MOST_TOLD:
-        return told
-    more = f"the log is damaged in {len(told) - _MOST_TOLD} more places"
+def few(diagnostics: list[Diagnostic], place: Span) -> list[Diagnostic]:
+    """At most a page of diagnostics; the last one counts the rest."""
+    if len(diagnostics) <= _MOST:
+        return diagnostics
+    more = f"the log is damaged in {len(diagnostics) - _MOST} more places"
     return [
-        *told[:_MOST_TOLD],
-        Diagnostic(Code.DAMAGED_CHUNK, more, place, told[0].help, Severity.WARNING),
+        *diagnostics[:_MOST],
+        Diagnostic(Code.DAMAGED_CHUNK, more, place, diagnostics[0].help, Severity.WARNING),
     ]
 
 
@@ -175,28 +177,28 @@ def no_field(signal: Signal, error: FieldError) -> Diagnostic:
     return Diagnostic(Code.NO_FIELD, f"in `{signal.path.topic}` {error}", signal.span, error.mend)
 
 
-def never_stated(signal: Signal, held: Collection[str]) -> Diagnostic:
-    """The messages may leave out the field that the signal asks for, and all of them do."""
+def never_stated(signal: Signal, paths: Collection[str]) -> Diagnostic:
+    """Every message leaves out the field of the signal, as their type allows."""
     name = ".".join(signal.path.fields)
-    known = [path.removesuffix("[:]") for path in held]
-    near = suggestion(name, known)
-    listed = f"they state {', '.join(known[:8])}{', ...' if len(known) > 8 else ''}"
+    numbers = [path.removesuffix("[:]") for path in paths]
+    near = suggestion(name, numbers)
+    listed = f"they state {', '.join(numbers[:8])}{', ...' if len(numbers) > 8 else ''}"
     return Diagnostic(
         Code.NO_FIELD,
         f"no message of `{signal.path.topic}` states a number in `{name}`",
         signal.span,
-        f"did you mean `{near}`?" if near else listed if known else "they state no number at all",
+        f"did you mean `{near}`?" if near else listed if numbers else "they state no number at all",
     )
 
 
-def wrong_type(signal: Signal, found: str) -> Diagnostic:
+def wrong_type(signal: Signal, actual: str) -> Diagnostic:
     """The topic is of another type than the signal declares."""
     return Diagnostic(
         Code.WRONG_TYPE,
-        f"`{signal.path.topic}` is of type `{short_type(found)}` in the log, "
+        f"`{signal.path.topic}` is of type `{short_type(actual)}` in the log, "
         f"not `{short_type(signal.type or '')}`",
         signal.span,
-        f'write `type = "{short_type(found)}"`, and check that `path` still fits',
+        f'write `type = "{short_type(actual)}"`, and check that `path` still fits',
     )
 
 
@@ -286,7 +288,7 @@ def zero_stamps(
 def still_clock(
     topic: str, place: Span | None, same: int, count: int, time: TimeSource
 ) -> Diagnostic:
-    """F420: many messages in a row have one time."""
+    """F420: many messages in a row have the same time."""
     return Diagnostic(
         Code.STILL_CLOCK,
         f"the clock of `{topic}` stands still: {same} of {count} messages have the {time} of "

@@ -1,4 +1,4 @@
-"""The first messages of topics in JSON: only they tell which fields such messages have."""
+"""The first messages of topics in JSON: only they show which fields such messages have."""
 
 from __future__ import annotations
 
@@ -6,44 +6,44 @@ from fretc.logs.mcap.container import Stream
 from fretc.logs.mcap.messages import Messages, Sink
 
 _MOST, _MOST_BYTES = 20, 2**20
-"""Messages of a topic, and bytes of them, that are kept."""
+"""The most messages of a topic, and the most bytes of them."""
 
 
 class Examples:
-    """Hands every message on, and keeps the first ones of topics in JSON."""
+    """A sink that passes every message on, and keeps the first ones of topics in JSON."""
 
     def __init__(self, sink: Sink) -> None:
         self._sink = sink
-        self._kept: dict[str, list[bytes]] = {}
+        self._examples: dict[str, list[bytes]] = {}
 
     def of(self, topic: str) -> tuple[bytes, ...]:
         """Payloads of a topic; none of one that is not in JSON."""
-        return tuple(self._kept.get(topic, ()))
+        return tuple(self._examples.get(topic, ()))
 
     def declare(self, stream: Stream) -> None:
         """A stream of the file."""
         if stream.channel.message_encoding == "json":
-            self._kept.setdefault(stream.channel.topic, [])
+            self._examples.setdefault(stream.channel.topic, [])
         self._sink.declare(stream)
 
     def add(self, stream: Stream, log_time: int, publish_time: int, payload: memoryview) -> None:
         """One whole message."""
-        kept = self._open(stream)
-        if kept is not None and len(payload) <= _MOST_BYTES:
-            kept.append(bytes(payload))
+        examples = self._open(stream)
+        if examples is not None and len(payload) <= _MOST_BYTES:
+            examples.append(bytes(payload))
         self._sink.add(stream, log_time, publish_time, payload)
 
     def add_all(self, stream: Stream, messages: Messages) -> None:
         """Whole messages of one stream."""
-        kept = self._open(stream)
-        if kept is not None:
+        examples = self._open(stream)
+        if examples is not None:
             payloads = messages.payloads
-            some = (payloads.payload(i) for i in range(min(len(payloads), _MOST - len(kept))))
-            kept += [bytes(payload) for payload in some if len(payload) <= _MOST_BYTES]
+            some = (payloads.payload(i) for i in range(min(len(payloads), _MOST - len(examples))))
+            examples += [bytes(payload) for payload in some if len(payload) <= _MOST_BYTES]
         self._sink.add_all(stream, messages)
 
     def wants(self, topic: str) -> bool:
-        """Whether more than the number of its messages is asked for."""
+        """Whether the messages themselves are wanted, not only their number."""
         return self._sink.wants(topic)
 
     def count(self, stream: Stream, count: int) -> None:
@@ -51,7 +51,7 @@ class Examples:
         self._sink.count(stream, count)
 
     def _open(self, stream: Stream) -> list[bytes] | None:
-        """Where more of its messages go; None where no more are kept."""
-        kept = self._kept.get(stream.channel.topic)
-        full = kept is None or len(kept) >= _MOST or sum(map(len, kept)) >= _MOST_BYTES
-        return None if full else kept
+        """The list for further messages of a stream; None where it is full or not wanted."""
+        examples = self._examples.get(stream.channel.topic)
+        full = examples is None or len(examples) >= _MOST or sum(map(len, examples)) >= _MOST_BYTES
+        return None if full else examples

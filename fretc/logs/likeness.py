@@ -1,4 +1,4 @@
-"""Whether two logs are of one run: what their messages say, whatever file they are in."""
+"""Whether two logs are of one run: a fingerprint of their messages, not of their files."""
 
 from __future__ import annotations
 
@@ -12,8 +12,8 @@ from fretc.logs.signals.samples import Recording
 def fingerprint(recording: Recording) -> str | None:
     """SHA-256 of the times and values of all signals that were read; None where there are none.
 
-    A log that is written again (by another tool, with other metadata, chunks or compression) has
-    the same. Unknown values are all alike, and so are the kinds of numbers.
+    A copy of a log by another tool, with other metadata, chunks or compression, has the same
+    fingerprint. All unknown values are alike, and so are the kinds of numbers.
     """
     if not any(len(samples.times) for samples in recording.samples.values()):
         return None

@@ -24,7 +24,7 @@ from fretc.logs.mcap.contents import contents
 from fretc.logs.mcap.damage import Damage
 from fretc.logs.mcap.messages import Sink
 from fretc.logs.messages.decoding import decoder, numbers
-from fretc.logs.messages.json_messages import held as stated_fields
+from fretc.logs.messages.json_messages import message_paths as stated_fields
 from fretc.logs.signals.integrity import Checked, Integrity
 from fretc.logs.signals.samples import Gap, Recording, Samples, Topic
 from fretc.logs.signals.stamps import JUMP, Stamps, stamps, still
@@ -33,7 +33,7 @@ from fretc.logs.storage.bags import NOWHERE
 from fretc.logs.storage.folders import METADATA, Folder, folder, is_folder, of_all
 from fretc.logs.storage.inputs import Input, opened, shown
 from fretc.logs.storage.parts import Numbered, Part, around, widened
-from fretc.logs.storage.splits import ACTIVE, named, split, unclosed_backup
+from fretc.logs.storage.splits import ACTIVE, run_name, split, unclosed_backup
 from fretc.logs.topic_columns import Column, Columns
 from fretish.bindings.declarations import Declarations, Signal
 from fretish.clock import Clock
@@ -200,7 +200,7 @@ def _alone(path: str, place: Span) -> Iterator[Diagnostic]:
     if isinstance(about, Folder) and len(about.files) > 1 and name in about.files:
         whole = f"the folder `{parent or '.'}`"
     elif bags_of_run is not None:
-        about, whole = bags_of_run, f"'{named(bags_of_run)}'"
+        about, whole = bags_of_run, f"'{run_name(bags_of_run)}'"
     else:
         return
     yield refusals.part_of_a_run(about.files.index(name), len(about.files), whole, place)

@@ -28,10 +28,10 @@ from fretc.logs.signals.signals import (
     UnstatedError,
     fields,
     is_chosen,
+    optional_field,
     sample,
-    stated_field,
 )
-from fretc.logs.signals.traces import origin, states_at
+from fretc.logs.signals.traces import origin, proposition_states
 from fretish import expressions as e
 from fretish.bindings.declarations import Declarations, Signal
 from fretish.diagnostics.diagnostic import Code, Diagnostic
@@ -263,7 +263,9 @@ class Stream:
         recording = self._recording(start, end, samples)
         ticks = np.array([*before, *times], np.int64)
         truth = {
-            name: truth_values(states_at(name, self._declarations, recording, ticks, first))
+            name: truth_values(
+                proposition_states(name, self._declarations, recording, ticks, first)
+            )
             for name in self._propositions
         }
         self._last_tick = times[-1]
@@ -305,7 +307,7 @@ class Stream:
 def lookback(expression: e.Expression) -> int:
     """How far its truth looks back, in nanoseconds: the durations within each other, added up."""
     inner = max(map(lookback, e.children(expression)), default=0)
-    return inner + expression.duration if isinstance(expression, e.Held) else inner
+    return inner + expression.duration if isinstance(expression, e.Persistence) else inner
 
 
 @dataclass(slots=True)
@@ -407,7 +409,7 @@ def _is_single(signal: Signal, message: Message) -> bool:
     """Whether its field holds 32-bit floats."""
     value: object = message
     for name in signal.path.fields:
-        value = stated_field(value, name)
+        value = optional_field(value, name)
     return getattr(value, "dtype", None) == np.float32
 
 

@@ -28,7 +28,7 @@ from fretish.diagnostics.source import Span
 _MOST, _MOST_BYTES = 4096, 2**22
 """Messages, and bytes of them, that are read at once."""
 _ENOUGH = 1024
-"""Messages that are read where they stand; fewer wait for others of their kind."""
+"""So many messages are read at once; fewer wait for others of their stream."""
 
 
 @dataclass(slots=True)
@@ -56,9 +56,9 @@ class Pending:
 
 @dataclass(slots=True)
 class Column:
-    """What is read of one topic; `logs` are the log times, `times` those of the declared clock.
+    """The data of one topic; `logs` are the log times, `times` those of the declared clock.
 
-    Until all messages are there, `times` are as they stand in them.
+    Until all messages have come, `times` are the times in the messages.
     """
 
     name: str
@@ -67,25 +67,25 @@ class Column:
     bound: bool
     """Whether the bindings name it; of another topic only log times are read."""
     signals: list[Signal]
-    """Those that are read of it: wanted, and nothing wrong with them."""
+    """The signals to read of it: wanted and readable."""
     logs: array[int] = field(default_factory=lambda: array("q"))
     times: array[int] = field(default_factory=lambda: array("q"))
     values: dict[str, Series] = field(default_factory=dict)
-    wrong: dict[str, Diagnostic] = field(default_factory=dict)
+    diagnostics: dict[str, Diagnostic] = field(default_factory=dict)
     """Why there are no samples of a signal."""
     types: dict[str, None] = field(default_factory=dict)
-    """Of its messages, in the order in which they came."""
+    """The types of its messages, in the order in which they came."""
     pending: Pending | None = None
     undecoded: int = 0
     unstamped: int = 0
     timeless: bytearray = field(default_factory=bytearray)
-    """For each message 1 where the declared clock does not tell its time."""
+    """For each message 1 where the declared clock gives no time."""
     unset: NDArray[np.bool_] = field(default_factory=lambda: np.zeros(0, bool))
     """For each message whether its time was never set: it is zero, and its samples are unknown."""
     placed: bool = False
-    """Whether the declared clock tells the time of any of its messages."""
+    """Whether the declared clock gives the time of any of its messages."""
     stated: int = 0
-    """How many messages the log says it holds of it that were not read."""
+    """The number of messages that the log states and that were not read."""
 
     @property
     def count(self) -> int:
@@ -95,11 +95,11 @@ class Column:
     def refuse(self, signal: Signal, diagnostic: Diagnostic) -> None:
         """No samples of this signal."""
         self.signals.remove(signal)
-        self.wrong[signal.name] = diagnostic
+        self.diagnostics[signal.name] = diagnostic
         self.values.pop(signal.name, None)
 
     def raw(self) -> tuple[Times, Times]:
-        """Log times, and the times as they stand in the messages; in the order of the file."""
+        """Log times, and the times in the messages; in the order of the file."""
         logs = np.array(self.logs, np.int64)
         return logs, np.array(self.times, np.int64) if self.bound else logs
 
@@ -117,7 +117,7 @@ class Column:
         return np.array(self.times, np.int64)
 
     def numbers(self, signal: Signal) -> Values:
-        """What a signal reads of the messages: nothing of one whose time was never set."""
+        """The numbers of a signal; unknown in messages whose time was never set."""
         numbers = self.values[signal.name].values().copy()
         numbers[self.unset] = np.nan
         return numbers
@@ -129,7 +129,7 @@ class Column:
 
 
 class Columns:
-    """Takes messages and keeps the numbers that the signals ask for."""
+    """A sink that keeps the numbers of the signals."""
 
     def __init__(self, declarations: Declarations, wanted: Sequence[Signal]) -> None:
         self.topics: dict[str, Column] = {}
@@ -165,7 +165,7 @@ class Columns:
                 column.refuse(signal, findings.wrong_type(signal, type_))
 
     def add(self, stream: Stream, log_time: int, publish_time: int, payload: memoryview) -> None:
-        """One message; those of bound topics are kept, to be read with others of their kind."""
+        """One message; messages of bound topics wait for others of their stream."""
         column = self.topics[stream.channel.topic]
         if not column.bound:
             column.logs.append(log_time)
@@ -196,7 +196,7 @@ class Columns:
         self.topics[stream.channel.topic].stated += count
 
     def _decodes(self, column: Column) -> bool:
-        """Whether anything within its messages is asked for."""
+        """Whether its messages must be decoded."""
         return bool(column.signals) or self.clock.time is TimeSource.HEADER_STAMP
 
     def _wait(
@@ -225,7 +225,7 @@ class Columns:
             column.place(from_zero=from_zero)
 
     def _begins_at_zero(self) -> bool:
-        """Whether the declared clock does: a bound topic has a time soon after; else any topic."""
+        """Whether the declared clock begins at zero: a bound topic, else any, has such a time."""
         columns = self.topics.values()
         of_all = [c for c in columns if c.bound and c.logs] or list(columns)
         times = (column.raw()[1] for column in of_all)
@@ -241,20 +241,20 @@ class Columns:
     def _read(
         self, column: Column, stream: Stream, logs: Times, publishes: Stamps, payloads: Payloads
     ) -> None:
-        """Keep what messages of one stream say."""
+        """Read and keep the data of messages of one stream."""
         column.types[short_type(stream.schema.name) if stream.schema else ""] = None
         extract = self._extract(column, stream, payloads)
         times, dated = self._times(column, extract, logs, publishes)
-        kept = times < LATEST
-        column.undecoded += int((~kept).sum())
-        column.logs.frombytes(logs[kept].tobytes())
-        column.times.frombytes(times[kept].tobytes())
-        column.timeless.extend((~dated[kept]).tobytes())
+        usable = times < LATEST
+        column.undecoded += int((~usable).sum())
+        column.logs.frombytes(logs[usable].tobytes())
+        column.times.frombytes(times[usable].tobytes())
+        column.timeless.extend((~dated[usable]).tobytes())
         for signal in column.signals:
-            column.values.setdefault(signal.name, Series()).add(extract.values[signal.name][kept])
+            column.values.setdefault(signal.name, Series()).add(extract.values[signal.name][usable])
 
     def _extract(self, column: Column, stream: Stream, payloads: Payloads) -> Extract:
-        """What the signals ask for; one with something wrong gets no samples."""
+        """The data of the signals; a signal with a diagnostic gets no samples."""
         if not self._decodes(column):
             return Extract.empty(len(payloads), ())
         id = stream.channel.id
@@ -263,8 +263,8 @@ class Columns:
         extraction = self._extractions[id]
         extract = extraction.extract(payloads)
         for signal in tuple(column.signals):
-            if signal.name in extraction.wrong:
-                column.refuse(signal, extraction.wrong[signal.name])
+            if signal.name in extraction.diagnostics:
+                column.refuse(signal, extraction.diagnostics[signal.name])
         if extraction.reads:
             column.undecoded += int((~extract.decoded).sum())
         for name, least in extract.nearest.items():
@@ -274,7 +274,7 @@ class Columns:
     def _times(
         self, column: Column, extract: Extract, logs: Times, publishes: Stamps
     ) -> tuple[Times, NDArray[np.bool_]]:
-        """When the messages were, on the declared clock; and of which of them it tells that."""
+        """The times of the messages on the declared clock, and which of them it gives."""
         every = np.ones(len(logs), bool)
         match self.clock.time:
             case TimeSource.LOG_TIME:
@@ -289,7 +289,7 @@ class Columns:
     # The results
 
     def samples(self, signal: Signal) -> tuple[Times, Values]:
-        """Times and values of one signal, in order of time; none where something is wrong."""
+        """Times and values of one signal, in order of time; none where it has a diagnostic."""
         column = self.topics.get(signal.path.topic)
         if column is None or signal.name not in column.values:
             return np.zeros(0, np.int64), np.zeros(0)
@@ -302,17 +302,17 @@ class Columns:
         column = self.topics.get(self.clock.topic or "")
         return np.sort(np.array(column.times if column else [], np.int64))
 
-    def span(self, whole: Gap) -> Gap:
-        """First and last message of the bound topics, else of all; else those of the `whole` log.
+    def span(self, log: Gap) -> Gap:
+        """First and last message of the bound topics, else of all; else those of the `log` log.
 
         A topic counts if the declared clock gives the time of any of its messages. Other topics
         than the bound ones count by log time only: an index knows no other time of them.
         """
-        known = [column for column in self.topics.values() if column.placed]
-        times = [c.times for c in known if c.bound]
+        columns = [column for column in self.topics.values() if column.placed]
+        times = [c.times for c in columns if c.bound]
         if not times and self.clock.time is TimeSource.LOG_TIME:
-            times = [c.times for c in known]
-        return (min(map(min, times)), max(map(max, times))) if times else whole
+            times = [c.times for c in columns]
+        return (min(map(min, times)), max(map(max, times))) if times else log
 
     def on_clock(self, gap: Gap) -> Gap:
         """A span of log times, on the declared clock: between the messages around it."""
@@ -327,23 +327,27 @@ class Columns:
         end = int(after.min()) if len(after) else int(times.max())
         return min(start, end), max(start, end)
 
-    # What there is to say
+    # Diagnostics
 
     def findings(self) -> list[Diagnostic]:
         """About single topics: what is missing first, then what is odd."""
-        found = [wrong for signal in self._wanted if (wrong := self._wrong(signal)) is not None]
+        diagnostics = [
+            diagnostic
+            for signal in self._wanted
+            if (diagnostic := self._problem(signal)) is not None
+        ]
         if self.clock.topic and not self.ticks().size:
-            found.append(self._absent(self.clock.topic, self._clock_place(self.clock.topic)))
+            diagnostics.append(self._absent(self.clock.topic, self._clock_place(self.clock.topic)))
         for topic, signal in {signal.path.topic: signal for signal in self._wanted}.items():
             if topic in self.topics:
-                found += self._oddities(self.topics[topic], signal)
-        return found
+                diagnostics += self._oddities(self.topics[topic], signal)
+        return diagnostics
 
-    def _wrong(self, signal: Signal) -> Diagnostic | None:
+    def _problem(self, signal: Signal) -> Diagnostic | None:
         column = self.topics.get(signal.path.topic)
         if column is None or not column.logs:
             return self._absent(signal.path.topic, signal.span)
-        return column.wrong.get(signal.name)
+        return column.diagnostics.get(signal.name)
 
     def _absent(self, topic: str, span: Span | None) -> Diagnostic:
         if topic in self.topics:
@@ -351,7 +355,7 @@ class Columns:
         return findings.no_topic(topic, self.topics, span)
 
     def readers(self) -> dict[str, Span | None]:
-        """The bound topics that are asked for, each with the place that binds it."""
+        """The wanted bound topics, each with the place that binds it."""
         places = {self.clock.topic: self._clock_place(self.clock.topic)} if self.clock.topic else {}
         places |= {signal.path.topic: signal.span for signal in self._wanted}
         return {topic: place for topic, place in places.items() if topic in self.topics}
@@ -361,19 +365,19 @@ class Columns:
         return self._source.span(start, start + len(topic) + 2) if start >= 0 else None
 
     def _oddities(self, column: Column, signal: Signal) -> list[Diagnostic]:
-        found, count = [], len(column.logs)
+        diagnostics, count = [], len(column.logs)
         if len(column.types) > 1 and signal.type is None:
-            found.append(findings.several_types(signal, list(column.types)))
+            diagnostics.append(findings.several_types(signal, list(column.types)))
         if column.undecoded:
-            found.append(findings.bad_messages(signal, column.undecoded, count))
+            diagnostics.append(findings.bad_messages(signal, column.undecoded, count))
         if late := column.late():
-            found.append(findings.out_of_order(signal, late, count))
+            diagnostics.append(findings.out_of_order(signal, late, count))
         if column.unstamped:
-            found.append(findings.unstamped(signal, self._shift()))
-        return found
+            diagnostics.append(findings.unstamped(signal, self._shift()))
+        return diagnostics
 
     def _shift(self) -> int:
-        """By how many nanoseconds header stamps are away from log times, in the middle."""
+        """Median distance of header stamps from log times, in nanoseconds."""
         stamped = [c for c in self.topics.values() if c.bound and c.placed and not c.unstamped]
         if self.clock.time is not TimeSource.HEADER_STAMP or not stamped:
             return 0

@@ -226,7 +226,7 @@ def _agent(project: Project, asked: Request) -> tuple[Evidence, ...] | Diagnosti
 
 def _bundle(rule: Rule, claim: str, limits: Limits) -> tuple[Evidence, ...]:
     refused = ajpf.refusal(rule)
-    found = processes.confined(limits, bundle.shown, rule) if refused is None else refused
+    found = processes.confined(limits, bundle.checked_agent, rule) if refused is None else refused
     if isinstance(found, Diagnostic):
         return (_unknown(rule.id, Layer.AGENT, claim, f"there is none: {found.message}"),)
     if isinstance(found, Stopped):

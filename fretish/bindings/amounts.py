@@ -1,4 +1,4 @@
-"""Numbers as a reader wants to see them: in declared units, with digits that say something.
+"""Numbers for a reader: in declared units, with the significant digits.
 
 Audits count in base units, whatever unit the bindings declare; people think in the declared ones.
 """
@@ -19,7 +19,7 @@ from fretish.units import base_name
 _DIGITS = 4
 """Significant digits of a measured number, where nothing asks for more."""
 _MOST_DIGITS = 17
-"""With these, every 64-bit float is told from every other."""
+"""So many digits distinguish all 64-bit floats."""
 _LARGEST = Fraction(float_info.max)
 _PLAIN = 10**15
 """Below it numbers have no exponent."""
@@ -30,14 +30,14 @@ Number = TypeVar("Number", float, float | None, float | str | None)
 # Digits ----------------------------------------------------------------------------------------
 
 
-def value(number: float | str | None, unit: str, beside: Sequence[float] = ()) -> str:
+def value(number: float | str | None, unit: str, bounds: Sequence[float] = ()) -> str:
     """A measured number: `0.0318 m`, `unknown`; an infinite one as it is written, `+inf`.
 
     Args:
         number: in the unit; None: unknown.
         unit: as it is shown; empty for a plain number.
-        beside: numbers that are shown exactly with it: it has as many digits as tell it from each,
-            and on which side of each it lies.
+        bounds: numbers that appear exactly beside it: it gets as many digits as show whether it
+            equals each of them, and on which side of each it lies.
     """
     if number is None or isinstance(number, str):
         return "unknown" if number is None else number
@@ -46,11 +46,11 @@ def value(number: float | str | None, unit: str, beside: Sequence[float] = ()) -
     text = next(
         text
         for digits in range(_least_digits(number), _MOST_DIGITS + 1)
-        for text in [_written(number, digits)]
+        for text in [_decimal(number, digits)]
         if digits == _MOST_DIGITS
         or (
             isfinite(float(text))
-            and all(_side(float(text), each) == _side(number, each) for each in beside)
+            and all(_side(float(text), each) == _side(number, each) for each in bounds)
         )
     )
     return f"{text} {unit}".rstrip()
@@ -63,7 +63,7 @@ def exact(number: float, unit: str) -> str:
     text = next(
         text
         for digits in range(1, _MOST_DIGITS + 1)
-        for text in [_written(number, digits)]
+        for text in [_decimal(number, digits)]
         if digits == _MOST_DIGITS or isclose(float(text), number, rel_tol=1e-15)
     )
     return f"{text} {unit}".rstrip()
@@ -75,7 +75,7 @@ def _least_digits(number: float) -> int:
     return max(_DIGITS, size) if size <= _DIGITS + 3 else _DIGITS
 
 
-def _written(number: float, digits: int) -> str:
+def _decimal(number: float, digits: int) -> str:
     text = f"{number:.{digits}g}"
     return f"{Decimal(text):f}" if "e+" in text and abs(number) < _PLAIN else text
 
@@ -95,10 +95,10 @@ def declared_unit(signal: str, base: str, declared: Mapping[str, Signal]) -> tup
         base: the base unit that its numbers are in.
         declared: the signals of the bindings.
     """
-    found = declared.get(signal)
-    if found is None or base_name(found.unit.dimension) != base:
+    declaration = declared.get(signal)
+    if declaration is None or base_name(declaration.unit.dimension) != base:
         return base, Fraction(1)
-    return "" if found.unit_name == "1" else found.unit_name, found.unit.factor
+    return "" if declaration.unit_name == "1" else declaration.unit_name, declaration.unit.factor
 
 
 def shared_unit(term: str, base: str, declared: Mapping[str, Signal]) -> tuple[str, Fraction]:
@@ -109,12 +109,12 @@ def shared_unit(term: str, base: str, declared: Mapping[str, Signal]) -> tuple[s
         base: the base unit that its numbers are in.
         declared: the signals of the bindings.
     """
-    found = {
+    candidates = {
         declared_unit(name, base, declared)
         for name in _NAME.findall(term)
         if name in declared and base_name(declared[name].unit.dimension) == base
     }
-    return found.pop() if len(found) == 1 else (base, Fraction(1))
+    return candidates.pop() if len(candidates) == 1 else (base, Fraction(1))
 
 
 def scaled(number: Number, factor: Fraction) -> Number:

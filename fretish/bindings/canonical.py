@@ -37,28 +37,32 @@ def clock(declared: Clock) -> Any:
 
 
 def bound(declarations: Declarations, names: Iterable[str]) -> Any:
-    """What logs say of the propositions: these, and the signals that they read."""
-    known = [declarations.propositions[n] for n in names if n in declarations.propositions]
-    read = {signal for proposition in known for signal in proposition.signals}
+    """The meaning of propositions in logs: their expressions, and the signals that they read."""
+    propositions = [declarations.propositions[n] for n in names if n in declarations.propositions]
+    read = {signal for proposition in propositions for signal in proposition.signals}
     return {
-        "proposition": {each.name: _proposition(each) for each in known},
+        "proposition": {each.name: _proposition(each) for each in propositions},
         "signal": {name: _signal(declarations.signals[name]) for name in read},
     }
 
 
 def described(declarations: Declarations | None, names: Iterable[str]) -> Any:
-    """What the bindings tell people and other tools of the propositions; no log depends on it."""
-    known = declarations.propositions if declarations else {}
+    """The documentation of propositions, for people and other tools; no log depends on it."""
+    propositions = declarations.propositions if declarations else {}
     return {
-        name: [" ".join(known[name].text.split()), str(known[name].role), known[name].kind]
+        name: [
+            " ".join(propositions[name].text.split()),
+            str(propositions[name].role),
+            propositions[name].kind,
+        ]
         for name in names
-        if name in known
+        if name in propositions
     }
 
 
 def _proposition(proposition: Proposition) -> Any:
-    told = expression(proposition.expression)
-    return [told, str(proposition.aggregate), proposition.on_unknown]
+    meaning = expression(proposition.expression)
+    return [meaning, str(proposition.aggregate), proposition.on_unknown]
 
 
 def _signal(signal: Signal) -> Any:
@@ -106,7 +110,7 @@ def expression(tree: e.Expression, *, plain: bool = True) -> Any:
             kind = [type(tree).__name__, op]
         case e.Call(name, _):
             kind = ["call", name]
-        case e.Held(_, duration):
+        case e.Persistence(_, duration):
             kind = ["for", str(duration)]
         case e.Negation() | e.Not() | e.And() | e.Or() | e.Xor() | e.Implies() | e.Iff():
             kind = [type(tree).__name__]

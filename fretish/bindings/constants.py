@@ -20,18 +20,18 @@ def constants(expression: e.Expression) -> set[Exact]:
     What is computed of numbers alone is one number, and `-5 cm` may be stated with its sign or
     without.
     """
-    found: set[Exact] = set()
+    numbers: set[Exact] = set()
     waiting = [expression]
     while waiting:
         part = waiting.pop()
-        if isinstance(part, e.Held):
-            found.add((units.SECOND.dimension, Fraction(part.duration, 10**9)))
+        if isinstance(part, e.Persistence):
+            numbers.add((units.SECOND.dimension, Fraction(part.duration, 10**9)))
         exact = constant(part)
         if exact is not None:
-            found.add(exact)
+            numbers.add(exact)
         if exact is None or isinstance(part, e.Negation):
             waiting.extend(e.children(part))
-    return found
+    return numbers
 
 
 def constant(expression: e.Expression) -> Exact | None:
@@ -50,15 +50,15 @@ def number(expression: e.Expression) -> Fraction | None:
         case e.Number(digits):
             return Fraction(digits)
         case e.Quantity(digits, name, _):
-            known = units.unit(name)
-            assert known is not None, "the parser refuses unknown units"
-            return Fraction(digits) * known.factor
+            unit = units.unit(name)
+            assert unit is not None, "the parser refuses unknown units"
+            return Fraction(digits) * unit.factor
         case e.Negation(arg):
             value = number(arg)
             return None if value is None else -value
         case e.Arithmetic(op, left, right):
-            one, other = number(left), number(right)
-            return None if one is None or other is None else computed(op, one, other)
+            first, second = number(left), number(right)
+            return None if first is None or second is None else computed(op, first, second)
         case e.Call(name, args, _):
             values = [value for value in map(number, args) if value is not None]
             return called(name, values) if len(values) == len(args) else None

@@ -117,7 +117,7 @@ class Signal:
 
     @property
     def scale(self) -> Fraction:
-        """Times this, samples are in base units: a clearance is, whatever unit the field has."""
+        """Factor from samples to base units; a clearance is in base units already."""
         return Fraction(1) if self.reduce is Reduce.OUTLINE else self.unit.factor
 
 
@@ -279,7 +279,7 @@ class Default:
 
     part: Part
     text: str
-    stated: bool = False
+    explicit: bool = False
     """Whether it is written in the bindings all the same."""
 
 
@@ -306,11 +306,11 @@ class Declarations:
 
     def reading(self, propositions: Iterable[str]) -> Declarations:
         """The same without the signals that none of the propositions reads."""
-        known = [self.propositions[name] for name in propositions if name in self.propositions]
-        read = {signal for proposition in known for signal in proposition.signals}
+        bound = [self.propositions[name] for name in propositions if name in self.propositions]
+        read = {signal for proposition in bound for signal in proposition.signals}
         parts = {("clock", "")}
         parts |= {("signal", name) for name in read}
-        parts |= {("proposition", proposition.name) for proposition in known}
+        parts |= {("proposition", proposition.name) for proposition in bound}
         return replace(
             self,
             signals={name: signal for name, signal in self.signals.items() if name in read},
@@ -319,8 +319,8 @@ class Declarations:
 
     @property
     def assumptions(self) -> tuple[str, ...]:
-        """Defaults that were taken, and what is declared of unknown values, in words."""
-        return tuple(default.text for default in self.defaults if not default.stated)
+        """Implicit defaults, and the declared values of unknown propositions, in words."""
+        return tuple(default.text for default in self.defaults if not default.explicit)
 
 
 def short_type(name: str) -> str:

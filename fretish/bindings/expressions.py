@@ -69,15 +69,15 @@ class _Build(Transformer_NonRecursive[Token, Any]):
     def start(self, children: list[Any]) -> e.Expression:
         return cast(e.Expression, children[0])
 
-    def held(self, children: list[Any]) -> e.Expression:
+    def persistence(self, children: list[Any]) -> e.Expression:
         arg, token = children[0], children[-1]
         duration = nanoseconds(str(token))
         if duration is None:
-            written = str(token)
-            before = len(written) - len(written.lstrip())
-            place = self._span(token).part(before, len(written))
-            raise _UnitError(_bad_duration(written.strip(), place))
-        return e.Held(arg, duration)
+            text = str(token)
+            before = len(text) - len(text.lstrip())
+            place = self._span(token).part(before, len(text))
+            raise _UnitError(_bad_duration(text.strip(), place))
+        return e.Persistence(arg, duration)
 
     def either(self, children: list[Any]) -> e.Expression:
         return e.either(*_parts(children))
@@ -131,15 +131,17 @@ def _begins_unit(text: str, i: int, c: str) -> bool:
     return (c.isalpha() or c == "%") and not exponent and not signed
 
 
-def dimension(whole: e.Expression, kinds: Mapping[str, Kind], place: Span) -> Kind | Diagnostic:
+def dimension(
+    expression: e.Expression, kinds: Mapping[str, Kind], place: Span
+) -> Kind | Diagnostic:
     """What the expression is: a number of some dimension, or a truth value (None).
 
     Args:
-        whole: the expression.
+        expression: the expression.
         kinds: what each name in scope is.
         place: where to point when a part has no place of its own.
     """
-    match whole:
+    match expression:
         case e.Truth():
             return None
         case e.Name(id, span):
@@ -147,11 +149,13 @@ def dimension(whole: e.Expression, kinds: Mapping[str, Kind], place: Span) -> Ki
         case e.Number():
             return DIMENSIONLESS
         case e.Quantity(_, name, span):
-            known = unit(name)
-            assert known is not None
+            measure = unit(name)
+            assert measure is not None
             parts = [part for part in re.split("[*/]", name)[1:] if part in kinds]
-            also = [part for part in parts if (one := unit(part)) and one.dimension == kinds[part]]
-            return _ambiguous(name, also[0], span or place) if also else known.dimension
+            also = [
+                part for part in parts if (factor := unit(part)) and factor.dimension == kinds[part]
+            ]
+            return _ambiguous(name, also[0], span or place) if also else measure.dimension
         case e.Negation(arg):
             return _numbers([arg], kinds, place)
         case e.Arithmetic(op, left, right):
@@ -163,10 +167,10 @@ def dimension(whole: e.Expression, kinds: Mapping[str, Kind], place: Span) -> Ki
             if name not in FUNCTIONS:
                 return _unknown_function(name, span or place)
             if name == "abs" and len(args) != 1:
-                return _wrong_kind("`abs` takes one number", whole, span or place)
+                return _wrong_kind("`abs` takes one number", expression, span or place)
             return _numbers(list(args), kinds, span or place)
         case _:
-            return _truths(e.children(whole), kinds, place)
+            return _truths(e.children(expression), kinds, place)
 
 
 def _truths(
@@ -185,19 +189,21 @@ def _numbers(
     args: list[e.Expression], kinds: Mapping[str, Kind], place: Span
 ) -> Dimension | Diagnostic:
     """The dimension that all of them share."""
-    found: Dimension | None = None
+    common: Dimension | None = None
     for arg in args:
         kind = dimension(arg, kinds, place)
         if isinstance(kind, Diagnostic):
             return kind
         if kind is None:
             return _wrong_kind("a number is needed, and this is a truth value", arg, place)
-        if found is not None and kind != found:
+        if common is not None and kind != common:
             return _mismatch(
-                f"{_named(found)} cannot be compared with or added to {_named(kind)}", arg, place
+                f"{_in_words(common)} cannot be compared with or added to {_in_words(kind)}",
+                arg,
+                place,
             )
-        found = kind
-    return found or DIMENSIONLESS
+        common = kind
+    return common or DIMENSIONLESS
 
 
 def _arithmetic(
@@ -205,16 +211,16 @@ def _arithmetic(
 ) -> Kind | Diagnostic:
     if op in "+-":
         return _numbers([left, right], kinds, place)
-    one, two = _numbers([left], kinds, place), _numbers([right], kinds, place)
-    if isinstance(one, Diagnostic):
-        return one
-    if isinstance(two, Diagnostic):
-        return two
+    first, second = _numbers([left], kinds, place), _numbers([right], kinds, place)
+    if isinstance(first, Diagnostic):
+        return first
+    if isinstance(second, Diagnostic):
+        return second
     sign = 1 if op == "*" else -1
-    return tuple(a + sign * b for a, b in zip(one, two, strict=True))
+    return tuple(a + sign * b for a, b in zip(first, second, strict=True))
 
 
-def _named(dimension: Dimension) -> str:
+def _in_words(dimension: Dimension) -> str:
     name = base_name(dimension)
     return f"a quantity in {name}" if name else "a number without a unit"
 
@@ -244,20 +250,20 @@ def is_truth(expression: e.Expression) -> bool:
 
 
 def plain_percents(
-    whole: e.Expression, percents: Collection[str], place: Span
+    expression: e.Expression, percents: Collection[str], place: Span
 ) -> Iterator[Diagnostic]:
-    """F338 for each comparison of a signal in percent with a number that is 1 or more and in none.
+    """F338 for each comparison of a signal in percent with a plain number above 1.
 
     Args:
-        whole: an expression whose dimensions are right.
+        expression: an expression whose dimensions are right.
         percents: the names of the signals in percent.
         place: where to point when the number has no place of its own.
     """
-    for part in e.children(whole):
+    for part in e.children(expression):
         yield from plain_percents(part, percents, place)
-    if not isinstance(whole, e.Comparison):
+    if not isinstance(expression, e.Comparison):
         return
-    for side, other in ((whole.left, whole.right), (whole.right, whole.left)):
+    for side, other in ((expression.left, expression.right), (expression.right, expression.left)):
         measured = {name.id for name in e.names(side)}
         limit = other.arg if isinstance(other, e.Negation) else other
         if not measured or not measured <= {*percents} or not isinstance(limit, e.Number):
@@ -280,12 +286,12 @@ _SPELT = {"mps": "m/s", "kph": "km/h", "kmh": "km/h", "rps": "rad/s", "degrees":
 def unknown_unit(name: str, span: Span) -> Diagnostic:
     """F306, with the nearest unit."""
     near = _SPELT.get(name) or suggestion(name, NAMES)
-    known = "m, cm, s, ms, rad, deg, m/s, rad/s, m/s^2, kg, A, V, Hz, %"
+    examples = "m, cm, s, ms, rad, deg, m/s, rad/s, m/s^2, kg, A, V, Hz, %"
     return Diagnostic(
         Code.UNKNOWN_UNIT,
         f"`{name}` is no unit",
         span,
-        help=f"did you mean `{near}`?" if near else f"write one such as {known}",
+        help=f"did you mean `{near}`?" if near else f"write one such as {examples}",
     )
 
 
@@ -300,12 +306,12 @@ def _bad_duration(text: str, span: Span) -> Diagnostic:
 
 def _unknown_name(id: str, kinds: Mapping[str, Kind], span: Span) -> Diagnostic:
     near = suggestion(id, kinds)
-    known = ", ".join(sorted(kinds)) or "nothing"
+    declared = ", ".join(sorted(kinds)) or "nothing"
     return Diagnostic(
         Code.UNKNOWN_NAME,
         f"`{id}` is not declared",
         span,
-        help=f"did you mean `{near}`?" if near else f"declared here: {known}",
+        help=f"did you mean `{near}`?" if near else f"declared here: {declared}",
     )
 
 
@@ -342,10 +348,10 @@ def _unexpected(error: UnexpectedInput, text: Span) -> Diagnostic:
         length = len(token) if token.type != "$END" else 0
         at = len(text.text) if token.type == "$END" else token.start_pos
     span = text.part(at or 0, (at or 0) + length)
-    what = f"`{span.text}` does not fit here" if span.text else "the expression ends too early"
+    message = f"`{span.text}` does not fit here" if span.text else "the expression ends too early"
     return Diagnostic(
         Code.BAD_EXPRESSION,
-        what,
+        message,
         span,
         help="write such as `min_range < 5 cm`, `abs(v) < 0.01 m/s and ready for 200 ms`",
     )

@@ -1,4 +1,4 @@
-"""Fields of a table of `bindings.toml`, each checked; a mistake is kept with its place."""
+"""Fields of a table of `bindings.toml`, each checked; a mistake becomes a diagnostic."""
 
 from __future__ import annotations
 
@@ -15,25 +15,27 @@ Choice = TypeVar("Choice", bound=StrEnum)
 
 
 class Fields:
-    """What every reader of tables does."""
+    """The checks that every reader of tables shares."""
 
-    def __init__(self, tables: Tables, wrong: list[Diagnostic] | None = None) -> None:
+    def __init__(self, tables: Tables, diagnostics: list[Diagnostic] | None = None) -> None:
         self.tables = tables
-        self.wrong: list[Diagnostic] = [] if wrong is None else wrong
+        self.diagnostics: list[Diagnostic] = [] if diagnostics is None else diagnostics
 
     def _say(self, code: Code, message: str, span: Span, mend: str | None = None) -> None:
-        self.wrong.append(Diagnostic(code, message, span, mend))
+        self.diagnostics.append(Diagnostic(code, message, span, mend))
 
-    def _known(
-        self, table: Mapping[str, Any], known: tuple[str, ...], where: str, *at: str
+    def _check_keys(
+        self, table: Mapping[str, Any], keys: tuple[str, ...], where: str, *at: str
     ) -> None:
         for key in table:
-            if key not in known:
+            if key not in keys:
                 span = self.tables.place(*at, key)
-                self.wrong.append(unknown_key(Code.UNKNOWN_BINDING_FIELD, key, known, span, where))
+                self.diagnostics.append(
+                    unknown_key(Code.UNKNOWN_BINDING_FIELD, key, keys, span, where)
+                )
 
     def _field(
-        self, table: Mapping[str, Any], at: tuple[str, ...], kind: type[T], what: str
+        self, table: Mapping[str, Any], at: tuple[str, ...], kind: type[T], form: str
     ) -> T | None:
         """The field at the path, if it is there and of that type."""
         value = table.get(at[-1])
@@ -42,7 +44,7 @@ class Fields:
         ):
             return value
         place = self.tables.value(*at)
-        self._say(Code.BAD_BINDING_FIELD, f"`{at[-1]}` must be {what}", place, f"write {what}")
+        self._say(Code.BAD_BINDING_FIELD, f"`{at[-1]}` must be {form}", place, f"write {form}")
         return None
 
     def _choice(

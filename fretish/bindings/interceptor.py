@@ -38,12 +38,12 @@ class Loop(Fields):
     """Reads the two tables."""
 
     def interceptor(self) -> Interception | None:
-        """`[interceptor]`; None where it is not there, or has mistakes, which are told."""
+        """`[interceptor]`; None where it is absent, or has mistakes, which become diagnostics."""
         table = self._table("interceptor")
         if table is None:
             return None
-        before = len(self.wrong)
-        self._known(table, _INTERCEPTOR, "[interceptor]", "interceptor")
+        before = len(self.diagnostics)
+        self._check_keys(table, _INTERCEPTOR, "[interceptor]", "interceptor")
         topics = {key: self._topic(table, key) for key in _TOPICS}
         at = ("interceptor", "form")
         form = self._choice(table, at, Form, Form.TIMER)
@@ -54,7 +54,7 @@ class Loop(Fields):
         ros = self._ros(table)
         self._check_topics(topics)
         self._check_times(table, form, times)
-        if len(self.wrong) > before:
+        if len(self.diagnostics) > before:
             return None
         stop, command, output = (topics[key] or "" for key in ("stop", "command", "output"))
         span = self.tables.place("interceptor")
@@ -71,7 +71,7 @@ class Loop(Fields):
         )
 
     def assumed(self, propositions: Sequence[str]) -> Assumed | None:
-        """`[assume]`; None where it is not there, or has mistakes, which are told.
+        """`[assume]`; None where it is absent, or has mistakes, which become diagnostics.
 
         Args:
             propositions: the names that are bound.
@@ -79,8 +79,8 @@ class Loop(Fields):
         table = self._table("assume")
         if table is None:
             return None
-        before = len(self.wrong)
-        self._known(table, _ASSUME, "[assume]", "assume")
+        before = len(self.diagnostics)
+        self._check_keys(table, _ASSUME, "[assume]", "assume")
         stands = self._stands(table, propositions)
         latency = self._needed(table, "latency", "100 ms")
         braking = self._needed(table, "braking", "200 ms")
@@ -88,7 +88,7 @@ class Loop(Fields):
         heartbeat = self._heartbeat(table, requests)
         planner = self._choice(table, ("assume", "planner"), Planner, Planner.ANY)
         lost = self._lost(table)
-        if len(self.wrong) > before:
+        if len(self.diagnostics) > before:
             return None
         span = self.tables.place("assume")
         return Assumed(stands, latency, braking, lost, requests, planner, heartbeat, span)
@@ -116,18 +116,18 @@ class Loop(Fields):
     def _duration(
         self, table: Mapping[str, Any], at: tuple[str, ...], *, least: int = 1
     ) -> int | None:
-        """Nanoseconds; None where it is not there or is wrong, which is told."""
+        """Nanoseconds; None where it is absent or wrong; a wrong one becomes a diagnostic."""
         key = at[-1]
         if key not in table:
             return None
         text = table[key]
-        found = units.nanoseconds(text) if isinstance(text, str) else None
-        if found is not None and found >= least:
-            return found
-        above = " above 0" if least else ""
+        duration = units.nanoseconds(text) if isinstance(text, str) else None
+        if duration is not None and duration >= least:
+            return duration
+        limit = " above 0" if least else ""
         self._say(
             Code.BAD_BINDING_FIELD,
-            f"`{key}` must be a duration{above}",
+            f"`{key}` must be a duration{limit}",
             self.tables.value(*at),
             f'write `{key} = "100 ms"`' + ("; leave it out for none" if key in _OPTIONAL else ""),
         )
@@ -153,20 +153,20 @@ class Loop(Fields):
 
     def _check_topics(self, topics: Mapping[str, str | None]) -> None:
         """F320: the wheels would hear what they must not, or the node itself."""
-        seen: dict[str, str] = {}
+        key_of: dict[str, str] = {}
         for key, topic in topics.items():
             if topic is None:
                 continue
             name = topic if topic.startswith(("/", "~")) else f"/{topic}"
-            if name in seen:
+            if name in key_of:
                 self._say(
                     Code.SAME_TOPIC,
-                    f"`{key}` is the same topic as `{seen[name]}`",
+                    f"`{key}` is the same topic as `{key_of[name]}`",
                     self.tables.value("interceptor", key),
                     "name another topic; what the planner says must reach the wheels only "
                     "through the interceptor",
                 )
-            seen.setdefault(name, key)
+            key_of.setdefault(name, key)
 
     def _check_times(self, table: Mapping[str, Any], form: Form, times: Mapping[str, int]) -> None:
         if form is Form.EVENT:
@@ -226,8 +226,8 @@ class Loop(Fields):
 
     def _heartbeat(self, table: Mapping[str, Any], requests: Requests) -> int:
         """Nanoseconds; 0: a request is sent on change only, or at every tick."""
-        found = self._duration(table, ("assume", "heartbeat")) or 0
-        if found and requests is Requests.LEVEL and table.get("requests", "level") == "level":
+        heartbeat = self._duration(table, ("assume", "heartbeat")) or 0
+        if heartbeat and requests is Requests.LEVEL and table.get("requests", "level") == "level":
             self._say(
                 Code.BAD_BINDING_FIELD,
                 '`heartbeat` is of no use with `requests = "level"`, which repeats at every tick',
@@ -235,7 +235,7 @@ class Loop(Fields):
                 'write `requests = "edge"` if the safety function speaks on change and after a '
                 "silence; else leave `heartbeat` out",
             )
-        return found
+        return heartbeat
 
     def _lost(self, table: Mapping[str, Any]) -> int:
         value = self._field(table, ("assume", "lost"), int, "a whole number of messages")

@@ -72,32 +72,32 @@ def _read(source: Source) -> tuple[Declarations | None, tuple[Diagnostic, ...]]:
         return None, (tables,)
     reader = _Reader(tables)
     declarations = reader.declarations()
-    return (declarations if reader.is_usable else None), tuple(reader.wrong)
+    return (declarations if reader.is_usable else None), tuple(reader.diagnostics)
 
 
 class _Reader(Fields):
-    """Walks the tables once and keeps every mistake it meets."""
+    """One walk over the tables, which collects every mistake."""
 
     def __init__(self, tables: Tables) -> None:
         super().__init__(tables)
         self.defaults: list[Default] = []
-        self.told: set[str] = set()
+        self.malformed: set[str] = set()
         self.mistakes: dict[Part, tuple[Diagnostic, ...]] = {}
         self.errors_of_parts = 0
         self.units: dict[str, units.Unit] = {}
-        """Of every signal whose unit is known, whatever else is wrong with it."""
+        """The unit of every signal that has one, even where the signal has other mistakes."""
 
     @property
     def is_usable(self) -> bool:
         """Whether every error is in the table of a signal or a proposition."""
-        return sum(each.is_error for each in self.wrong) == self.errors_of_parts
+        return sum(each.is_error for each in self.diagnostics) == self.errors_of_parts
 
     def declarations(self) -> Declarations:
         data = self.tables.data
-        self._known(data, _TABLES, "the bindings")
+        self._check_keys(data, _TABLES, "the bindings")
         signals = self._parts("signal", self._signal)
         propositions = self._parts("proposition", self._proposition)
-        loop = Loop(self.tables, self.wrong)
+        loop = Loop(self.tables, self.diagnostics)
         return Declarations(
             self.tables.text.source,
             self._clock(),
@@ -111,38 +111,38 @@ class _Reader(Fields):
         )
 
     def _parts(self, kind: str, read: Callable[[str, Mapping[str, Any]], T | None]) -> dict[str, T]:
-        """Those without a mistake; the mistakes of the others are kept."""
-        found = {}
+        """The parts without a mistake; `mistakes` holds those of the others."""
+        parts = {}
         for name, table in self._tables(kind).items():
-            before = len(self.wrong)
+            before = len(self.diagnostics)
             part = read(name, table)
-            own = [each for each in self.wrong[before:] if each.is_error]
+            own = [each for each in self.diagnostics[before:] if each.is_error]
             self.errors_of_parts += len(own)
             self._keep((kind, name), own)
             if (kind, name) not in self.mistakes:
                 assert part is not None, name
-                found[name] = part
-        return found
+                parts[name] = part
+        return parts
 
     def _keep(self, part: Part, mistakes: Iterable[Diagnostic]) -> None:
-        known = tuple(dict.fromkeys((*self.mistakes.get(part, ()), *mistakes)))
-        if known:
-            self.mistakes[part] = known
+        all_mistakes = tuple(dict.fromkeys((*self.mistakes.get(part, ()), *mistakes)))
+        if all_mistakes:
+            self.mistakes[part] = all_mistakes
 
     def _assumed(self, loop: Loop) -> Assumed | None:
-        """None, too, where it is not known what the proposition that it names means."""
-        found = loop.assumed(tuple(self._tables("proposition")))
-        broken = found is not None and ("proposition", found.stands) in self.mistakes
-        return None if broken else found
+        """`[assume]`; None, too, where the proposition that it names has a mistake."""
+        assumption = loop.assumed(tuple(self._tables("proposition")))
+        broken = assumption is not None and ("proposition", assumption.stands) in self.mistakes
+        return None if broken else assumption
 
     # Fields
 
     def _tables(self, kind: str) -> dict[str, Mapping[str, Any]]:
         tables = self.tables.data.get(kind, {})
         if not isinstance(tables, dict) or not all(isinstance(t, dict) for t in tables.values()):
-            if kind in self.told:
+            if kind in self.malformed:
                 return {}
-            self.told.add(kind)
+            self.malformed.add(kind)
             self._say(
                 Code.BAD_BINDING_FIELD,
                 f"`{kind}` must hold tables",
@@ -158,7 +158,7 @@ class _Reader(Fields):
             return None
         parsed = binding.parse(self._inside(at, text))
         if isinstance(parsed, Diagnostic):
-            self.wrong.append(parsed)
+            self.diagnostics.append(parsed)
             return None
         return parsed
 
@@ -184,7 +184,7 @@ class _Reader(Fields):
                 'add `[clock]` with `tick = "100 ms"`',
             )
             return Clock(10**9)
-        self._known(table, _CLOCK, "[clock]", "clock")
+        self._check_keys(table, _CLOCK, "[clock]", "clock")
         for name, default in (("time", TimeSource.LOG_TIME), ("end", End.INCONCLUSIVE)):
             if table.get(name, default) == default:
                 text = f"clock: {name} is {default}, the default"
@@ -215,30 +215,30 @@ class _Reader(Fields):
         return period, None
 
     def _phase(self, table: Mapping[str, Any], period: int | None) -> int:
-        written = table.get("phase", "0 ns")
-        phase = units.nanoseconds(written) if isinstance(written, str) else None
+        text = table.get("phase", "0 ns")
+        phase = units.nanoseconds(text) if isinstance(text, str) else None
         if period is None and "phase" in table:
-            wrong, mend = "a clock that ticks by message has no `phase`", "take it out"
+            message, mend = "a clock that ticks by message has no `phase`", "take it out"
         elif phase is None or (period is not None and not 0 <= phase < period):
-            wrong = "`phase` must be a duration from 0 on, and less than a tick"
+            message = "`phase` must be a duration from 0 on, and less than a tick"
             mend = 'half a tick of 100 ms is `phase = "50 ms"`'
         else:
             return phase
-        self._say(Code.BAD_PHASE, wrong, self.tables.value("clock", "phase"), mend)
+        self._say(Code.BAD_PHASE, message, self.tables.value("clock", "phase"), mend)
         return 0
 
     # Signals
 
     def _signal(self, name: str, table: Mapping[str, Any]) -> Signal | None:
         at = ("signal", name)
-        self._known(table, _SIGNAL, f"[signal.{name}]", *at)
+        self._check_keys(table, _SIGNAL, f"[signal.{name}]", *at)
         where = self._path(table, (*at, "path"))
         unit_name = self._field(table, (*at, "unit"), str, "a unit in quotes")
         if unit_name is None and "unit" not in table:
             unit_name = "1"
         unit = units.unit(unit_name) if unit_name is not None else None
         if unit is None and unit_name is not None:
-            self.wrong.append(binding.unknown_unit(unit_name, self.tables.value(*at, "unit")))
+            self.diagnostics.append(binding.unknown_unit(unit_name, self.tables.value(*at, "unit")))
         if unit is not None:
             self.units[name] = unit
         reduce = self._reduce(table, at, where)
@@ -316,7 +316,7 @@ class _Reader(Fields):
         if fields is None:
             self.defaults.append(Default((at[0], at[1]), text))
             return default
-        self._known(fields, (*_INVALID, "empty"), "`invalid`", *at, "invalid")
+        self._check_keys(fields, (*_INVALID, "empty"), "`invalid`", *at, "invalid")
         place = (*at, "invalid")
         if fields.get("empty", "unknown") != "unknown":
             self._say(
@@ -330,7 +330,7 @@ class _Reader(Fields):
         }
         invalid = Invalid(**values)
         if invalid == default:
-            self.defaults.append(Default((at[0], at[1]), text, stated=True))
+            self.defaults.append(Default((at[0], at[1]), text, explicit=True))
         return invalid
 
     def _max_age(self, table: Mapping[str, Any], at: tuple[str, ...]) -> int | None:
@@ -379,7 +379,7 @@ class _Reader(Fields):
 
     def _proposition(self, name: str, table: Mapping[str, Any]) -> Proposition | None:
         at = ("proposition", name)
-        self._known(table, _PROPOSITION, f"[proposition.{name}]", *at)
+        self._check_keys(table, _PROPOSITION, f"[proposition.{name}]", *at)
         if "expr" not in table:
             self._say(
                 Code.BAD_BINDING_FIELD,
@@ -414,11 +414,11 @@ class _Reader(Fields):
         place = self.tables.value(*at, "expr")
         unknown = self._tables("signal").keys() - self.units.keys()
         if any(name.id in unknown for name in e.names(expression)):
-            return False  # the signal's own mistake has been told
+            return False  # the signal has a diagnostic of its own
         kinds = {name: unit.dimension for name, unit in self.units.items()}
         kind = binding.dimension(expression, kinds, place)
         if isinstance(kind, Diagnostic):
-            self.wrong.append(kind)
+            self.diagnostics.append(kind)
         elif kind is not None:
             self._say(
                 Code.BAD_EXPRESSION,
@@ -428,23 +428,23 @@ class _Reader(Fields):
             )
         else:
             percents = {name for name, unit in self.units.items() if unit == units.PERCENT}
-            self.wrong.extend(binding.plain_percents(expression, percents, place))
+            self.diagnostics.extend(binding.plain_percents(expression, percents, place))
         return kind is None
 
     # Variables that are not bound
 
     def _variable(self, name: str, table: Mapping[str, Any]) -> Variable:
         at = ("variable", name)
-        self._known(table, _VARIABLE, f"[variable.{name}]", *at)
+        self._check_keys(table, _VARIABLE, f"[variable.{name}]", *at)
         texts = {
             key: self._field(table, (*at, key), str, "a text in quotes") or ""
             for key in ("component", "type", "role", "text")
         }
-        kept = self._field(table, (*at, "fret"), dict, "a table of texts") or {}
+        fret = self._field(table, (*at, "fret"), dict, "a table of texts") or {}
         return Variable(
             name,
             **texts,
-            fret=kept,
+            fret=fret,
             modality=self._modality(table, at),
             action=self._action(table, at),
         )

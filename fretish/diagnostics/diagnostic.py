@@ -204,7 +204,7 @@ class Code(Enum):
 
 @dataclass(frozen=True, slots=True)
 class Diagnostic:
-    """One thing to say: what is wrong, where, and what to do."""
+    """One mistake or warning: what is wrong, where, and what to do."""
 
     code: Code
     message: str

@@ -16,8 +16,8 @@ from fretish.diagnostics.diagnostic import Code
 
 
 @dataclass(frozen=True, slots=True)
-class Explained:
-    """What there is to say of a code beyond its one line."""
+class Explanation:
+    """The cause of a code, its remedy, and an example."""
 
     cause: str
     mend: str
@@ -31,29 +31,29 @@ class Explained:
 
 
 @cache
-def explanations() -> dict[str, Explained]:
+def explanations() -> dict[str, Explanation]:
     """All of them, by the number of the code."""
-    found: dict[str, Explained] = {}
+    by_number: dict[str, Explanation] = {}
     for file in files("fretish.diagnostics").joinpath("codes").iterdir():
         if file.name.endswith(".toml"):
             tables = tomllib.loads(file.read_text(encoding="utf-8"))
-            found |= {number: Explained(**fields) for number, fields in tables.items()}
-    return found
+            by_number |= {number: Explanation(**fields) for number, fields in tables.items()}
+    return by_number
 
 
 def text(code: Code) -> str:
     """What the terminal shows."""
-    explained = explanations().get(code.number)
+    explanation = explanations().get(code.number)
     blocks = [f"{code.number}  {code.summary}\n"]
-    if explained is None:
+    if explanation is None:
         return blocks[0]
-    blocks.append(_block(_wrapped(explained.cause)))
-    blocks.append(_block(_wrapped(f"To mend it: {explained.mend}")))
-    if explained.declared:
-        blocks.append(_example("bindings.toml", explained.declared))
-    if explained.wrong:
-        blocks.append(_example("wrong", explained.wrong))
-        blocks.append(_example("mended", explained.mended))
+    blocks.append(_block(_wrapped(explanation.cause)))
+    blocks.append(_block(_wrapped(f"To mend it: {explanation.mend}")))
+    if explanation.declared:
+        blocks.append(_example("bindings.toml", explanation.declared))
+    if explanation.wrong:
+        blocks.append(_example("wrong", explanation.wrong))
+        blocks.append(_example("mended", explanation.mended))
     return "\n".join(blocks)
 
 
@@ -81,20 +81,20 @@ def _example(name: str, example: str) -> str:
 
 def as_record(code: Code) -> dict[str, Any]:
     """`{code, summary, cause, mend, example}`; null where there is none."""
-    explained = explanations().get(code.number)
+    explanation = explanations().get(code.number)
     example = None
-    if explained is not None and explained.wrong:
+    if explanation is not None and explanation.wrong:
         example = {
-            "file": explained.kind,
-            "bindings": explained.declared or None,
-            "wrong": explained.wrong.strip("\n"),
-            "mended": explained.mended.strip("\n"),
+            "file": explanation.kind,
+            "bindings": explanation.declared or None,
+            "wrong": explanation.wrong.strip("\n"),
+            "mended": explanation.mended.strip("\n"),
         }
     return {
         "schema": "fretc-code-1",
         "code": code.number,
         "summary": code.summary,
-        "cause": explained.cause if explained else None,
-        "mend": explained.mend if explained else None,
+        "cause": explanation.cause if explanation else None,
+        "mend": explanation.mend if explanation else None,
         "example": example,
     }

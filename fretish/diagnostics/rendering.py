@@ -10,7 +10,7 @@ from fretish.diagnostics.source import Span
 
 _TAB = " " * 4
 _WIDTH = 160
-"""A longer line is shown from a little before the caret on."""
+"""Of a longer line the reader sees a part, from a little before the caret on."""
 
 
 def render(diagnostic: Diagnostic) -> str:
@@ -56,10 +56,10 @@ def _place(span: Span) -> list[str]:
     line, column = span.line_text, span.column
     width = max(1, min(span.end, span.start + len(line) - column + 1) - span.start)
     start = 0 if column <= _WIDTH - 40 else column - 60
-    shown = line[start : start + _WIDTH]
-    before = visible(shown[: column - 1 - start])
-    under = visible(shown[column - 1 - start : column - 1 - start + width])
-    after = visible(shown[column - 1 - start + width :])
+    window = line[start : start + _WIDTH]
+    before = visible(window[: column - 1 - start])
+    under = visible(window[column - 1 - start : column - 1 - start + width])
+    after = visible(window[column - 1 - start + width :])
     return [
         f"  --> {name}:{span.line}:{column}",
         f"   | {before}{under}{after}".rstrip(),

@@ -60,5 +60,5 @@ class Span:
 
 @lru_cache(8)
 def _line_starts(text: str) -> list[int]:
-    """Asked for with every place that is told."""
+    """Cached: each diagnostic asks for it, for its line and its column."""
     return [0, *(i + 1 for i, character in enumerate(text) if character == "\n")]

@@ -1,4 +1,4 @@
-"""What reading may cost: processor time and memory, by the size of what is read.
+"""What reading a text or a log may cost: processor time and memory, by its size.
 
 Files come from strangers, and a small one may ask for hours or for all the memory there is. A
 clock of the process's own time looks in while something is read, and ends it where it has taken
@@ -23,13 +23,13 @@ from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.source import Span
 
 SECONDS = 3.0
-"""Of a processor, for whatever is read."""
+"""Processor time for a text of any size."""
 _BYTES_A_SECOND = 200_000
-"""What is longer may take a second more for each so many bytes."""
+"""A text may take one more second for each so many bytes."""
 MEMORY = 300 * 2**20
-"""Bytes that reading may add to what the process has, whatever is read."""
+"""Bytes of memory that reading a text of any size may add to the process."""
 _MEMORY_A_BYTE = 100
-"""And so many more for each byte that is read."""
+"""Reading may add so many more bytes of memory for each byte of the text."""
 _LOOK = 0.05
 """Seconds of a processor between two looks."""
 
@@ -57,7 +57,7 @@ _budgets: list[_Budget] = []
 
 @contextmanager
 def budget(size: int) -> Iterator[None]:
-    """Whatever is done within takes no more than is due to so many bytes.
+    """A block that may cost no more than reading a text of so many bytes.
 
     Within another one its bytes are added to that. Only the main thread can be interrupted: in any
     other nothing is counted.
@@ -92,7 +92,7 @@ def grant(size: int) -> None:
 
 
 def within(size: int, place: Span, reading: Callable[[], R]) -> R | Diagnostic:
-    """What the call gives; F930 where it takes more than is due to so many bytes.
+    """The result of the call; F930 where it costs more than reading so many bytes may.
 
     Args:
         size: bytes that are read.

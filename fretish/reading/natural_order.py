@@ -10,7 +10,7 @@ Key = tuple[tuple[str | tuple[int, str], ...], str]
 def natural(name: str) -> Key:
     """What to sort by: digits that follow each other are one number.
 
-    Equal numbers written differently (`R2`, `R02`) are told apart by their texts.
+    The texts order equal numbers that are written differently (`R2`, `R02`).
     """
     parts = re.split("([0-9]+)", name)
     return tuple(_number(part) if i % 2 else part for i, part in enumerate(parts)), name

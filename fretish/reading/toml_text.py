@@ -86,18 +86,18 @@ def _key(key: str) -> re.Pattern[str]:
     )
 
 
-def read(text: Span, code: Code, what: str) -> Tables | Diagnostic:
+def read(text: Span, code: Code, name: str) -> Tables | Diagnostic:
     """Read TOML.
 
     Args:
         text: the TOML, somewhere in a source.
         code: what to give where it is not TOML.
-        what: the name of the thing for the message: `the header`.
+        name: the name of the thing for the message: `the header`.
     """
-    return within(len(text.text), text.part(0, 0), lambda: _read(text, code, what))
+    return within(len(text.text), text.part(0, 0), lambda: _read(text, code, name))
 
 
-def _read(text: Span, code: Code, what: str) -> Tables | Diagnostic:
+def _read(text: Span, code: Code, name: str) -> Tables | Diagnostic:
     try:
         return Tables(text, tomllib.loads(text.text.replace("\r\n", "\n")))
     except (ValueError, RecursionError) as error:  # TOML, or a number or nesting beyond Python's
@@ -106,7 +106,7 @@ def _read(text: Span, code: Code, what: str) -> Tables | Diagnostic:
         reason = re.sub(r" \(at [^)]*\)", "", str(error))
         return Diagnostic(
             code,
-            f"{what} is not TOML: {reason[:1].lower()}{reason[1:]}",
+            f"{name} is not TOML: {reason[:1].lower()}{reason[1:]}",
             text.part(at, min(at + 1, len(text.text))),
             help='write `key = "value"`, one a line',
         )
@@ -123,9 +123,9 @@ def as_key(name: str) -> str:
     return tomli_w.dumps({name: 0}).removesuffix(" = 0\n")
 
 
-def unknown_key(code: Code, key: str, known: Iterable[str], span: Span, where: str) -> Diagnostic:
+def unknown_key(code: Code, key: str, allowed: Iterable[str], span: Span, where: str) -> Diagnostic:
     """The key is not known: with the nearest one, or all of them."""
-    names = tuple(known)
+    names = tuple(allowed)
     near = suggestion(key, names)
     return Diagnostic(
         code,

@@ -1,7 +1,7 @@
-"""YAML of strangers, within bounds: its nodes are counted before anything is made of them.
+"""YAML of strangers, within bounds: its nodes are counted before they become values.
 
-An alias stands for all that its anchor holds, so that a few lines may stand for more than there is
-memory for; and whoever makes values of nested nodes recurses, in C without any limit.
+An alias stands for all that its anchor holds, so a few lines may stand for more nodes than memory
+has room for; and the library recurses over nested nodes, in C without any limit.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ _MOST_LEVELS = 100
 _MOST_NODES = 20_000
 """Whatever the text is."""
 _MOST_TIMES = 10
-"""So many times as many nodes as are written may be meant."""
+"""Aliases may expand a text to so many times the nodes that stand in it."""
 
 
 def loaded(text: str) -> Any:
@@ -32,7 +32,7 @@ def loaded(text: str) -> Any:
 
 
 def _count(yaml: Any, text: str, loader: Any) -> None:
-    """Hold the nodes that are meant against those that are written.
+    """Compare the number of nodes after expansion of aliases with the number in the text.
 
     Raises:
         ValueError: there are too many of them, or they are too deep.
@@ -40,35 +40,35 @@ def _count(yaml: Any, text: str, loader: Any) -> None:
     keys = _Keys()
     sizes: dict[str, int] = {}
     open_: list[tuple[str | None, int]] = []
-    meant = 0
-    for written, event in enumerate(yaml.parse(text, Loader=loader), 1):
+    size = 0
+    for length, event in enumerate(yaml.parse(text, Loader=loader), 1):
         keys.read(yaml, event)
         if isinstance(event, yaml.CollectionStartEvent):
-            open_.append((event.anchor, meant))
+            open_.append((event.anchor, size))
             if len(open_) > _MOST_LEVELS:
                 raise ValueError(f"more than {_MOST_LEVELS} levels are within each other")
         elif isinstance(event, yaml.CollectionEndEvent):
             anchor, before = open_.pop()
             if anchor is not None:
-                sizes[anchor] = meant - before
+                sizes[anchor] = size - before
         elif isinstance(event, yaml.ScalarEvent) and event.anchor is not None:
             sizes[event.anchor] = 1
-        meant += sizes.get(event.anchor, 1) if isinstance(event, yaml.AliasEvent) else 1
-        if meant > max(_MOST_NODES, _MOST_TIMES * written):
+        size += sizes.get(event.anchor, 1) if isinstance(event, yaml.AliasEvent) else 1
+        if size > max(_MOST_NODES, _MOST_TIMES * length):
             raise ValueError("its aliases stand for far more than is written")
 
 
 class _Keys:
-    """The keys of mappings that are still open; a reader would take the last of two, unasked."""
+    """The keys of the mappings that are still open; of equal keys YAML's reader takes the last."""
 
     def __init__(self) -> None:
         self._open: list[set[str] | None] = []
-        """Of a mapping the keys that it has; None of a sequence."""
+        """The keys of each open mapping; None for a sequence."""
         self._next: list[bool] = []
         """Whether the next node in it is a key."""
 
     def read(self, yaml: Any, event: Any) -> None:
-        """One event more.
+        """Process one more event.
 
         Raises:
             ValueError: a key comes twice in one mapping.

@@ -142,24 +142,24 @@ def historically(arg: int, lo: int, hi: int | None, every: int) -> int:
     return every ^ once(every ^ arg, lo, hi, every)
 
 
-def since_from(held: int, left: int, right: int, lo: int, every: int) -> int:
-    """`left S[lo,inf) right`, where `held` is `left S right`."""
+def since_from(unbounded: int, left: int, right: int, lo: int, every: int) -> int:
+    """`left S[lo,inf) right`, where `unbounded` is `left S right`."""
     if lo >= every.bit_length():
         return 0
     if right | left == left:  # then it began lo ticks ago or more if it has held since
-        return _lasting(held, lo)
-    return held << lo & historically(left, 0, lo - 1, every) if lo else held
+        return _lasting(unbounded, lo)
+    return unbounded << lo & historically(left, 0, lo - 1, every) if lo else unbounded
 
 
 def since_between(left: int, right: int, lo: int, hi: int | None, every: int) -> int:
     """`left S[lo,hi] right`."""
-    held = since(left, right)
+    result = since(left, right)
     if hi is None:
-        return since_from(held, left, right, lo, every)
+        return since_from(result, left, right, lo, every)
     if lo >= every.bit_length():
         return 0
-    held &= _smeared(right, hi - lo, every)
-    return held << lo & historically(left, 0, lo - 1, every) if lo else held
+    result &= _smeared(right, hi - lo, every)
+    return result << lo & historically(left, 0, lo - 1, every) if lo else result
 
 
 def released_between(left: int, right: int, lo: int, hi: int | None, every: int) -> int:

@@ -102,11 +102,11 @@ def stepped(
     Args, raises: as for `evaluate`.
     """
     monitor.reset()
-    told = [truths(columns[name], ticks) for name in monitor.PROPOSITIONS]
+    table = [truths(columns[name], ticks) for name in monitor.PROPOSITIONS]
     must: list[tuple[Signals[bool], ...]] = []
     may: list[tuple[Signals[bool], ...]] = []
     for tick in range(ticks):
-        monitor.advance([tuple(values[tick] for values in told)])
+        monitor.advance([tuple(values[tick] for values in table)])
         must.append(monitor.must.signals())
         may.append(monitor.may.signals())
     return tuple(
@@ -200,9 +200,9 @@ def _uncertain(ends: Iterable[tuple[int, int]], waits: int) -> tuple[int, ...]:
     """
     runs = runs_of(waits)
     starts = [first for first, _ in runs]
-    found: list[int] = []
+    triggers: list[int] = []
     for trigger, end in ends:
         place = bisect_right(starts, trigger) - 1
         if trigger < end and (place < 0 or runs[place][1] < end - 1):
-            found.append(trigger)
-    return tuple(sorted(found))
+            triggers.append(trigger)
+    return tuple(sorted(triggers))

@@ -67,7 +67,7 @@ class Rail(Protocol):
         """Step every row; whether all was known in them."""
 
     def signals(self) -> tuple[Signals[bool], ...]:
-        """What the last tick told, for each requirement."""
+        """The signals of the last tick, for each requirement."""
 
     def marks(self) -> tuple[Marks, ...]:
         """What is remembered, for each requirement."""
@@ -108,7 +108,7 @@ class Window:
 
 
 class Standing(NamedTuple):
-    """What would be said of a requirement if the trace ended now."""
+    """The verdict on a requirement if the trace ended now, and what it rests on."""
 
     requirement: str
     verdict: Verdict
@@ -127,7 +127,7 @@ _PIECE, _FEW = 4096, 64
 
 
 class Monitor:
-    """Steps propositions and tells verdicts; a generated class adds `step` and `run`."""
+    """Steps propositions and gives verdicts; a generated class adds `step` and `run`."""
 
     PROGRAM: ClassVar[str]
     """SHA-256 of the generated code: a state fits no other."""
@@ -154,7 +154,7 @@ class Monitor:
         return self.must.tick
 
     def state(self) -> dict[str, Any]:
-        """Everything that is remembered, as plain values that JSON can hold."""
+        """The whole memory, as plain values that JSON can hold."""
         content = {
             "program": self.PROGRAM,
             "must": _saved(self.must),
@@ -181,18 +181,18 @@ class Monitor:
         self.must, self.may = must, must if content["may"] is None else may
 
     def standings(self) -> tuple[Standing, ...]:
-        """What would be said of each requirement if the trace ended now."""
+        """The standing of each requirement."""
         if self.tick < 0:
             nothing = (Verdict.NO_DATA, None, None, None, None)
             return tuple(Standing(r.id, *nothing) for r in self.REQUIREMENTS)
-        told = zip(
+        readings = zip(
             self.must.marks(),
             self.may.marks(),
             self.must.signals(),
             self.may.signals(),
             strict=True,
         )
-        return tuple(map(_standing, self.REQUIREMENTS, *zip(*told, strict=True)))
+        return tuple(map(_standing, self.REQUIREMENTS, *zip(*readings, strict=True)))
 
     def _fork(self) -> None:
         """From now on what may hold differs from what holds for certain."""
@@ -211,29 +211,29 @@ class Monitor:
         """
         waiting = iter(rows)
         while piece := list(itertools.islice(waiting, _PIECE)):
-            known = self._in_order(piece)
-            before = (self.must, self.may) if len(known) == 1 else self._copies()
+            block = self._in_order(piece)
+            before = (self.must, self.may) if len(block) == 1 else self._copies()
             try:
-                self._advance(known)
+                self._advance(block)
             except BaseException:  # whatever it was, both rails stay at one tick
                 self.must, self.may = before
                 raise
 
-    def _advance(self, known: list[Row]) -> None:
+    def _advance(self, block: list[Row]) -> None:
         """Step both rails, or one as long as all is known."""
         if self.may is not self.must:
-            self.must.advance(known)
-            self.may.advance(known)
-        elif len(known) < _FEW:
-            if any(None in row for row in known):
+            self.must.advance(block)
+            self.may.advance(block)
+        elif len(block) < _FEW:
+            if any(None in row for row in block):
                 self._fork()
-                self.may.advance(known)
-            self.must.advance(known)
+                self.may.advance(block)
+            self.must.advance(block)
         else:
             before = _copied(self.must, doubt=True)
-            if not self.must.advance(known):
+            if not self.must.advance(block):
                 self.may = before
-                before.advance(known)
+                before.advance(block)
 
     def _copies(self) -> tuple[Rail, Rail]:
         """Both rails as they are now."""
@@ -251,14 +251,14 @@ class Monitor:
 
     def verdicts(self) -> tuple[Verdict, ...]:
         """Of each requirement, whatever follows: satisfied or violated; or pending."""
-        told = zip(self.must.marks(), self.may.marks(), self.must.signals(), strict=True)
+        readings = zip(self.must.marks(), self.may.marks(), self.must.signals(), strict=True)
         return tuple(
             VIOLATED
             if must.violated >= 0
             else SATISFIED
             if certain.settled and may.violated < 0
             else PENDING
-            for must, may, certain in told
+            for must, may, certain in readings
         )
 
 
@@ -306,14 +306,14 @@ def literals_of(
 
 def _copied(rail: Rail, *, doubt: bool) -> Rail:
     """A rail in the same state, on which an unknown counts as `doubt`."""
-    other = type(rail)(doubt=doubt)
+    copy = type(rail)(doubt=doubt)
     for name in rail.__slots__:
-        there, value = getattr(other, name), getattr(rail, name)
+        there, value = getattr(copy, name), getattr(rail, name)
         if isinstance(there, Window):
             there.restore(value.state())
         elif name != "doubt":
-            setattr(other, name, value)
-    return other
+            setattr(copy, name, value)
+    return copy
 
 
 def _saved(rail: Rail) -> dict[str, Any]:
@@ -334,7 +334,7 @@ def _digest(content: Mapping[str, Any]) -> str:
 
 
 def _restored(rail: Rail, state: Mapping[str, Any]) -> None:
-    """Put what was saved into a rail; its digest has shown that it is whole."""
+    """Put a saved state into a rail; its digest has shown that nothing is missing."""
     for name, value in state.items():
         there = getattr(rail, name)
         if isinstance(there, Window):

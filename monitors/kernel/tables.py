@@ -45,13 +45,13 @@ def read_rows(
     is_json = re.match(r'\s*\{\s*["}]', first) is not None
     read = _json_rows if is_json else _csv_rows
     tick: int | None = None
-    counted: bool | None = None
+    has_tick: bool | None = None
     for place, row in read(lines, names, source, number):
         if "tick" not in names:
-            if counted not in (None, "tick" in row):
+            if has_tick not in (None, "tick" in row):
                 raise InputError(f"{place}: some rows have a `tick` and some have none")
-            counted = "tick" in row
-            if counted:
+            has_tick = "tick" in row
+            if has_tick:
                 tick = _next_tick(row["tick"], tick, place)
         yield tuple(_truth(row[name], name, place) for name in names)
 
@@ -98,12 +98,12 @@ def _distinct(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
     return found
 
 
-def _check_columns(found: Iterable[str], names: Sequence[str], place: str) -> None:
-    columns = list(found)
+def _check_columns(keys: Iterable[str], names: Sequence[str], place: str) -> None:
+    columns = list(keys)
     for name in names:
         if name not in columns:
-            known = _short(", ".join(columns)) or "none"
-            raise InputError(f"{place}: there is no column `{name}`; there are {known}")
+            listing = _short(", ".join(columns)) or "none"
+            raise InputError(f"{place}: there is no column `{name}`; there are {listing}")
     for name in (*names, "tick"):
         if columns.count(name) > 1:
             raise InputError(f"{place}: there are two columns `{name}`")
@@ -135,6 +135,6 @@ def _next_tick(value: Any, before: int | None, place: str) -> int:
         raise InputError(f"{place}: column `tick`: `{_short(text)}` is no whole number")
     tick = int(text)
     if before is not None and tick != before + 1:
-        what = "goes back" if tick <= before else "leaves ticks out"
-        raise InputError(f"{place}: column `tick` {what}: {before}, then {tick}")
+        fault = "goes back" if tick <= before else "leaves ticks out"
+        raise InputError(f"{place}: column `tick` {fault}: {before}, then {tick}")
     return tick

@@ -15,12 +15,12 @@ def boolean(value: object, name: str = "") -> bool:
     """
     if type(value).__name__ in ("bool", "bool_"):
         return bool(value)
-    what = f"`{name}`" if name else "a truth value"
-    raise TypeError(f"{what} is True, False or None (unknown), not {value!r}")
+    subject = f"`{name}`" if name else "a truth value"
+    raise TypeError(f"{subject} is True, False or None (unknown), not {value!r}")
 
 
 class Verdict(StrEnum):
-    """What a trace says of a requirement.
+    """The judgement of a trace on a requirement.
 
     While it runs: satisfied or violated, whatever follows, or pending (LTL3). When it has ended:
     satisfied, violated, inconclusive, vacuous or no data. Source: Bauer, Leucker, Schallhart,
@@ -43,7 +43,7 @@ T = TypeVar("T")
 
 
 class Signals(NamedTuple, Generic[T]):
-    """What a monitor tells of one requirement: a truth value a tick, or whole columns of them."""
+    """A monitor's signals of one requirement: a truth value a tick, or whole columns of them."""
 
     trigger: T
     """A demand begins here."""

@@ -72,22 +72,24 @@ class SafetyFunction:
 
 
 class Gate:
-    """The interceptor: hears /gwendolen_control and /cmd_vel, says /cmd_vel_filtered."""
+    """The interceptor: from /gwendolen_control and /cmd_vel to /cmd_vel_filtered."""
 
     def __init__(self, bus: Bus, interceptor: Interceptor, period: float, epoch: int) -> None:
         """`period` in seconds, 0: it has no timer."""
         self._bus, self._now = bus, epoch
         node = interceptor(self._say)
-        bus.subscribe("/gwendolen_control", lambda heard, now: self._at(now, node.hear_stop, heard))
-        bus.subscribe("/cmd_vel", lambda heard, now: self._at(now, node.hear_command, heard))
+        bus.subscribe(
+            "/gwendolen_control", lambda message, now: self._at(now, node.hear_stop, message)
+        )
+        bus.subscribe("/cmd_vel", lambda message, now: self._at(now, node.hear_command, message))
         if period > 0:
             every = round(period * _SECOND)
             bus.every(every, epoch + every // 2, lambda now: self._at(now, node.ring))
 
-    def _at(self, now: int, take: Callable[..., None], *heard: Any) -> None:
+    def _at(self, now: int, take: Callable[..., None], *message: Any) -> None:
         self._now = now
-        take(*heard)
+        take(*message)
 
-    def _say(self, said: Sequence[float]) -> None:
-        message = messages.twist(Velocity(said[0], said[5]))
+    def _say(self, velocity: Sequence[float]) -> None:
+        message = messages.twist(Velocity(velocity[0], velocity[5]))
         self._bus.publish("/cmd_vel_filtered", message, self._now + INTERCEPT_LATENCY)

@@ -137,10 +137,10 @@ class PoseError:
 
     def step(self, seconds: float) -> None:
         """Let time pass."""
-        kept = math.exp(-self._pull * seconds)
-        wander = self._spread * math.sqrt(1 - kept * kept)
+        decay = math.exp(-self._pull * seconds)
+        wander = self._spread * math.sqrt(1 - decay * decay)
         x, y = self._random.normal(0.0, wander, 2)
-        self._x, self._y = kept * self._x + float(x), kept * self._y + float(y)
+        self._x, self._y = decay * self._x + float(x), decay * self._y + float(y)
 
     def estimate(self, pose: Pose) -> Pose:
         """Where the robot believes it is."""

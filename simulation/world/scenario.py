@@ -213,8 +213,8 @@ def load(name: str) -> Scenario:
     if "name" in data:
         raise ScenarioError("`name` cannot be set: a scenario is called by its file")
     scenario = _table(Scenario, {**data, "name": path.stem}, "")
-    for wrong in _mistakes(scenario):
-        raise ScenarioError(wrong)
+    for mistake in _mistakes(scenario):
+        raise ScenarioError(mistake)
     return scenario
 
 
@@ -241,8 +241,8 @@ def _mistakes(scenario: Scenario) -> Iterator[str]:
         if not 0 <= value <= 1:
             yield f"`{name}` must be between 0 and 1"
     yield from _interceptor_mistakes(scenario.interceptor)
-    stated = scenario.expect
-    ids = [id for one in fields(stated) for id in getattr(stated, one.name)]
+    expectation = scenario.expect
+    ids = [id for each in fields(expectation) for id in getattr(expectation, each.name)]
     twice = next((id for id in ids if ids.count(id) > 1), None)
     if twice is not None:
         yield f"`expect` names {twice} twice"
@@ -272,22 +272,22 @@ def _table(cls: type[T], data: object, where: str) -> T:
     """A dataclass of a TOML table; every key and every type is checked."""
     if not isinstance(data, dict):
         raise ScenarioError(f"`{where}` must be a table")
-    hints, known = get_type_hints(cls), {f.name: f for f in fields(cls)}  # type: ignore[arg-type]
+    hints, by_name = get_type_hints(cls), {f.name: f for f in fields(cls)}  # type: ignore[arg-type]
     for key in data:
-        if key not in known:
-            what = f"`{where}`" if where else "a scenario"
-            raise ScenarioError(f"{what} has no `{key}`; it may have {', '.join(known)}")
-    for key, one in known.items():
-        if key not in data and one.default is MISSING and one.default_factory is MISSING:
+        if key not in by_name:
+            subject = f"`{where}`" if where else "a scenario"
+            raise ScenarioError(f"{subject} has no `{key}`; it may have {', '.join(by_name)}")
+    for key, each in by_name.items():
+        if key not in data and each.default is MISSING and each.default_factory is MISSING:
             raise ScenarioError(f"`{f'{where}.{key}' if where else key}` is missing")
-    made = {
+    values = {
         key: _value(hints[key], value, f"{where}.{key}".lstrip(".")) for key, value in data.items()
     }
-    for key, value in made.items():
+    for key, value in values.items():
         name = f"{where}.{key}".lstrip(".")
         if isinstance(value, float) and value < 0 and name not in _SIGNED:
             raise ScenarioError(f"`{name}` must not be below 0")
-    return cls(**made)
+    return cls(**values)
 
 
 def _value(kind: Any, value: object, where: str) -> Any:
@@ -310,8 +310,8 @@ def _value(kind: Any, value: object, where: str) -> Any:
         return float(value)
     if isinstance(kind, type) and kind in (str, bool) and isinstance(value, kind):
         return value
-    what = {float: "a number", str: "a text", bool: "true or false"}.get(kind, "a table")
-    raise ScenarioError(f"`{where}` must be {what}")
+    form = {float: "a number", str: "a text", bool: "true or false"}.get(kind, "a table")
+    raise ScenarioError(f"`{where}` must be {form}")
 
 
 def _sequence(arguments: tuple[Any, ...], value: object, where: str) -> tuple[Any, ...]:

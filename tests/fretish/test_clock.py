@@ -195,10 +195,10 @@ def test_a_message_clock_counts_ticks_only() -> None:
 
 def test_without_a_clock_a_unit_counts_ticks_and_that_is_said() -> None:
     assert ticks("within 3 hours", None) == 3
-    said = assumed_ticks(read("the sw shall within 3 hours satisfy q"), None)
-    assert said is not None
-    assert said.severity is Severity.WARNING
-    assert render(said) == (
+    diagnostic = assumed_ticks(read("the sw shall within 3 hours satisfy q"), None)
+    assert diagnostic is not None
+    assert diagnostic.severity is Severity.WARNING
+    assert render(diagnostic) == (
         "F312 warning: no clock says what a tick is: `3 hours` is read as 3 ticks, as FRET does\n"
         "  --> r.fret:1:21\n"
         "   | the sw shall within 3 hours satisfy q\n"

@@ -28,7 +28,7 @@ def read(text: str, name: str = "r1.fret") -> tuple[Requirement, ...]:
     return found
 
 
-def told(text: str) -> tuple[Diagnostic, ...]:
+def diagnostics_of(text: str) -> tuple[Diagnostic, ...]:
     return requirements(Source("r1.fret", text))[1]
 
 
@@ -66,7 +66,9 @@ def test_a_single_header_needs_no_id() -> None:
 
 
 def test_several_headers_need_ids() -> None:
-    (wrong,) = told('+++\nid = "R1"\n+++\nthe sw shall satisfy p\n+++\n+++\nsw shall satisfy q\n')
+    (wrong,) = diagnostics_of(
+        '+++\nid = "R1"\n+++\nthe sw shall satisfy p\n+++\n+++\nsw shall satisfy q\n'
+    )
     assert wrong.code is Code.BAD_FIELD
     assert wrong.message == "each requirement needs an `id` where a file holds several"
     assert wrong.span is not None
@@ -99,7 +101,7 @@ def test_three_plus_signs_inside_a_long_text_close_nothing() -> None:
 
 
 def test_an_unknown_field_is_told_with_the_nearest_one() -> None:
-    (wrong,) = told(f'+++\nid = "R1"\nratoinale = "x"\n+++\n{SENTENCE}\n')
+    (wrong,) = diagnostics_of(f'+++\nid = "R1"\nratoinale = "x"\n+++\n{SENTENCE}\n')
     assert render(wrong) == (
         "F103 `ratoinale` is no field of a requirement's header\n"
         "  --> r1.fret:3:1\n"
@@ -110,7 +112,7 @@ def test_an_unknown_field_is_told_with_the_nearest_one() -> None:
 
 
 def test_an_unknown_field_without_a_near_one_is_told_what_there_is() -> None:
-    (wrong,) = told(f'+++\nid = "R1"\n  zzz = 1\n+++\n{SENTENCE}\n')
+    (wrong,) = diagnostics_of(f'+++\nid = "R1"\n  zzz = 1\n+++\n{SENTENCE}\n')
     assert render(wrong) == (
         "F103 `zzz` is no field of a requirement's header\n"
         "  --> r1.fret:3:3\n"
@@ -144,7 +146,7 @@ def test_an_unknown_field_without_a_near_one_is_told_what_there_is() -> None:
 def test_a_value_of_the_wrong_kind_is_told_at_the_value(
     line: str, column: int, caret: str, mend: str
 ) -> None:
-    (wrong,) = told(f"+++\n{line} # why\n+++\n{SENTENCE}\n")
+    (wrong,) = diagnostics_of(f"+++\n{line} # why\n+++\n{SENTENCE}\n")
     key = line.split(" ", 1)[0]
     assert render(wrong) == (
         f"F105 `{key}` has a value of the wrong kind\n"
@@ -157,17 +159,17 @@ def test_a_value_of_the_wrong_kind_is_told_at_the_value(
 
 def test_a_status_of_another_type_is_a_mistake_and_no_crash() -> None:
     for value in ("[]", "{}", "[['draft']]", "1979-05-27", "nan"):
-        (wrong,) = told(f"+++\nstatus = {value}\n+++\n{SENTENCE}\n")
+        (wrong,) = diagnostics_of(f"+++\nstatus = {value}\n+++\n{SENTENCE}\n")
         assert wrong.code is Code.BAD_FIELD
 
 
 def test_every_mistake_of_a_header_is_told_at_once() -> None:
-    wrong = told(f'+++\nidd = "R1"\nstatus = "done"\n+++\n{SENTENCE}\n')
+    wrong = diagnostics_of(f'+++\nidd = "R1"\nstatus = "done"\n+++\n{SENTENCE}\n')
     assert [d.code for d in wrong] == [Code.UNKNOWN_FIELD, Code.BAD_FIELD]
 
 
 def test_an_unclosed_header_is_told_where_it_begins() -> None:
-    (wrong,) = told(f'+++\nid = "R1"\n\n{SENTENCE}\n')
+    (wrong,) = diagnostics_of(f'+++\nid = "R1"\n\n{SENTENCE}\n')
     assert render(wrong) == (
         "F113 a header begins here and does not end\n"
         "  --> r1.fret:1:1\n"
@@ -178,7 +180,7 @@ def test_an_unclosed_header_is_told_where_it_begins() -> None:
 
 
 def test_a_header_that_is_not_toml_is_told_at_its_place() -> None:
-    (wrong,) = told(f'+++\nid = "R1"\ntitle = Stop\n+++\n{SENTENCE}\n')
+    (wrong,) = diagnostics_of(f'+++\nid = "R1"\ntitle = Stop\n+++\n{SENTENCE}\n')
     assert wrong.code is Code.BAD_HEADER
     assert wrong.message.startswith("the header is not TOML: ")
     assert wrong.span is not None

@@ -26,11 +26,11 @@ def test_a_thousand_parentheses_around_a_name_are_that_name() -> None:
 
 def test_a_thousand_levels_of_operators_are_formalized_or_told_to_be_too_deep() -> None:
     text = "the sw shall always satisfy " + "a & (b | " * 1_000 + "c" + ")" * 1_000
-    rule, said = formalize(Requirement("deep", Source("r.fret", text).span()), None)
-    assert rule is not None or [d.code for d in said] == [Code.TOO_DEEP]
+    rule, diagnostics = formalize(Requirement("deep", Source("r.fret", text).span()), None)
+    assert rule is not None or [d.code for d in diagnostics] == [Code.TOO_DEEP]
 
 
 def test_more_levels_than_any_pass_has_room_for_are_told() -> None:
-    told = read("!(" * 5_000 + "p" + ")" * 5_000)
-    assert isinstance(told, Diagnostic)
-    assert told.code is Code.TOO_DEEP
+    diagnostic = read("!(" * 5_000 + "p" + ")" * 5_000)
+    assert isinstance(diagnostic, Diagnostic)
+    assert diagnostic.code is Code.TOO_DEEP

@@ -123,8 +123,8 @@ def test_an_only_scope_demands_the_negated_timing_outside(timing: str, text: str
 
 def test_after_n_forbids_an_early_answer_even_where_the_interval_ends_early() -> None:
     """No q in t..min(t+n, R), and q at t+n+1 if that is <= R: `unless` is about the last part."""
-    said = english("the sw shall after 2 ticks satisfy q")
-    assert not said.endswith("and true at the tick after those, unless the run ends before.")
+    text = english("the sw shall after 2 ticks satisfy q")
+    assert not text.endswith("and true at the tick after those, unless the run ends before.")
 
 
 def test_until_speaks_of_the_first_tick_at_which_the_stop_is_true() -> None:

@@ -38,7 +38,7 @@ def number(digits: str) -> e.Number:
     return e.Number(digits)
 
 
-def told(text: str) -> str:
+def message_of(text: str) -> str:
     result = parse(Source("r.fret", text).span())
     assert isinstance(result, Diagnostic), f"read: {result}"
     return render(result)
@@ -489,7 +489,7 @@ def test_a_sentence_is_read_where_it_stands_in_its_file() -> None:
 
 
 def test_a_missing_satisfy_is_put_in() -> None:
-    assert told("the Rover shall always stopped") == (
+    assert message_of("the Rover shall always stopped") == (
         "F104 missing `satisfy` before `stopped`\n"
         "  --> r.fret:1:24\n"
         "   | the Rover shall always stopped\n"
@@ -499,7 +499,7 @@ def test_a_missing_satisfy_is_put_in() -> None:
 
 
 def test_a_misspelt_timing_is_mended() -> None:
-    assert told("whenever p the sw shall eventualy satisfy q") == (
+    assert message_of("whenever p the sw shall eventualy satisfy q") == (
         "F107 `eventualy` is no word of FRETish here\n"
         "  --> r.fret:1:25\n"
         "   | whenever p the sw shall eventualy satisfy q\n"
@@ -509,7 +509,7 @@ def test_a_misspelt_timing_is_mended() -> None:
 
 
 def test_a_misspelt_condition_word_is_mended() -> None:
-    assert told("wen p the sw shall satisfy q") == (
+    assert message_of("wen p the sw shall satisfy q") == (
         "F107 `wen` is no word of FRETish here\n"
         "  --> r.fret:1:1\n"
         "   | wen p the sw shall satisfy q\n"
@@ -519,7 +519,7 @@ def test_a_misspelt_condition_word_is_mended() -> None:
 
 
 def test_another_misspelt_condition_word_is_mended() -> None:
-    assert told("wenever p the sw shall satisfy q") == (
+    assert message_of("wenever p the sw shall satisfy q") == (
         "F107 `wenever` is no word of FRETish here\n"
         "  --> r.fret:1:1\n"
         "   | wenever p the sw shall satisfy q\n"
@@ -529,7 +529,7 @@ def test_another_misspelt_condition_word_is_mended() -> None:
 
 
 def test_a_missing_unit_is_asked_for() -> None:
-    assert told("the sw shall within 3 satisfy q") == (
+    assert message_of("the sw shall within 3 satisfy q") == (
         "F108 a duration needs a unit\n"
         "  --> r.fret:1:23\n"
         "   | the sw shall within 3 satisfy q\n"
@@ -540,7 +540,7 @@ def test_a_missing_unit_is_asked_for() -> None:
 
 
 def test_an_unknown_unit_is_named() -> None:
-    assert told("the sw shall within 3 days satisfy q") == (
+    assert message_of("the sw shall within 3 days satisfy q") == (
         "F108 a duration needs a unit, and `days` is none\n"
         "  --> r.fret:1:23\n"
         "   | the sw shall within 3 days satisfy q\n"
@@ -551,7 +551,7 @@ def test_an_unknown_unit_is_named() -> None:
 
 
 def test_a_fraction_of_a_unit_is_refused() -> None:
-    assert told("the sw shall within 2.5 seconds satisfy q") == (
+    assert message_of("the sw shall within 2.5 seconds satisfy q") == (
         "F108 a duration counts whole units, and `2.5` is no whole number\n"
         "  --> r.fret:1:21\n"
         "   | the sw shall within 2.5 seconds satisfy q\n"
@@ -562,8 +562,8 @@ def test_a_fraction_of_a_unit_is_refused() -> None:
 
 def test_the_mend_of_a_fraction_is_about_the_duration_that_was_written() -> None:
     """`2500 milliseconds` would mend `2.5 seconds` only."""
-    assert "2500" not in told("the sw shall for 0.5 hours satisfy q")
-    assert "2500" not in told("the sw shall within -2 ticks satisfy q")
+    assert "2500" not in message_of("the sw shall for 0.5 hours satisfy q")
+    assert "2500" not in message_of("the sw shall within -2 ticks satisfy q")
 
 
 @pytest.mark.parametrize("start", ["whenever p", "when p,", "in m mode", ""])
@@ -576,7 +576,7 @@ def test_a_missing_component_is_asked_for(start: str) -> None:
 
 
 def test_a_reserved_word_is_told() -> None:
-    assert told("the sw shall satisfy array") == (
+    assert message_of("the sw shall satisfy array") == (
         "F109 `array` is reserved by the languages that requirements are exported to\n"
         "  --> r.fret:1:22\n"
         "   | the sw shall satisfy array\n"
@@ -586,7 +586,7 @@ def test_a_reserved_word_is_told() -> None:
 
 
 def test_a_key_word_is_told() -> None:
-    assert told("the sw shall satisfy next") == (
+    assert message_of("the sw shall satisfy next") == (
         "F109 `next` is a key word of FRETish and cannot be a name\n"
         "  --> r.fret:1:22\n"
         "   | the sw shall satisfy next\n"
@@ -596,12 +596,12 @@ def test_a_key_word_is_told() -> None:
 
 
 def test_an_empty_text_is_told() -> None:
-    assert told("").splitlines()[:2] == ["F106 there is no sentence here", "  --> r.fret"]
-    assert told(" \n ").splitlines()[0] == "F106 there is no sentence here"
+    assert message_of("").splitlines()[:2] == ["F106 there is no sentence here", "  --> r.fret"]
+    assert message_of(" \n ").splitlines()[0] == "F106 there is no sentence here"
 
 
 def test_an_open_parenthesis_is_told_at_the_end() -> None:
-    assert told("the sw shall satisfy p & (q | r") == (
+    assert message_of("the sw shall satisfy p & (q | r") == (
         "F101 the sentence ends too early\n"
         "  --> r.fret:1:32\n"
         "   | the sw shall satisfy p & (q | r\n"
@@ -611,7 +611,7 @@ def test_an_open_parenthesis_is_told_at_the_end() -> None:
 
 
 def test_a_number_as_response_is_told_with_its_place() -> None:
-    assert told("the sw shall satisfy x + 1") == (
+    assert message_of("the sw shall satisfy x + 1") == (
         "F112 a truth value is needed here, and this is a number\n"
         "  --> r.fret:1:22\n"
         "   | the sw shall satisfy x + 1\n"
@@ -621,7 +621,7 @@ def test_a_number_as_response_is_told_with_its_place() -> None:
 
 
 def test_a_second_sentence_is_told() -> None:
-    assert told("the sw shall satisfy q the sw shall satisfy r") == (
+    assert message_of("the sw shall satisfy q the sw shall satisfy r") == (
         "F101 `the` does not fit here\n"
         "  --> r.fret:1:24\n"
         "   | the sw shall satisfy q the sw shall satisfy r\n"

@@ -20,7 +20,7 @@ def codes(text: str) -> list[str]:
     return [diagnostic.code.number for diagnostic in found]
 
 
-def told(text: str) -> str:
+def warnings_of(text: str) -> str:
     sentence = parse(Source("r.fret", text).span())
     assert isinstance(sentence, Sentence), sentence
     return render_all(list(surprises(sentence)))
@@ -30,7 +30,7 @@ def told(text: str) -> str:
 
 
 def test_a_condition_that_triggers_where_it_becomes_true() -> None:
-    assert told("when too_close & moving the sw shall immediately satisfy stopped") == (
+    assert warnings_of("when too_close & moving the sw shall immediately satisfy stopped") == (
         "F204 warning: "
         "`when` triggers only at the ticks at which `too_close & moving` becomes true\n"
         "  --> r.fret:1:1\n"
@@ -42,7 +42,7 @@ def test_a_condition_that_triggers_where_it_becomes_true() -> None:
 
 
 def test_a_sentence_without_a_timing() -> None:
-    assert told("the sw shall satisfy q") == (
+    assert warnings_of("the sw shall satisfy q") == (
         "F205 warning: without a timing the response is required at some time, however late\n"
         "  --> r.fret:1:5\n"
         "   | the sw shall satisfy q\n"
@@ -52,7 +52,7 @@ def test_a_sentence_without_a_timing() -> None:
 
 
 def test_a_deadline_in_a_scope_that_ends() -> None:
-    assert told("in m mode whenever p the sw shall within 3 ticks satisfy q") == (
+    assert warnings_of("in m mode whenever p the sw shall within 3 ticks satisfy q") == (
         "F206 warning: where `m` ends the scope before the deadline, nothing is required\n"
         "  --> r.fret:1:35\n"
         "   | in m mode whenever p the sw shall within 3 ticks satisfy q\n"
@@ -62,7 +62,7 @@ def test_a_deadline_in_a_scope_that_ends() -> None:
 
 
 def test_a_scope_after_a_mode() -> None:
-    assert told("after x > 3 the sw shall always satisfy q") == (
+    assert warnings_of("after x > 3 the sw shall always satisfy q") == (
         "F207 warning: only the first stretch of `x > 3` counts; later ones change nothing\n"
         "  --> r.fret:1:1\n"
         "   | after x > 3 the sw shall always satisfy q\n"
@@ -72,7 +72,7 @@ def test_a_scope_after_a_mode() -> None:
 
 
 def test_a_scope_before_a_mode() -> None:
-    assert told("before m mode the sw shall always satisfy q") == (
+    assert warnings_of("before m mode the sw shall always satisfy q") == (
         "F208 warning: where `m` holds at the first tick, nothing is required\n"
         "  --> r.fret:1:1\n"
         "   | before m mode the sw shall always satisfy q\n"
@@ -137,15 +137,15 @@ SCOPES = {
 @each("timing", TIMINGS)
 @each("scope", SCOPES)
 def test_each_scope_and_timing_has_its_own_warnings(scope: str, timing: str) -> None:
-    wording, of_scope = SCOPES[scope]
+    scope_words, of_scope = SCOPES[scope]
     ends = scope in ("in", "while", "notin", "before")
     expected = [
         *(["F205"] if timing == "null" else []),
         *(["F206"] if timing == "within" and ends else []),
         *of_scope,
     ]
-    said = WORDINGS.get(timing, timing)
-    assert codes(f"{wording} whenever p the sw shall {said} satisfy q") == expected
+    timing_words = WORDINGS.get(timing, timing)
+    assert codes(f"{scope_words} whenever p the sw shall {timing_words} satisfy q") == expected
 
 
 def test_every_timing_has_a_wording() -> None:
@@ -162,7 +162,7 @@ def test_a_sentence_may_have_several_surprises() -> None:
 
 def test_the_mend_of_an_edge_is_fretish() -> None:
     for condition in ("p & (q | r)", "p -> q", "x > 3"):
-        text = told(f"when {condition} the sw shall always satisfy q")
+        text = warnings_of(f"when {condition} the sw shall always satisfy q")
         for word in ("whenever", "upon"):
             mend = f"{word} {condition}"
             assert f"`{mend}`" in text

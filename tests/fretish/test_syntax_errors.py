@@ -9,14 +9,14 @@ from fretish.parser import parse
 from fretish.syntax import Sentence
 
 
-def said(text: str) -> Diagnostic:
+def mistake_of(text: str) -> Diagnostic:
     found = parse(Source("r.fret", text).span())
     assert isinstance(found, Diagnostic), text
     return found
 
 
 @pytest.mark.parametrize(
-    ("text", "told"),
+    ("text", "message"),
     [
         (
             "the sw shall within 3 satisfy p",
@@ -327,8 +327,8 @@ def said(text: str) -> Diagnostic:
         ),
     ],
 )
-def test_a_mistake_is_told_with_its_place_and_its_mend(text: str, told: str) -> None:
-    assert render(said(text)) == told
+def test_a_mistake_is_told_with_its_place_and_its_mend(text: str, message: str) -> None:
+    assert render(mistake_of(text)) == message
 
 
 @pytest.mark.parametrize(
@@ -348,7 +348,7 @@ def test_a_mistake_is_told_with_its_place_and_its_mend(text: str, told: str) -> 
     ],
 )
 def test_a_mistake_has_its_code_and_its_place(text: str, code: str, place: str) -> None:
-    found = said(text)
+    found = mistake_of(text)
     assert found.span is not None
     assert (found.code.number, found.span.text) == (code, place)
     assert found.help
@@ -375,7 +375,7 @@ def test_a_mistake_has_its_code_and_its_place(text: str, code: str, place: str) 
     ],
 )
 def test_a_character_that_no_word_has_is_told(response: str, character: str, mend: str) -> None:
-    found = said(f"the sw shall satisfy {response}")
+    found = mistake_of(f"the sw shall satisfy {response}")
     assert found.code.number == "F101"
     assert found.message == f"`{character}` is no character of FRETish"
     assert found.span is not None
@@ -393,7 +393,9 @@ def test_a_character_that_no_word_has_is_told(response: str, character: str, men
     ],
 )  # fmt: skip
 def test_a_unit_of_other_tools_has_its_word_here(written: str, near: str) -> None:
-    assert said(f"the sw shall within 3 {written} satisfy q").help == f"did you mean `{near}`?"
+    assert (
+        mistake_of(f"the sw shall within 3 {written} satisfy q").help == f"did you mean `{near}`?"
+    )
 
 
 @pytest.mark.parametrize(
@@ -415,28 +417,30 @@ def test_a_unit_of_other_tools_has_its_word_here(written: str, near: str) -> Non
     ],
 )
 def test_what_the_mend_says_is_fretish(text: str, mended: str) -> None:
-    assert said(text).is_error
+    assert mistake_of(text).is_error
     assert isinstance(parse(Source("r.fret", mended).span()), Sentence)
 
 
 @pytest.mark.parametrize("timing", ["within 3 seconds", "for 3 ticks"])
 def test_a_counting_timing_at_the_wrong_place_keeps_its_duration_in_the_mend(timing: str) -> None:
     """`within satisfy ...` would be no FRETish."""
-    found = said(f"the sw shall satisfy {timing} q")
+    found = mistake_of(f"the sw shall satisfy {timing} q")
     assert found.message == "the timing stands before `satisfy`"
     assert f"{timing.split()[0]} satisfy" not in (found.help or "")
 
 
 def test_the_mend_of_a_negative_duration_is_not_a_smaller_unit() -> None:
-    assert "smaller" not in (said("the sw shall within -3 ticks satisfy q").help or "")
+    assert "smaller" not in (mistake_of("the sw shall within -3 ticks satisfy q").help or "")
 
 
 def test_only_the_first_mistake_is_told() -> None:
-    assert render(said("the sw must alwyas satisfy not q")).startswith("F107 a requirement says")
+    assert render(mistake_of("the sw must alwyas satisfy not q")).startswith(
+        "F107 a requirement says"
+    )
 
 
 def test_a_mistake_of_a_later_line_is_shown_with_its_line() -> None:
-    assert render(said("whenever p\n  the sw shall\n  alwyas satisfy q")) == (
+    assert render(mistake_of("whenever p\n  the sw shall\n  alwyas satisfy q")) == (
         "F107 `alwyas` is no word of FRETish here\n"
         "  --> r.fret:3:3\n"
         "   |   alwyas satisfy q\n"

@@ -30,7 +30,7 @@ Heard = StopHeard | CommandHeard | ScanHeard | TimerRang
 PAPER = Options(0, 0, 0, 0, event_driven=True)
 LATCHING = Options(0, 0, 0, 0, event_driven=True, latching=True)
 
-heard = st.one_of(
+events = st.one_of(
     st.sampled_from([STOP, GO, SCAN, RING, RING, RING]),
     st.sampled_from([CommandHeard(FAST), CommandHeard(SLOW), CommandHeard(ZERO)]),
 )
@@ -45,7 +45,7 @@ timed = st.builds(
 options = st.one_of(timed, st.sampled_from([PAPER, LATCHING]))
 
 
-def said(options: Options, *messages: Heard) -> list[Velocity | None]:
+def outputs(options: Options, *messages: Heard) -> list[Velocity | None]:
     state, out = initial(options), []
     for message in messages:
         state, command = step(state, message, options)
@@ -83,39 +83,39 @@ def by_prose(history: list[Heard], options: Options) -> Velocity | None:
     return passed if now == RING or isinstance(now, CommandHeard) else None
 
 
-@given(options, st.lists(heard, max_size=30))
+@given(options, st.lists(events, max_size=30))
 @example(Options(1, 0, 0, 0), [CommandHeard(FAST), STOP, GO, RING, RING])
 @example(Options(2, 3, 0, 0), [GO, CommandHeard(FAST), RING, RING, RING, GO, RING])
 def test_it_says_what_the_words_say(options: Options, messages: list[Heard]) -> None:
     expected = [by_prose(messages[: i + 1], options) for i in range(len(messages))]
-    assert said(options, *messages) == expected
+    assert outputs(options, *messages) == expected
 
 
 def test_the_papers_node_speaks_only_when_a_command_comes() -> None:
     command = CommandHeard(FAST)
-    assert said(PAPER, command, STOP, RING, command, GO, RING, command) == [
+    assert outputs(PAPER, command, STOP, RING, command, GO, RING, command) == [
         FAST, None, None, ZERO, None, None, FAST,
     ]  # fmt: skip
-    assert said(LATCHING, command, STOP, command, GO, command) == [FAST, None, ZERO, None, ZERO]
+    assert outputs(LATCHING, command, STOP, command, GO, command) == [FAST, None, ZERO, None, ZERO]
 
 
 def test_zero_is_held_for_its_ticks_after_the_last_request() -> None:
     options = Options(2, 0, 0, 0)
     messages = (CommandHeard(FAST), STOP, GO, RING, STOP, GO, RING, RING, RING)
-    assert said(options, *messages) == [FAST, ZERO, None, ZERO, ZERO, None, ZERO, ZERO, FAST]
+    assert outputs(options, *messages) == [FAST, ZERO, None, ZERO, ZERO, None, ZERO, ZERO, FAST]
 
 
 def test_a_watched_robot_stands_until_everything_was_heard_and_after_silence() -> None:
     options = Options(0, 2, 1, 0)
     command = CommandHeard(FAST)
-    assert said(options, command, GO, command, SCAN, command) == [ZERO, None, ZERO, None, FAST]
+    assert outputs(options, command, GO, command, SCAN, command) == [ZERO, None, ZERO, None, FAST]
     messages = (GO, SCAN, command, RING, SCAN, RING, SCAN, GO, command)
-    assert said(options, *messages) == [None, None, FAST, ZERO, None, ZERO, None, None, FAST]
+    assert outputs(options, *messages) == [None, None, FAST, ZERO, None, ZERO, None, None, FAST]
 
 
 def test_no_step_looks_into_a_velocity() -> None:
     command: Any = object()
-    assert said(Options(1, 2, 0, 2), GO, CommandHeard(command), RING, STOP, GO, RING, RING) == [
+    assert outputs(Options(1, 2, 0, 2), GO, CommandHeard(command), RING, STOP, GO, RING, RING) == [
         None, command, command, ZERO, None, ZERO, ZERO,
     ]  # fmt: skip
 
@@ -159,7 +159,7 @@ def test_each_function_states_what_it_promises(name: str) -> None:
     assert lines(getattr(interceptor, name), "post")
 
 
-@given(options, st.lists(heard, max_size=20))
+@given(options, st.lists(events, max_size=20))
 @example(LATCHING, [STOP, GO])
 @example(Options(2, 0, 0, 0), [CommandHeard(FAST), STOP, GO, RING, RING, RING])
 def test_each_line_of_the_contracts_holds_wherever_it_is_called(

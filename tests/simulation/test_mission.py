@@ -222,8 +222,8 @@ def test_the_true_pose_moves_as_fast_as_the_robot_says(log: Log) -> None:
     truth = [message for _, message in log.of("/ground_truth")]
     places = [(true.pose.pose.position.x, true.pose.pose.position.y) for true in truth]
     travelled = np.hypot(*np.diff(places, axis=0).T).sum()
-    said = sum(abs(true.twist.twist.linear.x) for true in truth) * 0.02
-    assert travelled == pytest.approx(said, rel=0.01)
+    odometer = sum(abs(true.twist.twist.linear.x) for true in truth) * 0.02
+    assert travelled == pytest.approx(odometer, rel=0.01)
 
 
 def test_odometry_drifts_from_the_truth_by_some_centimetres(log: Log) -> None:
@@ -286,9 +286,9 @@ def test_a_mission_that_is_cut_off_is_still_recorded(tmp_path: Path) -> None:
 
 
 def test_progress_is_told_every_simulated_second(tmp_path: Path) -> None:
-    told: list[float] = []
-    record(tmp_path / "mission.mcap", NOMINAL, max_seconds=3, progress=told.append)
-    assert told == [0.0, 1.0, 2.0]
+    seconds: list[float] = []
+    record(tmp_path / "mission.mcap", NOMINAL, max_seconds=3, progress=seconds.append)
+    assert seconds == [0.0, 1.0, 2.0]
 
 
 def test_an_interrupted_mission_leaves_no_file_behind(tmp_path: Path) -> None:

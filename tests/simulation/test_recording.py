@@ -61,8 +61,8 @@ def test_the_transforms_lead_from_the_map_to_the_lidar(tmp_path: Path) -> None:
     message = write(tmp_path / "a.mcap", "/tf", say.transforms(TIME, Pose(3.0, 4.0)))
     fixed = write(tmp_path / "b.mcap", "/tf_static", say.fixed_transforms(TIME))
     moving, still = (
-        [(link.header.frame_id, link.child_frame_id) for link in said.transforms]
-        for said in (message, fixed)
+        [(link.header.frame_id, link.child_frame_id) for link in transform.transforms]
+        for transform in (message, fixed)
     )
     assert moving == [("odom", "base_link")]
     assert still == [("map", "odom"), ("base_link", "velodyne")]
@@ -158,7 +158,9 @@ def test_a_log_of_ros_1_is_read_by_its_official_decoder(tmp_path: Path) -> None:
     with path.open("rb") as stream:
         reader = make_reader(stream, decoder_factories=[Ros1DecoderFactory()])
         assert reader.get_header().profile == "ros1"
-        found = {channel.topic: said for _, channel, _, said in reader.iter_decoded_messages()}
+        found = {
+            channel.topic: message for _, channel, _, message in reader.iter_decoded_messages()
+        }
     assert list(found["/scan"].ranges) == [1.0, math.inf]
     assert found["/scan"].header.stamp.secs == 1_700_000_000
     assert found["/tf"].transforms[0].transform.translation.x == 3.0

@@ -23,7 +23,7 @@ from compiler.files.text_files import sha256
 from compiler.formalization.rule import Rule
 from compiler.logic.claims import Evidence, NotChecked, Proved
 from compiler.targets.ajpf import properties as ajpf
-from compiler.targets.ajpf.safety_function import Drawn, Sif, sif
+from compiler.targets.ajpf.safety_function import Reaction, Sif, sif
 from compiler.targets.target import DEFAULT, Options, Target, stem
 from fretish import expressions as e
 from fretish.bindings.declarations import Declarations, Modality
@@ -37,31 +37,31 @@ _WEAKEN = Options(weaken=True)
 
 @deep
 def refusal(rule: Rule, options: Options = DEFAULT) -> Diagnostic | None:
-    """F601 for what AJPF or the agent cannot say; F614 where the agent would not do its duty."""
+    """F601 for what AJPF or the agent cannot express; F614 where the agent is not proved right."""
     refused = ajpf.refusal(rule, options)
     if refused is not None:
         return refused
-    found = shown(rule, options)
-    return found if isinstance(found, Diagnostic) else _not_kept(rule, found.evidence)
+    agent = checked_agent(rule, options)
+    return agent if isinstance(agent, Diagnostic) else _not_kept(rule, agent.evidence)
 
 
 @dataclass(frozen=True, slots=True)
-class Shown:
-    """An agent, and what the model says of its texts."""
+class CheckedAgent:
+    """An agent, and the evidence of the model about its texts."""
 
     sif: Sif
     evidence: tuple[Evidence, ...]
 
     @property
-    def is_kept(self) -> bool:
-        """Whether all of it is as it has to be."""
+    def is_proved(self) -> bool:
+        """Whether every line of the evidence is proved."""
         return all(isinstance(line.result, Proved) for line in self.evidence)
 
 
 def forms(rule: Rule) -> tuple[Sif, ...] | Diagnostic:
-    """The agents that may be made: one that asks for the whole condition, and one that does not.
+    """The possible agents: one that checks the whole condition, and one that does not.
 
-    One where that is the same; F601 where there is none.
+    Only one where both are the same; F601 where there is none.
     """
     asking, bare = sif(rule), sif(rule, guarded=False)
     if isinstance(asking, Diagnostic):
@@ -72,8 +72,10 @@ def forms(rule: Rule) -> tuple[Sif, ...] | Diagnostic:
 
 
 @deep
-def shown(rule: Rule, options: Options = DEFAULT, limit: int | None = None) -> Shown | Diagnostic:
-    """The first form of the agent that is shown to keep its requirement, the guarded one first.
+def checked_agent(
+    rule: Rule, options: Options = DEFAULT, limit: int | None = None
+) -> CheckedAgent | Diagnostic:
+    """The first form of the agent that is proved to keep its requirement, the guarded one first.
 
     Args:
         rule: one that `ajpf.refusal` does not refuse, with the same options.
@@ -81,22 +83,24 @@ def shown(rule: Rule, options: Options = DEFAULT, limit: int | None = None) -> S
         limit: how many states are explored of each form.
 
     Returns:
-        Where no form is shown to keep it, the guarded one; F601 where there is none at all.
+        The guarded form where none is proved to keep it; F601 where there is no form.
     """
     from compiler.agents.checking import STATES, agent_evidence
 
-    known = forms(rule)
-    if isinstance(known, Diagnostic):
-        return known
-    found: list[Shown] = []
-    for made in known:
-        files = texts(rule, made, options)
-        found.append(Shown(made, agent_evidence(rule, files, made.percepts, limit or STATES)))
-        if found[-1].is_kept:
-            return found[-1]
-        if any(isinstance(line.result, NotChecked) for line in found[-1].evidence):
+    candidates = forms(rule)
+    if isinstance(candidates, Diagnostic):
+        return candidates
+    agents: list[CheckedAgent] = []
+    for form in candidates:
+        files = texts(rule, form, options)
+        agents.append(
+            CheckedAgent(form, agent_evidence(rule, files, form.percepts, limit or STATES))
+        )
+        if agents[-1].is_proved:
+            return agents[-1]
+        if any(isinstance(line.result, NotChecked) for line in agents[-1].evidence):
             break  # an agent that responds to more has more states
-    return found[0]
+    return agents[0]
 
 
 def _not_kept(rule: Rule, evidence: Sequence[Evidence]) -> Diagnostic | None:
@@ -122,18 +126,18 @@ def emit(rules: Sequence[Rule], options: Options = DEFAULT) -> tuple[Artifact, .
 
 
 def _bundle(rule: Rule, options: Options) -> Iterator[Artifact]:
-    found = shown(rule, options)
-    assert isinstance(found, Shown), f"{rule.id} was to be refused"
-    assert found.is_kept, f"{rule.id} was to be refused"
-    made = found.sif
-    made_of = {
-        **texts(rule, made, options),
-        **_configuration(rule, made, options),
+    agent = checked_agent(rule, options)
+    assert isinstance(agent, CheckedAgent), f"{rule.id} was to be refused"
+    assert agent.is_proved, f"{rule.id} was to be refused"
+    form = agent.sif
+    contents = {
+        **texts(rule, form, options),
+        **_configuration(rule, form, options),
         "run.py": files("compiler.targets.ajpf").joinpath("runner.py").read_text(encoding="utf-8"),
         "README.md": render("ajpf-bundle/README.md.j2", id=rule.id),
     }
-    manifest = f"{to_json(_manifest(rule, made, options, made_of))}\n"
-    for name, text in {**made_of, "manifest.json": manifest}.items():
+    manifest = f"{to_json(_manifest(rule, form, options, contents))}\n"
+    for name, text in {**contents, "manifest.json": manifest}.items():
         yield Artifact(PurePosixPath(package(rule)) / name, text)
 
 
@@ -143,12 +147,12 @@ def package(rule: Rule) -> str:
     return f"{name if name[:1].isalpha() else f'r{name}'}_ajpf"
 
 
-def texts(rule: Rule, made: Sif, options: Options = DEFAULT) -> dict[str, str]:
-    """What the model looks at, and what is emitted: by the names of the files."""
+def texts(rule: Rule, form: Sif, options: Options = DEFAULT) -> dict[str, str]:
+    """The texts that the model examines and the bundle contains, by the names of the files."""
     return {
-        "SIF.gwen": _agent(rule, made, made.plans, "the agent of"),
+        "SIF.gwen": _agent(rule, form, form.plans, "the agent of"),
         "SIF_mutant.gwen": _agent(
-            rule, made, made.mutant, "an agent without the response, which is to break"
+            rule, form, form.mutant, "an agent without the response, which is to break"
         ),
         "SIF.psl": ajpf.text(rule, options),
     }
@@ -158,31 +162,31 @@ def _sentence(rule: Rule) -> str:
     return " ".join(rule.requirement.wording.text.split())
 
 
-def _agent(rule: Rule, made: Sif, plans: Sequence[Drawn], what: str) -> str:
+def _agent(rule: Rule, form: Sif, plans: Sequence[Reaction], title: str) -> str:
     return render(
         "ajpf-bundle/agent.gwen.j2",
-        title=f"{what} {rule.id}",
+        title=f"{title} {rule.id}",
         sentence=_sentence(rule),
-        over_responds=made.over_responds,
-        agent=made.agent,
+        over_responds=form.over_responds,
+        agent=form.agent,
         plans=[_plan(plan) for plan in plans],
     )
 
 
-def _plan(plan: Drawn) -> str:
+def _plan(plan: Reaction) -> str:
     guards = [f"{'' if g.positive else '~'}B {g.belief}" for g in plan.guards] or ["True"]
     deeds = f" <- {', '.join(map(str, plan.deeds))}" if plan.deeds else ""
     return f"{plan.event} : {{{', '.join(guards)}}}{deeds};"
 
 
-def _configuration(rule: Rule, made: Sif, options: Options) -> dict[str, str]:
-    """What MCAPL and Java PathFinder read beside."""
+def _configuration(rule: Rule, form: Sif, options: Options) -> dict[str, str]:
+    """The further files for MCAPL and Java PathFinder."""
     name = package(rule)
     texts = {
         "Env.java": render(
             "ajpf-bundle/Env.java.j2",
             package=name,
-            percepts=made.percepts,
+            percepts=form.percepts,
         )
     }
     for agent in ("SIF", "SIF_mutant"):
@@ -197,7 +201,7 @@ def _configuration(rule: Rule, made: Sif, options: Options) -> dict[str, str]:
 
 
 def _checks(rule: Rule, options: Options) -> list[dict[str, str]]:
-    """What AJPF is asked, and what it is to say."""
+    """The checks for AJPF, each with its expected answer."""
     main, *controls = ajpf.properties(rule, options)
     return [
         _check("requirement", main, "SIF", main.key, main.expected, main.why),
@@ -214,20 +218,20 @@ def _checks(rule: Rule, options: Options) -> list[dict[str, str]]:
 
 
 def _check(
-    role: str, stated: ajpf.Stated, agent: str, name: str, expected: str, why: str
+    role: str, prop: ajpf.ExpectedProperty, agent: str, name: str, expected: str, why: str
 ) -> dict[str, str]:
     return {
         "role": role,
-        "key": stated.key,
+        "key": prop.key,
         "agent": f"{agent}.ail",
         "jpf": f"{name}.jpf",
-        "property": stated.text,
+        "property": prop.text,
         "expected": expected,
         "why": why,
     }
 
 
-def _manifest(rule: Rule, made: Sif, options: Options, texts: Mapping[str, str]) -> dict[str, Any]:
+def _manifest(rule: Rule, form: Sif, options: Options, texts: Mapping[str, str]) -> dict[str, Any]:
     from compiler.logic import printing
 
     return {
@@ -242,23 +246,23 @@ def _manifest(rule: Rule, made: Sif, options: Options, texts: Mapping[str, str])
             "pt": printing.readable(rule.pt),
         },
         "weakened": ajpf.weakened(rule, options),
-        "agent": made.agent,
-        "percepts": list(made.percepts),
-        "responses": list(made.responses),
-        "released": made.released,
-        "over_responds": made.over_responds,
-        "atoms": [_atom(rule, made, name) for name in (*made.percepts, *made.responses)],
+        "agent": form.agent,
+        "percepts": list(form.percepts),
+        "responses": list(form.responses),
+        "released": form.released,
+        "over_responds": form.over_responds,
+        "atoms": [_atom(rule, form, name) for name in (*form.percepts, *form.responses)],
         "checks": _checks(rule, options),
         "files": {name: sha256(text) for name, text in sorted(texts.items())},
     }
 
 
-def _atom(rule: Rule, made: Sif, name: str) -> dict[str, Any]:
+def _atom(rule: Rule, form: Sif, name: str) -> dict[str, Any]:
     declared = rule.glossary.get(name)
     return {
         "proposition": name,
         "modality": str(declared.modality if declared else Modality.BELIEF),
-        "part": "percept" if name in made.percepts else "response",
+        "part": "percept" if name in form.percepts else "response",
         "role": declared.role if declared else "",
         "text": declared.text if declared else "",
         **_binding(rule.declarations, name),
@@ -266,7 +270,7 @@ def _atom(rule: Rule, made: Sif, name: str) -> dict[str, Any]:
 
 
 def _binding(declarations: Declarations | None, name: str) -> dict[str, Any]:
-    """What the proposition is in messages; nothing where it is not bound."""
+    """The binding of the proposition to messages; empty where it is not bound."""
     bound = declarations.propositions.get(name) if declarations else None
     if declarations is None or bound is None:
         return {}
@@ -276,13 +280,13 @@ def _binding(declarations: Declarations | None, name: str) -> dict[str, Any]:
 
 
 def _comparisons(declarations: Declarations, expression: e.Expression) -> Iterator[dict[str, Any]]:
-    """Each comparison of a number from messages with a number that is written down."""
+    """Each comparison of a number from messages with a constant."""
     if isinstance(expression, e.Comparison):
         left, op, right = expression.left, expression.op, expression.right
         if isinstance(left, e.Quantity | e.Number):
             left, op, right = right, MIRRORED.get(op, op), left
-        named = next((n.id for n in e.names(left)), "")
-        signal = declarations.signals.get(named)
+        name = next((n.id for n in e.names(left)), "")
+        signal = declarations.signals.get(name)
         if isinstance(right, e.Quantity | e.Number) and signal is not None:
             yield {
                 "signal": signal.name,
@@ -307,11 +311,11 @@ def _refuse_weak(rule: Rule) -> Diagnostic | None:
 
 @deep
 def remark(rule: Rule, options: Options = DEFAULT) -> Diagnostic | None:
-    """What is to be known of the properties (F605, F606, F607); else of the agent (F615)."""
-    told = ajpf.remark(rule, options)
-    found = shown(rule, options) if told is None else told
-    if not isinstance(found, Shown) or not found.sif.over_responds:
-        return told
+    """A warning about the properties (F605, F606, F607); else about the agent (F615)."""
+    warning = ajpf.remark(rule, options)
+    agent = checked_agent(rule, options) if warning is None else warning
+    if not isinstance(agent, CheckedAgent) or not agent.sif.over_responds:
+        return warning
     return Diagnostic(
         Code.OVER_RESPONDS,
         f"the agent of {rule.id} responds to every event of its condition, also where the rest "

@@ -66,8 +66,8 @@ _ENTERED = {
 
 
 @dataclass(frozen=True, slots=True)
-class Stated:
-    """One property of a file: `key: text`, what AJPF is expected to say of it, and why."""
+class ExpectedProperty:
+    """One property of a file: `key: text`, the expected answer of AJPF, and why."""
 
     key: str
     text: str
@@ -76,7 +76,7 @@ class Stated:
 
 
 @deep
-def properties(rule: Rule, options: Options = DEFAULT) -> tuple[Stated, ...]:
+def properties(rule: Rule, options: Options = DEFAULT) -> tuple[ExpectedProperty, ...]:
     """The requirement, and the controls that make a verdict about it mean something.
 
     Args:
@@ -89,9 +89,9 @@ def properties(rule: Rule, options: Options = DEFAULT) -> tuple[Stated, ...]:
     loss = weakened(rule, options) is not None
     why = "weaker than the requirement" if loss else "the requirement"
     return (
-        Stated(key, _text(formula, rule), HOLDS, why),
+        ExpectedProperty(key, _text(formula, rule), HOLDS, why),
         *(
-            Stated(f"{key}_{name}", _text(control, rule), VIOLATED, reason)
+            ExpectedProperty(f"{key}_{name}", _text(control, rule), VIOLATED, reason)
             for name, control, reason in _controls(rule, key)
             if not isinstance(control, f.Const)
         ),
@@ -99,7 +99,7 @@ def properties(rule: Rule, options: Options = DEFAULT) -> tuple[Stated, ...]:
 
 
 def weakened(rule: Rule, options: Options = DEFAULT) -> str | None:
-    """What is lost where less is emitted than the requirement says, in words; None: nothing is."""
+    """The loss in words, where the property is weaker than the requirement; None: no loss."""
     if not options.weaken or not _can_be_weakened(rule):
         return None
     loss = (
@@ -122,7 +122,7 @@ def _can_be_weakened(rule: Rule) -> bool:
     return isinstance(rule.sentence.timing, s.Within) and not negates
 
 
-# What is refused --------------------------------------------------------------------------------
+# Refusals ---------------------------------------------------------------------------------------
 
 
 @deep
@@ -194,8 +194,8 @@ def _refused_form(rule: Rule, formula: f.Formula | None) -> Diagnostic | None:
     return None
 
 
-def _not(rule: Rule, what: str, mend: str) -> Diagnostic:
-    return not_expressible("AJPF", rule, what, mend)
+def _not(rule: Rule, part: str, mend: str) -> Diagnostic:
+    return not_expressible("AJPF", rule, part, mend)
 
 
 def _levels(text: str) -> int:
@@ -206,32 +206,32 @@ def _levels(text: str) -> int:
     return deepest
 
 
-# What is said -----------------------------------------------------------------------------------
+# The formulas -----------------------------------------------------------------------------------
 
 
 def _formula(rule: Rule, options: Options) -> f.Formula | None:
     """The rule's own formula where it has no X, else its next-free form; None: not proved."""
-    meant = obligation(rule.sentence, rule.ticks or 0)
-    condition = meant.condition
+    duty = obligation(rule.sentence, rule.ticks or 0)
+    condition = duty.condition
     if weakened(rule, options):
-        return nextfree.unbounded(meant) if nextfree.is_weaker(meant.scope, condition) else None
+        return nextfree.unbounded(duty) if nextfree.is_weaker(duty.scope, condition) else None
     if nextfree.is_next_free(rule.ft_infinite):
         return rule.ft_infinite
-    proved = nextfree.is_proved(meant.scope, condition, meant.demand.kind)
-    return nextfree.next_free(meant) if proved else None
+    proved = nextfree.is_proved(duty.scope, condition, duty.demand.kind)
+    return nextfree.next_free(duty) if proved else None
 
 
 def _controls(rule: Rule, key: str) -> Iterator[tuple[str, f.Formula, str]]:
     """Name, formula and reason of each control; it may be constant where an expression is."""
-    meant = obligation(rule.sentence, rule.ticks or 0)
+    duty = obligation(rule.sentence, rule.ticks or 0)
     response = boolean(rule.sentence.response, Uninterpreted().alone())
-    never = nextfree.never_begins(meant)
+    never = nextfree.never_begins(duty)
     if never is not None:
-        entered = _TRIGGERED if meant.scope is None else _ENTERED[meant.scope]
-        why = entered if meant.condition is None else _TRIGGERED
+        entered = _TRIGGERED if duty.scope is None else _ENTERED[duty.scope]
+        why = entered if duty.condition is None else _TRIGGERED
         yield "reach", never, why.format(key)
     timing = rule.sentence.timing
-    negates = meant.scope is not None and meant.scope.negates
+    negates = duty.scope is not None and duty.scope.negates
     # What `never` forbids, an `only` scope demands outside of its mode, and the other way round: a
     # prohibition is kept by not responding, and nothing is wrong with that.
     if negates is isinstance(timing, s.Never):
@@ -239,7 +239,7 @@ def _controls(rule: Rule, key: str) -> Iterator[tuple[str, f.Formula, str]]:
         yield "resp", f.globally(f.not_(response)), reason
     if isinstance(timing, s.Before) and not negates:
         reason = f"the stop condition comes; if it never does, {key} demands nothing"
-        yield "stop", f.globally(f.not_(meant.demand.stop)), reason
+        yield "stop", f.globally(f.not_(duty.demand.stop)), reason
 
 
 def _text(formula: f.Formula, rule: Rule) -> str:
@@ -262,11 +262,11 @@ def _key(id: str) -> str:
 
 
 def remark(rule: Rule, options: Options = DEFAULT) -> Diagnostic | None:
-    """F605, F606, F607: what AJPF's verdict will not mean, or will be in any case."""
+    """F605, F606, F607: limits of AJPF's verdict on the property."""
     loss = weakened(rule, options)
     if loss is not None:
-        told = f"the property of {rule.id} is weaker than the requirement: {loss}"
-        return _warning(rule, Code.WEAKENED, told, "check the bound with `--emit monitor`")
+        message = f"the property of {rule.id} is weaker than the requirement: {loss}"
+        return _warning(rule, Code.WEAKENED, message, "check the bound with `--emit monitor`")
     sentence = rule.sentence
     scope = sentence.scope.kind if sentence.scope else None
     now = isinstance(sentence.timing, s.Immediately | s.Always | s.Until)

@@ -1,21 +1,21 @@
-"""Run AJPF on the files beside this one, compare what it says with `manifest.json`, and keep it.
+"""Run AJPF on the files of this folder, and compare its answers with `manifest.json`.
 
 Usage: AJPF_HOME=/path/to/mcapl JAVA_HOME=/path/to/jdk-11 python3 run.py [--agent FILE]
 
 `--agent FILE` checks an agent of your own in place of `SIF.gwen`, which may be that file, edited.
 Exit status 0: every verdict is the expected one; 1: AJPF refutes the requirement; 2: AJPF, Java or
-a file of the bundle is missing or changed; 3: something is not shown. Of the environment are read:
+a file of the bundle is missing or changed; 3: something is not shown. Environment variables:
 AJPF_HOME, the folder of MCAPL; JAVA_HOME, if java and javac are not on PATH; AJPF_JAVA_OPTIONS,
-options of java. It needs Java 11; javac may be newer. What AJPF printed is kept in `logs/`, and
-`result.json` is what fretc reads.
+options of java. It needs Java 11; javac may be newer. `logs/` keeps the output of AJPF, and
+fretc reads `result.json`.
 """
 
 import os
 import sys
 
-if __name__ == "__main__":  # what stands beside this file is no library
-    beside = os.path.dirname(os.path.realpath(__file__))
-    sys.path = [place for place in sys.path if os.path.realpath(place) != beside]
+if __name__ == "__main__":  # no file of this folder is a library
+    folder = os.path.dirname(os.path.realpath(__file__))
+    sys.path = [place for place in sys.path if os.path.realpath(place) != folder]
 
 import argparse
 import hashlib
@@ -40,12 +40,12 @@ ANTLR = "antlr-4.13"
 
 
 class UnusableError(Exception):
-    """What keeps AJPF from being run at all."""
+    """AJPF cannot run; the text says why."""
 
 
 @dataclass(frozen=True)
 class Tools:
-    """Whatever is run, and what it is."""
+    """The programs that run.py calls, and their versions."""
 
     java: str
     version: str
@@ -70,11 +70,11 @@ def main(arguments: Sequence[str]) -> int:
                     f"{place}"
                 )
         manifest = intact(here, own)
-        known = tools()
+        programs = tools()
         lock = alone(here)
         ran_on = digests(here, manifest, own)
         (here / "result.json").unlink(missing_ok=True)
-        built(here, known)
+        compile_environment(here, programs)
         shutil.rmtree(here / "run", ignore_errors=True)
         (here / "run").mkdir()
         ran = {check["jpf"]: prepared(here, check, own) for check in manifest["checks"]}
@@ -87,20 +87,20 @@ def main(arguments: Sequence[str]) -> int:
         return BAD
     if own is not None:
         print(f"about the agent {own}, SHA-256 {ran_on[str(own)][:12]}...")
-    command = [known.java, *shlex.split(os.environ.get("AJPF_JAVA_OPTIONS", "")), "-cp"]
-    command += [known.class_path, "gov.nasa.jpf.tool.RunJPF"]
-    found = []
+    command = [programs.java, *shlex.split(os.environ.get("AJPF_JAVA_OPTIONS", "")), "-cp"]
+    command += [programs.class_path, "gov.nasa.jpf.tool.RunJPF"]
+    answers = []
     for check in manifest["checks"]:
-        answer = asked(here, [*command, str(ran[check["jpf"]])], check, options.timeout)
-        found.append(answer)
+        answer = ask(here, [*command, str(ran[check["jpf"]])], check, options.timeout)
+        answers.append(answer)
         why = f" ({answer['why']})" if answer["why"] else ""
         mark = "" if answer["told"] == check["expected"] else f"EXPECTED {check['expected']}"
         print(f"{check['jpf']}: {answer['told']}, {mark or 'as expected'}{why}", flush=True)
-    status, words = concluded(found)
+    status, words = conclusion(answers)
     try:
         if digests(here, manifest, own) != ran_on:
             raise UnusableError("a file was changed while AJPF was at work: run it again")
-        written(here, result(manifest, known, own, ran_on, found, status))
+        write(here, result(manifest, programs, own, ran_on, answers, status))
     except UnusableError as error:
         print(f"error: {error}", file=sys.stderr)
         return BAD
@@ -113,7 +113,7 @@ def main(arguments: Sequence[str]) -> int:
     return status
 
 
-# What is run -----------------------------------------------------------------------------------
+# Running ---------------------------------------------------------------------------------------
 
 
 def digest(path: Path) -> str:
@@ -122,12 +122,12 @@ def digest(path: Path) -> str:
 
 
 def intact(here: Path, own: Path | None) -> dict[str, Any]:
-    """The manifest, once every file of it is the one that was made; but for one's own agent."""
+    """The manifest, after a check that its files are unchanged; except an agent of the user."""
     try:
         manifest: dict[str, Any] = json.loads((here / "manifest.json").read_text(encoding="utf-8"))
         files, checks = manifest["files"], manifest["checks"]
-        for name, known in files.items():
-            if digest(here / name) != known and (own is None or name != "SIF.gwen"):
+        for name, expected in files.items():
+            if digest(here / name) != expected and (own is None or name != "SIF.gwen"):
                 more = "; `--agent SIF.gwen` checks an agent of your own" * (name == "SIF.gwen")
                 raise UnusableError(f"{name} is not the file that manifest.json tells of{more}")
         if {check["role"] for check in checks} != {"requirement", "control", "mutant"}:
@@ -135,7 +135,7 @@ def intact(here: Path, own: Path | None) -> dict[str, Any]:
         if any(c["expected"] not in (HOLDS, VIOLATED) or c["jpf"] not in files for c in checks):
             raise UnusableError("manifest.json names something that cannot be checked")
         if own is not None:
-            named(own, manifest["agent"])
+            check_name(own, manifest["agent"])
         return manifest
     except OSError as error:
         raise UnusableError(f"{error.filename}: {error.strerror}") from error
@@ -144,9 +144,9 @@ def intact(here: Path, own: Path | None) -> dict[str, Any]:
 
 
 def digests(here: Path, manifest: Mapping[str, Any], own: Path | None) -> dict[str, str]:
-    """SHA-256 of all that AJPF reads, by its name; of one's own agent by its path."""
-    found = {name: digest(here / name) for name in sorted(manifest["files"])}
-    return found if own is None else {**found, str(own): digest(own)}
+    """SHA-256 of each file that AJPF reads, by its name; of the user's own agent by its path."""
+    by_name = {name: digest(here / name) for name in sorted(manifest["files"])}
+    return by_name if own is None else {**by_name, str(own): digest(own)}
 
 
 def alone(here: Path) -> IO[str]:
@@ -164,12 +164,12 @@ def alone(here: Path) -> IO[str]:
     return file
 
 
-def named(own: Path, name: str) -> None:
-    """One's own agent has the name of which the properties speak: AJPF crashes on another."""
-    found = re.search(r"^\s*:name:\s*(\S+)", own.read_text(encoding="utf-8"), re.MULTILINE)
-    if found is None or found[1] != name:
-        told = f"is called `{found[1]}`" if found else "has no `:name:`"
-        raise UnusableError(f"the agent of {own} {told}; the properties are about `{name}`")
+def check_name(own: Path, name: str) -> None:
+    """Demand of the user's own agent the name in the properties: AJPF crashes on another."""
+    match = re.search(r"^\s*:name:\s*(\S+)", own.read_text(encoding="utf-8"), re.MULTILINE)
+    if match is None or match[1] != name:
+        fault = f"is called `{match[1]}`" if match else "has no `:name:`"
+        raise UnusableError(f"the agent of {own} {fault}; the properties are about `{name}`")
 
 
 def tools() -> Tools:
@@ -196,15 +196,15 @@ def java_version(java: str) -> str:
         )
     except (OSError, subprocess.TimeoutExpired) as error:
         raise UnusableError(f"{java} does not tell its version: {error}") from error
-    found = re.search(r'version "((?:1\.)?(\d+)[^"]*)"', f"{done.stderr}\n{done.stdout}")
-    if found is None:
+    match = re.search(r'version "((?:1\.)?(\d+)[^"]*)"', f"{done.stderr}\n{done.stdout}")
+    if match is None:
         raise UnusableError(f"{java} does not tell its version")
-    if int(found[2]) != JAVA:
+    if int(match[2]) != JAVA:
         raise UnusableError(
-            f"{java} is Java {found[1]}, and AJPF needs Java {JAVA}: under another it dies with "
+            f"{java} is Java {match[1]}, and AJPF needs Java {JAVA}: under another it dies with "
             f"`NoSuchMethodError`; set JAVA_HOME to a JDK {JAVA}"
         )
-    return found[1]
+    return match[1]
 
 
 def class_path(home: Path) -> str:
@@ -222,13 +222,13 @@ def class_path(home: Path) -> str:
     return os.pathsep.join(map(str, places))
 
 
-def built(here: Path, known: Tools) -> None:
+def compile_environment(here: Path, programs: Tools) -> None:
     """Compile the environment, into `classes/`."""
     shutil.rmtree(here / "classes", ignore_errors=True)
     (here / "classes").mkdir()
-    command = [known.javac, "--release", str(JAVA), "-nowarn", "-encoding", "UTF-8"]
+    command = [programs.javac, "--release", str(JAVA), "-nowarn", "-encoding", "UTF-8"]
     done = subprocess.run(
-        [*command, "-d", "classes", "-cp", known.class_path, "Env.java"],
+        [*command, "-d", "classes", "-cp", programs.class_path, "Env.java"],
         cwd=here,
         capture_output=True,
         text=True,
@@ -245,7 +245,7 @@ def prepared(here: Path, check: Mapping[str, Any], own: Path | None) -> Path:
     agent = here / check["agent"].replace(".ail", ".gwen")
     if own is not None and check["agent"] == "SIF.ail":
         agent = own
-    ail = re.sub(r"(?m)^mas\.file = .*$", lambda found: f"mas.file = {agent}", ail)
+    ail = re.sub(r"(?m)^mas\.file = .*$", lambda match: f"mas.file = {agent}", ail)
     (place / check["agent"]).write_text(ail, encoding="utf-8")
     jpf: str = (here / check["jpf"]).read_text(encoding="utf-8")
     jpf = jpf.replace(f"${{config_path}}/{check['agent']}", str(place / check["agent"]))
@@ -255,10 +255,10 @@ def prepared(here: Path, check: Mapping[str, Any], own: Path | None) -> Path:
     return path
 
 
-def asked(
+def ask(
     here: Path, command: Sequence[str], check: Mapping[str, Any], timeout: float
 ) -> dict[str, Any]:
-    """What AJPF says of one key: the check itself, and its answer."""
+    """Ask AJPF about one key: the check and its answer."""
     log = here / "logs" / f"{check['jpf']}.txt"
     began, status = time.monotonic(), 0
     why = ""
@@ -277,20 +277,20 @@ def asked(
         except OSError as error:
             why = f"java cannot be run: {error.strerror}"
     text = log.read_text(encoding="utf-8", errors="replace")
-    told, why = (ERROR, why) if why else verdict(text, status)
+    outcome, why = (ERROR, why) if why else verdict(text, status)
     return {
         **{name: check[name] for name in ("role", "key", "jpf", "property", "expected")},
-        "told": told,
+        "told": outcome,
         "why": why,
         "seconds": round(time.monotonic() - began, 3),
         "states": states(text),
         "log": f"logs/{log.name}",
         "log_sha256": digest(log),
-        "trace": trace(text) if told == VIOLATED else None,
+        "trace": trace(text) if outcome == VIOLATED else None,
     }
 
 
-# What AJPF says --------------------------------------------------------------------------------
+# Answers of AJPF -------------------------------------------------------------------------------
 
 RESULTS = re.compile(r"^=+ results\s*$", re.MULTILINE)
 EXPLAINED = (
@@ -300,10 +300,10 @@ EXPLAINED = (
 
 
 def verdict(text: str, status: int) -> tuple[str, str]:
-    """What a whole output says. What is not clearly a verdict is none.
+    """The verdict of a whole output; ERROR where it is not clear.
 
-    A complaint of a parser beats everything: AJPF goes on with another property than the one in
-    the file.
+    A complaint of a parser overrides any verdict: AJPF goes on with another property than the one
+    in the file.
     """
     for sign, why in EXPLAINED:
         if sign in text:
@@ -319,9 +319,9 @@ def verdict(text: str, status: int) -> tuple[str, str]:
     if "MODEL PRODUCED BY AJPF" in text:
         return ERROR, "only the model was made (`ajpf.model_only`)"
     parts = RESULTS.split(text)
-    said = parts[-1] if len(parts) == 2 else ""
-    holds = re.search(r"^no errors detected\s*$", said, re.MULTILINE) is not None
-    errors = re.findall(r"^error #\d+: (.*)$", said, re.MULTILINE)
+    results = parts[-1] if len(parts) == 2 else ""
+    holds = re.search(r"^no errors detected\s*$", results, re.MULTILINE) is not None
+    errors = re.findall(r"^error #\d+: (.*)$", results, re.MULTILINE)
     path = 'ajpf.MCAPLListener "An Accepting Path has been found'
     violated = bool(errors) and all(error.startswith(path) for error in errors)
     if holds and (errors or "An Accepting Path has been found" in text):
@@ -337,18 +337,18 @@ def verdict(text: str, status: int) -> tuple[str, str]:
 
 def states(text: str) -> dict[str, int]:
     """The numbers of the line `states:  new=303,visited=52,...`; none where there is no such."""
-    found = re.findall(r"^states:\s+(\S+)\s*$", text, re.MULTILINE)
-    parts = found[-1].split(",") if found else []
+    lines = re.findall(r"^states:\s+(\S+)\s*$", text, re.MULTILINE)
+    parts = lines[-1].split(",") if lines else []
     numbers = (re.fullmatch(r"(\w+)=(\d+)", part) for part in parts)
     return {number[1]: int(number[2]) for number in numbers if number}
 
 
 def trace(text: str) -> dict[str, Any] | None:
-    """The run that breaks a property, a row for each state of the program; None: it is not told.
+    """The run that breaks a property, a row for each state of the program; None: there is none.
 
-    What a state changes is logged after its `New State is N`; what it does not mention is as it
-    was on the way there, and None before it is first mentioned. An action is logged before the
-    state that it leads to.
+    AJPF logs the changes of a state after its `New State is N`; other values stay as they were on
+    the way there, and are None before their first change. It logs an action before the state that
+    the action leads to.
     """
     path = [int(state) for state in _path(text)]
     if not path:
@@ -356,11 +356,11 @@ def trace(text: str) -> dict[str, Any] | None:
     prefix, cycle = folded(path)
     changes, actions = logged(text)
     names = sorted({name for number in prefix for name in changes.get(number, {})})
-    known: dict[str, bool] = {}
+    values: dict[str, bool] = {}
     rows = []
     for number in prefix:
-        known |= changes.get(number, {})
-        rows.append([known.get(name) for name in names])
+        values |= changes.get(number, {})
+        rows.append([values.get(name) for name in names])
     return {
         "names": names,
         "rows": rows,
@@ -373,9 +373,9 @@ def trace(text: str) -> dict[str, Any] | None:
 def _path(text: str) -> Iterator[str]:
     """The program states of the first path that is printed."""
     begin = text.find("An Accepting Path has been found")
-    found = re.compile(r"\s*\[MS: (-?\d+), BS: -?\d+, UN: -?\d+\],?")
+    state = re.compile(r"\s*\[MS: (-?\d+), BS: -?\d+, UN: -?\d+\],?")
     place = text.find("[MS:", begin) if begin >= 0 else -1
-    while place >= 0 and (match := found.match(text, place)) is not None:
+    while place >= 0 and (match := state.match(text, place)) is not None:
         yield match[1]
         place = match.end()
 
@@ -392,7 +392,7 @@ def folded(path: Sequence[int]) -> tuple[list[int], int | None]:
 
 
 def logged(text: str) -> tuple[dict[int, dict[str, bool]], dict[int, str]]:
-    """Of each new state, what became true or false in it, and the action that led there."""
+    """Of each new state, its changes of truth values, and the action that led there."""
     changes: dict[int, dict[str, bool]] = {}
     actions: dict[int, str] = {}
     state, action = None, ""
@@ -401,30 +401,30 @@ def logged(text: str) -> tuple[dict[int, dict[str, bool]], dict[int, str]]:
         r"|\[INFO\] \S+ done (.+?)\s*$"
     )
     for line in text.splitlines():
-        found = form.search(line)
-        if found is None:
+        match = form.search(line)
+        if match is None:
             continue
-        if found[1] is not None:
-            state = int(found[1])
+        if match[1] is not None:
+            state = int(match[1])
             changes.setdefault(state, {})
             if action:
                 actions[state] = action
             action = ""
-        elif found[2] is not None and state is not None:
-            changes[state][found[2].replace("()", "")] = found[3] == "true"
-        elif found[4] is not None:
-            action = found[4]
+        elif match[2] is not None and state is not None:
+            changes[state][match[2].replace("()", "")] = match[3] == "true"
+        elif match[4] is not None:
+            action = match[4]
     return changes, actions
 
 
-# What is said of it ----------------------------------------------------------------------------
+# The result ------------------------------------------------------------------------------------
 
 
-def concluded(found: Sequence[Mapping[str, Any]]) -> tuple[int, str]:
-    """What all verdicts together show: an exit status, and words."""
-    if any(check["role"] == "requirement" and check["told"] == VIOLATED for check in found):
+def conclusion(answers: Sequence[Mapping[str, Any]]) -> tuple[int, str]:
+    """The conclusion from all verdicts: an exit status, and words."""
+    if any(check["role"] == "requirement" and check["told"] == VIOLATED for check in answers):
         return REFUTED, "AJPF refutes the requirement"
-    if any(check["told"] != check["expected"] for check in found):
+    if any(check["told"] != check["expected"] for check in answers):
         words = "not shown: without each of these, the verdict about the requirement says nothing"
         return NOT_SHOWN, words
     return SHOWN, "AJPF says all that is expected of it"
@@ -432,13 +432,13 @@ def concluded(found: Sequence[Mapping[str, Any]]) -> tuple[int, str]:
 
 def result(
     manifest: Mapping[str, Any],
-    known: Tools,
+    programs: Tools,
     own: Path | None,
     ran_on: Mapping[str, str],
-    found: Sequence[Mapping[str, Any]],
+    answers: Sequence[Mapping[str, Any]],
     status: int,
 ) -> dict[str, Any]:
-    """What fretc reads; its schema is `ajpf-result.schema.json`."""
+    """The result for fretc; its schema is `ajpf-result.schema.json`."""
     files = {name: ran_on[name] for name in sorted(manifest["files"])}
     return {
         "schema": SCHEMA,
@@ -447,10 +447,10 @@ def result(
         "weakened": manifest["weakened"],
         "verdict": {SHOWN: "shown", REFUTED: "refuted"}.get(status, "not shown"),
         "agent": {"file": str(own), "sha256": ran_on[str(own)]} if own is not None else None,
-        "mcapl": {"commit": commit(known.home)},
-        "java": known.version,
+        "mcapl": {"commit": commit(programs.home)},
+        "java": programs.version,
         "files": files,
-        "checks": list(found),
+        "checks": list(answers),
     }
 
 
@@ -470,8 +470,8 @@ def commit(home: Path) -> str | None:
         return None
 
 
-def written(here: Path, content: Mapping[str, Any]) -> None:
-    """The result appears whole, or not at all."""
+def write(here: Path, content: Mapping[str, Any]) -> None:
+    """Write a complete result, or none."""
     place = here / "result.json.new"
     place.write_text(f"{json.dumps(content, indent=2)}\n", encoding="utf-8")
     place.replace(here / "result.json")

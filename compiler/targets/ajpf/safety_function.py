@@ -33,7 +33,7 @@ _TARGET = "an agent"
 
 
 @dataclass(frozen=True, slots=True)
-class Drawn:
+class Reaction:
     """A plan of the agent."""
 
     event: Change
@@ -43,19 +43,19 @@ class Drawn:
 
 @dataclass(frozen=True, slots=True)
 class Sif:
-    """The agent of one requirement, and what its environment draws."""
+    """The agent of one requirement, and the percepts of its environment."""
 
     agent: str
     percepts: tuple[str, ...]
     """Propositions of the scope, the condition and the stop condition, in this order."""
     responses: tuple[str, ...]
-    plans: tuple[Drawn, ...]
-    mutant: tuple[Drawn, ...]
-    """The plans without what makes the response true."""
+    plans: tuple[Reaction, ...]
+    mutant: tuple[Reaction, ...]
+    """The plans without the deeds that make the response true."""
     released: bool
     """Whether the response is taken back when the trigger goes."""
     over_responds: bool
-    """Whether plans do not ask for the rest of the condition, and so respond without it too."""
+    """Whether plans skip the rest of the condition, and so respond without it too."""
 
 
 Term = tuple[tuple[str, bool], ...]
@@ -80,9 +80,9 @@ def sif(rule: Rule, guarded: bool = True) -> Sif | Diagnostic:
     if isinstance(responses, Diagnostic):
         return responses
     percepts = _percepts(sentence)
-    wrong = _wrong_name(rule, percepts, responses)
-    if wrong is not None:
-        return wrong
+    mistake = _wrong_name(rule, percepts, responses)
+    if mistake is not None:
+        return mistake
     believed = [name for name in responses if _is_belief(rule, name)]
     released = len(terms) == len(terms[0]) == len(responses) == len(believed) == 1
     answer = tuple(deed for name in responses for deed in _answer(rule, name))
@@ -134,23 +134,23 @@ def _literal(expression: e.Expression) -> tuple[str, bool] | None:
 def _responses(rule: Rule) -> tuple[str, ...] | Diagnostic:
     response = rule.sentence.response
     parts = response.args if isinstance(response, e.And) else (response,)
-    found = [part.id for part in parts if isinstance(part, e.Name)]
-    if len(found) == len(parts):
-        return tuple(dict.fromkeys(found))
+    names = [part.id for part in parts if isinstance(part, e.Name)]
+    if len(names) == len(parts):
+        return tuple(dict.fromkeys(names))
     mend = "an agent does things: state what is to be so, as `a` or `a & b`"
     return not_expressible(_TARGET, rule, "the shape of the response", mend)
 
 
 def _percepts(sentence: s.Sentence) -> tuple[str, ...]:
-    """What is drawn freely: everything that says when, and nothing that says what."""
+    """The propositions of scope, condition and stop condition, which the environment draws."""
     assert sentence.condition is not None
     timing = sentence.timing
-    said = [
+    expressions = [
         *([sentence.scope.mode] if sentence.scope else []),
         sentence.condition.expression,
         *([timing.stop] if isinstance(timing, s.Until | s.Before) else []),
     ]
-    return tuple(dict.fromkeys(name.id for part in said for name in e.names(part)))
+    return tuple(dict.fromkeys(name.id for part in expressions for name in e.names(part)))
 
 
 def _wrong_name(
@@ -188,7 +188,7 @@ def _is_belief(rule: Rule, *names: str) -> bool:
 
 
 def _answer(rule: Rule, name: str) -> tuple[Deed, ...]:
-    """An action, and the belief that it was done; the action itself where that is what is meant."""
+    """An action and the belief that it was done; only the action where that is the response."""
     if not _is_belief(rule, name):
         return (Action(name),)
     return Action(_action(rule, name)), Change("+", name)
@@ -202,10 +202,10 @@ def _action(rule: Rule, name: str) -> str:
 
 def _reactions(
     terms: tuple[Term, ...], answer: tuple[Deed, ...], last: Guard | None
-) -> tuple[Drawn, ...]:
-    """A plan for each event that can make a term true; `last` tells that it was answered."""
+) -> tuple[Reaction, ...]:
+    """A plan for each event that can make a term true; the guard `last` blocks a second answer."""
     plans = [
-        Drawn(
+        Reaction(
             Change("+" if positive else "-", name),
             (
                 *(Guard(value, other) for other, value in term if other != name),
@@ -219,9 +219,9 @@ def _reactions(
     return tuple(dict.fromkeys(plans))
 
 
-def _releases(terms: tuple[Term, ...], responses: tuple[str, ...]) -> tuple[Drawn, ...]:
+def _releases(terms: tuple[Term, ...], responses: tuple[str, ...]) -> tuple[Reaction, ...]:
     """The only response is taken back when the only trigger goes."""
     (((trigger, _),),) = terms
     (response,) = responses
     deeds = (Action(f"undo_{response}"), Change("-", response))
-    return (Drawn(Change("-", trigger), (), deeds),)
+    return (Reaction(Change("-", trigger), (), deeds),)

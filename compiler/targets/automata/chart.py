@@ -34,7 +34,7 @@ from fretish.syntax import ScopeKind
 MOST_STATES = 100_000
 """A larger automaton is not written: no tool would read it."""
 PLACES = ("mode", "condition", "response", "stop")
-"""What the places of a letter are called."""
+"""The names of the places of a letter."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,7 +45,7 @@ class Chart:
     inputs: Mapping[int, f.Formula]
     """The expressions that the sentence has, by their place in a letter."""
     letters: tuple[Letter, ...]
-    """Those that can occur, and perhaps more, which no valuation of the propositions has."""
+    """All letters that can occur, and perhaps some that no valuation of the propositions has."""
     states: tuple[State, ...]
     """Those that have not decided."""
     moves: tuple[tuple[int, ...], ...]
@@ -93,18 +93,18 @@ def chart(rule: Rule) -> Chart:
         TooManyStatesError: it has more than `MOST_STATES` states.
     """
     automaton = explored(rule)
-    kept = [i for i, verdict in enumerate(automaton.verdicts) if verdict == "pending"]
-    numbers = {old: new for new, old in enumerate(kept)}
-    numbers[BROKEN] = len(kept)
+    pending = [i for i, verdict in enumerate(automaton.verdicts) if verdict == "pending"]
+    numbers = {old: new for new, old in enumerate(pending)}
+    numbers[BROKEN] = len(pending)
     for index, verdict in enumerate(automaton.verdicts):
         if verdict != "pending":
-            numbers[index] = len(kept) + (verdict == "satisfied")
+            numbers[index] = len(pending) + (verdict == "satisfied")
     return Chart(
         automaton.template,
         {i: part for i, part in enumerate(parts(rule.sentence)) if part is not None},
         automaton.letters,
-        tuple(automaton.states[i] for i in kept),
-        tuple(tuple(numbers[after] for after in automaton.moves[i]) for i in kept),
+        tuple(automaton.states[i] for i in pending),
+        tuple(tuple(numbers[after] for after in automaton.moves[i]) for i in pending),
         numbers[0],
     )
 
@@ -127,34 +127,34 @@ def _cached(kind: Template, letters: tuple[Letter, ...]) -> Automaton:
 
 @deep
 def kind(rule: Rule) -> Kind:
-    """What is demanded; `only` scopes demand the dual of their timing."""
+    """The kind of the demand; `only` scopes demand the dual of their timing."""
     return obligation(rule.sentence, rule.ticks or 0).demand.kind
 
 
 def words(demanded: Kind, template: Template, state: State) -> tuple[str, ...]:
-    """What a state remembers, for people; the last but `condition was true` is of its counter.
+    """The memory of a state in words; its counter comes last, but before `condition was true`.
 
     Args:
-        demanded: what `kind` says of the rule.
+        demanded: the `kind` of the rule.
         template: of its sentence.
         state: one that has not decided.
     """
     enforced = state.phase in (Phase.INSIDE, Phase.LAST_RUN)
-    said = []
+    phrases = []
     if state.phase is Phase.OUTSIDE and template.scope in _FROM_THE_START:
-        said.append(START)
+        phrases.append(START)
     elif template.scope is not None:
-        said.append(_PHASES[state.phase])
+        phrases.append(_PHASES[state.phase])
     if enforced:
         idle = "waiting" if template.condition else "nothing more is owed"
-        said.append(_counted(demanded, state.counted) if state.counted else idle)
+        phrases.append(_counter_words(demanded, state.counted) if state.counted else idle)
     if state.held:
-        said.append("condition was true")
-    return tuple(said)
+        phrases.append("condition was true")
+    return tuple(phrases)
 
 
 START = "start"
-"""What the state before the first tick is called, where no other tick leads to it."""
+"""The name of the state before the first tick, where no other tick leads to it."""
 _FROM_THE_START = (None, ScopeKind.BEFORE, ScopeKind.ONLY_AFTER)
 """The scopes in which no tick lies before an interval."""
 _PHASES: Mapping[Phase, str] = {
@@ -169,7 +169,7 @@ COUNTING = (Kind.WITHIN, Kind.FOR, Kind.AFTER, Kind.NOT_AFTER)
 """The demands whose counter counts ticks."""
 
 
-def _counted(demanded: Kind, count: int) -> str:
+def _counter_words(demanded: Kind, count: int) -> str:
     match demanded:
         case Kind.IMMEDIATELY:
             raise AssertionError("it counts nothing")

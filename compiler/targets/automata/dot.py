@@ -1,8 +1,7 @@
 """`--emit dot`: the automaton of a requirement as a picture, for Graphviz.
 
-What a state is, is said in words and by its shape, never by a colour alone. States that count ticks
-are one node (`compiler.targets.automata.folding`). Source of the language: Graphviz, The DOT
-Language.
+Words and shapes distinguish states, never a colour alone. States that count ticks are one node
+(`compiler.targets.automata.folding`). Source of the language: Graphviz, The DOT Language.
 """
 
 from __future__ import annotations
@@ -27,7 +26,7 @@ from fretish.meaning import meaning
 from fretish.reading.recursion import deep
 
 _LONGEST = 32
-"""Characters of an expression that stands on edges; a longer one is named, and told below."""
+"""Characters of an expression on an edge; a longer one gets a name, and stands below."""
 _WIDTH = 76
 """Characters of a line below the picture."""
 
@@ -54,26 +53,26 @@ def _text(rule: Rule) -> str:
         id=rule.id,
         title=_lines(_caption(rule, long, picture.nodes)),
         start=picture.start,
-        nodes=[(node.name, _lines(_said(node)), _look(node)) for node in picture.nodes],
+        nodes=[(node.name, _lines(_node_text(node)), _look(node)) for node in picture.nodes],
         edges=[
-            (edge.source, edge.target, _lines(_told(edge, guard(edge.letters), spelt)))
+            (edge.source, edge.target, _lines(_edge_text(edge, guard(edge.letters), spelt)))
             for edge in picture.edges
         ],
     )
 
 
 def _caption(rule: Rule, long: Mapping[int, f.Formula], nodes: Sequence[Node]) -> list[str]:
-    said = [f"{rule.id}: {wording(rule.requirement)}"]
-    said.append(meaning(rule.sentence, rule.ticks, rule.clock))
-    said.extend(f"{PLACES[i]}: {printing.readable(part)}" for i, part in long.items())
+    lines = [f"{rule.id}: {wording(rule.requirement)}"]
+    lines.append(meaning(rule.sentence, rule.ticks, rule.clock))
+    lines.extend(f"{PLACES[i]}: {printing.readable(part)}" for i, part in long.items())
     if any(node.counts for node in nodes):
-        said.append("On edges: [a condition on k], / what k becomes.")
+        lines.append("On edges: [a condition on k], / what k becomes.")
     if any(not node.accepts and node.name != VIOLATED for node in nodes):
-        said.append("A run that stays among dashed states for ever violates the requirement.")
-    return [line for text in said for line in textwrap.wrap(" ".join(text.split()), _WIDTH)]
+        lines.append("A run that stays among dashed states for ever violates the requirement.")
+    return [line for text in lines for line in textwrap.wrap(" ".join(text.split()), _WIDTH)]
 
 
-def _said(node: Node) -> list[str]:
+def _node_text(node: Node) -> list[str]:
     if node.counts is None:
         return list(node.words)
     low, high = node.counts
@@ -90,13 +89,13 @@ def _look(node: Node) -> str:
     return shape if node.accepts else f"{shape}, style=dashed"
 
 
-def _told(edge: Edge, terms: Sequence[Term], spelt: Mapping[int, f.Formula]) -> list[str]:
-    said = [_expression(terms, spelt)]
+def _edge_text(edge: Edge, terms: Sequence[Term], spelt: Mapping[int, f.Formula]) -> list[str]:
+    parts = [_expression(terms, spelt)]
     if edge.condition:
-        said.append(f"[{edge.condition}]")
+        parts.append(f"[{edge.condition}]")
     if edge.change:
-        said.append(f"/ {edge.change}")
-    return said
+        parts.append(f"/ {edge.change}")
+    return parts
 
 
 def _expression(terms: Sequence[Term], spelt: Mapping[int, f.Formula]) -> str:

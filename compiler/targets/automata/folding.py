@@ -1,7 +1,7 @@
-"""A chart that stays small: states that differ in what they have counted are one node.
+"""A chart that stays small: states that differ in their counter only are one node.
 
 A bound of 1 000 ticks is one node `open: k = 1..1000` with conditions on k, and changes of k, on
-its edges, so that a person can read it, and lose nothing.
+its edges: readable, and nothing is lost.
 """
 
 from __future__ import annotations
@@ -83,12 +83,12 @@ class _Folding:
     def _key(self, index: int, state: State) -> object:
         if index == self.chart.start:
             return "start"
-        counted = state.counted
+        count = state.counted
         if self.registers:
-            counted = 0  # its triggers are told by conditions on edges
+            count = 0  # conditions on edges show its triggers
         elif self.demanded in COUNTING:
-            counted = (counted > 0) - (counted < 0)
-        return state.phase, state.held, counted
+            count = (count > 0) - (count < 0)
+        return state.phase, state.held, count
 
     def result(self) -> Folded:
         edges = [
@@ -103,35 +103,35 @@ class _Folding:
         return Folded(tuple(nodes), tuple(edges), self.names[self.chart.start])
 
     def _count(self, index: int) -> int | None:
-        """What a state has counted: k ticks, or the register of its triggers."""
+        """The counter of a state: k ticks, or the register of its triggers."""
         if index >= len(self.chart.states):
             return None
-        counted = self.chart.states[index].counted
+        count = self.chart.states[index].counted
         if self.registers:
-            return counted
-        if self.demanded not in COUNTING or counted == 0:
+            return count
+        if self.demanded not in COUNTING or count == 0:
             return None
         if self.demanded is Kind.NOT_AFTER:
-            return counted.bit_length()
-        return abs(counted)
+            return count.bit_length()
+        return abs(count)
 
     def _node(self, members: Sequence[int]) -> Node:
         state = self.chart.states[members[0]]
-        said = list(words(self.demanded, self.chart.template, state))
+        phrases = list(words(self.demanded, self.chart.template, state))
         counts = sorted(k for index in members if (k := self._count(index)) is not None)
-        if counts and not self.registers:  # the ticks of one state are k of all of them
+        if counts and not self.registers:  # one k stands for the ticks of all members
             word = 1 if self.scoped else 0
-            said[word] = "owed" if self.demanded is Kind.FOR else OPEN[state.counted < 0]
+            phrases[word] = "owed" if self.demanded is Kind.FOR else OPEN[state.counted < 0]
         return Node(
             self.names[members[0]],
-            tuple(said),
+            tuple(phrases),
             (counts[0], counts[-1]) if counts and not self.registers else None,
             all(self.chart.accepts(index) for index in members),
         )
 
     def _edges(self, source: str, members: Sequence[int]) -> Iterator[Edge]:
         """Letters that lead to the same node, under the same condition, are one edge."""
-        found: dict[tuple[str, str, str], list[Letter]] = {}
+        edges: dict[tuple[str, str, str], list[Letter]] = {}
         for place, letter in enumerate(self.chart.letters):
             targets: dict[str, list[tuple[int, int]]] = {}
             for index in members:
@@ -140,8 +140,8 @@ class _Folding:
             for target, moves in targets.items():
                 condition = self._condition([index for index, _ in moves], members)
                 key = (target, condition, self._change(moves))
-                found.setdefault(key, []).append(letter)
-        for (target, condition, change), letters in found.items():
+                edges.setdefault(key, []).append(letter)
+        for (target, condition, change), letters in edges.items():
             yield Edge(source, target, frozenset(letters), condition, change)
 
     def _condition(self, chosen: Sequence[int], members: Sequence[int]) -> str:
@@ -178,20 +178,20 @@ def _ago(ticks: int) -> str:
     return "1 tick ago" if ticks == 1 else f"{ticks} ticks ago"
 
 
-def _without_twin(whole: Folded) -> Folded:
-    """Without the start, where another node accepts as it does and has the same edges."""
-    by_name = {node.name: node for node in whole.nodes}
-    start = by_name[whole.start]
+def _without_twin(picture: Folded) -> Folded:
+    """The picture without its start, where another node accepts alike and has the same edges."""
+    by_name = {node.name: node for node in picture.nodes}
+    start = by_name[picture.start]
     if start.words != (START,):
-        return whole
-    for node in whole.nodes:
+        return picture
+    for node in picture.nodes:
         same = node is not start and node.counts is None and node.accepts is start.accepts
-        if same and _leaving(whole, start.name) == _leaving(whole, node.name):
-            nodes = tuple(other for other in whole.nodes if other is not start)
-            edges = tuple(edge for edge in whole.edges if edge.source != start.name)
+        if same and _leaving(picture, start.name) == _leaving(picture, node.name):
+            nodes = tuple(other for other in picture.nodes if other is not start)
+            edges = tuple(edge for edge in picture.edges if edge.source != start.name)
             return Folded(nodes, edges, node.name)
-    return whole
+    return picture
 
 
-def _leaving(whole: Folded, name: str) -> set[Edge]:
-    return {replace(edge, source="") for edge in whole.edges if edge.source == name}
+def _leaving(picture: Folded, name: str) -> set[Edge]:
+    return {replace(edge, source="") for edge in picture.edges if edge.source == name}

@@ -77,7 +77,7 @@ def _states(
 ) -> Iterator[tuple[int, str, bool, list[tuple[str, int]]]]:
     """Number, name, whether it accepts, and edges of each state."""
     demanded = kind(rule)
-    known: dict[tuple[Letter, ...], str] = {}
+    labels: dict[tuple[Letter, ...], str] = {}
     for index, row in enumerate(automaton.moves):
         targets: dict[int, list[Letter]] = {}
         for letter, after in zip(automaton.letters, row, strict=True):
@@ -85,9 +85,9 @@ def _states(
         edges = []
         for after, letters in targets.items():
             key = tuple(letters)
-            if key not in known:
-                known[key] = _label(automaton.guard(letters))
-            edges.append((known[key], numbers[after]))
+            if key not in labels:
+                labels[key] = _label(automaton.guard(letters))
+            edges.append((labels[key], numbers[after]))
         name = ", ".join(words(demanded, automaton.template, automaton.states[index]))
         yield numbers[index], name, automaton.accepts(index), edges
     for index, name in ((automaton.violated, "violated"), (automaton.satisfied, "satisfied")):

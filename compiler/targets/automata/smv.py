@@ -1,8 +1,8 @@
 """`--emit smv`: the counter automaton of a requirement as a module for NuSMV and nuXmv.
 
-The module is written from the definition of the timing, with one bounded integer, whatever the
-bound; the formulas stand beside it, and the two are linked by properties that have to be true.
-What a checker says of the links is then evidence about formulas and automaton alike.
+The module follows the definition of the timing, with one bounded integer, whatever the bound; the
+file has the formulas too, and properties that link the two and must be true. So the answers of a
+checker to these links are evidence about formulas and automaton alike.
 Source of the language: Cavada et al., NuSMV 2.6 User Manual, chapters 2 and 3.
 """
 
@@ -49,7 +49,7 @@ def emit(rules: Sequence[Rule], options: Options = DEFAULT) -> tuple[Artifact, .
 
 @dataclass(frozen=True, slots=True)
 class Spec:
-    """An LTL property of the file, and what is to be expected of it."""
+    """An LTL property of the file, with its expected result in the comment."""
 
     name: str
     formula: str
@@ -61,7 +61,7 @@ def _text(rule: Rule) -> str:
     plain = re.sub(r"\W", "_", stem(rule))
     monitor_name = f"monitor_{plain}"
     instance = f"the_{monitor_name}"
-    # The formulas may lack some: `only after m` says nothing of m where nothing is demanded.
+    # Formulas may lack some propositions: `only after m` drops m where it demands nothing.
     propositions = tuple(dict.fromkeys((*rule.propositions, *atoms_of(rule.sentence))))
     names = legal_names(propositions, _RESERVED | {instance, monitor_name})
     module = monitor(demanded)
@@ -89,24 +89,24 @@ def _text(rule: Rule) -> str:
 def _specs(
     rule: Rule, demanded: Obligation, names: tuple[str, str], dialect: printing.Dialect
 ) -> list[Spec]:
-    """The formulas, and what links them to the module.
+    """The formulas, and the properties that link them to the module.
 
     Args:
         rule: what is formalized.
-        demanded: what the module was made from.
-        names: what those of the properties begin with, and that of the module's instance.
+        demanded: the obligation that the module implements.
+        names: the prefix of the properties' names, and the name of the module's instance.
         dialect: with the names of the propositions.
     """
     prefix, instance = names
     ft, pt = printing.text(rule.ft_infinite, dialect), printing.text(rule.pt, dialect)
-    kept = f"(G (!{instance}.violated))"
+    safe = f"(G (!{instance}.violated))"
     unmet = demanded.demand.kind in (Kind.EVENTUALLY, Kind.FINALLY)
     if demanded.demand.kind is Kind.EVENTUALLY:
-        kept = f"({kept} & (G (F (!{instance}.unmet))))"
+        safe = f"({safe} & (G (F (!{instance}.unmet))))"
     ends = f"(!{instance}.violated{f' & !{instance}.unmet' if unmet else ''})"
-    found = [
+    specs = [
         Spec(f"{prefix}_ft", ft, "the requirement, on infinite traces: what you want to know"),
-        Spec(f"{prefix}_ft_is_monitor", f"({kept} <-> {ft})", "expected true: FT is the module"),
+        Spec(f"{prefix}_ft_is_monitor", f"({safe} <-> {ft})", "expected true: FT is the module"),
         Spec(
             f"{prefix}_pt_is_monitor",
             f"(G ({pt} <-> {ends}))",
@@ -114,9 +114,9 @@ def _specs(
         ),
     ]
     if not unmet:
-        told = "expected true: nothing is left for the end to decide, so PT everywhere is FT"
-        found.append(Spec(f"{prefix}_pt_is_ft", f"((G {pt}) <-> {ft})", told))
-    return found
+        comment = "expected true: nothing is left for the end to decide, so PT everywhere is FT"
+        specs.append(Spec(f"{prefix}_pt_is_ft", f"((G {pt}) <-> {ft})", comment))
+    return specs
 
 
 TARGET = Target("smv", "a model with the monitor as a module, for NuSMV and nuXmv", emit, refuse)

@@ -1,7 +1,7 @@
 """The counter automaton of a sentence as a module of NuSMV, symbol by symbol.
 
-It says what `compiler.formalization.reference` says: the phase of the scope, the trigger of the
-condition, the count of the timing. A state is that before a tick; `violated` already knows the tick
+It mirrors `compiler.formalization.reference`: the phase of the scope, the trigger of the
+condition, the count of the timing. A state is the one before a tick; `violated` includes the tick
 itself.
 """
 
@@ -40,7 +40,7 @@ class Definition:
 
 @dataclass(frozen=True, slots=True)
 class Module:
-    """What stands between `MODULE` and the next one."""
+    """One `MODULE` of the file."""
 
     parameters: tuple[str, ...]
     variables: tuple[Variable, ...]
@@ -48,10 +48,10 @@ class Module:
 
 
 def monitor(obligation: Obligation) -> Module:
-    """The module of a sentence; its parameters are those of its expressions that it has.
+    """The module of a sentence; its parameters are the expressions that the sentence has.
 
-    Its definitions `violated` (a demand is broken, for good) and, with `eventually` and
-    `finally`, `unmet` (a demand is open that the end of the interval would break).
+    It defines `violated` (a demand is broken, for good) and, with `eventually` and `finally`,
+    `unmet` (a demand is open that the end of the interval would break).
     """
     counter = _counter(obligation)
     stops = obligation.demand.kind in (Kind.UNTIL, Kind.BEFORE)
@@ -109,7 +109,7 @@ _PHASES: Mapping[ScopeKind | None, tuple[str, Cases]] = {
 
 
 def _is_everywhere(obligation: Obligation) -> bool:
-    """No phase is needed: not even the first tick is told apart."""
+    """Whether it needs no phase: not even the first tick differs."""
     return obligation.scope is None and obligation.condition is not None
 
 
@@ -117,8 +117,8 @@ def _scope_variables(obligation: Obligation) -> Iterator[Variable]:
     more, _ = _PHASES[obligation.scope]
     if not _is_everywhere(obligation):
         values = ", ".join(("outside", "inside", *([more] if more else [])))
-        told = "where the tick before lies"
-        yield Variable("phase", f"{{{values}}}", "outside", _plain("now"), told)
+        comment = "where the tick before lies"
+        yield Variable("phase", f"{{{values}}}", "outside", _plain("now"), comment)
     if obligation.condition is ConditionKind.TRIGGER:
         yield Variable(
             "held",
@@ -168,10 +168,10 @@ def _counter(obligation: Obligation) -> _Counter:
             comment = "the tick before was a trigger"
             return _flag("triggered", comment, broken="enforced & open & !response")
         case Kind.EVENTUALLY:
-            left = _left(obligation)
-            return _at_the_end(_flag("unmet", "no response yet", broken=left), "!response")
+            over = _interval_over(obligation)
+            return _at_the_end(_flag("unmet", "no response yet", broken=over), "!response")
         case Kind.FINALLY:
-            return _finally(_left(obligation))
+            return _finally(_interval_over(obligation))
         case Kind.ALWAYS:
             return _flag("due", "there was a trigger", broken="due & !response", due=True)
         case Kind.UNTIL:
@@ -194,30 +194,32 @@ def _counter(obligation: Obligation) -> _Counter:
 _DUE = Definition("due", _plain("triggered | (enforced & open)"), "a demand is open at this tick")
 
 
-def _left(obligation: Obligation) -> str:
+def _interval_over(obligation: Obligation) -> str:
     """The interval has ended, with the tick before, and a demand is open."""
     return "FALSE" if obligation.scope is None else "!enforced & open"
 
 
-def _flag(kept: str | None, comment: str = "", *, broken: str, due: bool = False) -> _Counter:
-    """One bit: whether a demand is open; `kept` is for the next tick."""
+def _flag(carry: str | None, comment: str = "", *, broken: str, due: bool = False) -> _Counter:
+    """One bit: whether a demand is open; `carry` is its value for the next tick."""
     broken_at = Definition("broken", _plain(broken), "at this tick")
-    opened = () if kept is None else (Variable("open", "boolean", "FALSE", _plain(kept), comment),)
+    opened = (
+        () if carry is None else (Variable("open", "boolean", "FALSE", _plain(carry), comment),)
+    )
     return _Counter(opened, (*([_DUE] if due else []), broken_at))
 
 
-def _at_the_end(counter: _Counter, missing: str) -> _Counter:
-    unmet = Definition("unmet", _plain(f"due & {missing}"), "and would fail if the interval ended")
+def _at_the_end(counter: _Counter, absence: str) -> _Counter:
+    unmet = Definition("unmet", _plain(f"due & {absence}"), "and would fail if the interval ended")
     return _Counter(counter.variables, (_DUE, unmet, *counter.definitions))
 
 
-def _finally(left: str) -> _Counter:
+def _finally(over: str) -> _Counter:
     """`open`: there was a trigger; the response at the tick before is the last of an interval."""
     answered = Variable(
         "answered", "boolean", "FALSE", _plain("response"), "the response held at the tick before"
     )
     opened = Variable("open", "boolean", "FALSE", _plain("due"), "there was a trigger")
-    broken = "FALSE" if left == "FALSE" else f"{left} & !answered"
+    broken = "FALSE" if over == "FALSE" else f"{over} & !answered"
     counter = _Counter((opened, answered), (Definition("broken", _plain(broken), "at its end"),))
     return _at_the_end(counter, "!response")
 
@@ -226,7 +228,7 @@ def _count(most: int, cases: Cases, comment: str) -> Variable:
     return Variable("count", f"0..{most}", "0", cases, comment)
 
 
-_COUNTED = Definition(
+_DUE_BY_COUNT = Definition(
     "due", _plain("triggered | (enforced & count > 0)"), "a demand is open at this tick"
 )
 
@@ -238,7 +240,7 @@ def _within(n: int) -> _Counter:
         "ticks that the oldest open trigger has seen",
     )
     broken = Definition("broken", _plain(f"due & !response & count = {n}"), "the deadline")
-    return _Counter((count,), (_COUNTED, broken))
+    return _Counter((count,), (_DUE_BY_COUNT, broken))
 
 
 def _for(n: int) -> _Counter:
@@ -252,7 +254,7 @@ def _for(n: int) -> _Counter:
         ),
         "ticks that the newest trigger is still owed",
     )
-    return _Counter((count,), (_COUNTED, Definition("broken", _plain("due & !response"))))
+    return _Counter((count,), (_DUE_BY_COUNT, Definition("broken", _plain("due & !response"))))
 
 
 def _after(n: int) -> _Counter:
@@ -272,29 +274,29 @@ def _after(n: int) -> _Counter:
     too_early = f"(count < {n + 1} & response)"
     too_late = f"(count = {n + 1} & (clashes | !response))"
     broken = Definition("broken", _plain(f"due & ({too_early} | {too_late})"))
-    return _Counter((count, clash), (_COUNTED, clashes, broken))
+    return _Counter((count, clash), (_DUE_BY_COUNT, clashes, broken))
 
 
 def _not_after(n: int) -> _Counter:
-    """With one trigger an interval, a count tells when it was."""
+    """With one trigger an interval, a count gives its time."""
     count = _count(
         n + 1,
         ((f"!due | response | count = {n + 1}", "0"), ("TRUE", "count + 1")),
         "ticks since the trigger, while no response has come",
     )
     broken = Definition("broken", _plain(f"enforced & response & count = {n + 1}"))
-    return _Counter((count,), (_COUNTED, broken))
+    return _Counter((count,), (_DUE_BY_COUNT, broken))
 
 
 def _register(n: int) -> _Counter:
     """Each trigger forbids the response at a tick of its own, so each is remembered."""
-    kept = "enforced & !response"
+    carry = "enforced & !response"
     ago = [
         Variable(
             f"ago_{k}",
             "boolean",
             "FALSE",
-            _plain(f"{kept} & {'triggered' if k == 1 else f'ago_{k - 1}'}"),
+            _plain(f"{carry} & {'triggered' if k == 1 else f'ago_{k - 1}'}"),
             f"a trigger {k} tick{'s' if k > 1 else ''} ago, and no response since",
         )
         for k in range(1, n + 2)

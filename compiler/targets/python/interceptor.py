@@ -34,10 +34,10 @@ def refuse(options: Options) -> Diagnostic | None:
     if declared is not None and declared.interceptor is not None:
         return None
     source = Source("bindings.toml", "") if declared is None else declared.source
-    what = "there are no bindings, and so" if declared is None else "the bindings declare"
+    subject = "there are no bindings, and so" if declared is None else "the bindings declare"
     return Diagnostic(
         Code.NO_INTERCEPTOR,
-        f"{what} no interceptor",
+        f"{subject} no interceptor",
         source.span().part(0, 0),
         help=f"add this table to {source.name}, with the topics of your robot:",
         paste=TABLE,
@@ -48,7 +48,7 @@ def refuse(options: Options) -> Diagnostic | None:
 
 
 def remarks(options: Options) -> tuple[Diagnostic, ...]:
-    """F630 to F633: what can go wrong although the node does what it is told to."""
+    """F630 to F633: dangers that remain although the node works as declared."""
     declared = options.declarations
     if declared is None or declared.interceptor is None:
         return ()
@@ -102,7 +102,7 @@ def _unwatched(node: Interception) -> Iterator[Diagnostic]:
 
 
 def _short_hold(declared: Declarations, node: Interception) -> Iterator[Diagnostic]:
-    """Requests may be lost, `lost` in a row, before one is heard."""
+    """Requests may be lost, `lost` in a row, before one arrives."""
     assumed, period = declared.assumed, declared.clock.period
     if assumed is None or not assumed.lost or period is None:
         return
@@ -156,14 +156,14 @@ def text(interception: Interception, source: str) -> str:
 
 def _options(node: Interception) -> Iterator[tuple[str, Any, str]]:
     """Name, value, and where it comes from."""
-    made = counted(node)
+    core_options = counted(node)
     for name in ("hold", "stop_timeout", "scan_timeout", "command_timeout"):
         duration = getattr(node, name)
         every = f"at {_duration(node.period)} a tick"
         why = f"{name} = {_duration(duration)}, {every}" if duration else f"no {name} is declared"
-        yield name, getattr(made, name), why
-    yield "event_driven", made.event_driven, f"form = {node.form}"
-    yield "latching", made.latching, f"latching = {str(node.latching).lower()}"
+        yield name, getattr(core_options, name), why
+    yield "event_driven", core_options.event_driven, f"form = {node.form}"
+    yield "latching", core_options.latching, f"latching = {str(node.latching).lower()}"
 
 
 def _node(node: Interception) -> dict[str, Any]:
@@ -185,11 +185,11 @@ _STATUSES = {
     1: "3 no ROS master has answered, 4 ROS has ended it: another node has taken its name, say",
     2: "4 ROS has ended it",
 }
-"""What else `--help` says of how the node ends, for each ROS."""
+"""Further exit statuses of the node in `--help`, for each ROS."""
 
 
 def _summary(node: Interception) -> str:
-    """What `--help` says."""
+    """The summary in `--help`."""
     when = (
         f"Every {_duration(node.period)}, on each command and at once on a request to stop"
         if node.form is Form.TIMER
@@ -208,7 +208,7 @@ _UNITS = (("s", 10**9), ("ms", 10**6), ("us", 10**3), ("ns", 1))
 
 def _duration(nanoseconds: int) -> str:
     """`1200 ms`: in the largest unit in which it is a whole number."""
-    unit, size = next(one for one in _UNITS if nanoseconds % one[1] == 0)
+    unit, size = next(pair for pair in _UNITS if nanoseconds % pair[1] == 0)
     return f"{nanoseconds // size} {unit}"
 
 

@@ -84,11 +84,11 @@ _ASKS_FOR_FIRST = re.compile(r'^[^"].*\bFTP\b')
 
 
 def remark(rule: Rule) -> Diagnostic | None:
-    """F203: whatever has happened, what follows can still make the verdict either way.
+    """F203: after any prefix of a run, both verdicts are still possible.
 
-    So it is with 12 of FRET's 288 templates: a demand for ever later at each trigger, on a stretch
-    that ends with the run. Source: Pnueli, Zaks, PSL model checking and run-time verification via
-    testers, FM 2006 (monitorability).
+    This holds for 12 of FRET's 288 templates: each trigger demands a response at some later time,
+    on a stretch that ends with the run. Source: Pnueli, Zaks, PSL model checking and run-time
+    verification via testers, FM 2006 (monitorability).
     """
     sentence = rule.sentence
     scope = sentence.scope.kind if sentence.scope else None
@@ -124,28 +124,28 @@ def text(*rules: Rule) -> str:
     Args:
         rules: at least one, each with an id of its own, and all on one clock.
     """
-    left_out = [rule for rule in rules if rule.sentence.probability]
+    probabilistic = [rule for rule in rules if rule.sentence.probability]
     rules = tuple(map(plain, rules))
     names = tuple(dict.fromkeys(name for rule in rules for name in rule.watched))
     prefixes = prefixes_of([rule.id for rule in rules])
     parameters = parameters_of(names, prefixes.values())
-    made = program({rule.id: rule.watch for rule in rules}, parameters, prefixes)
+    code = program({rule.id: rule.watch for rule in rules}, parameters, prefixes)
     runtime = kernel()
-    inputs = [_Input(name, parameters[name], _is_negated(name, made)) for name in names]
+    inputs = [_Input(name, parameters[name], _is_negated(name, code)) for name in names]
     return render(
         "monitor/monitor.py.j2",
         title=", ".join(rule.id for rule in rules),
         class_name=_class_name(rules[0].id) if len(rules) == 1 else "All",
         version=__version__,
         rules=[_described(rule) for rule in rules],
-        left_out=[_left_out(rule) for rule in left_out],
+        probabilistic=[_probability_note(rule) for rule in probabilistic],
         tick=str(rules[0].clock) if rules[0].clock else "not declared",
         inputs=inputs,
         row=_tuple([p.name for p in inputs]),
-        program=made,
-        digest=_digest(made, rules),
-        slots=_slots(made),
-        told=made.told,
+        program=code,
+        digest=_digest(code, rules),
+        slots=_slots(code),
+        requirements=code.requirements,
         marks=MARKS,
         verdicts="Verdict" if len(rules) == 1 else "tuple[Verdict, ...]",
         imports=runtime.imports,
@@ -153,20 +153,20 @@ def text(*rules: Rule) -> str:
     )
 
 
-def _digest(made: Program, rules: Sequence[Rule]) -> str:
-    """Of all that gives the cells of a rail their meaning."""
-    told = [(rule.id, rule.fingerprint, rule.ticks) for rule in rules]
-    return hashlib.sha256(repr((__version__, told, made)).encode()).hexdigest()
+def _digest(code: Program, rules: Sequence[Rule]) -> str:
+    """SHA-256 of everything that the meaning of a rail's cells depends on."""
+    identities = [(rule.id, rule.fingerprint, rule.ticks) for rule in rules]
+    return hashlib.sha256(repr((__version__, identities, code)).encode()).hexdigest()
 
 
 def _tuple(names: Sequence[str]) -> str:
     return f"({', '.join(names)}{',' * (len(names) == 1)})"
 
 
-def _slots(made: Program) -> list[str]:
-    """All that a rail keeps, numbers in names in their order."""
-    kept = {name for told in made.told for name in marks_of(told.prefix)}
-    names = {"doubt", "tick", *(cell.name for cell in made.cells), *kept}
+def _slots(code: Program) -> list[str]:
+    """The slots of a rail, numbers in names in their order."""
+    marks = {name for signals in code.requirements for name in marks_of(signals.prefix)}
+    names = {"doubt", "tick", *(cell.name for cell in code.cells), *marks}
     return sorted(names, key=_natural)
 
 
@@ -185,11 +185,13 @@ class _Input:
     """Whether its negation is needed too."""
 
 
-def _is_negated(proposition: str, made: Program) -> bool:
-    return any(used.proposition == proposition and not used.positive for used in made.literals)
+def _is_negated(proposition: str, code: Program) -> bool:
+    return any(
+        literal.proposition == proposition and not literal.positive for literal in code.literals
+    )
 
 
-def _left_out(rule: Rule) -> dict[str, str]:
+def _probability_note(rule: Rule) -> dict[str, str]:
     odds = rule.sentence.probability
     assert odds is not None
     return {"id": rule.id, "odds": f"{odds.op} {odds.digits}", "fingerprint": rule.fingerprint}
@@ -234,25 +236,25 @@ def prefixes_of(ids: Iterable[str]) -> dict[str, str]:
 
 _MOST_LEVELS = 60
 _SPOKEN = {"<=": "_le_", ">=": "_ge_", "!=": "_ne_", "<": "_lt_", ">": "_gt_", "=": "_eq_"}
-_TAKEN = frozenset(
+_RESERVED = frozenset(
     "self every known doubt tick rows row must may first kept_first boolean Signals Marks previous "
     "weak_previous once historically since released since_from since_between released_between "
     "SATISFIED VIOLATED PENDING".split()
 )
-"""What the generated functions call their own, and what they call."""
+"""Names in the generated functions: their locals and the functions that they call."""
 
 
 def parameters_of(names: Iterable[str], prefixes: Iterable[str]) -> dict[str, str]:
     """A parameter of `step` for each proposition: its name as an identifier, all different."""
-    taken = {*_TAKEN, *(name for prefix in prefixes for name in marks_of(prefix))}
+    reserved = {*_RESERVED, *(name for prefix in prefixes for name in marks_of(prefix))}
     parameters: dict[str, str] = {}
     for name in names:
         parameter = printing.identifier(name) if not printing.is_compound(name) else _spoken(name)
         if not parameter[0].isalpha():
             parameter = f"p_{parameter}"
-        while iskeyword(parameter) or not taken.isdisjoint({parameter, negation(parameter)}):
+        while iskeyword(parameter) or not reserved.isdisjoint({parameter, negation(parameter)}):
             parameter += "_"
-        taken.update(locals_of([parameter]))
+        reserved.update(locals_of([parameter]))
         parameters[name] = parameter
     return parameters
 

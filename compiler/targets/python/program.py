@@ -1,8 +1,8 @@
 """Past-time formulas → straight-line Python: tick by tick, and over columns of whole traces.
 
 A rail computes everything from literals: a proposition or its negation. Negations are pushed down
-to them, so every value is monotone in the literals, and the same code tells what holds for certain
-and what may hold. Where a negation meets a temporal operator, its dual is computed.
+to them, so every value is monotone in the literals, and the same code computes what holds for
+certain and what may hold. Where a negation meets a temporal operator, its dual is computed.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ _OR, _AND, _ATOMIC = range(3)
 """How tight Python's operators bind; a column's do in the same order."""
 
 SIGNALS, MARKS = Signals._fields, Marks._fields
-"""What a rail tells, and the ticks that it remembers, of each requirement."""
+"""The signals of a rail, and the ticks that it remembers, for each requirement."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,7 +43,7 @@ class Block:
 
 
 @dataclass(frozen=True, slots=True)
-class Told:
+class RequirementSignals:
     """The signals of one requirement: each an expression of a step, and one over columns."""
 
     id: str
@@ -57,9 +57,9 @@ class Told:
 
     @property
     def marks(self) -> tuple[str, ...]:
-        """Those of `MARKS` that change: what can never be true is not looked for."""
-        asked = zip(MARKS, ("breach", "doom", "trigger", "owed"), strict=True)
-        return tuple(mark for mark, signal in asked if self.step[signal] != "False")
+        """The `MARKS` that can change: those whose signal can ever be true."""
+        sources = zip(MARKS, ("breach", "doom", "trigger", "owed"), strict=True)
+        return tuple(mark for mark, signal in sources if self.step[signal] != "False")
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,13 +73,13 @@ class Literal:
 
 @dataclass(frozen=True, slots=True)
 class Program:
-    """What a rail keeps, does at each tick, and then tells; and the same over columns."""
+    """A rail's cells, its steps at each tick and its signals; and the same over columns."""
 
     literals: tuple[Literal, ...]
     cells: tuple[Cell, ...]
     steps: tuple[Block, ...]
     columns: tuple[Block, ...]
-    told: tuple[Told, ...]
+    requirements: tuple[RequirementSignals, ...]
 
 
 @deep
@@ -94,19 +94,19 @@ def program(
         prefixes: a Python identifier for each requirement's id.
     """
     writer = _Writer(parameters, prefixes.values())
-    told = tuple(_told(writer, id, prefixes[id], watch) for id, watch in watches.items())
+    requirements = tuple(_signals(writer, id, prefixes[id], watch) for id, watch in watches.items())
     return Program(
         tuple(writer.literals.values()),
         tuple(cell for part in writer.parts for cell in part.cells()),
         tuple(Block(part.comment, lines) for part in writer.parts if (lines := part.step())),
         tuple(Block(part.comment, part.column) for part in writer.parts if part.column),
-        told,
+        requirements,
     )
 
 
-def _told(writer: _Writer, id: str, prefix: str, watch: Watch) -> Told:
+def _signals(writer: _Writer, id: str, prefix: str, watch: Watch) -> RequirementSignals:
     texts = {name: writer.text(signal) for name, signal in watch.signals._asdict().items()}
-    return Told(
+    return RequirementSignals(
         id,
         prefix,
         {name: text.step for name, text in texts.items()},
@@ -122,7 +122,7 @@ def locals_of(parameters: Iterable[str]) -> frozenset[str]:
 
 
 def negation(parameter: str) -> str:
-    """What the negation of a proposition is called."""
+    """The name of the negation of a proposition."""
     return f"not_{parameter}"
 
 
@@ -150,7 +150,7 @@ _TRUE, _FALSE = _Text("True", "every"), _Text("False", "0")
 
 @dataclass(slots=True)
 class _Part:
-    """What one temporal operator keeps and does."""
+    """The cells and the code of one temporal operator."""
 
     name: str
     comment: str
@@ -161,7 +161,7 @@ class _Part:
 
 @dataclass(slots=True)
 class _Counter:
-    """Ticks since a witness of `left S right`; `most` grows until all who ask are known."""
+    """Ticks since a witness of `left S right`; `most` is the largest bound of all its users."""
 
     name: str
     left: _Text
@@ -173,10 +173,10 @@ class _Counter:
         """Since the youngest witness, up to `most` + 1: none."""
         none = self.most + 1
         return (
-            f"if {self._seen}:",
+            f"if {self._witness}:",
             f"    {self.name} = 0",
             *_otherwise(
-                self._kept,
+                self._guard,
                 f"{self.name} = {self.name} + 1 if {self.name} < {none} else {none}",
                 f"{self.name} = {none}",
             ),
@@ -184,19 +184,19 @@ class _Counter:
 
     def oldest(self) -> tuple[str, ...]:
         """Since the oldest witness, up to `most`; -1: none."""
-        kept = self._kept
+        guard = self._guard
         return (
-            f"if {self.name} >= 0{'' if kept == 'True' else f' and {kept}'}:",
+            f"if {self.name} >= 0{'' if guard == 'True' else f' and {guard}'}:",
             f"    {self.name} = {self.name} + 1 if {self.name} < {self.most} else {self.most}",
-            *_otherwise(self._seen, f"{self.name} = 0", f"{self.name} = -1"),
+            *_otherwise(self._witness, f"{self.name} = 0", f"{self.name} = -1"),
         )
 
     @property
-    def _kept(self) -> str:
+    def _guard(self) -> str:
         return _holds(self.left, dual=self.dual)
 
     @property
-    def _seen(self) -> str:
+    def _witness(self) -> str:
         return _holds(self.right, dual=self.dual)
 
 
@@ -220,7 +220,7 @@ def _otherwise(condition: str, statement: str, last: str) -> tuple[str, ...]:
 
 @dataclass(slots=True)
 class _Writer:
-    """Walks formulas from the leaves up and writes one part for each temporal operator."""
+    """One walk over formulas from the leaves up: one part for each temporal operator."""
 
     parameters: Mapping[str, str]
     prefixes: Iterable[str]
@@ -229,11 +229,11 @@ class _Writer:
     _values: dict[tuple[f.Formula, bool], _Text] = field(default_factory=dict)
     _counters: dict[tuple[str, f.Formula, f.Formula, bool], _Counter] = field(default_factory=dict)
     _columns: dict[tuple[str, f.Formula, f.Formula, bool], str] = field(default_factory=dict)
-    _taken: set[str] = field(default_factory=set)
+    _reserved: set[str] = field(default_factory=set)
     _counts: dict[str, int] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        self._taken = {
+        self._reserved = {
             *locals_of(self.parameters.values()),
             *(name for prefix in self.prefixes for name in marks_of(prefix)),
         }
@@ -255,7 +255,7 @@ class _Writer:
             case f.Iff(left, right):
                 return self.text(f.Xor(left, right), not positive)
             case _:
-                return self._named(formula, positive)
+                return self._shared(formula, positive)
 
     def _literal(self, proposition: str, positive: bool) -> _Text:
         parameter = self.parameters[proposition]
@@ -263,7 +263,7 @@ class _Writer:
         self.literals[proposition, positive] = Literal(name, proposition, positive)
         return _Text(name, name)
 
-    def _named(self, formula: f.Formula, positive: bool) -> _Text:
+    def _shared(self, formula: f.Formula, positive: bool) -> _Text:
         """A value with a name of its own; its part is written once."""
         key = formula, positive
         if key not in self._values:
@@ -293,7 +293,7 @@ class _Writer:
         while True:
             self._counts[kind] = self._counts.get(kind, 0) + 1
             name = f"{kind}_{self._counts[kind]}"
-            if not {name, f"kept_{name}"} & self._taken:
+            if not {name, f"kept_{name}"} & self._reserved:
                 return name
 
     def _comment(self, formula: f.Formula, positive: bool) -> str:
@@ -344,38 +344,38 @@ class _Writer:
         ago: f.Interval,
         formula: f.Formula,
         positive: bool,
-        shown: bool | None = None,
+        displayed: bool | None = None,
     ) -> _Text:
-        """`left S[ago] right`, or its negation; `shown` says which of them `formula` is."""
+        """`left S[ago] right`, or its negation; `displayed` says which of them `formula` is."""
         if right == f.TRUE and ago.lo == 0:
             return _TRUE if positive else _FALSE
-        comment = self._comment(formula, positive if shown is None else shown)
+        comment = self._comment(formula, positive if displayed is None else displayed)
         sides = _Sides(left, right, positive, self.text(left, positive), self.text(right, positive))
         if ago == f.EVER:
             return self._ever(sides, comment)
         if ago.hi is not None and ago.lo > 0:
             return self._window(sides, ago.lo, ago.hi, comment)
-        return self._counted(sides, ago, comment)
+        return self._by_count(sides, ago, comment)
 
     def _ever(self, sides: _Sides, comment: str) -> _Text:
         """Without bounds: one truth value is kept."""
         counter = self._counters.get(("oldest", sides.left, sides.right, sides.positive))
-        column = self._held(sides) if counter is not None else _ever_column(sides)
+        column = self._unbounded(sides) if counter is not None else _ever_column(sides)
         name = self._name("since")
         if counter is not None:
             age = f"{counter.name} >= 0" if sides.positive else f"{counter.name} < 0"
             self._add(name, comment, column, (f"{name} = {age}",))
             return _Text(name, name)
-        seen, kept = sides.seen, sides.kept
+        witness, guard = sides.witness, sides.guard
         if sides.positive:
-            step = _either([seen, _both([kept, _Text(name, name)])])
+            step = _either([witness, _both([guard, _Text(name, name)])])
         else:
-            step = _both([seen, _either([kept, _Text(name, name)])])
+            step = _both([witness, _either([guard, _Text(name, name)])])
         initial = str(not sides.positive)
         self._add(name, comment, column, (f"{name} = {step.step}",), Cell(name, initial, comment))
         return _Text(name, name)
 
-    def _counted(self, sides: _Sides, ago: f.Interval, comment: str) -> _Text:
+    def _by_count(self, sides: _Sides, ago: f.Interval, comment: str) -> _Text:
         """By counting ticks since one witness; the cost does not depend on the bounds."""
         kind = "youngest" if ago.hi is not None else "oldest"
         bound = ago.lo if ago.hi is None else ago.hi
@@ -388,13 +388,13 @@ class _Writer:
         )
         column = _between_column(sides, ago)
         if ago.hi is None and sides.positive and sides.left != f.TRUE:
-            texts = f"{self._held(sides)}, {sides.kept.column}, {sides.seen.column}"
+            texts = f"{self._unbounded(sides)}, {sides.guard.column}, {sides.witness.column}"
             column = f"since_from({texts}, {ago.lo}, every)"
         name = self._name("since")
         self._add(name, comment, column, (f"{name} = {counter.name} {operator} {bound}",))
         return _Text(name, name)
 
-    def _held(self, sides: _Sides) -> str:
+    def _unbounded(self, sides: _Sides) -> str:
         """The column of the operator without bounds, from which one with bounds is made."""
         key = "held", sides.left, sides.right, sides.positive
         if key not in self._columns:
@@ -408,25 +408,29 @@ class _Writer:
     def _counter(self, kind: str, sides: _Sides, comment: str) -> _Counter:
         key = kind, sides.left, sides.right, sides.positive
         if key not in self._counters:
-            counter = _Counter(self._name(kind), sides.kept, sides.seen, dual=not sides.positive)
+            counter = _Counter(
+                self._name(kind), sides.guard, sides.witness, dual=not sides.positive
+            )
             self._counters[key] = counter
             witness = printing.readable(f.since(sides.left, sides.right))
-            told = f"ticks since the {kind} witness of {witness}"
+            note = f"ticks since the {kind} witness of {witness}"
             lines = counter.youngest if kind == "youngest" else counter.oldest
 
             def cells() -> tuple[Cell, ...]:
                 none = counter.most + 1 if kind == "youngest" else -1
-                return (Cell(counter.name, str(none), f"{told}; {none}: none"),)
+                return (Cell(counter.name, str(none), f"{note}; {none}: none"),)
 
-            self.parts.append(_Part(counter.name, told, (), lines, cells))
+            self.parts.append(_Part(counter.name, note, (), lines, cells))
         return self._counters[key]
 
     def _window(self, sides: _Sides, lo: int, hi: int, comment: str) -> _Text:
         """Both bounds: the runs of witnesses inside of the window are kept."""
         name = self._name("since")
         window = f"kept_{name}"
-        kept, seen = (_holds(side, dual=not sides.positive) for side in (sides.kept, sides.seen))
-        stepped = f"{window}.step({kept}, {seen})"
+        guard, witness = (
+            _holds(side, dual=not sides.positive) for side in (sides.guard, sides.witness)
+        )
+        stepped = f"{window}.step({guard}, {witness})"
         self._add(
             name,
             comment,
@@ -451,8 +455,8 @@ class _Sides:
     left: f.Formula
     right: f.Formula
     positive: bool
-    kept: _Text
-    seen: _Text
+    guard: _Text
+    witness: _Text
 
 
 def _both(texts: Sequence[_Text]) -> _Text:
@@ -481,15 +485,15 @@ def _either(texts: Sequence[_Text]) -> _Text:
 
 
 def _ever_column(sides: _Sides) -> str:
-    kept, seen = sides.kept.column, sides.seen.column
+    guard, witness = sides.guard.column, sides.witness.column
     if sides.left == f.TRUE:
-        return f"{'once' if sides.positive else 'historically'}({seen}, 0, None, every)"
-    return f"since({kept}, {seen})" if sides.positive else f"released({kept}, {seen})"
+        return f"{'once' if sides.positive else 'historically'}({witness}, 0, None, every)"
+    return f"since({guard}, {witness})" if sides.positive else f"released({guard}, {witness})"
 
 
 def _between_column(sides: _Sides, ago: f.Interval) -> str:
-    kept, seen, bounds = sides.kept.column, sides.seen.column, f"{ago.lo}, {ago.hi}, every"
+    guard, witness, bounds = sides.guard.column, sides.witness.column, f"{ago.lo}, {ago.hi}, every"
     if sides.left == f.TRUE:
-        return f"{'once' if sides.positive else 'historically'}({seen}, {bounds})"
+        return f"{'once' if sides.positive else 'historically'}({witness}, {bounds})"
     name = "since_between" if sides.positive else "released_between"
-    return f"{name}({kept}, {seen}, {bounds})"
+    return f"{name}({guard}, {witness}, {bounds})"

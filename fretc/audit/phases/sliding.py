@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from fretc.logs.signals.propositions import UNKNOWN, States, Steps, evaluate, truth_values
 from fretc.logs.signals.samples import Recording, Times
-from fretc.logs.signals.traces import combined, first_before, heard, origin, packed
+from fretc.logs.signals.traces import combined, complete_from, first_before, origin, packed
 from fretish.bindings.declarations import Declarations, Proposition
 from monitors.kernel import Column
 
@@ -119,7 +119,7 @@ def _slide(
     period = declarations.clock.period
     assert period is not None
     steps = evaluate(proposition, declarations, recording)
-    begun = recording.start_ns, heard(proposition, recording)
+    begun = recording.start_ns, complete_from(proposition, recording)
     first_times, first = _first(steps, proposition, begun, start, min(period - 1, length))
     later_times, later = _later(steps, proposition, start, length, period)
     grid = start + np.arange(1, length // period + 1, dtype=np.int64) * period

@@ -1,4 +1,4 @@
-"""Memory that the beginnings of chunks are unpacked into, again and again.
+"""Memory for the unpacked beginnings of chunks, used again and again.
 
 New memory for each chunk costs more than unpacking it. Codecs work in blocks, so that the beginning
 of a chunk costs as much as its blocks: 128 KiB of zstd, 64 KiB of lz4.
@@ -12,11 +12,11 @@ from fretc.logs.mcap.container import BrokenError, unpack_into
 from fretc.logs.mcap.payloads import Bytes
 
 SIZE = 2**22
-"""Bytes that are filled before they are read."""
+"""Bytes to fill before they are read."""
 _CHUNK = 2**20
-"""Bytes of the chunk that fills it; more are made room for when they come."""
+"""Room for the chunk that fills it; the memory grows for a larger one."""
 SPARE = 64
-"""Bytes that stay free behind what is unpacked: more than the head of a message."""
+"""Free bytes behind the unpacked ones: more than the head of a message."""
 
 
 class Arena:
@@ -27,7 +27,7 @@ class Arena:
         self.used = 0
 
     def clear(self) -> None:
-        """What was unpacked is overwritten from now on."""
+        """Forget the unpacked bytes: later ones overwrite them."""
         self.used = 0
 
     def target(self, size: int) -> memoryview:
@@ -40,13 +40,13 @@ class Arena:
         return self.data.data[self.used : self.used + size]
 
     def unpack(self, compression: str, packed: memoryview, size: int, *, whole: bool) -> bool:
-        """Put the first `size` bytes of a chunk behind those in use, which they then are not yet.
+        """Unpack the first `size` bytes of a chunk behind those in use; `used` does not change.
 
         Args:
             compression: `lz4` or `zstd`.
             packed: the chunk's data, or its beginning.
             size: bytes to unpack.
-            whole: whether these are all that the data holds.
+            whole: whether the data holds no more than these.
 
         Returns:
             False where the data is too short for it.
@@ -54,7 +54,7 @@ class Arena:
         Raises:
             BrokenError: the data is no such data, or holds more than it should.
         """
-        got = unpack_into(compression, packed, self.target(size), whole=whole)
-        if got > size:
+        length = unpack_into(compression, packed, self.target(size), whole=whole)
+        if length > size:
             raise BrokenError("a chunk has another size than it states")
-        return got == size
+        return length == size

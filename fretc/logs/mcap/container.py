@@ -1,7 +1,7 @@
 """An MCAP file as bytes: records in their frames, chunks unpacked within bounds, the summary.
 
-Each byte may be wrong: what does not fit together is a `BrokenError`, and nothing is unpacked or
-read beyond what its own frame holds.
+Each byte may be wrong: an inconsistency is a `BrokenError`, and nothing is unpacked or read beyond
+its own frame.
 
 Source: MCAP specification, https://mcap.dev/spec
 """
@@ -25,39 +25,39 @@ if TYPE_CHECKING:
     from zstandard import ZstdDecompressor
 
 INDEX = struct.Struct("<HI")
-"""What a message index begins with: channel, and the bytes of its entries."""
+"""The head of a message index: channel, and the bytes of its entries."""
 ENTRY = np.dtype([("time", "<u8"), ("place", "<u8")])
 """An entry of a message index: log time, and the byte of the chunk at which the record begins."""
 CHUNK = struct.Struct("<QQQII")
-"""What a chunk begins with: its times, its size, its CRC, the length of its compression's name."""
+"""The head of a chunk: its times, its size, its CRC, the length of its compression's name."""
 _CHUNK_INDEX = struct.Struct("<QQQQI")
-"""What a chunk index begins with: times, place, length, and the bytes of its message indexes."""
+"""The head of a chunk index: times, place, length, and the bytes of its message indexes."""
 _PLACE = struct.Struct("<HQ")
-"""Of a channel: the byte at which its message index begins."""
+"""A channel, and the byte at which its message index begins."""
 MAGIC = b"\x89MCAP0\r\n"
-"""What a file begins and ends with."""
+"""The first and the last bytes of a file."""
 HEAD = struct.Struct("<BQ")
-"""What each record begins with: opcode and length."""
+"""The head of each record: opcode and length."""
 PADDING = 256
-"""Bytes; a record may be so much longer than what is in it."""
+"""Bytes by which a record may exceed its contents."""
 LARGEST = 2**30
 """Bytes; a larger message or chunk is not read."""
 BLOCK = 2**20
-"""Bytes that are read at once where more are not needed."""
+"""Bytes of one read where no more are needed."""
 _FOOTER = struct.Struct("<QQI")
 """Start of the summary, start of its offsets, CRC."""
 _RATIO = 200
 """Bytes that one packed byte of a chunk may hold, where there are more than `_PLENTY` of them."""
 _DENSEST = 50_000
-"""No compression packs more than so many bytes into one."""
+"""No compression packs more bytes into one."""
 _PLENTY = 2**26
-"""Bytes; a chunk may be so large whatever is packed into it: the same numbers again and again."""
+"""Bytes; a chunk may be so large at any ratio: it may repeat the same numbers."""
 
 R = TypeVar("R")
 
 
 class BrokenError(Exception):
-    """A record is not what it should be; the text says in which way."""
+    """A record is broken; the text says how."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -115,12 +115,12 @@ def parse(kind: Callable[[ReadDataStream], R], content: bytes) -> R:
 
 
 def unpacked(chunk: Chunk) -> bytes:
-    """What is in a chunk: as long as it states, and with the CRC that it states.
+    """The contents of a chunk, after a check of their length and their CRC.
 
-    Never more memory than stated, and no more than `LARGEST`, whatever the bytes ask for.
+    It takes no more memory than the chunk states, and no more than `LARGEST`.
 
     Raises:
-        BrokenError: it is not so.
+        BrokenError: length or CRC are wrong.
     """
     size = chunk.uncompressed_size
     if is_absurd(size, len(chunk.data)):
@@ -139,7 +139,7 @@ def unpacked(chunk: Chunk) -> bytes:
 
 
 def is_absurd(size: int, packed: int) -> bool:
-    """Whether so many bytes are more than a chunk holds, or than can be packed into so few."""
+    """Whether so many bytes exceed the limit of a chunk, or cannot come from so few."""
     return size > min(largest(packed), _DENSEST * (packed + 1))
 
 
@@ -158,7 +158,7 @@ def _zstd(data: bytes, most: int) -> bytes:
 
 
 def unpacked_lz4(data: bytes | memoryview, most: int) -> bytes:
-    """Not more than so many bytes of what is packed."""
+    """At most so many unpacked bytes."""
     import lz4.frame  # type: ignore[import-untyped]
 
     return bytes(lz4.frame.LZ4FrameDecompressor().decompress(data, max_length=most))
@@ -199,11 +199,11 @@ def _decompressor() -> ZstdDecompressor:
 
 
 def _zstd_into(packed: memoryview, target: memoryview, *, whole: bool) -> int:
-    got = 0
+    filled = 0
     with _decompressor().stream_reader(packed) as stream:
-        while got < len(target) and (more := stream.readinto(target[got:])):
-            got += more
-        return got + len(stream.read(1)) if whole else got
+        while filled < len(target) and (more := stream.readinto(target[filled:])):
+            filled += more
+        return filled + len(stream.read(1)) if whole else filled
 
 
 _CODECS: dict[str, Callable[[bytes, int], bytes]] = {
@@ -211,7 +211,7 @@ _CODECS: dict[str, Callable[[bytes, int], bytes]] = {
     "zstd": _zstd,
     "lz4": unpacked_lz4,
 }
-"""What unpacks not more than so many bytes."""
+"""Functions that unpack at most so many bytes, by compression."""
 
 
 # The end of the file
@@ -219,7 +219,7 @@ _CODECS: dict[str, Callable[[bytes, int], bytes]] = {
 
 @dataclass(slots=True)
 class Summary:
-    """What the end of a file states about the rest; empty where it is damaged."""
+    """The summary at the end of a file; empty where it is damaged."""
 
     end: int
     """Where the data section ends, if `sound`; it ends earlier if not."""
@@ -236,12 +236,12 @@ class Summary:
 
 
 def no_summary(size: int) -> Summary:
-    """Of a file that breaks off: nothing is known about its `size` bytes."""
+    """The empty summary of a file that breaks off after `size` bytes."""
     return Summary(size, sound=False, footer=size, after=size)
 
 
 def summary(stream: BufferedReader, size: int) -> Summary | None:
-    """What the end of a file of `size` bytes states; None where the file has no end."""
+    """The summary of a file of `size` bytes; None where the file has no end."""
     begin = max(0, size - BLOCK)
     stream.seek(begin)
     tail = stream.read()
@@ -267,28 +267,28 @@ def _summary(stream: BufferedReader, at: int, footer: bytes) -> Summary:
     covered = zlib.crc32(HEAD.pack(Opcode.FOOTER, len(footer)), zlib.crc32(data))
     if crc and crc != zlib.crc32(footer[: _FOOTER.size - 4], covered):
         return damaged
-    found = Summary(start, sound=True, footer=at, after=after)
+    result = Summary(start, sound=True, footer=at, after=after)
     try:
         for opcode, begin, end in frames(data):
-            _note(found, opcode, data[begin:end])
+            _note(result, opcode, data[begin:end])
     except BrokenError:
         return damaged
-    return found
+    return result
 
 
-def _note(found: Summary, opcode: int, content: bytes) -> None:
+def _note(result: Summary, opcode: int, content: bytes) -> None:
     match opcode:
         case Opcode.STATISTICS:
-            found.statistics = parse(Statistics.read, content)
+            result.statistics = parse(Statistics.read, content)
         case Opcode.CHUNK_INDEX:
             chunk = _chunk_index(content)
-            found.chunks[chunk.chunk_start_offset] = chunk
+            result.chunks[chunk.chunk_start_offset] = chunk
         case Opcode.SCHEMA:
             schema = parse(Schema.read, content)
-            found.schemas[schema.id] = schema
+            result.schemas[schema.id] = schema
         case Opcode.CHANNEL:
             channel = parse(Channel.read, content)
-            found.channels[channel.id] = channel
+            result.channels[channel.id] = channel
 
 
 def _chunk_index(content: bytes) -> ChunkIndex:

@@ -1,7 +1,7 @@
 """The messages of one MCAP file: by its index, or record by record.
 
-By its index only what is wanted is read, where the index explains the whole file. In any other file
-each record is looked at: that names what is damaged, and when.
+Where the index explains the whole file, only the wanted parts are read. In any other file each
+record is read: that shows damaged places and their times.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from fretc.logs.signals.samples import Gap
 
 @dataclass(frozen=True, slots=True)
 class Contents:
-    """What was found in one file, apart from its messages."""
+    """Facts about one file, apart from its messages."""
 
     damages: tuple[tuple[Damage, Gap | None], ...]
     """Damaged places, with the time that each has cost; None where it cost nothing."""
@@ -35,7 +35,7 @@ class Contents:
     unprotected: bool = False
     """Whether messages were read that no CRC covers."""
     summary_sha256: str = ""
-    """Of what tells one log from another where it is not hashed (`_identity`)."""
+    """Identifies a log that is not hashed (`_identity`)."""
 
 
 def contents(stream: BufferedReader, size: int, sink: Sink, integrity: Integrity) -> Contents:
@@ -58,8 +58,8 @@ def contents(stream: BufferedReader, size: int, sink: Sink, integrity: Integrity
     walk = Walk(stream, size, sink)
     walk.run()
     if walk.damages.span is None:
-        kept = tuple((damage, None) for damage in walk.damages.kept)
-        return Contents(kept, None, walk.cut, walk.checked)
+        certain = tuple((damage, None) for damage in walk.damages.certain)
+        return Contents(certain, None, walk.cut, walk.checked)
     damages, span = tuple(walk.settled()), walk.damages.span
     return Contents(damages, span, walk.cut, walk.checked, walk.unprotected)
 
@@ -67,10 +67,10 @@ def contents(stream: BufferedReader, size: int, sink: Sink, integrity: Integrity
 def _by_index(stream: BufferedReader, index: Index, sink: Sink, integrity: Integrity) -> Contents:
     projection = Projection(stream, index, sink)
     projection.run()
-    known = index.data_crc if integrity is Integrity.HASH else 0
-    if known and _crc32(stream, index.data_end) != known:
+    crc = index.data_crc if integrity is Integrity.HASH else 0
+    if crc and _crc32(stream, index.data_end) != crc:
         raise BrokenError("its data has another CRC than it states")
-    unprotected = projection.checked.without_crc > 0 and not known
+    unprotected = projection.checked.without_crc > 0 and not crc
     statistics = index.statistics
     span = statistics.message_start_time, statistics.message_end_time
     if integrity is Integrity.HASH:

@@ -1,4 +1,4 @@
-"""Damaged places of a log, and the time whose messages each of them has cost.
+"""Damaged places of a log, each with the time whose messages it has cost.
 
 Times are nanoseconds, log times.
 """
@@ -20,11 +20,11 @@ _HOUR = 3600 * 10**9
 
 @dataclass(slots=True)
 class Damage:
-    """A place of the file whose messages are lost, or may be."""
+    """A place of the file whose messages are, or may be, lost."""
 
     at: int
-    what: str
-    stated: list[Gap] = field(default_factory=list)
+    description: str
+    spans: list[Gap] = field(default_factory=list)
     """The times that the file itself gives for it."""
     before: int | None = None
     after: int | None = None
@@ -36,22 +36,22 @@ class Damage:
     anywhere: bool = False
     """Whether it may have cost messages of any time."""
     code: Code = Code.DAMAGED_CHUNK
-    kept: bool = False
+    certain: bool = False
 
 
 class Damages:
-    """What was found on the way through a log, held in the end against its summary."""
+    """The damages from one walk through a log, compared at its end with the summary."""
 
     def __init__(self) -> None:
-        self.kept: list[Damage] = []
+        self.certain: list[Damage] = []
         self.span: Gap | None = None
-        """The earliest and the latest of the whole messages, in whatever order they came."""
+        """The earliest and the latest of the whole messages, in any order."""
         self._last: int | None = None
         self._doubtful: list[Damage] = []
         self._waiting: list[Damage] = []
-        """Those after which no message has come yet."""
+        """The damages after which no message has come yet."""
         self._open: Damage | None = None
-        """The one of them that takes in what is found damaged next."""
+        """The one of them that the next damaged place is merged into."""
 
     def passed(self, log_time: int) -> None:
         """A whole message has come."""
@@ -73,94 +73,96 @@ class Damages:
     def add(
         self,
         at: int,
-        what: str,
-        stated: Gap | None = None,
+        description: str,
+        span: Gap | None = None,
         *,
         lossless: bool = False,
         anywhere: bool = False,
         code: Code = Code.DAMAGED_CHUNK,
     ) -> None:
-        """Keep one; of several without a message between them the first one tells.
+        """Keep a damage; it joins the one before it where no message lies between them.
 
-        That the log breaks off is told all the same.
+        The break at the end of a log is always one of its own.
         """
         located = not lossless and not anywhere
         if located and self._open is not None and code is not Code.TRUNCATED_LOG:
-            self._open.stated += [stated] if stated else []
+            self._open.spans += [span] if span else []
             self._open.also.append(at)
             return
-        damage = self._new(at, what)
-        damage.stated += [stated] if stated else []
+        damage = self._new(at, description)
+        damage.spans += [span] if span else []
         if located and self._open is not None:
-            damage.stated += self._open.stated
+            damage.spans += self._open.spans
         damage.lossless, damage.anywhere, damage.code = lossless, anywhere, code
         if located:
             self._open = damage
         self._keep(damage)
 
-    def doubt(self, at: int, what: str) -> None:
-        """Keep one, unless the summary shows in the end that nothing is missing."""
-        self._doubtful.append(self._new(at, what))
+    def doubt(self, at: int, description: str) -> None:
+        """Note a damage that counts unless the summary shows that nothing is missing."""
+        self._doubtful.append(self._new(at, description))
 
-    def _new(self, at: int, what: str) -> Damage:
-        damage = Damage(at, what, before=self._last)
+    def _new(self, at: int, description: str) -> Damage:
+        damage = Damage(at, description, before=self._last)
         self._waiting.append(damage)
         return damage
 
     def _keep(self, *damages: Damage) -> None:
         for damage in damages:
-            if not damage.kept:
-                damage.kept = True
-                self.kept.append(damage)
+            if not damage.certain:
+                damage.certain = True
+                self.certain.append(damage)
 
-    # What they have cost
+    # Their cost
 
     def settled(
-        self, summary: Summary, whole: Collection[int], counts: Counter[int], size: int
+        self, summary: Summary, complete: Collection[int], counts: Counter[int], size: int
     ) -> list[tuple[Damage, Gap | None]]:
         """All damages, with the time that each has cost; None where it cost nothing.
 
         Args:
             summary: what the file states about itself.
-            whole: where the chunks begin that were read whole.
+            complete: the first bytes of the chunks that were read whole.
             counts: how many messages were found on each channel.
             size: bytes of the file.
         """
-        self._compare_chunks(summary, whole)
+        self._compare_chunks(summary, complete)
         self._compare_counts(summary, counts, size)
         span = self._whole_log(summary)
-        return [(damage, _gap(damage, span)) for damage in self.kept]
+        return [(damage, _gap(damage, span)) for damage in self.certain]
 
-    def _compare_chunks(self, summary: Summary, whole: Collection[int]) -> None:
-        """Each chunk that the index names was read whole."""
+    def _compare_chunks(self, summary: Summary, complete: Collection[int]) -> None:
+        """Check that each chunk of the index was read whole."""
         places = {damage.at: damage for damage in self._doubtful}
-        places |= {at: damage for damage in self.kept for at in (damage.at, *damage.also)}
+        places |= {at: damage for damage in self.certain for at in (damage.at, *damage.also)}
         for at, index in summary.chunks.items():
-            if at in whole:
+            if at in complete:
                 continue
-            stated = (index.message_start_time, index.message_end_time)
+            span = (index.message_start_time, index.message_end_time)
             if at in places:
-                places[at].stated.append(stated)
+                places[at].spans.append(span)
                 self._keep(places[at])
             else:
-                self.add(at, "a chunk that its index names is not there", stated)
+                self.add(at, "a chunk that its index names is not there", span)
 
     def _compare_counts(self, summary: Summary, counts: Counter[int], size: int) -> None:
-        """As many messages were read as the statistics state."""
+        """Check that as many messages were read as the statistics state."""
         statistics = summary.statistics
         if statistics is None:
             self._keep(*self._doubtful)
             return
-        stated = {id: n for id, n in statistics.channel_message_counts.items() if n}
+        listed = {id: n for id, n in statistics.channel_message_counts.items() if n}
         right = statistics.message_count == counts.total()
-        if right and (not stated or stated == counts):
+        if right and (not listed or listed == counts):
             return
         self._keep(*self._doubtful)
-        if all(damage.lossless for damage in self.kept):
-            what = f"it states {statistics.message_count} messages and holds {counts.total()}"
+        if all(damage.lossless for damage in self.certain):
+            description = (
+                f"it states {statistics.message_count} messages and holds {counts.total()}"
+            )
             if right:
-                what = "its topics hold other numbers of messages than it states"
-            self.add(size, what, anywhere=True, code=Code.COUNT_MISMATCH)
+                description = "its topics hold other numbers of messages than it states"
+            self.add(size, description, anywhere=True, code=Code.COUNT_MISMATCH)
 
     def _whole_log(self, summary: Summary) -> Gap:
         """The time of the whole log, as far as it is known."""
@@ -173,21 +175,21 @@ class Damages:
         spans += [(chunk.message_start_time, chunk.message_end_time) for chunk in chunks]
         if len(spans) == 1:  # only the damaged places themselves can tell
             near = (self.span[0] - _HOUR, self.span[1] + _HOUR)
-            stated = [gap for damage in self.kept for gap in damage.stated]
-            spans += [gap for gap in stated if near[0] <= gap[0] <= gap[1] <= near[1]]
+            gaps = [gap for damage in self.certain for gap in damage.spans]
+            spans += [gap for gap in gaps if near[0] <= gap[0] <= gap[1] <= near[1]]
         return min(a for a, _ in spans), min(LATEST, max(b for _, b in spans))
 
 
 def _gap(damage: Damage, span: Gap) -> Gap | None:
-    """What one damage has cost, within the time of the whole log."""
+    """The time that one damage has cost, within the time of the whole log."""
     if damage.lossless:
         return None
     if damage.anywhere:
         return span
     start, end = span
-    stated = [(a, b) for a, b in damage.stated if start <= a <= b <= end]
-    if stated:
-        return min(a for a, _ in stated), max(b for _, b in stated)
+    spans = [(a, b) for a, b in damage.spans if start <= a <= b <= end]
+    if spans:
+        return min(a for a, _ in spans), max(b for _, b in spans)
     before = start if damage.before is None else damage.before
     after = end if damage.after is None else damage.after
     return min(before, after), max(before, after)

@@ -1,8 +1,8 @@
 """Where the messages of a log are, by its own index, where that explains every byte of the file.
 
-What the index says is taken for true only if the file leaves no doubt: one part behind the other,
-each of a kind that is known, and as many chunks and messages as are stated. In any other log each
-record has to be looked at (`fretc.logs.mcap.walk`).
+The index is trusted only if the file leaves no doubt: one part behind the other, each of a known
+kind, and as many chunks and messages as stated. In any other log each record must be read
+(`fretc.logs.mcap.walk`).
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ _PASSED_BY = frozenset({Opcode.HEADER, Opcode.ATTACHMENT, Opcode.METADATA})
 
 @dataclass(frozen=True, slots=True)
 class Index:
-    """A log whose summary tells where everything is."""
+    """A log whose summary gives the place of everything."""
 
     chunks: tuple[ChunkIndex, ...]
     """In the order of the file."""
@@ -44,43 +44,46 @@ class Index:
     """The byte at which the summary begins."""
 
 
-def indexed(stream: BufferedReader, size: int, found: Summary | None) -> Index | None:
+def indexed(stream: BufferedReader, size: int, summary: Summary | None) -> Index | None:
     """The index of a file of `size` bytes; None where anything about it is unusual.
 
     Args:
         stream: the file.
         size: its bytes.
-        found: what its end states.
+        summary: that of its end.
     """
-    if found is None or not found.sound or found.after != size or found.statistics is None:
+    if summary is None or not summary.sound or summary.after != size or summary.statistics is None:
         return None
-    statistics, chunks = found.statistics, tuple(found.chunks[at] for at in sorted(found.chunks))
+    statistics, chunks = (
+        summary.statistics,
+        tuple(summary.chunks[at] for at in sorted(summary.chunks)),
+    )
     if not chunks:
         return None
     streams = {
-        id: Stream(channel, found.schemas.get(channel.schema_id))
-        for id, channel in found.channels.items()
+        id: Stream(channel, summary.schemas.get(channel.schema_id))
+        for id, channel in summary.channels.items()
     }
     counts = statistics.channel_message_counts
     if (
         statistics.chunk_count != len(chunks)
         or not 0 < statistics.message_count == sum(counts.values())
         or not streams.keys() >= {id for id, count in counts.items() if count}
-        or any(one.schema is None and one.channel.schema_id for one in streams.values())
+        or any(each.schema is None and each.channel.schema_id for each in streams.values())
         or not all(map(_is_usual, chunks))
         or statistics.message_start_time != min(chunk.message_start_time for chunk in chunks)
         or statistics.message_end_time != max(chunk.message_end_time for chunk in chunks)
     ):
         return None
     try:
-        end = _between(stream, found, chunks)
+        end = _between(stream, summary, chunks)
     except BrokenError:
         return None
-    return Index(chunks, streams, statistics, *end, found.end) if end is not None else None
+    return Index(chunks, streams, statistics, *end, summary.end) if end is not None else None
 
 
 def _is_usual(chunk: ChunkIndex) -> bool:
-    """Whether it can be read by its index: it tells where its messages are."""
+    """Whether the chunk can be read by its index, which gives the places of its messages."""
     first, last = chunk.chunk_start_offset, chunk.chunk_start_offset + chunk.chunk_length
     return (
         bool(chunk.message_index_offsets)
@@ -95,12 +98,12 @@ def _is_usual(chunk: ChunkIndex) -> bool:
 
 
 def _between(
-    stream: BufferedReader, found: Summary, chunks: tuple[ChunkIndex, ...]
+    stream: BufferedReader, summary: Summary, chunks: tuple[ChunkIndex, ...]
 ) -> tuple[int, int] | None:
     """Where the data ends, and its CRC; None where something unusual is between the chunks."""
     at, end = len(MAGIC), None
     for chunk in (*chunks, None):
-        wall = found.end if chunk is None else chunk.chunk_start_offset
+        wall = summary.end if chunk is None else chunk.chunk_start_offset
         if at > wall or end is not None:
             return None
         for place, opcode, content in _records(stream, at, wall):
@@ -109,7 +112,7 @@ def _between(
             if opcode == Opcode.DATA_END:
                 end = place, parse(DataEnd.read, content).data_section_crc
             elif opcode not in _PASSED_BY and not is_known(
-                opcode, content, found.schemas, found.channels
+                opcode, content, summary.schemas, summary.channels
             ):
                 return None
         if chunk is not None:
@@ -118,7 +121,7 @@ def _between(
 
 
 def _records(stream: BufferedReader, at: int, wall: int) -> Iterator[tuple[int, int, bytes]]:
-    """Place, kind and content of what stands there; of large records no content.
+    """Place, kind and content of each record; of large records no content.
 
     Raises:
         BrokenError: the last one goes on beyond the wall.
@@ -136,7 +139,7 @@ def _records(stream: BufferedReader, at: int, wall: int) -> Iterator[tuple[int, 
 def is_known(
     opcode: int, content: bytes, schemas: Mapping[int, Schema], channels: Mapping[int, Channel]
 ) -> bool:
-    """Whether a record declares a topic or its messages, and as the summary does.
+    """Whether a record declares a topic or its messages in the same way as the summary.
 
     Raises:
         BrokenError: it cannot be read.

@@ -46,7 +46,7 @@ class Payloads:
         return [bytes(data[start:end]) for start, end in places]
 
     def gathered(self, rows: Places, at: int, dtype: str, count: int | None) -> NDArray[np.generic]:
-        """What stands `at` bytes from the start of each of the rows.
+        """The numbers `at` bytes from the start of each row.
 
         Args:
             rows: shape (k,); in each of their payloads the place exists.
@@ -64,5 +64,5 @@ class Payloads:
         shape, strides = (
             ((places,), (1,)) if count is None else ((places, count), (1, kind.itemsize))
         )
-        taken = np.ndarray(shape, kind, self.data.data, 0, strides)[self.starts[rows] + at]
-        return taken != 0 if dtype == "?" else taken
+        numbers = np.ndarray(shape, kind, self.data.data, 0, strides)[self.starts[rows] + at]
+        return numbers != 0 if dtype == "?" else numbers

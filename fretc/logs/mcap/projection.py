@@ -1,9 +1,9 @@
 """The messages of some topics of a log, by its index: nothing else is unpacked.
 
-A chunk is unpacked up to the last message that is wanted, where that saves much; otherwise it is
-unpacked whole, and its CRC is checked. What the index says of a message is held against the
-message itself, and the records of a chunk without CRC have to follow each other as its index says.
-Whatever does not fit is a `BrokenError`: then each record has to be looked at.
+A chunk is unpacked up to its last wanted message, where that saves much; otherwise it is unpacked
+whole, and its CRC is checked. Each message is compared with its entry in the index, and the records
+of a chunk without CRC must follow each other as the index says. A contradiction is a `BrokenError`:
+then each record must be read.
 
 Source: MCAP specification, Message Index (op=0x07), Chunk Index (op=0x08).
 """
@@ -38,9 +38,9 @@ from fretc.logs.mcap.payloads import Places
 from fretc.logs.signals.integrity import Checked
 
 _SLACK = 4096
-"""Bytes that the last message of a chunk is taken to have until a longer one was seen."""
+"""The expected bytes of the last message of a chunk, until a longer message comes."""
 _FEW = 32
-"""Numbers that Python compares sooner than NumPy."""
+"""Below so many numbers Python compares faster than NumPy."""
 _BLOCK = 2**17
 """Bytes that a codec unpacks at once."""
 
@@ -51,7 +51,7 @@ Entries = NDArray[np.uint64]
 
 
 @dataclass(slots=True)
-class _Found:
+class _Batch:
     """Messages of one channel in the arena."""
 
     entries: list[Entries] = field(default_factory=list)
@@ -66,24 +66,24 @@ class Projection:
     def __init__(self, stream: BufferedReader, index: Index, sink: Sink) -> None:
         self._stream, self._index, self._sink = stream, index, sink
         streams = index.streams
-        self._wanted = {id for id, one in streams.items() if sink.wants(one.channel.topic)}
+        self._wanted = {id for id, each in streams.items() if sink.wants(each.channel.topic)}
         self._arena = Arena()
         self._packed = bytearray(2**20)
         self._longest: Counter[int] = Counter(dict.fromkeys(self._wanted, _SLACK))
-        self._found: defaultdict[int, _Found] = defaultdict(_Found)
+        self._batches: defaultdict[int, _Batch] = defaultdict(_Batch)
         self._counts: Counter[int] = Counter()
         self._unpacked = self._crc_checked = self._without_crc = 0
-        some = [one.schema for one in streams.values() if one.schema is not None]
+        some = [each.schema for each in streams.values() if each.schema is not None]
         self._schemas = {schema.id: schema for schema in some}
-        self._channels = {id: one.channel for id, one in streams.items()}
-        self._known: set[tuple[int, bytes]] = set()
-        """Records in chunks that declare what the summary does."""
+        self._channels = {id: each.channel for id, each in streams.items()}
+        self._verified: set[tuple[int, bytes]] = set()
+        """Records in chunks that agree with the summary."""
         self._met: set[int] = set()
-        """Channels of which a message was found."""
+        """Channels with a message so far."""
 
     @property
     def checked(self) -> Checked:
-        """What was looked at, so far."""
+        """The checks so far."""
         chunks = len(self._index.chunks)
         return Checked(
             by_index=True,
@@ -107,11 +107,11 @@ class Projection:
                 if self._arena.used >= SIZE:
                     self._hand_on()
         self._hand_on()
-        stated = self._index.statistics.channel_message_counts
+        counts = self._index.statistics.channel_message_counts
         for id, stream in self._index.streams.items():
             if id not in self._wanted:
-                self._sink.count(stream, stated.get(id, 0))
-            elif self._counts[id] != stated.get(id, 0):
+                self._sink.count(stream, counts.get(id, 0))
+            elif self._counts[id] != counts.get(id, 0):
                 raise BrokenError("a topic holds another number of messages than is stated")
 
     # One chunk
@@ -152,13 +152,13 @@ class Projection:
             self._tiled(base, needed, size, places)
         span = chunk.message_start_time, chunk.message_end_time
         for id, some, _ in entries:
-            found = self._found[id]
-            found.entries.append(some)
-            found.limits.append((len(some) // 2, base, base + needed, *span))
+            batch = self._batches[id]
+            batch.entries.append(some)
+            batch.limits.append((len(some) // 2, base, base + needed, *span))
         self._arena.used += needed
 
     def _declared(self, base: int, needed: int, until: int) -> None:
-        """Hold what a chunk declares against the summary: at its beginning, and `until` a place.
+        """Compare declarations of a chunk with the summary: at its beginning, and `until` a place.
 
         A log that was merged from others may call two topics by the same number.
         """
@@ -175,19 +175,19 @@ class Projection:
                 self._as_declared(opcode, bytes(data[start:at]))
 
     def _as_declared(self, opcode: int, content: bytes) -> None:
-        """Hold a record that declares something against the summary."""
-        if (opcode, content) not in self._known:
+        """Compare a record that declares something with the summary."""
+        if (opcode, content) not in self._verified:
             if not is_known(opcode, content, self._schemas, self._channels):
                 raise BrokenError("a chunk declares what its summary does not")
-            self._known.add((opcode, content))
+            self._verified.add((opcode, content))
 
     def _places(self, chunk: ChunkIndex) -> Places:
         """Where the messages of a chunk begin, by its index, in the order of the file."""
-        found = self._entries(chunk, chunk.message_index_offsets.keys())
-        return np.sort(np.concatenate([some[1::2] for _, some, _ in found]).astype(np.int64))
+        entries = self._entries(chunk, chunk.message_index_offsets.keys())
+        return np.sort(np.concatenate([some[1::2] for _, some, _ in entries]).astype(np.int64))
 
     def _tiled(self, base: int, needed: int, size: int, places: Places) -> None:
-        """Hold the records of a chunk that no CRC protects against its index, as far as unpacked.
+        """Compare the unpacked records of a chunk that no CRC protects with its index.
 
         Where one message ends the next one begins, but for definitions between them.
 
@@ -208,7 +208,7 @@ class Projection:
             self._between(base + int(ends[row]), base + int(walls[row]))
 
     def _between(self, at: int, wall: int) -> None:
-        """What stands between two messages, in the arena: definitions, and nothing else."""
+        """Check that only definitions stand between two messages in the arena."""
         data = self._arena.data.data
         while at != wall:
             opcode, length = HEAD.unpack_from(data, at) if at + HEAD.size <= wall else (0, 0)
@@ -218,7 +218,7 @@ class Projection:
             self._as_declared(opcode, bytes(data[start:at]))
 
     def _entries(self, chunk: ChunkIndex, ids: Container[int]) -> list[tuple[int, Entries, int]]:
-        """Of each of the channels in the chunk: its number, its index, and its last place."""
+        """Each of the channels in the chunk: its number, its index, and its last place."""
         begin = chunk.chunk_start_offset + chunk.chunk_length
         self._stream.seek(begin)
         data = self._stream.read(chunk.message_index_length)
@@ -246,7 +246,7 @@ class Projection:
         return entries
 
     def _head(self, chunk: ChunkIndex) -> int:
-        """The CRC that a chunk states; all else that it states is in its index too."""
+        """The CRC that a chunk states; its other statements must agree with its index."""
         self._stream.seek(chunk.chunk_start_offset)
         compression = chunk.compression.encode()
         size = HEAD.size + CHUNK.size + len(compression) + 8
@@ -254,8 +254,8 @@ class Projection:
         if len(head) < size:
             raise BrokenError("a record is cut off")
         start, end, unpacked, crc, length = CHUNK.unpack_from(head, HEAD.size)
-        stated = (*HEAD.unpack_from(head), start, end, unpacked, length)
-        if stated != (
+        record = (*HEAD.unpack_from(head), start, end, unpacked, length)
+        if record != (
             Opcode.CHUNK,
             chunk.chunk_length - HEAD.size,
             chunk.message_start_time,
@@ -295,7 +295,7 @@ class Projection:
             raise BrokenError("a chunk is cut off")
 
     def _end(self, id: int, base: int, last: int, needed: int) -> int:
-        """Where in its chunk the last message of a channel ends, as far as can be seen."""
+        """Where in its chunk the last message of a channel ends, as far as it is unpacked."""
         content = last + HEAD.size
         if content > needed:
             return content
@@ -308,20 +308,20 @@ class Projection:
     def _hand_on(self) -> None:
         """Give the messages in the arena to the sink, topic by topic."""
         topics: defaultdict[str, list[int]] = defaultdict(list)
-        for id in self._found:
+        for id in self._batches:
             topics[self._index.streams[id].channel.topic].append(id)
         for ids in topics.values():
             parts = [(self._index.streams[id], self._messages(id)) for id in ids]
             for stream, messages in parts if len(parts) == 1 else _by_turns(parts):
                 self._sink.add_all(stream, messages)
-        self._found.clear()
+        self._batches.clear()
         self._arena.clear()
 
     def _messages(self, id: int) -> Messages:
-        """Those of one channel, in the order of the file."""
-        found = self._found[id]
-        entries = np.concatenate(found.entries)
-        counts, *of_chunks = np.array(found.limits, np.uint64).T
+        """The messages of one channel, in the order of the file."""
+        batch = self._batches[id]
+        entries = np.concatenate(batch.entries)
+        counts, *of_chunks = np.array(batch.limits, np.uint64).T
         bases, limits, first, last = (
             np.repeat(some, counts.astype(np.int64)) for some in of_chunks
         )
@@ -353,7 +353,7 @@ class Projection:
 
 
 def _share(chunk: ChunkIndex, size: int) -> int:
-    """How many bytes of a chunk's data its first `size` bytes need at most, most likely."""
+    """An estimate: how many packed bytes of a chunk its first `size` bytes need at most."""
     blocks = -(-size // _BLOCK) * _BLOCK
     likely = int(blocks * chunk.compressed_size / chunk.uncompressed_size * 1.3) + 2**14
     return min(likely, chunk.compressed_size)

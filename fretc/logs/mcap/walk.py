@@ -44,7 +44,7 @@ from fretish.diagnostics.diagnostic import Code
 
 _MESSAGE = struct.Struct("<HIQQ")
 """What each message begins with: channel, sequence, log time, publish time."""
-_KNOWN = frozenset(Opcode)
+_OPCODES = frozenset(Opcode)
 _PASSED_BY: dict[int, Callable[[ReadDataStream], object]] = {
     Opcode.HEADER: Header.read,
     Opcode.ATTACHMENT: Attachment.read,
@@ -92,25 +92,25 @@ class Walk:
         self._all_covered = False
         """Whether the whole data section has the CRC that it states."""
         self._crc: int | None = 0
-        """Of the data up to here; None once a part was jumped over."""
+        """The CRC of the data up to here; None after a jump over a part."""
 
     def run(self) -> None:
         """Read everything."""
-        found = summary(self._stream, self._size)
-        if found is None:
+        tail = summary(self._stream, self._size)
+        if tail is None:
             self.cut = self._data(truncated=True)
             if self.damages.span is not None:
                 self.damages.add(self.cut, "it breaks off", code=Code.TRUNCATED_LOG)
             return
-        self._summary = found
-        self._schemas.update(found.schemas)
-        for channel in found.channels.values():
+        self._summary = tail
+        self._schemas.update(tail.schemas)
+        for channel in tail.channels.values():
             self._declare(channel, self._size)
         self._data(truncated=False)
-        if not found.sound:
-            self.damages.add(found.footer, "its summary is damaged", lossless=True)
-        if found.after != self._size:
-            self.damages.add(found.after, "it goes on after its end", lossless=True)
+        if not tail.sound:
+            self.damages.add(tail.footer, "its summary is damaged", lossless=True)
+        if tail.after != self._size:
+            self.damages.add(tail.after, "it goes on after its end", lossless=True)
 
     def settled(self) -> list[tuple[Damage, Gap | None]]:
         """All damages, with the time that each has cost; None where it cost nothing."""
@@ -124,7 +124,7 @@ class Walk:
 
     @property
     def checked(self) -> Checked:
-        """What was looked at: everything, and these chunks are whole."""
+        """The checks: every record, and these chunks are whole."""
         chunks = len(self._whole)
         return Checked(
             by_index=False,
@@ -136,7 +136,7 @@ class Walk:
     # Records
 
     def _data(self, truncated: bool) -> int:
-        """Walk through the data section; where it ended."""
+        """Walk through the data section; returns its end."""
         at, end = len(MAGIC), self._summary.end
         walls = self._walls()
         self._stream.seek(0)
@@ -162,14 +162,14 @@ class Walk:
                 self.damages.add(at, str(error))
                 at = self._jump(stop if self._fits(stop, wall) else wall)
         if not truncated and self._crc is not None:
-            what = "the end of its data is damaged"
-            self.damages.add(at, what, lossless=not self._unprotected)
+            description = "the end of its data is damaged"
+            self.damages.add(at, description, lossless=not self._unprotected)
         return at
 
     def _walls(self) -> list[int]:
         """Where a record must end: where the index says that a chunk begins, and at the end.
 
-        An index that leads into a chunk that is where another one says is not believed.
+        An index entry that points into another chunk does not count.
         """
         walls, reach = [], 0
         for at in sorted(at for at in self._summary.chunks if at < self._summary.end):
@@ -190,8 +190,8 @@ class Walk:
 
     def _skip(self, length: int) -> None:
         while length > 0:
-            taken = len(self._take(min(length, BLOCK)))
-            length -= taken or length
+            size = len(self._take(min(length, BLOCK)))
+            length -= size or length
 
     def _jump(self, to: int) -> int:
         self._stream.seek(to)
@@ -207,12 +207,12 @@ class Walk:
         if len(head) < HEAD.size:
             return False
         opcode, length = HEAD.unpack(head)
-        return opcode in _KNOWN and at + HEAD.size + length <= wall
+        return opcode in _OPCODES and at + HEAD.size + length <= wall
 
     def _record(self, opcode: int, at: int, length: int) -> None:
         if opcode == 0:
             raise BrokenError("a record has no kind")
-        if opcode not in _KNOWN:
+        if opcode not in _OPCODES:
             self._skip(length)
             self.damages.doubt(at, f"a record is of the unknown kind {opcode}")
             return
@@ -240,23 +240,23 @@ class Walk:
     def _data_end(self, length: int, stop: int, crc: int | None) -> None:
         if self._summary.sound and stop != self._summary.end:
             raise BrokenError("the end of the data stands among the data")
-        stated = parse(DataEnd.read, self._take(length)).data_section_crc
-        self._all_covered = bool(stated) and crc == stated
-        if stated and crc is not None and crc != stated and not self.damages.kept:
-            what = "its data has another CRC than it states"
-            self.damages.add(stop, what, lossless=not self._unprotected, anywhere=True)
+        expected = parse(DataEnd.read, self._take(length)).data_section_crc
+        self._all_covered = bool(expected) and crc == expected
+        if expected and crc is not None and crc != expected and not self.damages.certain:
+            description = "its data has another CRC than it states"
+            self.damages.add(stop, description, lossless=not self._unprotected, anywhere=True)
 
     def _define(self, schema: Schema, at: int) -> None:
-        known = self._schemas.setdefault(schema.id, schema)
-        if known != schema:
+        first = self._schemas.setdefault(schema.id, schema)
+        if first != schema:
             self.damages.add(at, f"it defines `{schema.name}` in two ways", anywhere=True)
 
     def _declare(self, channel: Channel, at: int) -> None:
-        known = self._streams.get(channel.id)
-        if known is not None and known.channel != channel:
-            what = f"it declares the topic `{channel.topic}` in two ways"
-            self.damages.add(at, what, anywhere=True)
-            channel = known.channel
+        first = self._streams.get(channel.id)
+        if first is not None and first.channel != channel:
+            description = f"it declares the topic `{channel.topic}` in two ways"
+            self.damages.add(at, description, anywhere=True)
+            channel = first.channel
         stream = Stream(channel, self._schemas.get(channel.schema_id))
         self._streams[channel.id] = stream
         self._sink.declare(stream)
@@ -271,21 +271,21 @@ class Walk:
         )
         try:
             data = unpacked(chunk)
-            messages, wrong = self._inside(at, data, has_crc=has_crc)
+            messages, fault = self._inside(at, data, has_crc=has_crc)
             if not has_crc:
                 self._check(messages, span)
         except BrokenError as error:
             self.damages.add(at, str(error), span)
             return
         self._unprotected |= not has_crc
-        if wrong:
+        if fault:
             messages = messages.chosen(np.arange(len(messages) - 1))
         if not self._at_once(messages):
             for start, end in zip(messages.starts.tolist(), messages.ends.tolist(), strict=True):
                 self._message(at, data, start, end)
-        if wrong:
+        if fault:
             self._broken.add(at)
-            self.damages.add(at, wrong, self._rest(at, messages, span))
+            self.damages.add(at, fault, self._rest(at, messages, span))
             return
         self._whole.add(at)
         self._with_crc += has_crc
@@ -307,15 +307,15 @@ class Walk:
         return min(start, end), end
 
     def _inside(self, at: int, data: bytes, *, has_crc: bool) -> tuple[Messages, str]:
-        """The messages of a chunk, and what is wrong with the record after the last of them.
+        """The messages of a chunk, and the fault of the record after the last of them.
 
-        The length of the last one may be what is wrong: then that is not all of it. The chunk's
+        The fault may be the length of the last message, which is then incomplete. The chunk's
         definitions are noted.
         """
         starts: list[int] = []
         ends: list[int] = []
         message = Opcode.MESSAGE.value
-        wrong = ""
+        fault = ""
         try:
             for opcode, start, end in frames(data):
                 if opcode == message:
@@ -332,11 +332,11 @@ class Walk:
                 elif not has_crc:
                     raise BrokenError("a chunk holds a record that does not belong there")
         except BrokenError as error:
-            wrong = str(error)
-        return Messages.of(data, starts, ends), wrong
+            fault = str(error)
+        return Messages.of(data, starts, ends), fault
 
     def _check(self, messages: Messages, span: Gap) -> None:
-        """What a CRC does not protect is held against the `span` that the chunk states."""
+        """Check messages that no CRC protects against the `span` that the chunk states."""
         times = messages.logs
         if ((times < span[0]) | (times > span[1])).any():
             raise BrokenError("a message is of another time than its chunk states")
@@ -344,7 +344,7 @@ class Walk:
             raise BrokenError("a message is of a topic that is not declared")
 
     def _at_once(self, messages: Messages) -> bool:
-        """Hand on all messages of a chunk, topic by topic; not where one of them is odd."""
+        """Pass on all messages of a chunk, topic by topic; not where one of them is odd."""
         ids = np.unique(messages.channels).tolist()
         streams = [self._streams[id] for id in ids if id in self._streams]
         topics = {stream.channel.topic for stream in streams}
@@ -361,7 +361,7 @@ class Walk:
         return True
 
     def _index(self, content: bytes) -> None:
-        """Hold the index of a chunk against the messages in it; its CRC tells which is right."""
+        """Compare the index of a chunk with the messages in it; its CRC shows which is right."""
         if len(content) < INDEX.size:
             raise BrokenError("a record cannot be read")
         channel, length = INDEX.unpack_from(content)
@@ -373,11 +373,11 @@ class Walk:
             return
         listed = np.frombuffer(content, ENTRY, length // ENTRY.itemsize, INDEX.size)
         if not np.array_equal(np.sort(listed), np.sort(chunk.entries(channel))):
-            what = "the index of a chunk names other messages than are in it"
+            description = "the index of a chunk names other messages than are in it"
             if chunk.has_crc:
-                self.damages.add(chunk.at, what, lossless=True)
+                self.damages.add(chunk.at, description, lossless=True)
             else:
-                self.damages.add(chunk.at, what, chunk.span)
+                self.damages.add(chunk.at, description, chunk.span)
 
     def _message(self, at: int, data: bytes, start: int, end: int) -> None:
         if end - start < _MESSAGE.size:

@@ -18,11 +18,11 @@ from fretc.logs.messages import idl, protobuf
 from fretc.logs.messages import json_messages as jsontext
 from fretc.logs.messages.definitions import TooLargeError, types
 from fretc.logs.messages.layouts import Shape
-from fretc.logs.signals.signals import Sparse, fields, stated_field
+from fretc.logs.signals.signals import Sparse, fields, optional_field
 from fretish.bindings.declarations import short_type
 
 Decode = Callable[[bytes], object]
-"""From a payload to an object with the message's fields; it raises whatever it likes."""
+"""From a payload to an object with the message's fields; it may raise any exception."""
 
 _STAMPS = (("sec", "nanosec"), ("secs", "nsecs"))
 """Names of the fields of a stamp, in ROS 2 and in ROS 1."""
@@ -30,7 +30,7 @@ _SPARSE_STAMPS = (("seconds", "nanos"), ("sec", "nsec"))
 """Those of google.protobuf.Timestamp, and of Foxglove's JSON and Gazebo's messages."""
 _LAID_OUT = ("ros1msg", "ros2msg", "ros2idl")
 _EXTRAS = {"protobuf": ("mcap-protobuf-support", "protobuf"), "cdr": ("rosbags", "bags")}
-"""What decodes an encoding, and the extra that installs it."""
+"""The package that decodes an encoding, and the extra that installs it."""
 
 _NAME = r"[A-Za-z][A-Za-z0-9_]*"
 _ROS1_TYPE = re.compile(rf"{_NAME}/{_NAME}")
@@ -45,9 +45,9 @@ class MissingExtra(str):
 
     __slots__ = ("extra",)
 
-    def __new__(cls, what: str, extra: str) -> MissingExtra:
-        """`what` is what is missing."""
-        text = super().__new__(cls, f"that needs `{what}`")
+    def __new__(cls, package: str, extra: str) -> MissingExtra:
+        """`package` is what is missing."""
+        text = super().__new__(cls, f"that needs `{package}`")
         text.extra = extra
         return text
 
@@ -56,14 +56,14 @@ class MissingExtra(str):
 
 
 def decoder(stream: Stream) -> Decode | str:
-    """What decodes the messages of a stream, or why nothing does."""
+    """The decoder of the messages of a stream, or why there is none."""
     encoding, schema = stream.channel.message_encoding, stream.schema
     if schema is None and encoding != "json":
         return "its messages have no definition"
     try:
         match encoding, schema.encoding if schema is not None else "":
             case "json", "jsonschema" | "":
-                jsontext.stated(schema.data if schema is not None else b"")
+                jsontext.schema_paths(schema.data if schema is not None else b"")
                 return jsontext.decode
             case "protobuf", "protobuf":
                 return protobuf.decoder(stream)
@@ -79,14 +79,14 @@ def decoder(stream: Stream) -> Decode | str:
             case _, defined:
                 return f"its messages are encoded as `{encoding}`, defined in `{defined}`"
     except ModuleNotFoundError:
-        what, extra = _EXTRAS[encoding]
-        return MissingExtra(what, extra)
+        package, extra = _EXTRAS[encoding]
+        return MissingExtra(package, extra)
     except Exception:  # the parsers trust the definition
         return "the definition of its messages cannot be read"
 
 
 def shape(stream: Stream) -> Shape | None:
-    """How the messages of a stream are laid out; None where only its decoder knows."""
+    """The shape of the messages of a stream; None where only its decoder knows it."""
     schema = stream.schema
     if schema is None or schema.encoding not in _LAID_OUT:
         return None
@@ -102,9 +102,9 @@ def is_single(stream: Stream, where: Sequence[str]) -> bool:
     """
     if stream.channel.message_encoding == "protobuf":
         return protobuf.is_single(stream, where)
-    known = shape(stream)
-    found = known.number(tuple(where)) if known is not None else None
-    return found is not None and found.type == "float32"
+    layout = shape(stream)
+    field = layout.number(tuple(where)) if layout is not None else None
+    return field is not None and field.type == "float32"
 
 
 _MOST = 256
@@ -117,12 +117,12 @@ def _shape(encoding: str, name: str, data: bytes) -> Shape | None:
     try:
         definition = data.decode()
         if encoding == "ros2idl":
-            known = idl.types(name, definition)
+            definitions = idl.types(name, definition)
         else:
-            known = types(name, definition, ros1=ros1)
+            definitions = types(name, definition, ros1=ros1)
     except Exception:  # no UTF-8, nothing that is laid out, or a parser that trusts it
         return None
-    return Shape(short_type(name), known, cdr=not ros1)
+    return Shape(short_type(name), definitions, cdr=not ros1)
 
 
 def numbers(stream: Stream, payloads: Sequence[bytes] = ()) -> tuple[str, ...] | None:
@@ -130,7 +130,7 @@ def numbers(stream: Stream, payloads: Sequence[bytes] = ()) -> tuple[str, ...] |
 
     Args:
         stream: of messages.
-        payloads: some of them; those of JSON tell what their schema leaves open.
+        payloads: some of them; those in JSON show fields that their schema leaves open.
 
     Returns:
         None where its messages cannot be read.
@@ -139,14 +139,14 @@ def numbers(stream: Stream, payloads: Sequence[bytes] = ()) -> tuple[str, ...] |
         return None
     match stream.channel.message_encoding:
         case "json":
-            stated = jsontext.stated(stream.schema.data if stream.schema is not None else b"")
-            return tuple(dict.fromkeys((*stated, *jsontext.held(payloads))))
+            paths = jsontext.schema_paths(stream.schema.data if stream.schema is not None else b"")
+            return tuple(dict.fromkeys((*paths, *jsontext.message_paths(payloads))))
         case "protobuf":
             return protobuf.numbers(stream)
-    known = shape(stream)
-    if known is None:
+    layout = shape(stream)
+    if layout is None:
         return ()
-    fields = ((where, known.number(where)) for where in known.numbers())
+    fields = ((where, layout.number(where)) for where in layout.numbers())
     return tuple(
         f"{'.'.join(where)}{'[:]' if field is not None and field.many else ''}"
         for where, field in fields
@@ -173,10 +173,10 @@ def _plain(payload: bytes) -> bytes:
 
 @lru_cache(_MOST)
 def _ros1(name: str, data: bytes) -> Decode:
-    """With the decoder that is made of the fields alone.
+    """A decoder from the fields alone.
 
-    It makes Python code of the definition and runs it: constants, comments and names of any
-    other kind would run too.
+    The library turns the definition into Python code and runs it: constants, comments and names
+    of any other kind would run too.
 
     Raises:
         ValueError: something else is in the definition, or it is too large.
@@ -232,11 +232,11 @@ def stamp(message: object | None) -> int | None:
 
     Of JSON and Protobuf the field `timestamp` too, which Foxglove's messages have instead.
     """
-    time = stated_field(stated_field(message, "header"), "stamp")
+    time = optional_field(optional_field(message, "header"), "stamp")
     if not isinstance(message, Sparse):
         return _nanoseconds(time, _STAMPS)
     if time is None:
-        time = stated_field(message, "timestamp")
+        time = optional_field(message, "timestamp")
     return _nanoseconds(time, (*_STAMPS, *_SPARSE_STAMPS))
 
 
@@ -244,7 +244,7 @@ def _nanoseconds(time: object | None, kinds: Sequence[tuple[str, str]]) -> int |
     names = fields(time)
     for parts in kinds:
         if all(part in names for part in parts):
-            seconds, nanoseconds = (stated_field(time, part) for part in parts)
+            seconds, nanoseconds = (optional_field(time, part) for part in parts)
             if isinstance(seconds, int) and isinstance(nanoseconds, int):
                 return seconds * 10**9 + nanoseconds
     return None

@@ -1,4 +1,4 @@
-"""Message definitions of ROS 1 and ROS 2: text → what stands in a payload, in its order.
+"""Message definitions of ROS 1 and ROS 2: text → the fields of a payload, in their order.
 
 Sources: ROS 2 interface definitions, https://docs.ros.org/en/humble/Concepts/Basic/About-Interfaces.html;
 ROS 1 messages, https://wiki.ros.org/msg.
@@ -26,7 +26,7 @@ NUMBERS: Mapping[str, str] = {
 """NumPy's name of each primitive type."""
 
 _ALIASES = {True: {"byte": "int8", "char": "uint8"}, False: {"byte": "uint8", "char": "int8"}}
-"""What ROS 1 (True) and the decoder of ROS 2 take these for."""
+"""The meaning of these types in ROS 1 (True) and in the decoder of ROS 2."""
 
 TEXTS = frozenset({"string"})
 _TIMES = {
@@ -39,12 +39,12 @@ _ROS2_TIMES = {
     "builtin_interfaces/Time": (("sec", "uint32"), ("nanosec", "uint32")),
     "builtin_interfaces/Duration": (("sec", "uint32"), ("nanosec", "uint32")),
 }
-"""What the decoder of ROS 2 takes them for where the definition leaves them out."""
+"""Their fields in the decoder of ROS 2 where the definition leaves them out."""
 
 _DEEPEST = 50
-"""Levels of messages within messages; what is deeper may hold itself, and never ends."""
+"""Levels of messages within messages; deeper types may contain themselves."""
 _MOST_FIELDS = 10_000
-"""Of a message, with those of the messages in it."""
+"""Fields of a message, with those of the messages in it."""
 
 _NAME = re.compile(r"\w+/(?:msg/)?\w+")
 _SEPARATOR = re.compile(r"={3,}\s*")
@@ -56,11 +56,11 @@ _FIELD = re.compile(
 
 
 _MOST_ELEMENTS = 2**20
-"""Of a message, with all elements of its arrays of fixed length, and of those in them."""
+"""Elements of a message, in all of its arrays of fixed length, nested ones too."""
 
 
 class DefinitionError(ValueError):
-    """The definition holds something that is not laid out here."""
+    """The definition has something that this module does not know."""
 
 
 class TooLargeError(DefinitionError):
@@ -95,63 +95,67 @@ def types(name: str, definition: str, *, ros1: bool) -> Types:
         DefinitionError: a line, or a type, is not known; a type is defined twice; or types are
             within each other without end.
     """
-    found: dict[str, tuple[Field, ...]] = {}
+    all_types: dict[str, tuple[Field, ...]] = {}
     for full, lines in _sections(short(name), definition):
         package = full.partition("/")[0]
         read = (_field(line, package, ros1=ros1) for line in lines)
         fields = tuple(field for field in read if field is not None)
-        if found.setdefault(full, fields) != fields:
+        if all_types.setdefault(full, fields) != fields:
             raise DefinitionError(f"the type `{full}` is defined twice")
-    return measured(_builtin(ros1=ros1) | found)
+    return measured(_builtin(ros1=ros1) | all_types)
 
 
-def measured(found: Types) -> Types:
+def measured(all_types: Types) -> Types:
     """The types.
 
     Raises:
         DefinitionError: they are made of something that is not defined, hold themselves, or hold
             more than anyone would define.
     """
-    for fields in found.values():
+    for fields in all_types.values():
         for field in fields:
-            if field.type not in NUMBERS and field.type not in TEXTS and field.type not in found:
+            if (
+                field.type not in NUMBERS
+                and field.type not in TEXTS
+                and field.type not in all_types
+            ):
                 raise DefinitionError(f"the type `{field.type}` is not defined")
-    if _largest(found, elements=False) > _MOST_FIELDS:
+    if _largest(all_types, elements=False) > _MOST_FIELDS:
         raise TooLargeError("the types are too deep")
-    if _largest(found, elements=True) > _MOST_ELEMENTS:
+    if _largest(all_types, elements=True) > _MOST_ELEMENTS:
         raise TooLargeError("the arrays of fixed length are too long")
-    return found
+    return all_types
 
 
-def _largest(found: Types, *, elements: bool) -> int:
+def _largest(all_types: Types, *, elements: bool) -> int:
     """How many fields the largest type has, or how many elements, with all that is in it.
 
     Raises:
         TooLargeError: types are within each other without end.
     """
     sizes: dict[str, int] = {}
-    left = dict(found)
+    rest = dict(all_types)
     for _ in range(_DEEPEST):
-        known = {
+        ready = {
             name: sum(
                 (1 + sizes.get(field.type, 0)) * ((field.count or 1) if elements else 1)
                 for field in fields
             )
-            for name, fields in left.items()
-            if all(field.type in sizes or field.type not in found for field in fields)
+            for name, fields in rest.items()
+            if all(field.type in sizes or field.type not in all_types for field in fields)
         }
-        sizes |= known
-        left = {name: fields for name, fields in left.items() if name not in known}
-        if not left:
+        sizes |= ready
+        rest = {name: fields for name, fields in rest.items() if name not in ready}
+        if not rest:
             return max(sizes.values())
     raise TooLargeError("the types are too deep")
 
 
 def _builtin(*, ros1: bool) -> dict[str, tuple[Field, ...]]:
-    known = _TIMES if ros1 else _ROS2_TIMES
+    times = _TIMES if ros1 else _ROS2_TIMES
     return {
         name: tuple(Field(part, type_, many=False, count=None) for part, type_ in parts)
-        for name, parts in known.items()
+        for name, parts in times.items()
     }
 
 
@@ -169,22 +173,22 @@ def short(name: str) -> str:
 def _sections(name: str, definition: str) -> list[tuple[str, list[str]]]:
     """Each type with its lines; those without anything in them are left out."""
     sections: list[tuple[str, list[str]]] = [(name, [])]
-    named = True
+    has_name = True
     for line in definition.splitlines():
         bare = line.strip()
         if not bare or bare.startswith("#"):
             continue
         following = _NEXT.fullmatch(bare)
-        if not named and following:
+        if not has_name and following:
             sections.append((short(following[1]), []))
-            named = True
-        elif named and _SEPARATOR.fullmatch(bare):
-            named = False
-        elif named:
+            has_name = True
+        elif has_name and _SEPARATOR.fullmatch(bare):
+            has_name = False
+        elif has_name:
             sections[-1][1].append(bare)
         else:
             break
-    if not named:
+    if not has_name:
         raise DefinitionError("a type has no name")
     return sections
 

@@ -71,13 +71,13 @@ def types(name: str, definition: str) -> Types:
         DefinitionError: one of them is of a kind that is not laid out here.
         Exception: of many kinds; the definition cannot be read.
     """
-    found = {
+    all_types = {
         short(full): tuple(_field(part, kind) for part, kind in fields)
         for full, fields in _parsed(definition).items()
     }
-    if short(name) not in found:
+    if short(name) not in all_types:
         raise DefinitionError(f"the type `{name}` is not defined")
-    return measured(found)
+    return measured(all_types)
 
 
 def _parsed(definition: str) -> Mapping[str, Any]:
@@ -91,17 +91,17 @@ def _parsed(definition: str) -> Mapping[str, Any]:
 
     if len(definition) > _LONGEST:
         raise DefinitionError("the definition is too long")
-    found: dict[str, Any] = {}
+    all_types: dict[str, Any] = {}
     for section in _SEPARATOR.split(_INCLUDE.sub("", definition)):
         bare = _bare(section)
         for name, (_, fields) in get_types_from_idl(bare).items() if bare else ():
             names = [name, *(field for field, _ in fields)]
-            if not all(_NAME.fullmatch(one) for one in names):
+            if not all(_NAME.fullmatch(each) for each in names):
                 raise DefinitionError(f"`{name}` is no type")
-            fields = [(part, _known(kind)) for part, kind in fields]
-            if found.setdefault(name, fields) != fields:
+            fields = [(part, _decoder_kind(kind)) for part, kind in fields]
+            if all_types.setdefault(name, fields) != fields:
                 raise DefinitionError(f"the type `{name}` is defined twice")
-    return found
+    return all_types
 
 
 def _bare(section: str) -> str:
@@ -119,20 +119,20 @@ def _bare(section: str) -> str:
     return bare
 
 
-def _known(kind: Any) -> Any:
-    """The kind of a field, as the decoder should take it."""
+def _decoder_kind(kind: Any) -> Any:
+    """The kind of a field for the decoder."""
     from rosbags.interfaces import Nodetype
 
-    node, what = kind
+    node, detail = kind
     if node == Nodetype.BASE:
-        return node, (_KINDS.get(what[0], what[0]), what[1])
+        return node, (_KINDS.get(detail[0], detail[0]), detail[1])
     if node == Nodetype.NAME:
         return kind
-    inner, count = what
+    inner, count = detail
     numbers = inner[0] == Nodetype.BASE and inner[1][0] not in TEXTS
     if node == Nodetype.ARRAY and not numbers and count > _MOST:
         raise DefinitionError(f"an array of {count} elements is too long")
-    return node, (_known(inner), count)
+    return node, (_decoder_kind(inner), count)
 
 
 def _full(name: str) -> str:
@@ -143,20 +143,20 @@ def _full(name: str) -> str:
 def _field(name: str, kind: Any) -> Field:
     from rosbags.interfaces import Nodetype
 
-    node, what = kind
+    node, detail = kind
     if node in (Nodetype.BASE, Nodetype.NAME):
         return Field(name, _type(kind), many=False, count=None)
-    inner, count = what
+    inner, count = detail
     return Field(name, _type(inner), many=True, count=count if node == Nodetype.ARRAY else None)
 
 
 def _type(kind: Any) -> str:
     from rosbags.interfaces import Nodetype
 
-    node, what = kind
+    node, detail = kind
     if node == Nodetype.NAME:
-        return short(what)
-    base = str(what[0])
+        return short(detail)
+    base = str(detail[0])
     if base not in NUMBERS and base not in TEXTS:
         raise DefinitionError(f"`{base}` is not laid out here")
     return base

@@ -41,14 +41,14 @@ class Object(Sparse):
         return tuple(self._values)
 
     def field(self, name: str) -> object:
-        """What it states; any field may be left out."""
+        """The value of a field; any field may be left out."""
         value = self._values.get(name)
         if value is None:
             raise UnstatedError
         if isinstance(value, str):
             return _WORDS.get(value, value)
         if isinstance(value, list):
-            return [_WORDS.get(one, one) if isinstance(one, str) else one for one in value]
+            return [_WORDS.get(item, item) if isinstance(item, str) else item for item in value]
         return value
 
 
@@ -89,23 +89,23 @@ def _int(text: str) -> int:
     return value
 
 
-# Which numbers there are
+# Paths of numbers
 
 
-def stated(schema: bytes) -> tuple[str, ...]:
+def schema_paths(schema: bytes) -> tuple[str, ...]:
     """The paths of all numbers that a JSON schema names: `a.b`, and `a.c[:]` for an array.
 
     Raises:
         ValueError: it is no JSON, or no schema.
         RecursionError: it is nested too deep.
     """
-    found = json.loads(schema.decode() or "{}")
-    if not isinstance(found, dict | bool):
+    root = json.loads(schema.decode() or "{}")
+    if not isinstance(root, dict | bool):
         raise ValueError("a schema is an object")
-    return _some(_of_schema(found))
+    return _some(_of_schema(root))
 
 
-def held(payloads: Iterable[bytes]) -> tuple[str, ...]:
+def message_paths(payloads: Iterable[bytes]) -> tuple[str, ...]:
     """The paths of all numbers that some messages hold; those that are no messages do not count."""
     paths: dict[str, None] = {}
     for payload in payloads:
@@ -118,30 +118,30 @@ def held(payloads: Iterable[bytes]) -> tuple[str, ...]:
 
 
 def _some(paths: Iterator[str]) -> tuple[str, ...]:
-    kept: dict[str, None] = {}
+    first: dict[str, None] = {}
     for path in paths:
-        if len(kept) == _MOST:
+        if len(first) == _MOST:
             break
-        kept[path] = None
-    return tuple(kept)
+        first[path] = None
+    return tuple(first)
 
 
 def _of_schema(root: Any) -> Iterator[str]:  # a schema is whatever its writer made of it
     """The nearest ones first."""
-    left: list[tuple[Any, str, tuple[int, ...]]] = [(root, "", ())]
-    for schema, path, within in left:
+    queue: list[tuple[Any, str, tuple[int, ...]]] = [(root, "", ())]
+    for schema, path, within in queue:
         schema = _resolved(root, schema)
-        if not isinstance(schema, dict) or id(schema) in within or len(left) > _MOST_STEPS:
+        if not isinstance(schema, dict) or id(schema) in within or len(queue) > _MOST_STEPS:
             continue
         yield from _own(root, schema, path)
         within = (*within, id(schema))
         for several in ("allOf", "anyOf", "oneOf"):
             parts = schema.get(several)
-            left += [(one, path, within) for one in (parts if isinstance(parts, list) else ())]
+            queue += [(part, path, within) for part in (parts if isinstance(parts, list) else ())]
         properties = schema.get("properties")
-        for name, one in properties.items() if isinstance(properties, dict) else ():
+        for name, part in properties.items() if isinstance(properties, dict) else ():
             if _is_name(name):
-                left.append((one, f"{path}.{name}" if path else name, within))
+                queue.append((part, f"{path}.{name}" if path else name, within))
 
 
 def _own(root: Any, schema: dict[Any, Any], path: str) -> Iterator[str]:
@@ -181,8 +181,8 @@ def _of_value(value: object, path: str, depth: int) -> Iterator[str]:
         yield path
     elif (
         isinstance(value, list)
-        and any(isinstance(one, int | float) for one in value)
-        and all(one is None or isinstance(one, int | float) for one in value)
+        and any(isinstance(item, int | float) for item in value)
+        and all(item is None or isinstance(item, int | float) for item in value)
     ):
         yield f"{path}[:]"
 

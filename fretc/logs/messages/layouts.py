@@ -1,9 +1,8 @@
-"""Where in a payload the wanted fields stand: found once, then checked for many messages at once.
+"""The places of wanted fields in payloads: one walk, then a check of many messages at once.
 
 Fields stand one after the other, and strings and arrays have their lengths before them. Messages
-of one topic mostly have the same lengths, and so the same layout: the first of them is walked,
-and the others are held against the lengths that were met on the way. Nothing is decoded that is not
-wanted.
+of one topic mostly have the same lengths, and so the same layout: a walk through the first of them
+collects the lengths, and the others are compared with these. Only wanted fields are decoded.
 
 Sources: OMG DDSI-RTPS and CDR (plain CDR, XCDR version 1); ROS 1 serialization,
 https://wiki.ros.org/roscpp/Overview/MessagesSerializationAndAdaptingTypes.
@@ -28,9 +27,9 @@ _LENGTH = struct.Struct("<I")
 _PADDING = 7
 """Bytes that may follow the last field of CDR."""
 _MOST_CHECKS = 64
-"""A message with more lengths than so is of no layout that others share."""
-_MOST_KNOWN = 64
-"""Layouts of a stream that are kept: messages that all differ are held against each of them."""
+"""A message with more lengths shares its layout with no other."""
+_MOST_LAYOUTS = 64
+"""The most layouts kept of a stream: each message is compared with all of them."""
 
 
 class LayoutError(ValueError):
@@ -38,8 +37,8 @@ class LayoutError(ValueError):
 
 
 @dataclass(frozen=True, slots=True)
-class Found:
-    """A wanted field within a payload."""
+class Location:
+    """The place of a wanted field within a payload."""
 
     at: int
     """Its first byte."""
@@ -50,15 +49,15 @@ class Found:
 
 @dataclass(frozen=True, slots=True)
 class Layout:
-    """What all messages of one shape have in common."""
+    """The places that many messages share."""
 
     size: int
     """Bytes of the payload."""
     marks: tuple[tuple[int, str, int], ...]
-    """Places, types and values of the lengths on the way, and of what marks plain CDR."""
-    found: Mapping[Where, Found]
+    """Places, types and values of all lengths, and of the mark of plain CDR."""
+    locations: Mapping[Where, Location]
     texts: tuple[tuple[int, int], ...] = ()
-    """Places and lengths of what the decoder reads as UTF-8, and refuses where it is not."""
+    """Places and lengths of texts; the decoder refuses those that are not UTF-8."""
 
 
 class Shape:
@@ -66,7 +65,7 @@ class Shape:
 
     def __init__(self, name: str, types: Types, *, cdr: bool) -> None:
         self.name, self.types, self.cdr = name, types, cdr
-        self._asked: dict[Where, Field | None] = {}
+        self._fields: dict[Where, Field | None] = {}
 
     def number(self, where: Where) -> Field | None:
         """The number, or the array of numbers, at that place of each message.
@@ -74,9 +73,9 @@ class Shape:
         None also for a time of ROS 1 that stands in the message itself: its decoder carries
         nanoseconds over into seconds.
         """
-        if where not in self._asked:
-            self._asked[where] = self._number(where)
-        return self._asked[where]
+        if where not in self._fields:
+            self._fields[where] = self._number(where)
+        return self._fields[where]
 
     def _number(self, where: Where) -> Field | None:
         name = self.name
@@ -99,7 +98,7 @@ class Shape:
         return field is not None and not field.many
 
     def numbers(self) -> tuple[Where, ...]:
-        """All places of which `number` knows."""
+        """All places at which `number` finds a field."""
         places: list[Where] = []
         below: list[tuple[Where, str]] = [((), self.name)]
         for where, name in below:
@@ -129,10 +128,10 @@ class Shape:
             raise LayoutError("the payload is cut off") from None
         if not 0 <= len(payload) - walk.at <= (_PADDING if self.cdr else 0):
             raise LayoutError("the payload has another length than its fields")
-        missing = [where for where in wanted if where not in walk.found]
-        if missing:
-            raise LayoutError(f"there are no numbers in `{'.'.join(missing[0])}`")
-        return Layout(len(payload), tuple(walk.marks), walk.found, tuple(walk.texts))
+        absent = [where for where in wanted if where not in walk.locations]
+        if absent:
+            raise LayoutError(f"there are no numbers in `{'.'.join(absent[0])}`")
+        return Layout(len(payload), tuple(walk.marks), walk.locations, tuple(walk.texts))
 
 
 class _Walk:
@@ -143,7 +142,7 @@ class _Walk:
     ) -> None:
         self.at = 0
         self.marks: list[tuple[int, str, int]] = []
-        self.found: dict[Where, Found] = {}
+        self.locations: dict[Where, Location] = {}
         self.texts: list[tuple[int, int]] = []
         self._payload, self._types, self._wanted, self._cdr = payload, types, wanted, cdr
         if cdr:
@@ -158,7 +157,7 @@ class _Walk:
             self.at += 1
         for field in self._types[name]:
             self._field(field, (*where, field.name))
-        if self.at > len(self._payload):  # said here, lest an array of them goes on
+        if self.at > len(self._payload):  # raised here, or an array of them would go on
             raise LayoutError("the payload is cut off")
 
     def _field(self, field: Field, where: Where) -> None:
@@ -179,7 +178,7 @@ class _Walk:
         if self._cdr and count != 0:  # what is not there needs no alignment
             self.at += -(self.at - 4) % size
         if where in self._wanted:
-            self.found[where] = Found(self.at, dtype, count)
+            self.locations[where] = Location(self.at, dtype, count)
         self.at += size if count is None else size * count
 
     def _text(self, length: int) -> None:
@@ -196,7 +195,7 @@ class _Walk:
         return int(length)
 
     def _bounded(self, count: int) -> int:
-        """Each element of an array takes a byte at least, or it is not counted one by one."""
+        """The count, after a check: each element takes at least a byte of the payload."""
         if count > len(self._payload):
             raise LayoutError("the payload is cut off")
         return count
@@ -216,44 +215,44 @@ class Group:
 
 
 class Layouts:
-    """The layouts of the messages of one stream, as they are met."""
+    """The layouts of the messages of one stream, collected on the way."""
 
     def __init__(self, shape: Shape, wanted: Sequence[Where]) -> None:
         self._shape, self._wanted = shape, wanted
-        self._known: dict[int, list[Layout]] = {}
-        """By size; not more than `_MOST_KNOWN` of all sizes."""
+        self._layouts: dict[int, list[Layout]] = {}
+        """By size; not more than `_MOST_LAYOUTS` of all sizes."""
         self._count = 0
 
     def groups(self, payloads: Payloads) -> Iterator[Group]:
         """All messages, those of one layout together."""
-        left = np.arange(len(payloads))
+        rest = np.arange(len(payloads))
         if self._count:
             for size in np.unique(payloads.sizes).tolist():
-                for layout in self._known.get(size, ()):
-                    same = _same(payloads, left, layout)
-                    yield from _split(payloads, left[same], layout, new=False)
-                    left = left[~same]
-        while len(left):
+                for layout in self._layouts.get(size, ()):
+                    same = _same(payloads, rest, layout)
+                    yield from _split(payloads, rest[same], layout, new=False)
+                    rest = rest[~same]
+        while len(rest):
             try:
-                layout = self._shape.layout(payloads.payload(int(left[0])), self._wanted)
+                layout = self._shape.layout(payloads.payload(int(rest[0])), self._wanted)
             except LayoutError:
-                yield Group(left[:1], None)
-                left = left[1:]
+                yield Group(rest[:1], None)
+                rest = rest[1:]
                 continue
             self._keep(layout)
-            same = _same(payloads, left, layout)
+            same = _same(payloads, rest, layout)
             same[0] = True
-            rows, left = left[same], left[~same]
+            rows, rest = rest[same], rest[~same]
             yield from _split(payloads, rows, layout, new=True)
 
     def _keep(self, layout: Layout) -> None:
-        if self._count < _MOST_KNOWN and len(layout.marks) <= _MOST_CHECKS:
+        if self._count < _MOST_LAYOUTS and len(layout.marks) <= _MOST_CHECKS:
             self._count += 1
-            self._known.setdefault(layout.size, []).append(layout)
+            self._layouts.setdefault(layout.size, []).append(layout)
 
 
 def _split(payloads: Payloads, rows: Places, layout: Layout, *, new: bool) -> Iterator[Group]:
-    """Those whose texts only the decoder can judge go to it."""
+    """Messages with texts beyond ASCII go to the decoder, which checks them."""
     plain = _plain(payloads, rows, layout)
     if plain.any():
         yield Group(rows[plain], layout, new)

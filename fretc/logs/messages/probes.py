@@ -1,7 +1,7 @@
-"""Messages made up of a definition: layouts are held against the official decoder with them.
+"""Made-up messages of a definition: they compare layouts with the official decoder.
 
-What a log holds may hide an error: where all is zero, a byte too far reads the same. Made-up
-messages have other bytes everywhere, and lengths that move what follows.
+Messages of a log may hide an error: where all bytes are zero, a wrong place reads the same. Made-up
+messages have different bytes everywhere, and lengths that move the following fields.
 """
 
 from __future__ import annotations
@@ -13,11 +13,11 @@ import numpy as np
 
 from fretc.logs.messages.decoding import Decode
 from fretc.logs.messages.definitions import NUMBERS, TEXTS, Field, Types
-from fretc.logs.messages.layouts import Found, Shape
+from fretc.logs.messages.layouts import Location, Shape
 from fretc.logs.signals.samples import Numbers
 
 _PROBES = 8
-"""So many that each length takes each place between two numbers of 8 bytes."""
+"""Enough for each length to take each place between two numbers of 8 bytes."""
 _LARGEST = 2**18
 """Bytes of a made-up message; one that would be longer is not made."""
 
@@ -47,10 +47,10 @@ def _same(shape: Shape, decode: Decode, payload: bytes) -> bool:
         official = [_numbers(reduce(getattr, where, message)) for where in wanted]
     except Exception:  # whatever the decoder raises: it cannot read the message
         return False
-    found = [_found(payload, layout.found[where]) for where in wanted]
+    ours = [_at(payload, layout.locations[where]) for where in wanted]
     return all(
-        one.shape == other.shape and np.array_equal(one, other, equal_nan=True)
-        for one, other in zip(found, official, strict=True)
+        a.shape == b.shape and np.array_equal(a, b, equal_nan=True)
+        for a, b in zip(ours, official, strict=True)
     )
 
 
@@ -58,11 +58,11 @@ def _numbers(value: object) -> Numbers:
     return np.array(list(value) if isinstance(value, bytes) else value, np.float64).reshape(-1)
 
 
-def _found(payload: bytes, found: Found) -> Numbers:
-    count = 1 if found.count is None else found.count
+def _at(payload: bytes, location: Location) -> Numbers:
+    count = 1 if location.count is None else location.count
     with np.errstate(invalid="ignore"):  # signalling NaN
-        taken = np.frombuffer(payload, found.dtype.replace("?", "u1"), count, found.at)
-        return (taken != 0 if found.dtype == "?" else taken).astype(np.float64)
+        numbers = np.frombuffer(payload, location.dtype.replace("?", "u1"), count, location.at)
+        return (numbers != 0 if location.dtype == "?" else numbers).astype(np.float64)
 
 
 class _TooLongError(Exception):
@@ -89,7 +89,7 @@ class _Probe:
     def _field(self, field: Field) -> None:
         count = 1
         if field.many:
-            count = self._other(4) if field.count is None else field.count
+            count = self._next_length(4) if field.count is None else field.count
             if field.count is None:
                 self._length(count)
         self._spend(count)
@@ -103,12 +103,12 @@ class _Probe:
                 self.message(field.type)
 
     def _text(self) -> None:
-        text = b"text of a"[: self._other(8)] + (b"\0" if self._cdr else b"")
+        text = b"text of a"[: self._next_length(8)] + (b"\0" if self._cdr else b"")
         self._length(len(text))
         self.payload += text
 
-    def _other(self, most: int) -> int:
-        """A length: another one in each message, and at each place of it."""
+    def _next_length(self, most: int) -> int:
+        """A length that differs from message to message, and from place to place."""
         self._next += 1
         return self._next % most
 

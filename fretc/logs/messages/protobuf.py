@@ -18,7 +18,7 @@ from fretc.logs.signals.signals import Sparse, UnstatedError
 _MOST = 2000
 """Fields of one topic that are listed."""
 _MOST_STEPS = 20_000
-"""Messages within messages that are looked at."""
+"""The most messages within messages to visit."""
 
 
 class Message(Sparse):
@@ -46,7 +46,7 @@ class Message(Sparse):
 
 
 def decoder(stream: Stream) -> Callable[[bytes], Message]:
-    """What decodes the messages of a stream.
+    """The decoder of the messages of a stream.
 
     Raises:
         ModuleNotFoundError: the extra `protobuf` is not installed.
@@ -69,11 +69,11 @@ def numbers(stream: Stream) -> tuple[str, ...]:
 
 def is_single(stream: Stream, where: Sequence[str]) -> bool:
     """Whether there are 32-bit floats at that place of each message."""
-    descriptor, found = _official(stream)(b"").DESCRIPTOR, None
+    descriptor, field = _official(stream)(b"").DESCRIPTOR, None
     for name in where:
-        found = descriptor.fields_by_name.get(name) if descriptor is not None else None
-        descriptor = found.message_type if found is not None else None
-    return found is not None and bool(found.type == found.TYPE_FLOAT)
+        field = descriptor.fields_by_name.get(name) if descriptor is not None else None
+        descriptor = field.message_type if field is not None else None
+    return field is not None and bool(field.type == field.TYPE_FLOAT)
 
 
 def _official(stream: Stream) -> Callable[[bytes], Any]:
@@ -86,16 +86,16 @@ def _official(stream: Stream) -> Callable[[bytes], Any]:
 
 def _numbers(descriptor: Any) -> Iterator[str]:
     """The nearest ones first."""
-    left: list[tuple[Any, str, tuple[str, ...]]] = [(descriptor, "", ())]
-    for message, path, within in left:
-        if message.full_name in within or len(left) > _MOST_STEPS:
+    queue: list[tuple[Any, str, tuple[str, ...]]] = [(descriptor, "", ())]
+    for message, path, within in queue:
+        if message.full_name in within or len(queue) > _MOST_STEPS:
             continue
         for field in message.fields:
             where = f"{path}.{field.name}" if path else field.name
             many = _is_repeated(field)
             if field.message_type is not None:
                 if not many:
-                    left.append((field.message_type, where, (*within, message.full_name)))
+                    queue.append((field.message_type, where, (*within, message.full_name)))
             elif field.cpp_type != field.CPPTYPE_STRING:
                 yield f"{where}[:]" if many else where
             elif field.type == field.TYPE_BYTES and not many:

@@ -1,4 +1,4 @@
-"""Signals of many messages at once: what `fretc.logs.signals.signals.sample` says of each of them.
+"""Signals of many messages at once; equal to `fretc.logs.signals.signals.sample` of each.
 
 Numbers are in the unit of the field, clearances in metres; NaN is unknown.
 """
@@ -22,24 +22,24 @@ from fretish.expressions import MIRRORED
 
 Truths = NDArray[np.bool_]
 Between = Callable[["Values", slice | NDArray[np.intp]], Truths]
-"""Which elements are measurements; told with the values are the messages that they are of."""
+"""From values and the messages that they belong to: which elements are measurements."""
 
 
 def siblings(signal: Signal) -> tuple[str, ...]:
-    """The fields beside the signal's own that are read with it, and must be there."""
+    """Further fields that the signal needs beside its own."""
     names = {name.id for name in e.names(signal.valid)} - {"x"} if signal.valid else set()
     if signal.reduce is Reduce.OUTLINE:
         names |= {"angle_min", "angle_increment"}
     return tuple(sorted(names))
 
 
-def samples(signal: Signal, values: Values, beside: Mapping[str, Numbers]) -> Values:
+def samples(signal: Signal, values: Values, sibling_values: Mapping[str, Numbers]) -> Values:
     """The signal's value in each message.
 
     Args:
         signal: what to read, and how.
         values: shape (messages, elements), as they were recorded; one element for a number.
-        beside: each of `siblings`, shape (messages,).
+        sibling_values: each of `siblings`, shape (messages,).
 
     Returns:
         Shape (messages,); times `signal.scale` it is in base units.
@@ -49,28 +49,30 @@ def samples(signal: Signal, values: Values, beside: Mapping[str, Numbers]) -> Va
         values = values[:, index : index + 1]
     if not values.shape[1]:
         return np.full(len(values), np.nan)
-    found = np.empty(len(values), EXACT if values.dtype == EXACT else np.float64)
+    result = np.empty(len(values), EXACT if values.dtype == EXACT else np.float64)
     with np.errstate(all="ignore"):  # what is too large is infinite, and a NaN may signal
         if signal.reduce is None and signal.valid is None and np.isfinite(values).all():
             return values[:, 0]
-        plain = _plain(signal, values, beside, found)
+        plain = _plain(signal, values, sibling_values, result)
         if not plain.all():
             rows = ~plain
-            some = {name: numbers[rows] for name, numbers in beside.items()}
-            found[rows] = _samples(signal, values[rows], some)
-    return found
+            some = {name: numbers[rows] for name, numbers in sibling_values.items()}
+            result[rows] = _samples(signal, values[rows], some)
+    return result
 
 
-def _plain(signal: Signal, values: Values, beside: Mapping[str, Numbers], found: Values) -> Truths:
-    """Fill in the messages of which the least or the greatest measurement is soon seen.
+def _plain(
+    signal: Signal, values: Values, sibling_values: Mapping[str, Numbers], result: Values
+) -> Truths:
+    """Fill in the messages whose least or greatest measurement is easy to find.
 
-    These are most: one of their elements makes them unknown, or they hold a measurement and
-    nothing that takes precedence over it. Elements that are dropped never do, nor does what is far
-    over the least, or near over the greatest.
+    These are most: one of their elements makes them unknown, or they have a measurement and
+    nothing that takes precedence over it. Dropped elements never do, nor does far over the least,
+    or near over the greatest.
     """
     if signal.reduce not in (Reduce.MIN, Reduce.MAX):
         return np.zeros(len(values), bool)
-    between = _between(signal, beside, len(values))
+    between = _between(signal, sibling_values, len(values))
     if between is None or (signal.valid is not None and values.dtype != np.float32):
         return np.zeros(len(values), bool)
     unknown, stronger = (np.zeros(len(values), bool) for _ in range(2))
@@ -81,7 +83,7 @@ def _plain(signal: Signal, values: Values, beside: Mapping[str, Numbers], found:
             stronger |= chosen().any(axis=1)
     ends, measured = _ends(signal.reduce, values, between)
     plain: Truths = unknown | (measured & ~stronger)
-    found[plain] = np.where(unknown, np.nan, ends.astype(found.dtype) + 0.0)[plain]
+    result[plain] = np.where(unknown, np.nan, ends.astype(result.dtype) + 0.0)[plain]
     return plain
 
 
@@ -102,28 +104,28 @@ def _ends(reduce: Reduce, values: Values, between: Between) -> tuple[Values, Tru
 
 
 _WEAKER = {Reduce.MIN: Reading.FAR, Reduce.MAX: Reading.NEAR}
-"""What counts only where nothing was measured."""
+"""The reading that counts only where nothing was measured."""
 
 
 def _classes(
     invalid: Invalid, values: Values, between: Between
 ) -> Iterator[tuple[Reading, Callable[[], Truths]]]:
-    """What each kind of element that is no measurement means, and which elements are of it."""
+    """Each kind of element that is no measurement: its meaning, and its elements."""
     yield invalid.nan, lambda: np.isnan(values)
     yield invalid.positive_infinity, lambda: np.isposinf(values)
     yield invalid.negative_infinity, lambda: np.isneginf(values)
     yield invalid.other, lambda: np.isfinite(values) & ~between(values, slice(None))
 
 
-def _between(signal: Signal, beside: Mapping[str, Numbers], count: int) -> Between | None:
-    """Tells which elements are measurements, of 32-bit floats that are compared with such.
+def _between(signal: Signal, sibling_values: Mapping[str, Numbers], count: int) -> Between | None:
+    """A test for measurements among 32-bit floats, by comparison with such floats.
 
-    None where it takes more to say.
+    None where that is not enough.
     """
     bounds = [] if signal.valid is None else _bounds(signal.valid)
     if bounds is None:
         return None
-    scope = Scope(count, beside, signal.unit)
+    scope = Scope(count, sibling_values, signal.unit)
     field = Measure(np.zeros(1, np.float32))
     compared: list[tuple[str, NDArray[np.float32]]] = []
     for op, side in bounds:
@@ -168,28 +170,28 @@ def _without_x(part: e.Expression) -> bool:
     return all(name.id != "x" for name in e.names(part))
 
 
-def _samples(signal: Signal, values: Values, beside: Mapping[str, Numbers]) -> Values:
-    """`samples`, whatever the elements are."""
-    valid = _valid(signal, values, beside)
+def _samples(signal: Signal, values: Values, sibling_values: Mapping[str, Numbers]) -> Values:
+    """`samples` for any elements."""
+    valid = _valid(signal, values, sibling_values)
     readings, unknown = _readings(signal, unrounded(signal, values), valid)
-    found = _reduced(signal, readings, beside)
-    return np.where(unknown | np.isnan(readings).all(axis=1), np.nan, found)
+    result = _reduced(signal, readings, sibling_values)
+    return np.where(unknown | np.isnan(readings).all(axis=1), np.nan, result)
 
 
-def nearest(signal: Signal, stated: Numbers) -> float | None:
+def nearest(signal: Signal, range_min: Numbers) -> float | None:
     """The least distance that the sensor can report, of `range_min` in each message."""
-    finite = stated[np.isfinite(stated)]
+    finite = range_min[np.isfinite(range_min)]
     return scaled(float(finite.min()), signal.unit.factor) if len(finite) else None
 
 
-def _valid(signal: Signal, values: Values, beside: Mapping[str, Numbers]) -> Truths:
+def _valid(signal: Signal, values: Values, sibling_values: Mapping[str, Numbers]) -> Truths:
     """Which elements are measurements."""
     finite = np.isfinite(values)
     if signal.valid is None:
         return finite
     count, width = values.shape
     names = {name.id for name in e.names(signal.valid)} - {"x"}
-    numbers = {name: _spread(beside[name], width) for name in names}
+    numbers = {name: _spread(sibling_values[name], width) for name in names}
     scope = Scope(count * width, {"x": values.reshape(-1), **numbers}, signal.unit)
     accepted: Truths = (truth(signal.valid, scope) == TRUE).reshape(count, width)
     return finite & accepted
@@ -202,21 +204,21 @@ def _spread(numbers: Numbers, width: int) -> Numbers:
 
 
 def _readings(signal: Signal, values: Values, valid: Truths) -> tuple[Values, Truths]:
-    """The elements with what is far or near put in; and which messages are unknown."""
+    """The elements with infinities for far and near; and which messages are unknown."""
     invalid = signal.invalid
     readings, unknown = values.copy(), np.zeros(len(values), bool)
     for reading, chosen in _classes(invalid, values, lambda _, __: valid):
         if reading is Reading.UNKNOWN:
             unknown |= chosen().any(axis=1)
         else:
-            readings[chosen()] = _PUT[reading]
+            readings[chosen()] = _SUBSTITUTES[reading]
     return readings, unknown
 
 
-_PUT = {Reading.DROP: np.nan, Reading.FAR: np.inf, Reading.NEAR: -np.inf}
+_SUBSTITUTES = {Reading.DROP: np.nan, Reading.FAR: np.inf, Reading.NEAR: -np.inf}
 
 
-def _reduced(signal: Signal, readings: Values, beside: Mapping[str, Numbers]) -> Values:
+def _reduced(signal: Signal, readings: Values, sibling_values: Mapping[str, Numbers]) -> Values:
     match signal.reduce:
         case None:
             return readings[:, 0]
@@ -228,7 +230,10 @@ def _reduced(signal: Signal, readings: Values, beside: Mapping[str, Numbers]) ->
             return np.array([_mean(row) for row in readings])
         case Reduce.OUTLINE:
             return _clearances(
-                signal, readings.astype(np.float64), beside["angle_min"], beside["angle_increment"]
+                signal,
+                readings.astype(np.float64),
+                sibling_values["angle_min"],
+                sibling_values["angle_increment"],
             )
 
 
@@ -252,15 +257,17 @@ def _clearances(signal: Signal, readings: Numbers, starts: Numbers, increments: 
     from the sensor. So once the end of the nearest beam has been measured, most of the others are
     too far away to be nearer.
     """
-    found = np.empty(len(readings))
+    clearances = np.empty(len(readings))
     usual = _usual(signal, readings, starts, increments)
     for row in np.flatnonzero(~usual):
-        found[row] = clearance(signal, readings[row], float(starts[row]), float(increments[row]))
-    for rows in _of_one_kind(np.flatnonzero(usual), starts, increments):
+        clearances[row] = clearance(
+            signal, readings[row], float(starts[row]), float(increments[row])
+        )
+    for rows in _same_directions(np.flatnonzero(usual), starts, increments):
         beams = np.arange(readings.shape[1], dtype=float)
         angles = starts[rows[0]] + increments[rows[0]] * beams
-        found[rows] = _least(signal, scaled(readings[rows], signal.unit.factor), angles)
-    return found
+        clearances[rows] = _least(signal, scaled(readings[rows], signal.unit.factor), angles)
+    return clearances
 
 
 def _usual(signal: Signal, readings: Numbers, starts: Numbers, increments: Numbers) -> Truths:
@@ -272,8 +279,8 @@ def _usual(signal: Signal, readings: Numbers, starts: Numbers, increments: Numbe
     return sound & ~np.isneginf(readings).any(axis=1)
 
 
-def _of_one_kind(rows: Places, starts: Numbers, increments: Numbers) -> Iterator[Places]:
-    """Messages of which the beams have the same directions."""
+def _same_directions(rows: Places, starts: Numbers, increments: Numbers) -> Iterator[Places]:
+    """Groups of messages whose beams have the same directions."""
     while len(rows):
         same = (starts[rows] == starts[rows[0]]) & (increments[rows] == increments[rows[0]])
         yield rows[same]
@@ -285,10 +292,10 @@ def _least(signal: Signal, ranges: Numbers, angles: Numbers) -> Numbers:
     ranges = np.where(np.isfinite(ranges), ranges, np.inf)
     first = ranges.argmin(axis=1)
     rows = np.arange(len(ranges))
-    found = distances(places(ranges[rows, first], angles[first], signal.sensor), signal.footprint)
+    least = distances(places(ranges[rows, first], angles[first], signal.sensor), signal.footprint)
     corners = np.array(signal.footprint) - np.array(signal.sensor[:2])
     reach = float(np.hypot(*corners.T).max()) + _SLACK
-    row, beam = np.nonzero(ranges <= (found + reach)[:, None])
+    row, beam = np.nonzero(ranges <= (least + reach)[:, None])
     ends = places(ranges[row, beam], angles[beam], signal.sensor)
-    np.minimum.at(found, row, distances(ends, signal.footprint))
-    return found
+    np.minimum.at(least, row, distances(ends, signal.footprint))
+    return least

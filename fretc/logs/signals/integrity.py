@@ -19,7 +19,7 @@ class Integrity(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Checked:
-    """What was looked at of a log."""
+    """The parts of a log that were read and checked."""
 
     by_index: bool
     """Whether only the messages in question were read; else every record was."""
@@ -51,4 +51,4 @@ class Checked:
 
 
 EVERYTHING = Checked(by_index=False)
-"""Every record was looked at; there was no chunk."""
+"""Every record was read; there was no chunk."""

@@ -34,24 +34,24 @@ COMPARE: dict[str, Callable[..., NDArray[np.bool_]]] = {
 
 
 class ExpressionError(ValueError):
-    """The expression cannot be evaluated where it stands; the text says why."""
+    """The expression cannot be evaluated; the text says why."""
 
 
 @dataclass(frozen=True, slots=True)
 class Scope:
-    """What the names of an expression stand for, at `length` points.
+    """The values of an expression's names, at `length` points.
 
     `numbers` have shape (length,), or one element for all points; NaN is unknown. Times their
     `scales` (1 where none is given) they are in base units. Quantities are read in `unit` or its
-    powers. `held` are the states of each `... for 200 ms`, as `fretc.logs.signals.propositions` has
-    them.
+    powers. `persistences` are the states of each `... for 200 ms`, from
+    `fretc.logs.signals.propositions`.
     """
 
     length: int
     numbers: Mapping[str, Values]
     unit: Unit = ONE
     scales: Mapping[str, Fraction] = field(default_factory=dict)
-    held: Mapping[e.Held, NDArray[np.int8]] = field(default_factory=dict)
+    persistences: Mapping[e.Persistence, NDArray[np.int8]] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,7 +68,7 @@ class Measure:
 
     @property
     def plain(self) -> Values:
-        """What arithmetic computes with: 64-bit floats."""
+        """The values as 64-bit floats, for arithmetic."""
         return self.values.astype(np.float64, copy=False)
 
 
@@ -119,11 +119,11 @@ def term(expression: e.Expression, scope: Scope) -> Term:
 @lru_cache(1024)
 def _quantity(digits: str, name: str, read_in: Unit) -> Fraction:
     """A quantity in a unit, or in a power of it: 4 m^2 are 40 000 beside numbers in cm."""
-    known = unit(name)
-    assert known is not None, "the parser refuses unknown units"
+    own_unit = unit(name)
+    assert own_unit is not None, "the parser refuses unknown units"
     powers = (1, 0, 2, 3, -1, -2)
-    same = (n for n in powers if known.dimension == tuple(n * d for d in read_in.dimension))
-    return Fraction(digits) * known.factor / read_in.factor ** next(same, 0)
+    same = (n for n in powers if own_unit.dimension == tuple(n * d for d in read_in.dimension))
+    return Fraction(digits) * own_unit.factor / read_in.factor ** next(same, 0)
 
 
 def _measure(value: Term) -> Measure:
@@ -140,9 +140,9 @@ def together(left: Term, right: Term, op: str = "") -> tuple[Values, Values, Fra
     if isinstance(left, Fraction):
         if isinstance(right, Fraction):
             return _measure(left).values, _measure(right).values, Fraction(1)
-        return _beside(left, right, MIRRORED.get(op, op)), right.values, right.scale
+        return _substitute(left, right, MIRRORED.get(op, op)), right.values, right.scale
     if isinstance(right, Fraction):
-        return left.values, _beside(right, left, op), left.scale
+        return left.values, _substitute(right, left, op), left.scale
     if left.scale == right.scale:
         return left.values, right.values, left.scale
     return left.base, right.base, Fraction(1)
@@ -153,20 +153,20 @@ def compared(op: str, left: Term, right: Term) -> tuple[NDArray[np.bool_], NDArr
     if isinstance(left, Fraction) and isinstance(right, Fraction):
         signs = np.array([(left > right) - (left < right)])
         return COMPARE[op](signs, 0), np.zeros(1, bool)
-    one, other, _ = together(left, right, op)
-    return COMPARE[op](one, other), np.isnan(one) | np.isnan(other)
+    x, y, _ = together(left, right, op)
+    return COMPARE[op](x, y), np.isnan(x) | np.isnan(y)
 
 
 # Constants
 
 _HALVES = WHOLE // 2
-"""From here on every 64-bit float is a whole number, and what lies between two of them is none."""
+"""From here on every 64-bit float is a whole number; below its double also the reverse."""
 _BEYOND = 2**64
 """From here on nothing was recorded as a whole number."""
 
 
-def _beside(constant: Fraction, measure: Measure, op: str) -> Values:
-    """What stands for a constant that `measure op constant` compares."""
+def _substitute(constant: Fraction, measure: Measure, op: str) -> Values:
+    """The value to compare in `measure op constant`, in the kind of the measure."""
     exact, kind = constant / measure.scale, measure.values.dtype
     if not _HALVES <= abs(exact) < (_BEYOND if kind == EXACT else WHOLE) or kind == np.float32:
         return _nearest(exact, kind)
@@ -187,11 +187,11 @@ def _nearest(exact: Fraction, kind: np.dtype[Any]) -> Values:
     if kind != np.float32 or not isfinite(narrow):
         return np.array([double], kind if kind == EXACT else np.float64)
     around = (narrow, *(np.nextafter(narrow, np.float32(end)) for end in (-np.inf, np.inf)))
-    finite = [one for one in around if isfinite(one)]
-    return np.array([min(finite, key=lambda one: abs(Fraction(float(one)) - exact))], np.float32)
+    finite = [each for each in around if isfinite(each)]
+    return np.array([min(finite, key=lambda each: abs(Fraction(float(each)) - exact))], np.float32)
 
 
-# What is computed
+# Computation
 
 
 def _arithmetic(op: e.ArithmeticOperator, left: Term, right: Term) -> Term:
@@ -200,8 +200,8 @@ def _arithmetic(op: e.ArithmeticOperator, left: Term, right: Term) -> Term:
         return _UNKNOWN if exact is None else exact
     with np.errstate(all="ignore"):
         if op in ("+", "-"):
-            one, other, scale = together(_double(left), _double(right))
-            return Measure(one + other if op == "+" else one - other, scale)
+            x, y, scale = together(_double(left), _double(right))
+            return Measure(x + y if op == "+" else x - y, scale)
         a, b = _measure(left), _measure(right)
         match op:
             case "*":
@@ -217,8 +217,8 @@ def _double(value: Term) -> Term:
     return value if isinstance(value, Fraction) else Measure(value.plain, value.scale)
 
 
-def _beside_constant(value: Term) -> Term:
-    """Without whole numbers beyond 64-bit floats: an end of them and of a constant may be none."""
+def _without_exact(value: Term) -> Term:
+    """The term in 64-bit floats: the least of whole numbers and a constant need not be whole."""
     exact = isinstance(value, Measure) and value.values.dtype == EXACT
     return _double(value) if exact else value
 
@@ -231,9 +231,9 @@ def _call(name: str, args: Sequence[Term]) -> Term:
                 return called("abs", [value])
             return Measure(np.abs(value.values), value.scale)
         case "min", _:
-            return reduce(lambda one, other: _end(np.minimum, one, other), args)
+            return reduce(lambda x, y: _end(np.minimum, x, y), args)
         case "max", _:
-            return reduce(lambda one, other: _end(np.maximum, one, other), args)
+            return reduce(lambda x, y: _end(np.maximum, x, y), args)
         case _:
             raise ExpressionError(f"bindings have no `{name}` of {len(args)} numbers")
 
@@ -242,6 +242,6 @@ def _end(function: np.ufunc, left: Term, right: Term) -> Term:
     if isinstance(left, Fraction) and isinstance(right, Fraction):
         return called("min" if function is np.minimum else "max", [left, right])
     if isinstance(left, Fraction) or isinstance(right, Fraction):
-        left, right = _beside_constant(left), _beside_constant(right)
-    one, other, scale = together(left, right)
-    return Measure(function(one, other), scale)
+        left, right = _without_exact(left), _without_exact(right)
+    x, y, scale = together(left, right)
+    return Measure(function(x, y), scale)

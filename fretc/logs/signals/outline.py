@@ -68,8 +68,8 @@ def blind_share(
     rays = np.column_stack((np.cos(angles + sensor[2]), np.sin(angles + sensor[2])))
     starts, ends = _edges(outline)
     least = np.minimum(distances(first, outline), _to_rays(starts, first, rays).min(axis=1))
-    seen = _crossed(first, rays, starts, ends)
-    return float(np.mean((least >= bound) & ~seen))
+    crossed = _crossed(first, rays, starts, ends)
+    return float(np.mean((least >= bound) & ~crossed))
 
 
 def _edges(outline: Corners) -> tuple[Numbers, Numbers]:
@@ -121,9 +121,9 @@ def _crossed(origins: Numbers, rays: Numbers, starts: Numbers, ends: Numbers) ->
         offset = corners[None, :, :] - origins[:, None, :]
         return np.asarray((offset * rays[:, None, :]).sum(axis=2))
 
-    one, two = side(starts), side(ends)
-    apart = (one > 0) != (two > 0)
-    part = one / np.where(apart, one - two, 1.0)
+    start_side, end_side = side(starts), side(ends)
+    apart = (start_side > 0) != (end_side > 0)
+    part = start_side / np.where(apart, start_side - end_side, 1.0)
     meets = ahead(starts) + part * (ahead(ends) - ahead(starts))
     met: NDArray[np.bool_] = (apart & (meets >= 0)).any(axis=1)
     return met

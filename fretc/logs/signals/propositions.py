@@ -70,11 +70,11 @@ def evaluate(proposition: Proposition, declarations: Declarations, recording: Re
     signals = {name: declarations.signals[name] for name in proposition.signals}
     history = history_of(signals, recording)
     steps = _steps(proposition.expression, history)
-    kept = steps.times <= max(recording.end_ns, recording.start_ns)
-    return Steps(steps.times[kept], steps.states[kept])
+    in_time = steps.times <= max(recording.end_ns, recording.start_ns)
+    return Steps(steps.times[in_time], steps.states[in_time])
 
 
-# Truth at given points
+# Truth at points
 
 
 def truth(expression: e.Expression, scope: Scope) -> States:
@@ -100,17 +100,17 @@ def truth(expression: e.Expression, scope: Scope) -> States:
             return _same(truth(left, scope), truth(right, scope))
         case e.Xor(left, right):
             return _not(_same(truth(left, scope), truth(right, scope)))
-        case e.Held():
-            if expression not in scope.held:
+        case e.Persistence():
+            if expression not in scope.persistences:
                 raise ExpressionError("`for` needs a proposition: a single message has no duration")
-            return scope.held[expression]
+            return scope.persistences[expression]
         case _:
             raise ExpressionError("a truth value is needed, and this is a number")
 
 
 def _compared(op: str, left: Term, right: Term, length: int) -> States:
-    held, unknown = compared(op, left, right)
-    states = held.astype(np.int8)
+    true, unknown = compared(op, left, right)
+    states = true.astype(np.int8)
     states *= TRUE  # and what is not true is FALSE, which is 0
     if unknown.any():
         states[unknown] = UNKNOWN
@@ -138,7 +138,7 @@ class History:
     scales: Mapping[str, Fraction]
 
     def with_times(self, times: Sequence[Times]) -> History:
-        """The same with an event at each of the times that has none; those there are stay."""
+        """The same with further events at these times."""
         extra = np.setdiff1d(np.concatenate([self.times[:0], *times]), self.times)
         if not len(extra):
             return self
@@ -149,13 +149,13 @@ class History:
         numbers = {name: values[chosen[order]] for name, values in self.numbers.items()}
         return replace(self, times=every[order], numbers=numbers)
 
-    def scope(self, held: Mapping[e.Held, States] = MappingProxyType({})) -> Scope:
+    def scope(self, persistences: Mapping[e.Persistence, States] = MappingProxyType({})) -> Scope:
         """What the names stand for at the events."""
-        return Scope(len(self.times), self.numbers, scales=self.scales, held=held)
+        return Scope(len(self.times), self.numbers, scales=self.scales, persistences=persistences)
 
 
 def history_of(signals: Mapping[str, Signal], recording: Recording) -> History:
-    """What the signals are at each time at which `evaluate` looks at them."""
+    """The signals at each time that `evaluate` needs."""
     samples = {name: recording.samples.get(name, _NONE) for name in signals}
     gaps = _merged(recording.gaps)
     fixed = [recording.start_ns, *(edge for gap in gaps for edge in gap)]
@@ -164,7 +164,7 @@ def history_of(signals: Mapping[str, Signal], recording: Recording) -> History:
         sources += [samples[name].times, _expiries(samples[name].times, signal.max_age)]
     times, places = _events(sources)
     numbers = {
-        name: _held_values(samples[name], places[1 + 2 * i], times, signal.max_age, gaps)
+        name: _values_at(samples[name], places[1 + 2 * i], times, signal.max_age, gaps)
         for i, (name, signal) in enumerate(signals.items())
     }
     first = int(np.searchsorted(times, recording.start_ns))
@@ -220,7 +220,7 @@ def _ranks(times: Times) -> NDArray[np.intp]:
     return np.arange(len(times)) - np.searchsorted(times, times, "left")
 
 
-def _held_values(
+def _values_at(
     samples: Samples,
     places: NDArray[np.intp],
     times: Times,
@@ -228,37 +228,38 @@ def _held_values(
     gaps: Sequence[tuple[int, int]],
 ) -> Values:
     """The value of one signal at each event; NaN where it is unknown."""
-    taken, values = samples.times, samples.values
-    if not len(taken):
+    sample_times, values = samples.times, samples.values
+    if not len(sample_times):
         return np.full(len(times), np.nan)
     last = np.searchsorted(places, np.arange(len(times)), "right") - 1
-    taken, values = taken[last], values[last]
+    sample_times, values = sample_times[last], values[last]
     unknown = last < 0
     if max_age is not None:
-        unknown |= times - taken > max_age
+        unknown |= times - sample_times > max_age
     if gaps:
         starts, ends = np.array(gaps, np.int64).T
         gap = np.searchsorted(starts, times, "right") - 1
-        unknown |= (gap >= 0) & ((times <= ends[gap]) | (taken <= ends[gap]))
-    held: Values = np.where(unknown, values.dtype.type(np.nan), values)
-    return held
+        unknown |= (gap >= 0) & ((times <= ends[gap]) | (sample_times <= ends[gap]))
+    result: Values = np.where(unknown, values.dtype.type(np.nan), values)
+    return result
 
 
 # Durations
 
 
 def _steps(expression: e.Expression, history: History) -> Steps:
-    held = {
-        part: _held(_steps(part.arg, history), part.duration) for part in _durations(expression)
+    persistences = {
+        part: _persistence(_steps(part.arg, history), part.duration)
+        for part in _durations(expression)
     }
-    history = history.with_times([steps.times for steps in held.values()])
-    states = {part: _at(steps, history.times) for part, steps in held.items()}
+    history = history.with_times([steps.times for steps in persistences.values()])
+    states = {part: _at(steps, history.times) for part, steps in persistences.items()}
     return Steps(history.times, truth(expression, history.scope(states)))
 
 
-def _durations(expression: e.Expression) -> Iterator[e.Held]:
+def _durations(expression: e.Expression) -> Iterator[e.Persistence]:
     """The outermost `... for 200 ms` in it."""
-    if isinstance(expression, e.Held):
+    if isinstance(expression, e.Persistence):
         yield expression
         return
     for part in e.children(expression):
@@ -266,11 +267,11 @@ def _durations(expression: e.Expression) -> Iterator[e.Held]:
 
 
 def _at(steps: Steps, times: Times) -> States:
-    """What the step function is at each of the times, none of them before its first step."""
+    """The states of the step function at times that are not before its first step."""
     return steps.states[np.searchsorted(steps.times, times, "right") - 1]
 
 
-def _held(arg: Steps, duration: int) -> Steps:
+def _persistence(arg: Steps, duration: int) -> Steps:
     """`arg` throughout `[t - duration, t]`.
 
     False where it was false within it, else unknown where it was unknown within it (and before

@@ -10,7 +10,7 @@ from fretish.clock import Clock
 from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
 
 _JITTER = 1.1
-"""A topic of 10 Hz has steps a little above 100 ms too."""
+"""A topic of 10 Hz also has steps a little above 100 ms."""
 _FEW = 10
 """Fewer messages have no rate."""
 _EVENTS = 3
@@ -23,8 +23,8 @@ def slow_topics(
     """F315 for each signal that grows too old between messages, and each topic slower than ticks.
 
     Half of the steps between its messages are longer than `max_age`, or (by a tenth) than a tick.
-    Of a topic that comes only when something happens, and whose samples count until the next one,
-    nothing is told.
+    A topic that comes only when something happens, and whose samples count until the next one,
+    gets no warning.
 
     Args:
         declarations: clock and signals.
@@ -32,7 +32,7 @@ def slow_topics(
         signals: names of declared signals.
     """
     tick = _tick(declarations.clock, recording)
-    told: set[str] = set()
+    slow: set[str] = set()
     for name in signals:
         signal = declarations.signals[name]
         topic = recording.topics.get(signal.path.topic)
@@ -42,9 +42,9 @@ def slow_topics(
         if signal.max_age is not None and period > signal.max_age:
             yield _too_old(signal, period, signal.max_age)
         elif tick is not None and period > tick * _JITTER and _is_regular(signal, topic):
-            if topic.name in told:
+            if topic.name in slow:
                 continue
-            told.add(topic.name)
+            slow.add(topic.name)
             yield _slow(signal, period, declarations.clock, tick)
 
 

@@ -1,4 +1,4 @@
-"""What a log holds of the declared signals: the values that pass from reading to judging."""
+"""The samples of the declared signals in a log: the values between reading and audit."""
 
 from __future__ import annotations
 
@@ -24,14 +24,14 @@ Values = NDArray[np.floating[Any]]
 """As they were recorded, NaN is unknown: 32-bit floats, 64-bit floats, or `EXACT` numbers."""
 
 EXACT = np.dtype(np.longdouble)
-"""What holds each whole number of 64 bits as well as each float: 80-bit floats. Taken where whole
-numbers of 2^53 and more were recorded."""
+"""80-bit floats: they hold each whole number of 64 bits and each float. Used where whole numbers
+of 2^53 and more were recorded."""
 
 WHOLE = 2**53
 """From here on 64-bit floats do not hold every whole number."""
 
 Gap = tuple[int, int]
-"""First and last nanosecond of a time whose messages are lost."""
+"""First and last nanosecond of a time with lost messages."""
 
 
 _Number = TypeVar("_Number", float, Numbers)
@@ -45,10 +45,10 @@ def scaled(value: _Number, scale: Fraction) -> _Number:
         return value * _float(scale.numerator) / _float(scale.denominator)
 
 
-def _float(whole: int) -> float:
+def _float(number: int) -> float:
     """The nearest float of a number above 0; infinite where that is too large."""
     try:
-        return float(whole)
+        return float(number)
     except OverflowError:
         return inf
 
@@ -57,15 +57,15 @@ def widest(values: NDArray[Any]) -> Values:
     """Numbers of any kind as floats that hold them; 32-bit floats stay what they are."""
     if values.dtype == np.float32:
         return values.astype(np.float32, copy=False)
-    whole = values.dtype.kind in "iu" and values.dtype.itemsize == 8 and values.size > 0
-    if whole and (int(values.max()) >= WHOLE or int(values.min()) <= -WHOLE):
+    integers = values.dtype.kind in "iu" and values.dtype.itemsize == 8 and values.size > 0
+    if integers and (int(values.max()) >= WHOLE or int(values.min()) <= -WHOLE):
         return values.astype(EXACT)
     with np.errstate(invalid="ignore"):  # signalling NaN
         return values.astype(EXACT if values.dtype == EXACT else np.float64)
 
 
 class Series:
-    """Numbers that grow in number: of the narrowest kind that holds all of them."""
+    """A growing list of numbers, in the narrowest kind that holds all of them."""
 
     def __init__(self) -> None:
         self._kind = np.dtype(np.float32)
@@ -105,7 +105,7 @@ class Samples:
 
 @dataclass(frozen=True, slots=True)
 class Topic:
-    """How one topic of a log is, by the declared time (`log_time` where no signal reads it).
+    """Statistics of one topic by the declared time (`log_time` where no signal reads it).
 
     `first_ns` and `last_ns` are None for a topic without messages, `median_period_ns` for one
     with less than two. `out_of_order` counts the messages that are earlier than one before them,
@@ -132,7 +132,7 @@ class Topic:
 
 @dataclass(frozen=True, slots=True)
 class Recording:
-    """What one log holds of the declared signals.
+    """The declared signals in one log.
 
     `start_ns` and `end_ns` are the times of the first and the last message of the topics that the
     bindings read, whichever signals were asked for, widened to the `gaps`. `ticks` are the times

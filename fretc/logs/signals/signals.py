@@ -125,10 +125,10 @@ def nearest(signal: Signal, message: object) -> float | None:
     """
     if signal.reduce not in (Reduce.MIN, Reduce.OUTLINE):
         return None
-    stated = stated_field(message, RANGE_MIN)
-    if not isinstance(stated, Real) or not np.isfinite(float(stated)):
+    range_min = optional_field(message, RANGE_MIN)
+    if not isinstance(range_min, Real) or not np.isfinite(float(range_min)):
         return None
-    return scaled(float(stated), signal.unit.factor)
+    return scaled(float(range_min), signal.unit.factor)
 
 
 # Elements
@@ -156,12 +156,12 @@ def _attribute(value: object, name: str, parent: str) -> object:
     if isinstance(value, Sparse):
         with suppress(KeyError):
             return value.field(name)
-    known = fields(value)
-    if name in known:
+    names = fields(value)
+    if name in names:
         return getattr(value, name)
     where = f"`{parent}`" if parent else "the message"
-    near = suggestion(name, known)
-    listed = f"it has {', '.join(known)}" if known else None
+    near = suggestion(name, names)
+    listed = f"it has {', '.join(names)}" if names else None
     raise FieldError(
         f"{where} has no field `{name}`", f"did you mean `{near}`?" if near else listed
     )
@@ -177,7 +177,7 @@ def fields(message: object) -> tuple[str, ...]:
     return tuple(getattr(message, "__dict__", ()))
 
 
-def stated_field(message: object, name: str) -> object | None:
+def optional_field(message: object, name: str) -> object | None:
     """A field of a decoded message; None where it has none of that name, or leaves it out."""
     if not isinstance(message, Sparse):
         return getattr(message, name, None)
@@ -201,11 +201,11 @@ def _number(value: object, name: str) -> float:
 
 
 def _exact(value: float | Real | np.bool_) -> float:
-    """As a float; a whole number of 64 bits that a 64-bit float may not hold stays what it is."""
+    """As a float; a whole number of 64 bits beyond 64-bit floats stays an integer."""
     if isinstance(value, int | np.integer):
-        whole = int(value)
-        if WHOLE <= whole < 2**64 or -(2**63) <= whole <= -WHOLE:
-            return whole
+        integer = int(value)
+        if WHOLE <= integer < 2**64 or -(2**63) <= integer <= -WHOLE:
+            return integer
     return float(value)
 
 
@@ -222,9 +222,9 @@ def _array(value: object, name: str) -> Values:
         large = np.isfinite(values) & (np.abs(values) >= WHOLE)
         if isinstance(value, np.ndarray) or values.dtype.kind != "f" or not large.any():
             return widest(values)
-    elements = [_element(one, name) for one in value]
-    whole = any(isinstance(element, int) for element in elements)
-    return np.array(elements, EXACT if whole else np.float64)
+    elements = [_element(item, name) for item in value]
+    exact = any(isinstance(element, int) for element in elements)
+    return np.array(elements, EXACT if exact else np.float64)
 
 
 def _element(value: object, name: str) -> float:
@@ -236,7 +236,7 @@ def _element(value: object, name: str) -> float:
     return _exact(value)
 
 
-# What the elements mean
+# The meaning of elements
 
 
 def _valid(signal: Signal, message: object, values: Values) -> NDArray[np.bool_]:
@@ -270,7 +270,7 @@ def is_chosen(signal: Signal) -> bool:
 
 
 def _readings(signal: Signal, values: Values, valid: NDArray[np.bool_]) -> Values | None:
-    """The elements with what is far or near put in; NaN where one is dropped.
+    """The elements with infinities for far and near; NaN where one is dropped.
 
     None when an element makes the whole sample unknown.
     """
@@ -355,7 +355,7 @@ def blind_zones(
         nearest: for each signal the least distance that its sensor reports, in metres, as
             `Recording.nearest` has it.
     """
-    found = []
+    warnings = []
     for threshold in thresholds(proposition, declarations.signals):
         if not isinstance(threshold.term, e.Name):
             continue
@@ -364,8 +364,8 @@ def blind_zones(
             continue
         share = _blind(signal, threshold.bound, limit, threshold.operator)
         if share > 0:
-            found.append(_blind_zone(proposition, signal, threshold.bound, limit, share))
-    return tuple(found)
+            warnings.append(_blind_zone(proposition, signal, threshold.bound, limit, share))
+    return tuple(warnings)
 
 
 def _blind(signal: Signal, bound: float, limit: float, op: str) -> float:
@@ -381,8 +381,8 @@ def _blind_zone(
     where = "" if share == 1 else f" in {round(share * 360)} of 360 degrees"
     return Diagnostic(
         Code.BLIND_ZONE,
-        f"`{proposition.name}` compares `{signal.name}` with {_written(bound, signal)}, and "
-        f"`{signal.path.topic}` reports nothing nearer than {_written(limit, signal)}: what is "
+        f"`{proposition.name}` compares `{signal.name}` with {_in_unit(bound, signal)}, and "
+        f"`{signal.path.topic}` reports nothing nearer than {_in_unit(limit, signal)}: what is "
         f"nearer than the bound cannot be seen{where}",
         proposition.span,
         help="raise the bound above what the sensor can measure, or use a sensor that measures "
@@ -391,5 +391,5 @@ def _blind_zone(
     )
 
 
-def _written(value: float, signal: Signal) -> str:
+def _in_unit(value: float, signal: Signal) -> str:
     return f"{scaled(value, 1 / signal.unit.factor):.4g} {signal.unit_name}".rstrip()

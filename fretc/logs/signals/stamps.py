@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from fretc.logs.signals.samples import Times
 
 JUMP = 10**9
-"""By so much from one message to the next, a clock is set anew and not only late."""
+"""A step so large between two messages means that a clock was set, not that it is late."""
 STILL = 10
 """So many messages with one time are no burst: their clock stands still."""
 
@@ -37,22 +37,22 @@ def unset(logs: Times, times: Times, *, from_zero: bool) -> NDArray[np.bool_]:
 
 
 def placed(times: Times, lost: NDArray[np.bool_]) -> Times:
-    """The times, with the one before it for each that is lost; the first one where none is before.
+    """The times; a lost one becomes the one before it, or the first good one.
 
-    As they are where all are lost.
+    Unchanged where all are lost.
     """
-    known = np.flatnonzero(~lost)
-    if not len(known):
+    good = np.flatnonzero(~lost)
+    if not len(good):
         return times
-    before = np.searchsorted(known, np.arange(len(times)), "right") - 1
-    found: Times = times[known[before.clip(0)]]
-    return found
+    before = np.searchsorted(good, np.arange(len(times)), "right") - 1
+    result: Times = times[good[before.clip(0)]]
+    return result
 
 
 def still(times: Times) -> int:
-    """How many of the messages, in the order of the file, follow each other at one time.
+    """How many messages, in the order of the file, stand in runs of equal times.
 
-    Those of fewer than `STILL` are not counted.
+    Runs of fewer than `STILL` messages do not count.
     """
     starts = np.flatnonzero(np.append(True, times[1:] != times[:-1]))
     lengths = np.diff(np.append(starts, len(times)))

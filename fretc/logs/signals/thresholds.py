@@ -1,4 +1,4 @@
-"""Thresholds: the comparisons of a proposition that hold a measured number against a constant.
+"""Thresholds: the comparisons of a proposition between a measured number and a constant.
 
 Numbers are in the base unit of their dimension.
 """
@@ -32,7 +32,7 @@ class Threshold:
     unit: str
     """The base unit of both sides; empty for a plain number."""
     limit: e.Expression
-    """What the bound was written as."""
+    """The bound as it is written."""
 
     @property
     def comparison(self) -> e.Comparison:
@@ -62,10 +62,10 @@ def thresholds(proposition: Proposition, signals: Mapping[str, Signal]) -> tuple
     )
 
 
-def _comparisons(whole: e.Expression) -> Iterator[e.Comparison]:
-    if isinstance(whole, e.Comparison):
-        yield whole
-    for part in e.children(whole):
+def _comparisons(tree: e.Expression) -> Iterator[e.Comparison]:
+    if isinstance(tree, e.Comparison):
+        yield tree
+    for part in e.children(tree):
         yield from _comparisons(part)
 
 
@@ -92,7 +92,7 @@ def _threshold(
 
 def _unit(term: e.Expression, signals: Mapping[str, Signal]) -> str:
     kinds = {name: signal.unit.dimension for name, signal in signals.items()}
-    found = dimension(term, kinds, Source("", "").span())
-    assert found is not None, "a comparison is of numbers"
-    assert not isinstance(found, Diagnostic), "the reader of bindings refuses such an expression"
-    return base_name(found)
+    kind = dimension(term, kinds, Source("", "").span())
+    assert kind is not None, "a comparison is of numbers"
+    assert not isinstance(kind, Diagnostic), "the reader of bindings refuses such an expression"
+    return base_name(kind)

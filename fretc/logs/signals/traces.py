@@ -69,9 +69,11 @@ def trace(declarations: Declarations, recording: Recording, names: Collection[st
     is_cut = len(ticks.times) > 0 and recording.end_ns > ticks.times[-1]
     times = np.append(ticks.times, recording.end_ns) if is_cut else ticks.times
     first = recording.start_ns if ticks.period is not None else None
-    states = {name: states_at(name, declarations, recording, times, first) for name in names}
+    states = {
+        name: proposition_states(name, declarations, recording, times, first) for name in names
+    }
     count = len(ticks.times)
-    columns = {name: packed(found[:count]) for name, found in states.items()}
+    columns = {name: packed(each[:count]) for name, each in states.items()}
     if not is_cut:
         return Trace(ticks, columns, None)
     return Trace(ticks, columns, {name: truth_values(s[-1:])[0] for name, s in states.items()})
@@ -107,12 +109,12 @@ def timeline(declarations: Declarations, recording: Recording) -> Timeline:
 def origin(declarations: Declarations, recording: Recording, period: int) -> int:
     """Where the grid of ticks begins at phase 0."""
     topics = {signal.path.topic for signal in declarations.signals.values()}
-    found = (recording.topics[name].first_ns for name in topics if name in recording.topics)
-    last = max((first for first in found if first is not None), default=recording.start_ns)
+    firsts = (recording.topics[name].first_ns for name in topics if name in recording.topics)
+    last = max((first for first in firsts if first is not None), default=recording.start_ns)
     return last if 0 <= last - recording.start_ns < period else recording.start_ns
 
 
-def states_at(
+def proposition_states(
     name: str, declarations: Declarations, recording: Recording, ticks: Times, first: int | None
 ) -> States:
     """What each tick sees of a proposition, shape (ticks,).
@@ -122,12 +124,12 @@ def states_at(
     """
     proposition = declarations.propositions[name]
     steps = evaluate(proposition, declarations, recording)
-    begun = None if first is None else (first, heard(proposition, recording))
-    return seen(steps, ticks, proposition, begun)
+    begun = None if first is None else (first, complete_from(proposition, recording))
+    return states_at(steps, ticks, proposition, begun)
 
 
-def heard(proposition: Proposition, recording: Recording) -> int:
-    """From when on what is unknown of it is told by the log, not by a topic yet to begin."""
+def complete_from(proposition: Proposition, recording: Recording) -> int:
+    """From when on all its signals have begun, or messages are lost: unknowns count from there."""
     samples = [recording.samples.get(name) for name in proposition.signals]
     begins = [
         int(signal.times[0]) if signal is not None and len(signal.times) else recording.end_ns
@@ -137,13 +139,13 @@ def heard(proposition: Proposition, recording: Recording) -> int:
     return min(max(begins, default=recording.start_ns), lost)
 
 
-def seen(
+def states_at(
     steps: Steps, ticks: Times, proposition: Proposition, begun: tuple[int, int] | None
 ) -> States:
     """The state of each tick, shape (ticks,).
 
-    `begun` is when the log began, from where on the first tick sees, and when all the signals had:
-    what is unknown only because a topic is yet to begin says nothing of the first tick.
+    `begun` has the begin of the log, from where on the first tick sees, and `complete_from`: an
+    unknown before the begin of a topic does not make the first tick unknown.
     """
     before, upto = _windows(steps.times, ticks)
     if begun is not None and len(ticks):
@@ -152,37 +154,37 @@ def seen(
 
 
 def first_before(steps: Steps, begun: tuple[int, int], upto: NDArray[np.intp]) -> NDArray[np.intp]:
-    """From which step on the first tick sees, where it sees those below `upto`; `begun` as above.
+    """The first step that the first tick sees, of those below `upto`; `begun` as above.
 
-    From the first one that tells something; where none does, the last one alone.
+    It is the first step that is known or counts as unknown; if there is none, the last one.
     """
     first = int(np.searchsorted(steps.times, begun[0], "left"))
-    told = (steps.states[first:] != UNKNOWN) | (steps.times[first:] >= begun[1])
-    found = first + int(np.argmax(told)) if told.any() else len(steps.times)
-    return np.where(found < upto, found, np.maximum(first, upto - 1))
+    informative = (steps.states[first:] != UNKNOWN) | (steps.times[first:] >= begun[1])
+    start = first + int(np.argmax(informative)) if informative.any() else len(steps.times)
+    return np.where(start < upto, start, np.maximum(first, upto - 1))
 
 
 def combined(
     steps: Steps, before: NDArray[np.intp], upto: NDArray[np.intp], proposition: Proposition
 ) -> States:
-    """What ticks see of the steps `before <= i < upto`, each of shape (ticks,)."""
+    """The states of ticks that see the steps `before <= i < upto`, each of shape (ticks,)."""
     states = steps.states
-    found = np.where(before > 0, states[before - 1], UNKNOWN).astype(np.int8)
+    result = np.where(before > 0, states[before - 1], UNKNOWN).astype(np.int8)
     filled = upto > before
     match proposition.aggregate:
         case Aggregate.ANY:
-            found[filled] = FALSE
-            found[filled & _some(states == UNKNOWN, before, upto)] = UNKNOWN
-            found[filled & _some(states == TRUE, before, upto)] = TRUE
+            result[filled] = FALSE
+            result[filled & _some(states == UNKNOWN, before, upto)] = UNKNOWN
+            result[filled & _some(states == TRUE, before, upto)] = TRUE
         case Aggregate.ALL:
-            found[filled] = TRUE
-            found[filled & _some(states == UNKNOWN, before, upto)] = UNKNOWN
-            found[filled & _some(states == FALSE, before, upto)] = FALSE
+            result[filled] = TRUE
+            result[filled & _some(states == UNKNOWN, before, upto)] = UNKNOWN
+            result[filled & _some(states == FALSE, before, upto)] = FALSE
         case Aggregate.LAST:
-            found[filled] = states[upto[filled] - 1]
+            result[filled] = states[upto[filled] - 1]
     if proposition.on_unknown is not None:
-        found[found == UNKNOWN] = TRUE if proposition.on_unknown else FALSE
-    return found
+        result[result == UNKNOWN] = TRUE if proposition.on_unknown else FALSE
+    return result
 
 
 def _some(

@@ -1,8 +1,8 @@
 """Bags: ROS 1's `.bag` and rosbag2's `.db3`, read with rosbags; their messages go to a sink.
 
-Neither format has check sums: a changed byte within a message cannot be seen, and that is said.
-What is read ends where the reader ends; what the bag states (how many messages, up to when) is
-held against what came. Times are nanoseconds, log times.
+Neither format has check sums: a changed byte within a message cannot be seen, and a note says so.
+Reading ends where the reader ends; the number and the times of its messages are compared with
+those that the bag states. Times are nanoseconds, log times.
 """
 
 from __future__ import annotations
@@ -28,18 +28,18 @@ from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.source import Span
 
 BAG, DB3 = b"#ROSBAG V", b"SQLite format 3\0"
-"""What the files begin with."""
+"""The first bytes of the files."""
 _LEAST = 2**20
-"""Bytes that a value of a database may have, however small the database is."""
+"""Bytes that a value of any database may have, even of a small one."""
 _STEPS = 20_000
-"""Of SQLite's machine between two looks: some tenths of a millisecond."""
+"""Steps of SQLite's machine between two checks of the time: tenths of a millisecond."""
 NOWHERE = -1
-"""Where a damage is that has no byte."""
+"""The place of a damage without a byte."""
 
 
 @dataclass(frozen=True, slots=True)
-class Found:
-    """What a bag has given."""
+class BagContents:
+    """The contents of a bag, apart from its messages."""
 
     span: Gap | None
     """The first and the last of its whole messages."""
@@ -47,18 +47,18 @@ class Found:
     notes: tuple[Diagnostic, ...]
 
 
-def read(file: str, same: str, start: bytes, sink: Sink, place: Span) -> Found | Diagnostic:
+def read(file: str, same: str, start: bytes, sink: Sink, place: Span) -> BagContents | Diagnostic:
     """All messages of a bag, in order of time.
 
     Args:
         file: its path.
-        same: another path of it, which cannot become that of another file meanwhile.
+        same: another path of the same open file, which no other file can take over.
         start: its first bytes, `BAG` or `DB3`.
-        sink: what takes the messages.
+        sink: receives the messages.
         place: the bag, as the user named it.
 
     Returns:
-        What it has given; or what keeps the whole bag from being read.
+        Its contents; or why the bag cannot be read.
     """
     try:
         import rosbags  # noqa: F401
@@ -83,11 +83,11 @@ def read(file: str, same: str, start: bytes, sink: Sink, place: Span) -> Found |
     damages = tuple(way.settled())
     if way.span is None:
         return (
-            refusals.bad_bag(damages[0][0].what, place, indexed=bag)
+            refusals.bad_bag(damages[0][0].description, place, indexed=bag)
             if damages
-            else Found(None, (), ())
+            else BagContents(None, (), ())
         )
-    return Found(way.span, damages, (refusals.unchecked(place, way.assumed),))
+    return BagContents(way.span, damages, (refusals.unchecked(place, way.assumed),))
 
 
 def ends(file: str) -> Gap | None:
@@ -107,7 +107,7 @@ def _bag(file: str) -> Any:
     from rosbags.rosbag1 import Reader
 
     class Bounded(Reader):
-        """Its chunks unpack to as much as the chunks of MCAP may."""
+        """Its chunks have the same limit as the chunks of MCAP."""
 
         def read_chunk(self) -> Any:
             chunk = super().read_chunk()
@@ -117,7 +117,7 @@ def _bag(file: str) -> Any:
 
 
 def _unpacked(official: Callable[[bytes], bytes], packed: bytes) -> bytes:
-    """What is in a chunk of a ROS 1 bag.
+    """The contents of a chunk of a ROS 1 bag.
 
     Raises:
         BrokenError: it is more than such a chunk can hold.
@@ -139,9 +139,9 @@ def _unpacked(official: Callable[[bytes], bytes], packed: bytes) -> bytes:
 
 @contextmanager
 def _limited(size: int) -> Iterator[None]:
-    """Databases that are opened meanwhile make no value that is larger than their file.
+    """A context in which databases make no value larger than their file.
 
-    Between the steps of a query Python looks whether too much time has gone by.
+    Between the steps of a query Python checks whether too much time has passed.
     """
     import apsw
 
@@ -176,7 +176,7 @@ class _Way:
         """Types whose definition the bag does not carry."""
         self._reader, self._sink, self._bag = reader, sink, bag
         self._damages: list[tuple[Damage, bool]] = []
-        """Each with whether it has cost all that came after it, or may have cost anything."""
+        """Each with True if it has cost everything after it; False: it may have cost anything."""
         self._streams: dict[int, Stream] = {}
         self._stated = self._ends()
         self._counts: dict[int, int] = {}
@@ -192,7 +192,7 @@ class _Way:
     def run(self) -> None:
         """Read everything."""
         connections = list(self._reader.connections)
-        stated = self._stated_counts(connections)
+        counts = self._stated_counts(connections)
         try:
             for connection in connections:
                 stream = self._stream(connection)
@@ -206,12 +206,12 @@ class _Way:
         except Exception as error:  # the reader trusts each byte, and each may be wrong
             self._damage(f"it cannot be read further: {_reason(error)}", follows=True)
             return
-        if stated != self._counts:
-            there, held = sum(stated.values()), sum(self._counts.values())
-            what = f"it states {there} messages and holds {held}"
-            if there == held:
-                what = "its topics hold other numbers of messages than it states"
-            self._damage(what, code=Code.COUNT_MISMATCH)
+        if counts != self._counts:
+            expected, received = sum(counts.values()), sum(self._counts.values())
+            description = f"it states {expected} messages and holds {received}"
+            if expected == received:
+                description = "its topics hold other numbers of messages than it states"
+            self._damage(description, code=Code.COUNT_MISMATCH)
 
     def _stated_counts(self, connections: list[Any]) -> dict[int, int]:
         if not self._bag:
@@ -232,25 +232,27 @@ class _Way:
         self._sink.add(self._streams[id], time, time, memoryview(payload))
 
     def check(self, file: str) -> None:
-        """What only a database can tell about itself."""
+        """Checks that only a database allows."""
         for ending in ("-wal", "-journal"):
-            beside = Path(file + ending)
-            if beside.exists() and beside.stat().st_size:
-                self._damage(f"`{beside.name}` beside it holds messages that are not in it yet")
+            companion = Path(file + ending)
+            if companion.exists() and companion.stat().st_size:
+                self._damage(f"`{companion.name}` beside it holds messages that are not in it yet")
         listed = self._reader.metadata.message_count
         if listed != sum(self._counts.values()) and not self._damages:
-            what = f"it holds {listed} messages, some of them of no topic"
-            self._damage(what, code=Code.COUNT_MISMATCH)
+            description = f"it holds {listed} messages, some of them of no topic"
+            self._damage(description, code=Code.COUNT_MISMATCH)
         try:
-            (said,) = self._reader.dbconn.execute("PRAGMA integrity_check(1)").fetchone()
+            (result,) = self._reader.dbconn.execute("PRAGMA integrity_check(1)").fetchone()
         except Exception as error:  # it trusts each byte, and each may be wrong
-            said = _reason(error)
-        if said != "ok":
-            self._damage(f"the database is damaged: {str(said)[:200]}")
+            result = _reason(error)
+        if result != "ok":
+            self._damage(f"the database is damaged: {str(result)[:200]}")
 
-    def _damage(self, what: str, *, follows: bool = False, code: Code = Code.DAMAGED_CHUNK) -> None:
-        if all(damage.what != what for damage, _ in self._damages):
-            self._damages.append((Damage(NOWHERE, what, code=code), follows))
+    def _damage(
+        self, description: str, *, follows: bool = False, code: Code = Code.DAMAGED_CHUNK
+    ) -> None:
+        if all(damage.description != description for damage, _ in self._damages):
+            self._damages.append((Damage(NOWHERE, description, code=code), follows))
 
     def settled(self) -> Iterator[tuple[Damage, Gap | None]]:
         """All damages, with the time that each has cost."""
@@ -282,10 +284,10 @@ class _Way:
         name, kind, text = connection.msgtype, connection.msgdef.format, connection.msgdef.data
         encoding = {"MSG": "ros1msg" if self._bag else "ros2msg", "IDL": "ros2idl"}.get(kind.name)
         if encoding is None:
-            encoding, known = "ros2msg", _standard(name)
-            if known is None:
+            encoding, standard = "ros2msg", _standard(name)
+            if standard is None:
                 return None
-            text = known
+            text = standard
             self.assumed.append(name)
         if self._bag:
             name = name.replace("/msg/", "/")
@@ -312,23 +314,23 @@ def _stores() -> tuple[Any, ...]:
     return tuple(get_typestore(store) for store in Stores if store.name.startswith("ROS2_"))
 
 
-def _closure(known: Mapping[str, Any], name: str) -> dict[str, Any]:
+def _closure(fields: Mapping[str, Any], name: str) -> dict[str, Any]:
     """The fields of a type, and of all types in it."""
-    found: dict[str, Any] = {}
-    left = [name]
-    while left:
-        one = left.pop()
-        if one in found or one not in known:
+    closure: dict[str, Any] = {}
+    queue = [name]
+    while queue:
+        name_ = queue.pop()
+        if name_ in closure or name_ not in fields:
             continue
-        found[one] = known[one][1]
-        left += [part for _, kind in known[one][1] for part in _names(kind)]
-    return found
+        closure[name_] = fields[name_][1]
+        queue += [part for _, kind in fields[name_][1] for part in _names(kind)]
+    return closure
 
 
 def _names(kind: Any) -> Iterator[str]:
     """The types that a field is made of."""
-    node, what = kind
-    while not isinstance(what, str) and not isinstance(what[0], str):
-        node, what = what[0]
+    node, inner = kind
+    while not isinstance(inner, str) and not isinstance(inner[0], str):
+        node, inner = inner[0]
     if node.name == "NAME":
-        yield what
+        yield inner

@@ -1,4 +1,4 @@
-"""A run in several files: what the `metadata.yaml` of a rosbag2 folder lists.
+"""A run in several files: the `metadata.yaml` of a rosbag2 folder.
 
 Times are nanoseconds, log times.
 
@@ -38,7 +38,7 @@ class Folder:
     span: Gap | None
     """The first and the last message of the run."""
     spans: Mapping[str, Gap]
-    """Of single files, where it states them."""
+    """The spans of single files, where it states them."""
     compressed: str
     """`file` or `message`: how its files are packed; nothing where they are not."""
 
@@ -50,12 +50,12 @@ class Folder:
             before: the last message of the files before it.
             after: the first message of the files after it.
         """
-        stated = [self.spans[self.files[i]]] if self.files[i] in self.spans else []
-        whole = [self.span] if self.span is not None else []
-        starts = [before] if before is not None else [a for a, _ in (*stated, *whole)]
-        ends = [after] if after is not None else [b for _, b in (*stated, *whole)]
-        known = [time for time in (*starts, *ends, before, after) if time is not None]
-        return (min(known), max(known)) if known else None
+        own = [self.spans[self.files[i]]] if self.files[i] in self.spans else []
+        run = [self.span] if self.span is not None else []
+        starts = [before] if before is not None else [a for a, _ in (*own, *run)]
+        ends = [after] if after is not None else [b for _, b in (*own, *run)]
+        times = [time for time in (*starts, *ends, before, after) if time is not None]
+        return (min(times), max(times)) if times else None
 
 
 def is_folder(path: str) -> bool:
@@ -92,7 +92,7 @@ def _described(path: str, data: bytes) -> Folder | None:
         return Folder(
             path,
             files,
-            _whole(about.get("message_count")),
+            _natural(about.get("message_count")),
             _span(about),
             _spans(about.get("files")),
             _compressed(about),
@@ -128,8 +128,8 @@ def _spans(listed: Any) -> dict[str, Gap]:
 
 def _span(about: Mapping[str, Any]) -> Gap | None:
     """The first and the last message; None where there is none, or no sense."""
-    start = _whole(_inner(about.get("starting_time"), "nanoseconds_since_epoch"))
-    length = _whole(_inner(about.get("duration"), "nanoseconds"))
+    start = _natural(_inner(about.get("starting_time"), "nanoseconds_since_epoch"))
+    length = _natural(_inner(about.get("duration"), "nanoseconds"))
     if start is None or length is None or not about.get("message_count"):
         return None
     return (start, start + length) if start + length < _LATEST else None
@@ -139,5 +139,5 @@ def _inner(about: Any, name: str) -> Any:
     return about.get(name) if isinstance(about, dict) else None
 
 
-def _whole(value: Any) -> int | None:
+def _natural(value: Any) -> int | None:
     return value if isinstance(value, int) and value >= 0 else None

@@ -1,9 +1,9 @@
 """Where the bytes of a log come from: a file, standard input, or a URL.
 
-Standard input is copied to a temporary file without a name, which is gone with the process,
-however that ends. So is what is at a URL: a server could send other bytes when it is asked for the
-same again, and what is judged is what is hashed. Only where a log is read by its index, and not
-hashed, it is read where it is, in blocks.
+Standard input is copied to a temporary file without a name, which vanishes with the process in any
+case. So is a log at a URL: a server could send other bytes for a second request, and the audited
+bytes must be the hashed ones. Only a log that is read by its index, and not hashed, is read from
+the server in blocks.
 """
 
 from __future__ import annotations
@@ -33,12 +33,12 @@ from fretish.reading.limits import grant
 
 STDIN = "-"
 _MOST = 2**36
-"""Bytes of a log that a server sends without saying how many there are."""
+"""The most bytes of a log whose length the server does not state."""
 _SMALL_BLOCK = 2**14
-"""Bytes that are asked of a server at once where most of the file is passed by."""
+"""Bytes of one request where most of the file is skipped."""
 _SLOW = "the server sends next to nothing"
 _HASHED = 2**18
-"""Bytes that are hashed at once."""
+"""Bytes of one step of hashing."""
 _URL = re.compile(r"[A-Za-z][A-Za-z0-9+.:-]*://.*", re.DOTALL)
 _SECRET = re.compile(r"sig|token|key|cred|secret|passw|auth", re.IGNORECASE)
 
@@ -50,15 +50,15 @@ class Input:
     stream: io.BufferedReader
     size: int
     sha256: Callable[[], str]
-    """Of all its bytes; asked for when they have been read."""
+    """The SHA-256 of all its bytes; to be called after reading."""
     begin: Callable[[], None]
-    """Hash them at the same time as they are read, where that can be."""
+    """Begin to hash in parallel with reading, where that is possible."""
     file: str | None
-    """Its path, where it has one of its own."""
+    """Its path, where it has one."""
     same: str | None
-    """Another path of the very file that is open, whatever has its name by now."""
+    """Another path of the open file itself, even if its name now belongs to another file."""
     changed: Callable[[], bool] = lambda: False
-    """Whether somebody has written to it since it was opened, or its name is another file's."""
+    """Whether it was written to since it was opened, or its name now belongs to another file."""
 
 
 def is_url(path: str) -> bool:
@@ -67,7 +67,7 @@ def is_url(path: str) -> bool:
 
 
 def shown(path: str) -> str:
-    """How a log is called: nothing that is secret in a URL is ever printed or kept."""
+    """The name of a log for output: without the secrets of a URL."""
     if path == STDIN:
         return "<stdin>"
     if not is_url(path):
@@ -86,22 +86,22 @@ def shown(path: str) -> str:
 
 @contextmanager
 def opened(path: str, *, whole: bool = True) -> Iterator[Input | Diagnostic]:
-    """The log at a path, for as long as it is needed; or why there is none.
+    """The log at a path, open within the context; or why there is none.
 
     Args:
         path: a file, a URL, or `-`.
-        whole: whether all of it will be read; else a server is asked for less at once.
+        whole: whether all of it will be read; if not, requests to a server are smaller.
 
     Reading from it can raise OSError.
     """
     with ExitStack() as stack:
         try:
-            found = _opened(path, stack, whole=whole)
+            log = _opened(path, stack, whole=whole)
         except FileNotFoundError:
-            found = refusals.no_such_file(Source(shown(path), "").span())
+            log = refusals.no_such_file(Source(shown(path), "").span())
         except OSError as error:
-            found = refusals.unreadable(error, Source(shown(path), "").span())
-        yield found
+            log = refusals.unreadable(error, Source(shown(path), "").span())
+        yield log
 
 
 def _opened(path: str, stack: ExitStack, *, whole: bool) -> Input | Diagnostic:
@@ -119,35 +119,35 @@ def _opened(path: str, stack: ExitStack, *, whole: bool) -> Input | Diagnostic:
 
     def changed() -> bool:
         try:
-            found = (os.fstat(stream.fileno()), os.stat(path))
+            statuses = (os.fstat(stream.fileno()), os.stat(path))
         except OSError:
             return True
-        return any(_mark(now) != _mark(before) for now in found)
+        return any(_mark(now) != _mark(before) for now in statuses)
 
     digest = _Digest(stream.fileno(), before.st_size)
     same = f"/proc/self/fd/{stream.fileno()}"
     return Input(stream, before.st_size, digest.result, digest.begin, path, same, changed)
 
 
-def _mark(found: os.stat_result) -> tuple[int, ...]:
-    """What a write or another file of that name changes.
+def _mark(status: os.stat_result) -> tuple[int, ...]:
+    """The attributes that a write changes, or another file of that name.
 
     Whoever may write to a file can set `st_mtime` back, but `st_ctime` only by the machine's clock.
     """
-    times = found.st_mtime_ns, found.st_ctime_ns
-    return (found.st_dev, found.st_ino, found.st_size, *times)
+    times = status.st_mtime_ns, status.st_ctime_ns
+    return (status.st_dev, status.st_ino, status.st_size, *times)
 
 
 class _Digest:
-    """The SHA-256 of a file, which a second thread takes: hashing leaves the interpreter free.
+    """The SHA-256 of a file from a second thread: hashing releases the interpreter lock.
 
-    It is of the very file that is read: another one may have its name by now.
+    It hashes the open file itself: its name may now belong to another one.
     """
 
     def __init__(self, descriptor: int, size: int) -> None:
         self._descriptor, self._size = descriptor, size
         self._thread: threading.Thread | None = None
-        self._found: str | OSError = ""
+        self._result: str | OSError = ""
 
     def begin(self) -> None:
         if self._thread is None:
@@ -159,9 +159,9 @@ class _Digest:
         self.begin()
         assert self._thread is not None
         self._thread.join()
-        if isinstance(self._found, OSError):
-            raise self._found
-        return self._found
+        if isinstance(self._result, OSError):
+            raise self._result
+        return self._result
 
     def _run(self, own: int) -> None:
         digest, block, at = hashlib.sha256(), memoryview(bytearray(_HASHED)), 0
@@ -172,9 +172,9 @@ class _Digest:
                     raise OSError(None, "it became shorter while it was read")
                 digest.update(block[:read])
                 at += read
-            self._found = digest.hexdigest()
+            self._result = digest.hexdigest()
         except OSError as error:
-            self._found = error
+            self._result = error
         finally:
             os.close(own)
 
@@ -202,7 +202,7 @@ def _stdin(stack: ExitStack) -> Input | Diagnostic:
 
 
 def _copied(source: BinaryIO, stack: ExitStack) -> io.BufferedReader:
-    """All that follows, in a file without a name."""
+    """The rest of a stream, in a file without a name."""
     copy = stack.enter_context(tempfile.TemporaryFile())  # noqa: SIM115
     while block := source.read(web.BLOCK):
         copy.write(block)
@@ -220,7 +220,7 @@ def _reader(descriptor: int) -> io.BufferedReader:
 
 
 class _Hashed(io.RawIOBase):
-    """A file at a URL. What is read in order is hashed on the way, so that it comes once."""
+    """A file at a URL. Bytes that are read in order are hashed on the way, so they come once."""
 
     def __init__(self, file: Any, size: int) -> None:
         self._file, self._size = _Paced(file, _SMALL_BLOCK), size
@@ -293,15 +293,15 @@ def _remote(url: str, stack: ExitStack, *, whole: bool) -> Input | Diagnostic:
 
 
 def _stream(system: Any, path: str) -> Any:
-    """All that is there from its beginning on, where no part of it can be asked for."""
+    """All bytes from the beginning on, where the server sends no parts."""
     return web.Stream(system, path) if web.is_web(path) else system.open(path, "rb", block_size=0)
 
 
 class _Paced:
-    """What a server sends; its errors are the operating system's, and one is that it is slow."""
+    """The bytes from a server; its errors become OSError, and slowness is one."""
 
     def __init__(self, file: Any, least: int = 0) -> None:
-        """`least`: bytes that a question counts for, however few are wanted."""
+        """`least`: bytes that each request counts for, at least."""
         self._file, self._least = file, least
         self._due, self._spent = 0, 0.0
 
@@ -321,9 +321,9 @@ class _Paced:
 
 
 class _Limited(io.BytesIO):
-    """What a server sends, as long as that is not endless and there is room for it.
+    """The bytes from a server, up to a limit and to the free space.
 
-    All of it comes, if the size is known, or an error.
+    With a known size all of them come, or an error.
     """
 
     def __init__(self, file: Any, size: int | None) -> None:
@@ -346,7 +346,7 @@ class _Limited(io.BytesIO):
 
 def _as_os_error(error: Exception) -> OSError:
     if isinstance(error, FileNotFoundError) and isinstance(error.__cause__, Exception):
-        error = error.__cause__  # whatever is wrong, it says that there is no file
+        error = error.__cause__  # fsspec hides the real error behind "no such file"
     if isinstance(error, TimeoutError):
         return OSError(None, _SLOW)
     if isinstance(error, FileNotFoundError | PermissionError):

@@ -1,4 +1,4 @@
-"""A run in several files: what each of them has given, and what was lost between them.
+"""A run in several files: the contents of each, and the losses between them.
 
 Times are nanoseconds, log times.
 """
@@ -18,27 +18,27 @@ from fretish.diagnostics.diagnostic import Diagnostic
 
 @dataclass(frozen=True, slots=True)
 class Part:
-    """What one file has given."""
+    """The contents of one file, apart from its messages."""
 
     sha256: str
-    """Of its bytes; of its summary, where it was read by its index alone."""
+    """The SHA-256 of its bytes; of its summary, where it was read by its index alone."""
     size: int
     span: Gap | None
     """The first and the last of its whole messages; None of a file without any."""
     damages: tuple[tuple[Damage, Gap | None], ...]
     notes: tuple[Diagnostic, ...] = ()
-    """What else there is to say."""
+    """Further diagnostics."""
     checked: Checked = EVERYTHING
 
 
 class Numbered:
-    """Hands every message on, and numbers the streams of several files as those of one."""
+    """A sink that passes messages on, and numbers the streams of several files as one log."""
 
     def __init__(self, sink: Sink) -> None:
         self.counted = 0
         """Messages so far."""
         self._sink = sink
-        self._known: dict[Hashable, Stream] = {}
+        self._streams: dict[Hashable, Stream] = {}
         self._of_file: dict[int, tuple[Stream, Stream]] = {}
 
     def next_file(self) -> None:
@@ -47,28 +47,28 @@ class Numbered:
 
     def declare(self, stream: Stream) -> None:
         """A stream of the file."""
-        self._sink.declare(self._one(stream))
+        self._sink.declare(self._renumbered(stream))
 
     def add(self, stream: Stream, log_time: int, publish_time: int, payload: memoryview) -> None:
         """One whole message."""
         self.counted += 1
-        self._sink.add(self._one(stream), log_time, publish_time, payload)
+        self._sink.add(self._renumbered(stream), log_time, publish_time, payload)
 
     def add_all(self, stream: Stream, messages: Messages) -> None:
         """Whole messages of one stream."""
         self.counted += len(messages.starts)
-        self._sink.add_all(self._one(stream), messages)
+        self._sink.add_all(self._renumbered(stream), messages)
 
     def wants(self, topic: str) -> bool:
-        """Whether more than the number of its messages is asked for."""
+        """Whether the messages themselves are wanted, not only their number."""
         return self._sink.wants(topic)
 
     def count(self, stream: Stream, count: int) -> None:
         """So many messages of a stream that is not wanted."""
         self.counted += count
-        self._sink.count(self._one(stream), count)
+        self._sink.count(self._renumbered(stream), count)
 
-    def _one(self, stream: Stream) -> Stream:
+    def _renumbered(self, stream: Stream) -> Stream:
         """The same stream under a number of the whole run."""
         of_file = self._of_file.get(stream.channel.id)
         if of_file is not None and of_file[0] is stream:
@@ -76,15 +76,15 @@ class Numbered:
         channel, schema = stream.channel, stream.schema
         definition = (schema.name, schema.encoding, schema.data) if schema is not None else None
         key = (channel.topic, channel.message_encoding, definition)
-        if key not in self._known:
-            number = len(self._known) + 1
-            self._known[key] = Stream(
+        if key not in self._streams:
+            number = len(self._streams) + 1
+            self._streams[key] = Stream(
                 replace(channel, id=number, schema_id=number if schema is not None else 0),
                 replace(schema, id=number) if schema is not None else None,
             )
-        one = self._known[key]
-        self._of_file[channel.id] = stream, one
-        return one
+        renumbered = self._streams[key]
+        self._of_file[channel.id] = stream, renumbered
+        return renumbered
 
 
 def around(parts: Sequence[Part | None], i: int) -> tuple[int | None, int | None]:
@@ -99,8 +99,8 @@ def widened(
 ) -> Iterator[tuple[Damage, Gap | None]]:
     """The damages of one file, where its run goes on around it.
 
-    A file that breaks off does not tell how far it went: as far as the next one begins. So each
-    loss that touches an end of its file goes on to the messages of the files around it.
+    A file that breaks off may have gone on until the next one begins. So each loss that touches an
+    end of its file extends to the messages of the files around it.
 
     Args:
         part: the file.

@@ -1,4 +1,4 @@
-"""Where logs may be looked for that somebody else has named: evidence tells where its logs are."""
+"""Places that logs may be opened from: evidence of somebody else names places of its logs."""
 
 from __future__ import annotations
 
@@ -12,13 +12,13 @@ from fretc.logs.storage.inputs import is_url
 
 @dataclass(frozen=True, slots=True)
 class Places:
-    """What may be opened.
+    """The places that may be opened.
 
-    Files below the present folder and below folders that the user names, `https`, and whatever
-    begins with a URL that the user names.
+    Files below the present folder and below folders that the user names, `https`, and URLs below
+    one that the user names.
     """
 
-    named: Sequence[str] = ()
+    allowed: Sequence[str] = ()
     """Folders, and beginnings of URLs."""
     offline: bool = False
     """Whether nothing is asked of any server."""
@@ -30,7 +30,7 @@ class Places:
     def _of_url(self, url: str) -> str:
         if self.offline:
             return "it is on a server, and `--offline` is given"
-        if any(_begins(url, start) for start in self.named if is_url(start)):
+        if any(_begins(url, start) for start in self.allowed if is_url(start)):
             return ""
         if "::" in url:
             return "it is a chain of protocols"
@@ -43,7 +43,7 @@ class Places:
 
     def _of_file(self, path: str) -> str:
         real = os.path.realpath(path)
-        folders = [os.curdir, *(name for name in self.named if not is_url(name))]
+        folders = [os.curdir, *(name for name in self.allowed if not is_url(name))]
         inside = any(
             os.path.commonpath([real, folder]) == folder
             for folder in map(os.path.realpath, folders)

@@ -1,4 +1,4 @@
-"""What there is to say of bags, folders, URLs and standard input: one function for each message."""
+"""Diagnostics about bags, folders, URLs and standard input: one function for each message."""
 
 from __future__ import annotations
 
@@ -45,13 +45,13 @@ def no_protocol_package(protocol: str, why: str, place: Span) -> Diagnostic:
     reason = why.strip().partition("\n")[0][:200]
     packages = {"s3": "s3fs", "s3a": "s3fs", "gs": "gcsfs", "gcs": "gcsfs"}
     packages |= {"az": "adlfs", "abfs": "adlfs", "http": "aiohttp", "https": "aiohttp"}
-    known = packages.get(protocol.lower())
+    package = packages.get(protocol.lower())
     return Diagnostic(
         Code.MISSING_EXTRA,
         f"what is at `{protocol}://` cannot be read: {reason}",
         place,
-        f"install its package: pip install {known}"
-        if known
+        f"install its package: pip install {package}"
+        if package
         else "what each protocol needs is in fsspec's documentation",
     )
 
@@ -70,7 +70,7 @@ def no_rosbags(place: Span) -> Diagnostic:
 
 
 def bad_bag(why: str, place: Span, *, indexed: bool) -> Diagnostic:
-    """The reader of bags gives nothing of it."""
+    """The reader of bags cannot read it."""
     return Diagnostic(
         Code.UNREADABLE_LOG,
         f"the bag cannot be read: {why}",
@@ -90,7 +90,7 @@ def bag_of_no_file(place: Span) -> Diagnostic:
 
 
 def unchecked(place: Span, assumed: Collection[str]) -> Diagnostic:
-    """What a bag cannot show, and which definitions are not its own."""
+    """The limits of a bag: no check sums, and types whose definitions it lacks."""
     message = (
         "a bag has no check sums, and one time for each message: a changed byte within a message "
         "cannot be seen, and publish_time is log_time"
@@ -110,7 +110,7 @@ def unchecked(place: Span, assumed: Collection[str]) -> Diagnostic:
 
 
 def without_crc(place: Span) -> Diagnostic:
-    """What an MCAP file cannot show that states no CRC of its messages."""
+    """The limits of an MCAP file without CRCs of its messages."""
     return Diagnostic(
         Code.BAG_FORMAT,
         "no CRC covers its messages: a changed byte within one of them cannot be seen",
@@ -121,7 +121,7 @@ def without_crc(place: Span) -> Diagnostic:
 
 
 def bad_metadata(place: Span) -> Diagnostic:
-    """What describes a run in several files is not as rosbag2 writes it."""
+    """The description of a run in several files is not as rosbag2 writes it."""
     return Diagnostic(
         Code.SPLIT_LOG,
         "it does not say which files the run has",
@@ -130,13 +130,13 @@ def bad_metadata(place: Span) -> Diagnostic:
     )
 
 
-def part_of_a_run(i: int, count: int, whole: str, place: Span) -> Diagnostic:
-    """One file of several is read as if it were a run of its own; `whole` is what to name."""
+def part_of_a_run(i: int, count: int, run: str, place: Span) -> Diagnostic:
+    """One file of several is read as a run of its own; `run` is the name of the whole run."""
     return Diagnostic(
         Code.SPLIT_LOG,
         f"it is file {i + 1} of {count} of one run, and judged alone",
         place,
-        f"name {whole}: its files are one log",
+        f"name {run}: its files are one log",
         Severity.NOTE,
     )
 

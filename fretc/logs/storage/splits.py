@@ -1,4 +1,4 @@
-"""ROS 1 bags that belong together: the files of one run, and what a bag was before its reindexing.
+"""ROS 1 bags that belong together: the files of one run, and a bag with its backup.
 
 `rosbag record --split` writes `run_0.bag`, `run_1.bag`, and so on; the last one is called
 `run_2.bag.active` until the recorder has closed it. Such a run goes by the name `run_*.bag`.
@@ -18,35 +18,35 @@ from fretc.logs.storage.bags import ends
 from fretc.logs.storage.folders import Folder
 
 ACTIVE = ".bag.active"
-"""How the name of a bag ends that its recorder has not closed."""
+"""The ending of a bag that its recorder has not closed."""
 _FILE = re.compile(r"(?P<run>.+)_(?P<number>\d+)\.bag(\.active)?", re.DOTALL)
-_WHOLE = re.compile(r"(?P<run>.+)_\*\.bag", re.DOTALL)
+_RUN = re.compile(r"(?P<run>.+)_\*\.bag", re.DOTALL)
 _SOON = 10**9
-"""From one file to the next of a run; files that are farther apart are runs of their own."""
+"""The most time between two files of a run; files farther apart are runs of their own."""
 _BACKUP = re.compile(r".+\.orig\.bag|.+\.bag\.orig\.active", re.DOTALL)
 _HEADER = 4096
 """Bytes that the header of a bag is padded to."""
 
 
 def split(path: str) -> Folder | None:
-    """The run that a bag is a file of; None where it is one of its own.
+    """The run that a bag belongs to; None where the bag is a whole run.
 
     Files of one name are one run if their numbers follow each other, none comes twice (`run_1.bag`
     and `run_01.bag`), and each begins where the one before it ends: names alone could be those of
     runs that were numbered.
 
     Args:
-        path: of one of the files, or what `named` gives.
+        path: of one of the files, or what `run_name` gives.
 
     Raises:
         OSError: a file cannot be read.
     """
     parent, name = os.path.split(path)
-    match = _WHOLE.fullmatch(name) or _FILE.fullmatch(name)
-    if match is None or (_WHOLE.fullmatch(name) and os.path.lexists(path)):
+    match = _RUN.fullmatch(name) or _FILE.fullmatch(name)
+    if match is None or (_RUN.fullmatch(name) and os.path.lexists(path)):
         return None
-    found = (_FILE.fullmatch(other) for other in os.listdir(parent or "."))
-    own = [file for file in found if file and file["run"] == match["run"]]
+    matches = (_FILE.fullmatch(file) for file in os.listdir(parent or "."))
+    own = [file for file in matches if file and file["run"] == match["run"]]
     numbers = sorted((int(file["number"]), file[0]) for file in own)
     files = [file for _, file in numbers]
     follow = all(b == a + 1 for (a, _), (b, _) in pairwise(numbers))
@@ -55,8 +55,8 @@ def split(path: str) -> Folder | None:
     return Folder(parent or ".", tuple(files), None, None, {}, "")
 
 
-def named(run: Folder) -> str:
-    """What the run is called: `runs/run_*.bag`."""
+def run_name(run: Folder) -> str:
+    """The name of the run: `runs/run_*.bag`."""
     match = _FILE.fullmatch(run.files[0])
     assert match is not None
     name = f"{match['run']}_*.bag"
@@ -68,25 +68,25 @@ def _in_time(parent: str, files: Sequence[str]) -> bool:
     spans: list[Gap | None] = [ends(os.path.join(parent, file)) for file in files]
     if spans[-1] is None and files[-1].endswith(ACTIVE):
         spans.pop()
-    known = [span for span in spans if span is not None]
-    soon = all(abs(two[0] - one[1]) <= _SOON for one, two in pairwise(known))
-    return soon and bool(known) and len(known) == len(spans)
+    closed = [span for span in spans if span is not None]
+    soon = all(abs(b[0] - a[1]) <= _SOON for a, b in pairwise(closed))
+    return soon and bool(closed) and len(closed) == len(spans)
 
 
 def is_backup(path: str) -> bool:
-    """Whether it is what `rosbag reindex` leaves of a bag, beside the bag that it has made."""
+    """Whether it is the backup of a bag by `rosbag reindex`, beside the new bag."""
     root, name = os.path.split(path)
     if not _BACKUP.fullmatch(name):
         return False
     mended = (name.replace(".orig.bag", ".bag"), name.replace(".bag.orig.active", ".bag"))
-    kept = {*mended, f"{mended[1]}.active"} - {name}
-    return any(os.path.exists(os.path.join(root, one)) for one in kept)
+    originals = {*mended, f"{mended[1]}.active"} - {name}
+    return any(os.path.exists(os.path.join(root, each)) for each in originals)
 
 
 def unclosed_backup(path: str) -> str | None:
-    """The name of what a bag was before `rosbag reindex`, if its recorder had not closed it.
+    """The name of a bag's backup by `rosbag reindex`, if its recorder had not closed it.
 
-    Then the chunk that was being written is not in the bag.
+    Then the last, unfinished chunk is not in the bag.
 
     Raises:
         OSError: it cannot be read.
@@ -95,8 +95,8 @@ def unclosed_backup(path: str) -> str | None:
     for backup in (file.with_suffix(".orig.bag"), file.with_name(f"{file.name}.orig.active")):
         if backup.is_file():
             with backup.open("rb") as stream:
-                _, found, rest = stream.read(_HEADER).partition(b"index_pos=")
-            place = int.from_bytes(rest[:8], "little") if found else 0
+                _, marker, rest = stream.read(_HEADER).partition(b"index_pos=")
+            place = int.from_bytes(rest[:8], "little") if marker else 0
             if not 0 < place < backup.stat().st_size:
                 return backup.name
     return None

@@ -50,15 +50,15 @@ def _client(scheme: str, **arguments: Any) -> Any:
     hooks = aiohttp.TraceConfig()
     hooks.on_request_redirect.append(_redirects(scheme))
     hooks.on_request_end.append(_check_answer)
-    whole = PATIENCE + BLOCK / SLOWEST
-    limits = aiohttp.ClientTimeout(total=whole, sock_connect=_CONNECT, sock_read=PATIENCE)
+    longest = PATIENCE + BLOCK / SLOWEST
+    limits = aiohttp.ClientTimeout(total=longest, sock_connect=_CONNECT, sock_read=PATIENCE)
     return aiohttp.ClientSession(
         trace_configs=[hooks], timeout=limits, auto_decompress=False, **arguments
     )
 
 
 class Stream:
-    """All that is at a URL, in pieces as they come; the next one is waited for so long."""
+    """The bytes at a URL, in pieces as they come; it waits for each at most `PATIENCE`."""
 
     def __init__(self, system: Any, url: str) -> None:
         self._loop = system.loop
@@ -73,15 +73,15 @@ class Stream:
         self._loop.call_soon_threadsafe(self._answer.close)
 
     def _wait(self, ask: Any, *arguments: object) -> Any:
-        asked = asyncio.run_coroutine_threadsafe(ask(*arguments), self._loop)
+        future = asyncio.run_coroutine_threadsafe(ask(*arguments), self._loop)
         try:
-            return asked.result(PATIENCE)
+            return future.result(PATIENCE)
         finally:
-            asked.cancel()
+            future.cancel()
 
 
 async def _answer(system: Any, url: str) -> Any:
-    """What a server says to a question for all of it; the body is still to come."""
+    """The response of a server to a request for all of it, before its body."""
     import aiohttp
 
     session = await system.set_session()
@@ -104,12 +104,12 @@ def _redirects(scheme: str) -> Any:
 
 
 async def _check_answer(session: object, context: object, request: Any) -> None:
-    """An answer to a question for a part is read as a whole: it is no longer than that part."""
-    asked = _RANGE.fullmatch(request.headers.get("Range", ""))
+    """Refuse an answer that is longer than the requested part: it would be read as a whole."""
+    part = _RANGE.fullmatch(request.headers.get("Range", ""))
     answer = request.response
-    if asked is None or (answer.status != 206 and "Content-Range" not in answer.headers):
+    if part is None or (answer.status != 206 and "Content-Range" not in answer.headers):
         return
     length = answer.content_length
-    if length is None or length > int(asked[2]) - int(asked[1]) + 1:
+    if length is None or length > int(part[2]) - int(part[1]) + 1:
         answer.close()
         raise OSError(None, "the server sends another part than it was asked for")

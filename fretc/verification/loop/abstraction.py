@@ -1,11 +1,10 @@
-"""A twin of the closed loop in six whole numbers, as one relation for solvers and for Python.
+"""An abstraction of the closed loop, its twin: six whole numbers and one relation between them.
 
-It forgets everything but one demand that is open: for how long, what became of the first request
-that was not lost since a stop is requested without a break, and for how long the wheels have zero.
-Requests at every tick are those of a heartbeat of one tick. So it may do more than the
-loop, never less; that is checked step by step where the loop is small (`covered`), and what an
-inductive invariant says of the twin is then true of the loop. Times are cells, those of
-`fretc.verification.loop.model`.
+It keeps the oldest open demand: its age, the fate of the first request that was not lost since the
+present stop began, and how long the wheels have zero. Requests at every tick count as a heartbeat
+of one tick. The twin may take more steps than the loop, never fewer: `covered` checks that step by
+step where the loop is small. So an inductive invariant of the twin holds of the loop. Times are
+cells, those of `fretc.verification.loop.model`. Solvers and Python share the relation.
 """
 
 from __future__ import annotations
@@ -19,7 +18,7 @@ from compiler.logic.kripke import TooManyStatesError
 from fretc.verification.loop.model import Channel, Loop, Node, Tick
 
 NONE, ARRIVED = -1, -2
-"""In place of the age of a request: none is in flight; one has been heard."""
+"""In place of the age of a request: none is in flight; one has arrived."""
 
 
 class Numbers(NamedTuple):
@@ -28,34 +27,34 @@ class Numbers(NamedTuple):
     open: Any
     """Ticks since the trigger of the oldest open demand; -1: none is open."""
     age: Any
-    """Cells since the first request was sent that was not lost since a stop is requested."""
+    """Cells since the sending of the first request of this stop that was not lost."""
     losses: Any
-    """Messages that were lost since the last that was not."""
+    """Messages lost since the last one that was not."""
     still: Any
-    """Ends of cells since the wheels have zero, up to `braking + 1`; -1: they move."""
-    asked: Any
-    """1: a stop is requested, whether anyone is told or not; 0: none is."""
+    """Ends of cells since the wheels have zero, at most `braking + 1`; -1: they move."""
+    requested: Any
+    """1: a stop is requested, whether a message says so or not; 0: none is."""
     silent: Any
     """Ticks from the last message to the next tick."""
 
 
 class Choice(NamedTuple):
-    """What is left open in a step."""
+    """The free choices of a step."""
 
     stands: Any
     sent: Any
     lost: Any
-    """The message that is sent."""
+    """Whether the message is lost."""
     cell: Any
-    """In which the request is heard, if it is; -1: at the instant of the tick."""
+    """The cell in which the request arrives, if it does; -1: at the instant of the tick."""
 
 
 class Times(NamedTuple):
-    """The parameters; `cells` and `heartbeat` are numbers in every use, the others may be terms."""
+    """The parameters; `cells` and `heartbeat` are always numbers, the others may be terms."""
 
     cells: int
     heartbeat: int
-    """Ticks: after so many without a message one is sent, lost or not."""
+    """Ticks: after so many without a message the next one is sent, lost or not."""
     latency: Any
     lost: Any
     braking: Any
@@ -91,13 +90,13 @@ class Plain:
 
 
 INITIAL = Numbers(-1, NONE, 0, None, 0, 0)
-"""`still` is what it is when the robot stands: `braking + 1`."""
+"""`still` is left out: it is `braking + 1`, for the robot stands."""
 
 
 def begins(now: Numbers, times: Times, logic: Logic) -> Any:
     """Before the first tick."""
     standing = now.still == times.braking + 1
-    quiet = logic.both(now.losses == 0, now.asked == 0, now.silent == 0)
+    quiet = logic.both(now.losses == 0, now.requested == 0, now.silent == 0)
     return logic.both(now.open == -1, now.age == NONE, standing, quiet)
 
 
@@ -116,50 +115,50 @@ def relation(now: Numbers, then: Numbers, choice: Choice, times: Times, logic: L
             both(now.open >= 0, then.open == now.open + 1),
         ),
     )
-    released = both(then.asked == 0, then.open == -1, then.age == NONE)
-    asked = both(
-        then.asked == 1,
+    released = both(then.requested == 0, then.open == -1, then.age == NONE)
+    request = both(
+        then.requested == 1,
         either(then.open == -1, opened),
         _requested(now, then, choice, times, logic),
     )
     message = _message(now, then, choice, times, logic)
-    return both(sampled, message, ranges, either(released, asked))
+    return both(sampled, message, ranges, either(released, request))
 
 
 def _message(now: Numbers, then: Numbers, choice: Choice, times: Times, logic: Logic) -> Any:
-    """What becomes of the message: a change is always told, and silence has an end."""
+    """The fate of the message: each change has one, and silence has an end."""
     both, either, no = logic.both, logic.either, logic.no
     quiet = both(
-        then.asked == now.asked, now.silent < times.heartbeat, then.silent == now.silent + 1
+        then.requested == now.requested, now.silent < times.heartbeat, then.silent == now.silent + 1
     )
     lost = both(choice.lost, now.losses < times.lost, then.losses == now.losses + 1)
-    kept = both(no(choice.lost), then.losses == 0)
+    delivered = both(no(choice.lost), then.losses == 0)
     return either(
         both(no(choice.sent), quiet, then.losses == now.losses),
-        both(choice.sent, then.silent == 1, either(lost, kept)),
+        both(choice.sent, then.silent == 1, either(lost, delivered)),
     )
 
 
 def _requested(now: Numbers, then: Numbers, choice: Choice, times: Times, logic: Logic) -> Any:
-    """What becomes of the request in a tick in which a stop is requested."""
+    """The fate of the request in a tick in which a stop is requested."""
     both, either, no = logic.both, logic.either, logic.no
-    none = either(now.asked == 0, now.age == NONE)
+    none = either(now.requested == 0, now.age == NONE)
     unsent, sent = either(no(choice.sent), choice.lost), both(choice.sent, no(choice.lost))
     waiting = both(no(none), now.age >= 0)
-    heard = both(no(none), now.age == ARRIVED)
+    arrived = both(no(none), now.age == ARRIVED)
     k, end = times.cells, times.braking + 1
     return either(
         both(none, unsent, then.age == NONE),
         both(none, sent, then.age == k, k < times.latency),
-        both(none, sent, then.age == ARRIVED, _heard(0, then, choice, times, logic)),
+        both(none, sent, then.age == ARRIVED, _arrival(0, then, choice, times, logic)),
         both(waiting, then.age == now.age + k, then.age < times.latency),
-        both(waiting, then.age == ARRIVED, _heard(now.age, then, choice, times, logic)),
-        both(heard, then.age == ARRIVED, either(then.still >= end, then.still >= now.still + k)),
+        both(waiting, then.age == ARRIVED, _arrival(now.age, then, choice, times, logic)),
+        both(arrived, then.age == ARRIVED, either(then.still >= end, then.still >= now.still + k)),
     )
 
 
-def _heard(age: Any, then: Numbers, choice: Choice, times: Times, logic: Logic) -> Any:
-    """A request of that age is heard in the cell of the choice; from then on zero is published."""
+def _arrival(age: Any, then: Numbers, choice: Choice, times: Times, logic: Logic) -> Any:
+    """A request of that age arrives in the chosen cell; from then on zero is published."""
     both, either = logic.both, logic.either
     k = times.cells
     in_time = either(
@@ -174,23 +173,23 @@ def _heard(age: Any, then: Numbers, choice: Choice, times: Times, logic: Logic) 
 
 
 @dataclass(frozen=True, slots=True)
-class Covered:
-    """What following the loop step by step has shown."""
+class Coverage:
+    """The result of following the loop step by step."""
 
     steps: int
     longest: int
-    """The most ticks for which a demand is open; -1: none ever is."""
-    strange: tuple[Numbers, Numbers] | None
-    """A step of the loop that is none of the twin."""
+    """The most ticks for which a demand is open; -1: there is never one."""
+    uncovered: tuple[Numbers, Numbers] | None
+    """A step that the loop takes and the twin cannot; None: there is no such step."""
 
 
-def covered(loop: Loop, limit: int, longest: int) -> Covered:
-    """Whether every step of the loop is one of the twin, over all states.
+def covered(loop: Loop, limit: int, longest: int) -> Coverage:
+    """Whether the twin can take every step of the loop, over all states.
 
     Args:
         loop: whose safety function has no deadline, or up to its violation.
         limit: the most states.
-        longest: ticks; where a demand is open for longer, it is looked no further.
+        longest: ticks; the search stops where a demand is open for longer.
 
     Raises:
         TooManyStatesError: there are more states than the limit.
@@ -199,9 +198,9 @@ def covered(loop: Loop, limit: int, longest: int) -> Covered:
     assert channel.heartbeat or not channel.edge
     times = times_of(channel)
     begin = INITIAL._replace(still=channel.stands)
-    seen: set[tuple[Node, int, int]] = {(loop.initial, begin.open, begin.age)}
+    visited: set[tuple[Node, int, int]] = {(loop.initial, begin.open, begin.age)}
     allowed: dict[tuple[Numbers, Numbers], bool] = {}
-    waiting, steps, most = list(seen), 0, -1
+    waiting, steps, most = list(visited), 0, -1
     for node, open_, age in waiting:
         now = _numbers(open_, age, node)
         for tick, after in loop.steps(node):
@@ -212,22 +211,22 @@ def covered(loop: Loop, limit: int, longest: int) -> Covered:
             if (now, then) not in allowed:
                 allowed[now, then] = _is_step(now, then, times)
             if not allowed[now, then]:
-                return Covered(steps, most, (now, then))
+                return Coverage(steps, most, (now, then))
             most = max(most, then.open)
             key = (after, then.open, then.age)
-            if key not in seen and then.open <= longest:
-                if len(seen) >= limit:
+            if key not in visited and then.open <= longest:
+                if len(visited) >= limit:
                     raise TooManyStatesError(limit)
-                seen.add(key)
+                visited.add(key)
                 waiting.append(key)
-    return Covered(steps, most, None)
+    return Coverage(steps, most, None)
 
 
 def _followed(now: Numbers, tick: Tick, after: Node, channel: Channel) -> Numbers:
-    """What the twin remembers of a step of the loop."""
+    """The numbers of the twin after a step of the loop."""
     if not tick.requested:
         return _numbers(-1, NONE, after)
-    age = now.age if now.asked else NONE
+    age = now.age if now.requested else NONE
     if age == NONE and tick.sent:
         age = 0
     if age >= 0:
@@ -242,7 +241,7 @@ def _numbers(open_: int, age: int, node: Node) -> Numbers:
 
 
 def times_of(channel: Channel) -> Times:
-    """Those of a channel that repeats what it says: at every tick, or after a silence."""
+    """The times of a channel that repeats its requests: at every tick, or after a silence."""
     beat = channel.heartbeat if channel.edge else 1
     return Times(channel.cells, beat, channel.latency, channel.lost, channel.braking)
 

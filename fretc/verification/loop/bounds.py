@@ -1,10 +1,10 @@
 """Layer BOUNDS: how long an answer takes at most, for every latency, loss and braking time.
 
 The closed loop has a twin in whole numbers (`fretc.verification.loop.abstraction`). z3 proves an
-inductive invariant of it with the times left open: a demand is open for less than any D with `D *
+inductive invariant of it for all times: a demand is open for less than any D with `D *
 tick >= lost * heartbeat + latency + braking` and `D * tick > lost * heartbeat`, where requests at
-every tick have a heartbeat of a tick. Beside the proof, the twin is held against the texts at small
-times, and the texts show by a run that under the declared times less is not enough.
+every tick have a heartbeat of a tick. Beside the proof, the twin is compared with the texts at
+small times, and a run of the texts shows that under the declared times a lower bound fails.
 
 Source: Manna, Pnueli, Temporal verification of reactive systems: safety, 1995, chapter 1
 (invariance).
@@ -46,7 +46,7 @@ from fretc.verification.loop.abstraction import (
 )
 from fretc.verification.loop.layer import Setup, artefacts, assumptions, case
 from fretc.verification.loop.model import Channel
-from fretc.verification.loop.search import Case, NotALoopError, Parts, reach, shown
+from fretc.verification.loop.search import Case, NotALoopError, Parts, as_table, reach
 from fretc.verification.monitor.statements import is_same
 from fretish import syntax as s
 from fretish.clock import in_words
@@ -58,14 +58,14 @@ _MORE = "as many more, at least one, as `latency` and `braking` fill together"
 ANSWERED = f"every demand is answered within `lost` ticks and {_MORE}"
 INSTALL = "z3 is not installed: pip install 'fretc[bounds]'"
 _SMALL = ((1, 0, 0, 0), (1, 1, 1, 1), (2, 1, 1, 2), (1, 2, 2, 0), (3, 4, 1, 2))
-"""Cells to a tick, latency, losses in a row, braking: where the twin is held against the texts."""
+"""Cells to a tick, latency, losses in a row, braking: for comparing the twin with the texts."""
 _QUERY = 20_000
 """Milliseconds for each query of z3."""
 
 
 @dataclass(frozen=True, slots=True)
 class Question:
-    """What another process needs to know."""
+    """The question for another process."""
 
     case: Case
     sentence: s.Sentence
@@ -76,7 +76,7 @@ class Question:
 
     @property
     def unknown(self) -> str | None:
-        """Why small times do not speak for all of them; None: they do."""
+        """Why small times do not represent all times; None: they do."""
         if is_original(self.case.interceptor):
             return None
         return (
@@ -96,27 +96,27 @@ class Answer:
 
 def bounds(rule: Rule, setup: Setup, limits: Limits) -> tuple[Evidence, ...]:
     """Both claims: an answer comes in time, whatever the times are; and the bound is enough."""
-    asked = question(rule, setup)
-    found: Answer | Stopped
-    found = Stopped(asked) if isinstance(asked, str) else processes.confined(limits, search, asked)
-    if isinstance(found, Stopped):
-        found = Answer(NotChecked(found.reason), NotChecked(found.reason))
-    told, left_open = (
-        () if isinstance(asked, str) else tuple(assumptions(rule, setup, asked.case, any_time=any_))
+    query = question(rule, setup)
+    answer: Answer | Stopped
+    answer = Stopped(query) if isinstance(query, str) else processes.confined(limits, search, query)
+    if isinstance(answer, Stopped):
+        answer = Answer(NotChecked(answer.reason), NotChecked(answer.reason))
+    at_declared, at_any = (
+        () if isinstance(query, str) else tuple(assumptions(rule, setup, query.case, any_time=any_))
         for any_ in (False, True)
     )
-    engine = f"z3 {found.z3}; fretc, explicit states" if found.z3 else "fretc, explicit states"
+    engine = f"z3 {answer.z3}; fretc, explicit states" if answer.z3 else "fretc, explicit states"
     return tuple(
         Evidence(rule.id, Layer.BOUNDS, claim, result, engine, assumed, artefacts(setup))
         for claim, result, assumed in (
-            (_answered(asked), found.answered, left_open),
-            (_enough(rule), found.enough, told),
+            (_answered(query), answer.answered, at_any),
+            (_enough(rule), answer.enough, at_declared),
         )
     )
 
 
-def _answered(asked: Question | str) -> str:
-    beat = 1 if isinstance(asked, str) else times_of(asked.case.channel).heartbeat
+def _answered(query: Question | str) -> str:
+    beat = 1 if isinstance(query, str) else times_of(query.case.channel).heartbeat
     if beat == 1:
         return ANSWERED
     return f"every demand is answered within {beat} ticks for each message of `lost` and {_MORE}"
@@ -132,30 +132,30 @@ def _ticks(amount: int) -> str:
     return f"{amount} tick{'' if amount == 1 else 's'}"
 
 
-# What can be asked ----------------------------------------------------------------------------
+# The question ---------------------------------------------------------------------------------
 
 
 def question(rule: Rule, setup: Setup) -> Question | str:
-    """What is to be proved, or why nothing can be."""
-    made = case(rule, setup)
-    if isinstance(made, str):
-        return made
+    """The question to prove, or why there is none."""
+    problem = case(rule, setup)
+    if isinstance(problem, str):
+        return problem
     sentence = rule.sentence
     if sentence.scope is not None:
         return "it has a scope; only requirements about the whole run are looked at"
     if not isinstance(sentence.timing, s.Within | s.Eventually):
         return "its timing is neither `within` nor `eventually`"
-    if made.settings.event_driven:
+    if problem.settings.event_driven:
         return "an interceptor without a timer stops nothing before the next command"
-    if made.channel.edge and not made.channel.heartbeat:
+    if problem.channel.edge and not problem.channel.heartbeat:
         return "a request that is sent only once may be lost (`requests`, [assume]: no `heartbeat`)"
-    if not _answers(sentence, made.stands):
-        return f"`{made.stands}` alone does not answer it"
+    if not _answers(sentence, problem.stands):
+        return f"`{problem.stands}` alone does not answer it"
     assert rule.clock is not None
     bound = rule.ticks if isinstance(sentence.timing, s.Within) else None
-    if not is_same(made.safety, made.observer):
+    if not is_same(problem.safety, problem.observer):
         return "the monitor is not the one that fretc writes for it, and only that is looked at"
-    return Question(made, sentence, bound, rule.clock.period or 0)
+    return Question(problem, sentence, bound, rule.clock.period or 0)
 
 
 def _answers(sentence: s.Sentence, stands: str) -> bool:
@@ -169,52 +169,52 @@ def _answers(sentence: s.Sentence, stands: str) -> bool:
 # In another process ---------------------------------------------------------------------------
 
 
-def search(asked: Question) -> Answer:
-    """Prove the invariant, hold the twin against the texts, and look for the least bound."""
+def search(query: Question) -> Answer:
+    """Prove the invariant, compare the twin with the texts, and look for the least bound."""
     if find_spec("z3") is None:
         return Answer(NotChecked(INSTALL), NotChecked(INSTALL))
     try:
-        steps, loops = _covered(asked)
-        wrong, version = _proved(times_of(asked.case.channel))
-        if wrong is not None:
-            return Answer(NotChecked(wrong), NotChecked(wrong), version)
+        steps, loops = _covered(query)
+        obstacle, version = _proved(times_of(query.case.channel))
+        if obstacle is not None:
+            return Answer(NotChecked(obstacle), NotChecked(obstacle), version)
         answered: Result = Proved(
             f"by an inductive invariant; {steps:,} steps of {loops} loops are steps of its model"
         )
-        if asked.unknown is not None:
-            answered = NotChecked(asked.unknown)
-        return Answer(answered, _least(asked), version)
+        if query.unknown is not None:
+            answered = NotChecked(query.unknown)
+        return Answer(answered, _least(query), version)
     except (NotALoopError, NotAnInterceptorError, TooManyStatesError) as error:
         return Answer(NotChecked(str(error)), NotChecked(str(error)))
 
 
-def _covered(asked: Question) -> tuple[int, int]:
-    """How many steps of how many loops were held against the twin.
+def _covered(query: Question) -> tuple[int, int]:
+    """How many steps of how many loops were compared with the twin.
 
     Raises:
         NotALoopError: one of them is no step of the twin.
     """
-    endless = _endless(asked)
-    small = _short(asked.case.settings)
+    endless = _endless(query)
+    small = _short(query.case.settings)
     cases = [
-        asked.case,
+        query.case,
         endless,
         *(
-            replace(endless, settings=small, channel=_channel(asked.case.channel, *numbers))
+            replace(endless, settings=small, channel=_channel(query.case.channel, *numbers))
             for numbers in _SMALL
         ),
     ]
     steps = 0
-    for one in cases:
-        found = covered(Parts.of(one).loop, one.limit, longest=_formula(one.channel) + 1)
-        if found.strange is not None:
+    for each in cases:
+        coverage = covered(Parts.of(each).loop, each.limit, longest=_formula(each.channel) + 1)
+        if coverage.uncovered is not None:
             raise NotALoopError("the loop does what its model in whole numbers does not")
-        steps += found.steps
+        steps += coverage.steps
     return steps, len(cases)
 
 
 def _channel(declared: Channel, cells: int, latency: int, lost: int, braking: int) -> Channel:
-    """Small times; a heartbeat is made short, too, and stays one."""
+    """Small times; a heartbeat becomes short, too, and stays above 0."""
     return replace(
         declared,
         cells=cells,
@@ -226,7 +226,7 @@ def _channel(declared: Channel, cells: int, latency: int, lost: int, braking: in
 
 
 def _short(settings: Settings) -> Settings:
-    """The same with short times: what the twin says does not depend on them."""
+    """The same settings with short times: the twin does not depend on them."""
     return replace(
         settings,
         hold=min(settings.hold, 2),
@@ -242,51 +242,51 @@ def _formula(channel: Channel) -> int:
     return channel.lost * times_of(channel).heartbeat + max(1, filled)
 
 
-def _endless(asked: Question) -> Case:
+def _endless(query: Question) -> Case:
     """The case with `eventually` in place of the bound: no run ends at a deadline."""
-    return _with(asked, s.Eventually())
+    return _with(query, s.Eventually())
 
 
-def _with(asked: Question, timing: s.Timing) -> Case:
-    text = canonical(replace(asked.sentence, timing=timing))
-    requirement = Requirement(asked.case.requirement, Source("sentence", text).span())
-    rule, said = formalize(requirement, None)
-    assert rule is not None, said
-    made = target.text(rule)
-    return replace(asked.case, safety=made, observer=made, formula=rule.ft_infinite)
+def _with(query: Question, timing: s.Timing) -> Case:
+    text = canonical(replace(query.sentence, timing=timing))
+    requirement = Requirement(query.case.requirement, Source("sentence", text).span())
+    rule, diagnostics = formalize(requirement, None)
+    assert rule is not None, diagnostics
+    monitor = target.text(rule)
+    return replace(query.case, safety=monitor, observer=monitor, formula=rule.ft_infinite)
 
 
-def _least(asked: Question) -> Result:
-    """Whether the bound is enough, with the least one that is."""
-    endless = _endless(asked)
-    found = covered(Parts.of(endless).loop, endless.limit, longest=_formula(endless.channel) + 1)
-    least = found.longest + 1
+def _least(query: Question) -> Result:
+    """Whether the bound is enough, with the least bound that is."""
+    endless = _endless(query)
+    coverage = covered(Parts.of(endless).loop, endless.limit, longest=_formula(endless.channel) + 1)
+    least = coverage.longest + 1
     if least == 0:
         return NotChecked("no demand is ever open")
-    told = f"the least that is kept is {_ticks(least)} ({in_words(least * asked.tick)})"
-    before = _with(asked, _bound(least - 1))
+    detail = f"the least that is kept is {_ticks(least)} ({in_words(least * query.tick)})"
+    before = _with(query, _bound(least - 1))
     parts = Parts.of(before)
     violation = reach(parts.loop, before.limit).violation
     assert violation is not None, "a demand is open for longer than it can be"
-    if asked.ticks is None:
-        return Proved(told)
-    if asked.ticks >= least:
-        return Proved(f"{told}; with one tick less a run of {_ticks(len(violation))} violates it")
-    trace = _violating(asked)
-    return Counterexample(told, trace)
+    if query.ticks is None:
+        return Proved(detail)
+    if query.ticks >= least:
+        return Proved(f"{detail}; with one tick less a run of {_ticks(len(violation))} violates it")
+    trace = _violating(query)
+    return Counterexample(detail, trace)
 
 
 def _bound(ticks: int) -> s.Timing:
     return s.Within(s.Duration(ticks, "tick")) if ticks else s.Immediately()
 
 
-def _violating(asked: Question) -> Any:
+def _violating(query: Question) -> Any:
     """The shortest run that violates the sentence as it is."""
-    assert asked.ticks is not None
-    parts = Parts.of(_with(asked, _bound(asked.ticks)))
-    violation = reach(parts.loop, asked.case.limit).violation
+    assert query.ticks is not None
+    parts = Parts.of(_with(query, _bound(query.ticks)))
+    violation = reach(parts.loop, query.case.limit).violation
     assert violation is not None
-    trace, violated = shown(parts, violation)
+    trace, violated = as_table(parts, violation)
     assert violated
     return trace
 
@@ -295,10 +295,10 @@ def _violating(asked: Question) -> Any:
 
 
 def _proved(declared: Times) -> tuple[str | None, str]:
-    """What keeps the invariant from being proved, if anything does; and z3's version.
+    """Why the invariant is not proved, None if it is; and z3's version.
 
     Args:
-        declared: of these, `cells` and `heartbeat` count; the others are left open.
+        declared: only `cells` and `heartbeat` count; z3 treats the others as unknowns.
     """
     import z3
 
@@ -322,7 +322,7 @@ def _proved(declared: Times) -> tuple[str | None, str]:
     stands, sent, lost = z3.Bools("stands is_sent is_lost")
     choice = Choice(stands, sent, lost, z3.Int("cell"))
     enough = cells * bound >= cells * beat * times.lost + times.latency + times.braking
-    given = z3.And(
+    premises = z3.And(
         times.latency >= 0, times.lost >= 0, times.braking >= 0, bound > beat * times.lost, enough
     )
     here, there = (_invariant(numbers, times, bound, logic) for numbers in (now, then))
@@ -333,36 +333,36 @@ def _proved(declared: Times) -> tuple[str | None, str]:
         ),
         "it does not keep the bound": z3.And(here, some >= bound, now.open >= some),
     }
-    for wrong, query in queries.items():
+    for failure, query in queries.items():
         solver = z3.Solver()
         solver.set("timeout", _QUERY)
-        solver.add(given, query)
-        told = solver.check()
-        if told != z3.unsat:
-            reason = "z3 gives no answer in time" if told == z3.unknown else wrong
+        solver.add(premises, query)
+        verdict = solver.check()
+        if verdict != z3.unsat:
+            reason = "z3 gives no answer in time" if verdict == z3.unknown else failure
             return f"of the invariant: {reason}", z3.get_version_string()
     return None, z3.get_version_string()
 
 
 def _invariant(at: Numbers, times: Times, bound: Any, logic: Any) -> Any:
-    """Why an answer comes in time: what is true at the end of each tick.
+    """The invariant at the end of each tick: why an answer comes in time.
 
-    While all requests since a stop is requested are lost, that is for no longer than it takes to
-    send as many; the first that is not lost is in flight for less than the latency; and from when
-    it is heard on, the wheels have zero. A demand that is open is no older than its request.
+    At most `lost` requests of a stop are lost in a row; the first other one is in flight for less
+    than the latency; from its arrival on, the wheels have zero. An open demand is no older than
+    its request.
     """
     k, beat, both, either = times.cells, times.heartbeat, logic.both, logic.either
     passed, tried = k * (at.open + 1), k * beat * times.lost
-    told = at.open + 1 <= (at.losses - 1) * beat + at.silent
-    lost = both(at.age == NONE, at.losses >= 1, at.silent >= 1, told)
+    in_time = at.open + 1 <= (at.losses - 1) * beat + at.silent
+    lost = both(at.age == NONE, at.losses >= 1, at.silent >= 1, in_time)
     flying = both(at.age >= k, at.age < times.latency, passed - at.age <= tried)
     since = passed - tried - times.latency + 1
     still = either(at.still >= times.braking + 1, at.still >= since)
-    heard = both(at.age == ARRIVED, at.still >= 1, still)
-    released = both(at.asked == 0, at.open == -1, at.age == NONE)
-    asked = both(at.asked == 1, at.open >= -1, at.open < bound, either(lost, flying, heard))
+    arrival = both(at.age == ARRIVED, at.still >= 1, still)
+    released = both(at.requested == 0, at.open == -1, at.age == NONE)
+    request = both(at.requested == 1, at.open >= -1, at.open < bound, either(lost, flying, arrival))
     ranges = both(
         *(at.losses >= 0, at.losses <= times.lost, at.silent >= 0, at.silent <= beat),
         *(at.still >= -1, at.still <= times.braking + 1),
     )
-    return both(ranges, either(released, asked))
+    return both(ranges, either(released, request))

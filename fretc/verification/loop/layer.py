@@ -1,7 +1,7 @@
 """Layer LOOP: monitor, interceptor and any environment, under the assumptions of the bindings.
 
-What is explored are the texts themselves: the monitor as the safety function that requests stops,
-the monitor that fretc makes of the sentence as the observer, and the steps of the interceptor. The
+It explores the texts themselves: the monitor as the safety function that requests stops, the
+monitor that fretc makes of the sentence as the observer, and the steps of the interceptor. The
 model between them is `fretc.verification.loop.model`, and its durations are whole cells, rounded
 up.
 """
@@ -23,7 +23,7 @@ from fretc.verification.engines.sandbox import Limits, Stopped
 from fretc.verification.interceptor.file import otherwise
 from fretc.verification.interceptor.machine import Settings
 from fretc.verification.loop.model import Channel
-from fretc.verification.loop.search import Case, Found, search
+from fretc.verification.loop.search import Case, Results, search
 from fretish.bindings.declarations import Assumed, Form, Interception, Planner, Requests
 from fretish.clock import in_words
 from fretish.expressions import names
@@ -31,12 +31,12 @@ from fretish.expressions import names
 KEPT = "monitor, interceptor and any environment together keep the requirement"
 RELEASED = "the stop is released once no demand begins any more"
 _FINEST = 20
-"""Cells to a tick, where the interceptor has no timer that says what a cell is."""
+"""Cells to a tick, where the interceptor has no timer to define a cell."""
 
 
 @dataclass(frozen=True, slots=True)
 class Named:
-    """A text that is looked at, and the name that evidence has for it."""
+    """A text under verification, and its name in evidence."""
 
     name: str
     text: str
@@ -54,22 +54,22 @@ class Setup:
 
 def loop(rule: Rule, setup: Setup, limits: Limits) -> tuple[Evidence, ...]:
     """Both claims: the requirement is kept, and the stop is released."""
-    made = case(rule, setup)
-    if isinstance(made, str):
-        found: Found | Stopped = Stopped(made)
+    problem = case(rule, setup)
+    if isinstance(problem, str):
+        results: Results | Stopped = Stopped(problem)
     else:
-        found = processes.confined(limits, search, made)
-    if isinstance(found, Stopped):
-        found = Found(NotChecked(found.reason), NotChecked(found.reason))
-    told = () if isinstance(made, str) else tuple(assumptions(rule, setup, made))
+        results = processes.confined(limits, search, problem)
+    if isinstance(results, Stopped):
+        results = Results(NotChecked(results.reason), NotChecked(results.reason))
+    premises = () if isinstance(problem, str) else tuple(assumptions(rule, setup, problem))
     return (
-        _evidence(rule, setup, KEPT, found.kept, told),
-        _evidence(rule, setup, RELEASED, found.released, told),
+        _evidence(rule, setup, KEPT, results.kept, premises),
+        _evidence(rule, setup, RELEASED, results.released, premises),
     )
 
 
 def _evidence(
-    rule: Rule, setup: Setup, claim: str, result: Result, told: tuple[str, ...]
+    rule: Rule, setup: Setup, claim: str, result: Result, premises: tuple[str, ...]
 ) -> Evidence:
     return Evidence(
         rule.id,
@@ -77,7 +77,7 @@ def _evidence(
         claim,
         result,
         f"fretc, explicit states; Spot {automata.version()}",
-        told,
+        premises,
         artefacts(setup),
     )
 
@@ -85,14 +85,14 @@ def _evidence(
 def artefacts(setup: Setup) -> dict[str, str]:
     """SHA-256 of each text."""
     texts = [setup.monitor, *([setup.interceptor] if setup.interceptor else [])]
-    return {named.name: sha256(named.text) for named in texts}
+    return {text.name: sha256(text.text) for text in texts}
 
 
 # The case -------------------------------------------------------------------------------------
 
 
 def case(rule: Rule, setup: Setup) -> Case | str:
-    """What is to be searched, or why nothing can be."""
+    """The case to search, or why there is none."""
     interception, assumed = setup.interception, setup.assumed
     if interception is None or setup.interceptor is None:
         return "the bindings declare no interceptor (`[interceptor]`)"
@@ -100,12 +100,12 @@ def case(rule: Rule, setup: Setup) -> Case | str:
         return "the bindings assume nothing of the loop (`[assume]`)"
     if assumed.stands not in {name.id for name in names(rule.sentence.response)}:
         return f"its response does not speak of `{assumed.stands}`, which is what the loop decides"
-    wrong = otherwise(setup.interceptor.text, interception)
-    if wrong is not None:
-        return wrong
-    known = channel(rule, interception, assumed)
-    if isinstance(known, str):
-        return known
+    deviation = otherwise(setup.interceptor.text, interception)
+    if deviation is not None:
+        return deviation
+    declared = channel(rule, interception, assumed)
+    if isinstance(declared, str):
+        return declared
     return Case(
         rule.id,
         rule.ft_infinite,
@@ -113,19 +113,19 @@ def case(rule: Rule, setup: Setup) -> Case | str:
         target.text(rule),
         setup.interceptor.text,
         settings(interception),
-        known,
+        declared,
         assumed.stands,
     )
 
 
 def settings(interception: Interception) -> Settings:
     """The options of the interceptor, in ticks of its timer."""
-    made = options(interception)
-    return Settings(**{field.name: getattr(made, field.name) for field in fields(Settings)})
+    core_options = options(interception)
+    return Settings(**{field.name: getattr(core_options, field.name) for field in fields(Settings)})
 
 
 def channel(rule: Rule, interception: Interception, assumed: Assumed) -> Channel | str:
-    """What is assumed, in cells; or why no cell can be found."""
+    """The assumptions in cells; or why no cell fits."""
     tick = rule.clock.period if rule.clock else None
     if tick is None:
         return "the clock has no period: it ticks with messages"
@@ -148,7 +148,7 @@ def channel(rule: Rule, interception: Interception, assumed: Assumed) -> Channel
 
 
 def cell_of(tick: int, interception: Interception, assumed: Assumed) -> int:
-    """Nanoseconds: a period of the timer; without one whatever measures the durations best."""
+    """Nanoseconds: a period of the timer; without a timer the unit that fits the durations best."""
     if interception.form is Form.TIMER:
         return interception.period
     exact = gcd(tick, assumed.latency, assumed.braking)
@@ -158,16 +158,18 @@ def cell_of(tick: int, interception: Interception, assumed: Assumed) -> int:
 # Assumptions ----------------------------------------------------------------------------------
 
 
-def assumptions(rule: Rule, setup: Setup, made: Case, *, any_time: bool = False) -> Iterator[str]:
-    """What the verdict takes for granted, in words, with where each is declared.
+def assumptions(
+    rule: Rule, setup: Setup, problem: Case, *, any_time: bool = False
+) -> Iterator[str]:
+    """The assumptions of the verdict in words, each with its place of declaration.
 
     Args:
         rule: the requirement.
-        setup: with what is declared.
-        made: the case of both.
+        setup: the declarations.
+        problem: the case of rule and setup.
         any_time: the verdict holds whatever latency, losses and braking time are.
     """
-    interception, assumed, channel = setup.interception, setup.assumed, made.channel
+    interception, assumed, channel = setup.interception, setup.assumed, problem.channel
     assert interception is not None
     assert assumed is not None
     assert rule.clock is not None
@@ -189,12 +191,12 @@ def assumptions(rule: Rule, setup: Setup, made: Case, *, any_time: bool = False)
         period = in_words(interception.period)
         yield f"the interceptor's timer rings once in each {period} (`period`, [interceptor])"
     yield from _rounded(interception, assumed, tick, any_time=any_time)
-    if not made.settings.stop_timeout:
+    if not problem.settings.stop_timeout:
         yield "the safety function never falls silent: there is no `stop_timeout` ([interceptor])"
 
 
 def _messages(assumed: Assumed, tick: int, *, any_time: bool) -> Iterator[str]:
-    """What is said of stop messages."""
+    """The assumptions about stop messages."""
     yield (
         f"the safety function steps at every tick of {in_words(tick)} and sends its request "
         f"{_when(assumed)}"
@@ -222,14 +224,14 @@ def _when(assumed: Assumed) -> str:
 def _rounded(
     interception: Interception, assumed: Assumed, tick: int, *, any_time: bool
 ) -> Iterator[str]:
-    """Durations that are no whole number of cells, or of ticks: the longer one is proved."""
+    """Durations that are no whole number of cells, or of ticks: the proof rounds them up."""
     cell = cell_of(tick, interception, assumed)
     cells = "whole cells of the model"
-    for name, duration, unit, whole in (
+    for name, duration, unit, grid in (
         ("latency", 0 if any_time else assumed.latency, cell, cells),
         ("braking", 0 if any_time else assumed.braking, cell, cells),
         ("heartbeat", assumed.heartbeat, tick, "whole ticks of the clock"),
     ):
         if duration % unit:
             longer = in_words(ticks(duration, unit) * unit)
-            yield f"`{name}` of {in_words(duration)} counts as {longer}, {whole}"
+            yield f"`{name}` of {in_words(duration)} counts as {longer}, {grid}"

@@ -1,21 +1,21 @@
 """The closed loop as a graph: monitor, channel, interceptor, wheels, and any environment.
 
-One step is one tick of the monitor's clock. What happens at and after it, in this order:
+One step is one tick of the monitor's clock. The events of a step, in this order:
 
 1. The propositions are sampled. The environment chooses all of them but the one that is true where
-   the robot stands: false while the wheels are told to move, true once they have had zero for the
-   braking time, and before that as the environment likes, for good while they have zero.
+   the robot stands: false while the wheels have a command to move, true once they have had zero
+   for the braking time; in between the environment chooses when it becomes true, and it stays so.
 2. The safety function steps, as does the observer. The first requests a stop while a demand begins
-   or is open; its message is lost or sent. Where it speaks on change, it may repeat itself at any
-   tick, and does once it has been silent for its heartbeat.
+   or is open; its message is lost or sent. Where it sends on change, it may repeat a request at any
+   tick, and does after a silence as long as its heartbeat.
 3. The tick has so many cells as the interceptor's timer rings in it, and in each cell it rings
-   once. Before and after it, stop messages are heard in the order in which they were sent, and
+   once. Before and after it, stop messages arrive in the order in which they were sent, and
    commands and scans in any number and order.
 4. At the end of each cell time has passed: what is in flight is older, and no message is older than
    the latency allows; wheels that have zero have it for longer.
 
-The wheels have at once what was published last, and keep it while nothing is. Times are cells. One
-ring in each cell, at any place in it: that is a timer of the same period, at any phase.
+The wheels follow the last published velocity at once, and keep it until the next one. Times are
+cells. One ring at any place in each cell models a timer of the same period, at any phase.
 """
 
 from __future__ import annotations
@@ -30,18 +30,18 @@ from fretc.verification.interceptor.machine import Gate, Heard, State
 from fretc.verification.monitor.machine import Stepped
 
 Queue = tuple[tuple[bool, int], ...]
-"""Stop messages in flight, the oldest first: what is requested, and cells since it was sent."""
+"""Stop messages in flight, the oldest first: the request, and cells since it was sent."""
 
 
 @dataclass(frozen=True, slots=True)
 class Channel:
-    """What is assumed of all that is not a text. Times are cells."""
+    """The assumptions about everything that is not a text. Times are cells."""
 
     cells: int
     """To a tick."""
     latency: int = 0
     lost: int = 0
-    """Stop messages in a row."""
+    """The most stop messages lost in a row."""
     edge: bool = False
     """Requests are sent on change, not at every tick."""
     punctual: bool = False
@@ -50,7 +50,7 @@ class Channel:
     scans: bool = False
     """The interceptor hears scans."""
     heartbeat: int = 0
-    """With `edge`, in ticks: one is sent after a silence of so many, or earlier; 0: none is."""
+    """With `edge`, in ticks: a request is repeated after such a silence, or earlier; 0: never."""
 
     def __post_init__(self) -> None:
         assert self.cells >= 1
@@ -79,16 +79,16 @@ class Node(NamedTuple):
     observer: Hashable
     wheels: Wheels
     losses: int
-    """Stop messages that were lost since the last that was not."""
+    """Stop messages lost since the last one that was not."""
     requested: bool
-    """What the last stop message said, lost or not."""
+    """The request in the last stop message, lost or not."""
     silent: int
     """Ticks from the last stop message to the next tick, or from tick 0 where there was none; 0
     where no heartbeat counts them."""
 
 
 class Tick(NamedTuple):
-    """What a tick was, as far as more than its end is told."""
+    """The facts about a tick that the node after it does not contain."""
 
     letter: Valuation
     triggered: bool
@@ -97,12 +97,12 @@ class Tick(NamedTuple):
     sent: bool | None
     """None: no message; False: it is lost."""
     again: bool
-    """The message says what the last one did, for the heartbeat."""
+    """The message repeats the last request, for the heartbeat."""
     violated: bool
 
 
 Word = tuple[Heard | None, "Word | None"]
-"""What was heard last, and all before it; None: a cell ends."""
+"""The last event, and all events before it; None: a cell ends."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -129,23 +129,23 @@ class Loop:
         environment: Environment,
         channel: Channel,
     ) -> None:
-        """Before the first tick: the robot stands, and nothing is heard or in flight.
+        """Before the first tick: the robot stands, and no message has come or is in flight.
 
         Args:
-            safety: what requests stops.
-            observer: what tells violations; None: `safety` does, being of the same text.
+            safety: the monitor that requests stops.
+            observer: the monitor that detects violations; None: it has the text of `safety`.
             gate: the interceptor.
             environment: the propositions in the order of letters.
-            channel: what is assumed.
+            channel: the assumptions.
         """
         self._safety, self._observer = safety, observer
         self.gate, self.channel = gate, channel
         self.environment = environment
         self._place = environment.atoms.index(environment.stands)
         self._letters = {stands: environment.letters(stands) for stands in (False, True)}
-        self._heard = [Heard.MOVE, Heard.STAND, *([Heard.SCAN] if channel.scans else [])]
-        self._known: dict[Wheels, dict[Wheels, Word]] = {}
-        self._judged: dict[tuple[Hashable, Hashable, Valuation], tuple[Hashable, ...]] = {}
+        self._inputs = [Heard.MOVE, Heard.STAND, *([Heard.SCAN] if channel.scans else [])]
+        self._passages: dict[Wheels, dict[Wheels, Word]] = {}
+        self._judgements: dict[tuple[Hashable, Hashable, Valuation], tuple[Hashable, ...]] = {}
         watching = observer.save() if observer else None
         wheels = Wheels(gate.initial, channel.stands, ())
         self.initial = Node(safety.save(), watching, wheels, 0, False, 0)
@@ -153,24 +153,24 @@ class Loop:
     # One tick -------------------------------------------------------------------------------
 
     def steps(self, node: Node) -> Iterator[tuple[Tick, Node]]:
-        """Everything that can happen at a tick, and how the loop then stands at its end."""
+        """Every tick that can follow, each with the node at its end."""
         for tick, begun in self.begins(node):
             for after in self.ends(begun):
                 yield tick, after
 
     def begins(self, node: Node) -> Iterator[tuple[Tick, Node]]:
-        """Everything that can be sampled, and how the loop stands when the message is sent."""
+        """Every tick that can follow, each with the node at the moment of its message."""
         for stands, still in self._sampled(node.wheels.still):
             for letter in self._letters[stands]:
                 yield from self._begins(node, letter, still)
 
     def ends(self, begun: Node) -> Iterator[Node]:
-        """How it can stand at the end of a tick that has begun so."""
+        """The nodes at the end of a tick that has begun so."""
         for wheels in self._passed(begun.wheels):
             yield begun._replace(wheels=wheels)
 
     def _sampled(self, still: int) -> list[tuple[bool, int]]:
-        """Whether the robot stands, and what the wheels then count from."""
+        """Whether the robot stands, and the count of the wheels then."""
         if still < 0:
             return [(False, still)]
         certain = (True, self.channel.stands)
@@ -181,8 +181,8 @@ class Loop:
         requested = bool(triggered or owed)
         same = self.channel.edge and requested == node.requested
         for sent, losses in self._fates(node, same):
-            told = (bool(triggered), bool(owed), requested, sent, same and sent is not None)
-            tick = Tick(letter, *told, bool(violated))
+            facts = (bool(triggered), bool(owed), requested, sent, same and sent is not None)
+            tick = Tick(letter, *facts, bool(violated))
             wheels, silent = self._begun(node.wheels, tick, still), self._silence(node, sent)
             yield tick, Node(safety, observer, wheels, losses, requested, silent)
 
@@ -191,19 +191,19 @@ class Loop:
         return Wheels(wheels.gate, still, wheels.queue + sent)
 
     def word(self, before: Node, tick: Tick, after: Node) -> tuple[Heard | None, ...]:
-        """What is heard on a way from one end of a tick to the next; None: a cell ends."""
+        """The events from one end of a tick to the next; None: a cell ends."""
         stands = self.channel.stands if tick.letter[self._place] else before.wheels.still
         rest: Word | None = self._passed(self._begun(before.wheels, tick, stands))[after.wheels]
-        found: list[Heard | None] = []
+        events: list[Heard | None] = []
         while rest is not None:
-            found.append(rest[0])
+            events.append(rest[0])
             rest = rest[1]
-        return tuple(found[-2::-1])  # the first one stands for nothing
+        return tuple(events[-2::-1])  # the first one stands for nothing
 
     def _judge(self, node: Node, letter: Valuation) -> tuple[Hashable, ...]:
         key = (node.safety, node.observer, letter)
-        found = self._judged.get(key)
-        if found is None:
+        judgement = self._judgements.get(key)
+        if judgement is None:
             self._safety.load(node.safety)
             verdict, _ = self._safety.step(letter)
             triggered, owed = self._safety.demands()
@@ -213,24 +213,24 @@ class Loop:
                 verdict, _ = self._observer.step(letter)
                 watching = self._observer.save()
             saved = self._safety.save()
-            found = (saved, watching, triggered, owed, verdict == "violated")
-            self._judged[key] = found
-        return found
+            judgement = (saved, watching, triggered, owed, verdict == "violated")
+            self._judgements[key] = judgement
+        return judgement
 
     def _fates(self, node: Node, same: bool) -> list[tuple[bool | None, int]]:
-        """What becomes of the message, and how many are lost in a row then.
+        """The possible fates of the message, each with the losses in a row after it.
 
         Args:
             node: before the tick.
-            same: it would say what the last one did, and need not be sent for that.
+            same: it would repeat the last request, so it need not be sent.
         """
         beat = self.channel.heartbeat
         quiet: list[tuple[bool | None, int]] = [(None, node.losses)]
         lost: list[tuple[bool | None, int]] = [(False, node.losses + 1)]
         if same and not beat:
             return quiet
-        said = [(True, 0), *(lost if node.losses < self.channel.lost else [])]
-        return [*quiet, *said] if same and node.silent < beat else said
+        sent = [(True, 0), *(lost if node.losses < self.channel.lost else [])]
+        return [*quiet, *sent] if same and node.silent < beat else sent
 
     def _silence(self, node: Node, sent: bool | None) -> int:
         """Ticks without a message, at the next tick."""
@@ -241,11 +241,11 @@ class Loop:
     # From one tick to the next --------------------------------------------------------------
 
     def _passed(self, wheels: Wheels) -> dict[Wheels, Word]:
-        """How it can stand at the next tick, each with a word of what is heard on the way."""
-        found = self._known.get(wheels)
-        if found is None:
-            found = self._known[wheels] = self._passing(wheels)
-        return found
+        """The states of the wheels at the next tick, each with a word of events on the way."""
+        passage = self._passages.get(wheels)
+        if passage is None:
+            passage = self._passages[wheels] = self._passing(wheels)
+        return passage
 
     def _passing(self, wheels: Wheels) -> dict[Wheels, Word]:
         layer: dict[tuple[Wheels, bool], Word] = {}
@@ -263,47 +263,47 @@ class Loop:
         return {wheels: word for (wheels, enough), word in layer.items() if enough}
 
     def _at_once(self, wheels: Wheels, word: Word) -> tuple[Wheels, Word]:
-        """What is sent without latency is heard at the very instant of the tick."""
+        """Without latency a message arrives at the very instant of the tick."""
         while wheels.queue:
-            heard = _message(wheels.queue)
+            event = _message(wheels.queue)
             moved = wheels.still < 0
-            wheels, word = self._take(wheels, heard), (heard, word)
+            wheels, word = self._take(wheels, event), (event, word)
             if moved and wheels.still == 0:
                 wheels = wheels._replace(still=1)
         return wheels, word
 
     def _closed(self, layer: dict[tuple[Wheels, bool], Word]) -> dict[tuple[Wheels, bool], Word]:
         """Any number of messages, in any order but that of the queue."""
-        found = dict(layer)
+        closure = dict(layer)
         waiting = list(layer)
         for key in waiting:
             wheels, enough = key
             queued = [_message(wheels.queue)] if wheels.queue else []
-            for heard in (*queued, *self._heard):
-                commanded = heard in (Heard.MOVE, Heard.STAND)
-                after = self._take(wheels, heard), enough or commanded
-                if after not in found:
-                    found[after] = (heard, found[key])
+            for event in (*queued, *self._inputs):
+                commanded = event in (Heard.MOVE, Heard.STAND)
+                after = self._take(wheels, event), enough or commanded
+                if after not in closure:
+                    closure[after] = (event, closure[key])
                     waiting.append(after)
-        return found
+        return closure
 
-    def _take(self, wheels: Wheels, heard: Heard) -> Wheels:
-        gate, said = self.gate.hear(wheels.gate, heard)
-        queue = wheels.queue[1:] if heard in (Heard.STOP, Heard.RELEASE) else wheels.queue
-        if said is None:
+    def _take(self, wheels: Wheels, event: Heard) -> Wheels:
+        gate, output = self.gate.hear(wheels.gate, event)
+        queue = wheels.queue[1:] if event in (Heard.STOP, Heard.RELEASE) else wheels.queue
+        if output is None:
             return Wheels(gate, wheels.still, queue)
-        return Wheels(gate, -1 if said else max(wheels.still, 0), queue)
+        return Wheels(gate, -1 if output else max(wheels.still, 0), queue)
 
     def _older(self, layer: dict[tuple[Wheels, bool], Word]) -> dict[tuple[Wheels, bool], Word]:
-        """A cell ends: without those in which a message is in flight for too long."""
-        found: dict[tuple[Wheels, bool], Word] = {}
+        """A cell ends; states with a message in flight for too long drop out."""
+        result: dict[tuple[Wheels, bool], Word] = {}
         for ((gate, still, queue), enough), word in layer.items():
             if queue and queue[0][1] + 1 >= self.channel.latency:
                 continue
             older = tuple((requested, age + 1) for requested, age in queue)
             later = min(still + 1, self.channel.stands) if still >= 0 else still
-            found.setdefault((Wheels(gate, later, older), enough), (None, word))
-        return found
+            result.setdefault((Wheels(gate, later, older), enough), (None, word))
+        return result
 
 
 def _message(queue: Queue) -> Heard:

@@ -1,7 +1,7 @@
-"""A run of the closed loop as a table, made by running the texts once more from their beginning.
+"""A run of the closed loop as a table, from a second run of the texts from their beginning.
 
-What the model says of a run is believed only so far as the texts themselves do it: monitors are
-stepped without being stopped and put back, the interceptor without encoded states.
+The texts must do what the model says of the run: this replay steps monitors without saving and
+restoring their states, and the interceptor without encoded states.
 """
 
 from __future__ import annotations
@@ -18,15 +18,15 @@ from monitors.kernel.verdicts import VIOLATED, Truth
 from monitors.loading import load
 
 EXTRA = ("request", "delivered", "halt", "wheels")
-"""The columns beside the propositions: what is requested, what of it was heard last in the tick;
-at the end of the tick, whether the interceptor is halted and whether the wheels have to move."""
+"""The columns beside the propositions: the request, and its last delivery in the tick; at the end
+of the tick, whether the interceptor is halted and whether the wheels have to move."""
 
 
 class Moment(NamedTuple):
-    """A tick, and what is heard before the next."""
+    """A tick, and the events before the next one."""
 
     tick: Tick
-    heard: tuple[Heard | None, ...]
+    events: tuple[Heard | None, ...]
     """None: a cell ends."""
 
 
@@ -43,12 +43,12 @@ class Watched:
 
 
 def moments(loop: Loop, start: Node, run: Sequence[tuple[Tick, Node]]) -> tuple[Moment, ...]:
-    """The run with what is heard in it."""
-    found, before = [], start
+    """The run with its events."""
+    timeline, before = [], start
     for tick, after in run:
-        found.append(Moment(tick, loop.word(before, tick, after)))
+        timeline.append(Moment(tick, loop.word(before, tick, after)))
         before = after
-    return tuple(found)
+    return tuple(timeline)
 
 
 def replayed(
@@ -58,7 +58,7 @@ def replayed(
     loop: Loop,
     cycle: int | None = None,
 ) -> tuple[Trace, bool]:
-    """The run as a table, and whether the observer says at its last tick that it is violated.
+    """The run as a table, and whether the observer finds a violation at its last tick.
 
     Raises:
         AssertionError: the texts do not do what the model says.
@@ -81,11 +81,11 @@ class _Again:
         self._state: Any = loop.gate.fresh()
         self._still = loop.channel.stands
         self._flying: list[tuple[bool, int]] = []
-        self._lost, self._silent, self._said = 0, 0, False
+        self._lost, self._silent, self._last_request = 0, 0, False
         self.violated = False
 
     def row(self, moment: Moment) -> tuple[Truth, ...]:
-        """One tick of all of them."""
+        """Run one tick of all texts; its row of the table."""
         tick = moment.tick
         self._sample(tick)
         self._step(self._safety, tick)
@@ -95,11 +95,11 @@ class _Again:
         assert bool(signals.trigger or signals.owed) == tick.requested
         self._send(tick)
         delivered = None
-        for heard in moment.heard:
-            if heard in (Heard.STOP, Heard.RELEASE):
-                assert self._flying.pop(0)[0] == (heard is Heard.STOP)
-                delivered = heard is Heard.STOP
-            self._hear(heard)
+        for event in moment.events:
+            if event in (Heard.STOP, Heard.RELEASE):
+                assert self._flying.pop(0)[0] == (event is Heard.STOP)
+                delivered = event is Heard.STOP
+            self._hear(event)
         halted = self._gate.halts(self._state)
         return (*tick.letter, tick.requested, delivered, halted, self._still < 0)
 
@@ -110,32 +110,32 @@ class _Again:
 
     def _step(self, monitor: Monitor, tick: Tick) -> None:
         values = dict(zip(self._environment.atoms, tick.letter, strict=True))
-        given = {p: values[name] for name, p in monitor.PROPOSITIONS.items()}
-        monitor.step(**given)  # type: ignore[attr-defined]
+        parameters = {p: values[name] for name, p in monitor.PROPOSITIONS.items()}
+        monitor.step(**parameters)  # type: ignore[attr-defined]
 
     def _send(self, tick: Tick) -> None:
-        same = self._channel.edge and tick.requested == self._said
+        same = self._channel.edge and tick.requested == self._last_request
         beat = self._channel.heartbeat
         assert tick.again == (same and tick.sent is not None)
         assert beat or not tick.again
         assert tick.sent is not None or (same and (not beat or self._silent < beat))
         self._silent = self._silent + 1 if tick.sent is None else 1
         if tick.sent is not None:
-            self._said, self._lost = tick.requested, 0 if tick.sent else self._lost + 1
+            self._last_request, self._lost = tick.requested, 0 if tick.sent else self._lost + 1
         assert self._lost <= self._channel.lost
         if tick.sent:
             self._flying.append((tick.requested, 0))
 
-    def _hear(self, heard: Heard | None) -> None:
-        if heard is None:
+    def _hear(self, event: Heard | None) -> None:
+        if event is None:
             self._still += 1 if 0 <= self._still < self._channel.stands else 0
             self._flying = [(requested, age + 1) for requested, age in self._flying]
             assert all(age < self._channel.latency for _, age in self._flying)
             return
-        instant = heard in (Heard.STOP, Heard.RELEASE) and self._channel.latency == 0
-        self._state, said = self._gate.replayed(self._state, heard)
-        if said is not None:
-            self._still = -1 if said else self._still if self._still >= 0 else int(instant)
+        instant = event in (Heard.STOP, Heard.RELEASE) and self._channel.latency == 0
+        self._state, output = self._gate.replayed(self._state, event)
+        if output is not None:
+            self._still = -1 if output else self._still if self._still >= 0 else int(instant)
 
 
 # Words ----------------------------------------------------------------------------------------
@@ -143,21 +143,20 @@ class _Again:
 
 def _in_words(moment: Moment) -> str:
     """`a stop is requested, and the message is lost; a command to move is heard`."""
-    return "; ".join((*_message(moment.tick), *_heard(moment.heard)))
+    return "; ".join((*_message(moment.tick), *_deliveries(moment.events)))
 
 
 def _message(tick: Tick) -> Iterator[str]:
-    what = "a stop is requested" if tick.requested else "no stop is requested"
+    request = "a stop is requested" if tick.requested else "no stop is requested"
     again = " again" if tick.again else ""
     if tick.sent is None:
-        yield f"{what}, and no message is sent" if tick.requested else what
+        yield f"{request}, and no message is sent" if tick.requested else request
     elif tick.sent:
-        yield f"{what}, and the message is sent{again}"
+        yield f"{request}, and the message is sent{again}"
     else:
-        yield f"{what}, and the message is{' sent again, and' if tick.again else ''} lost"
+        yield f"{request}, and the message is{' sent again, and' if tick.again else ''} lost"
 
 
-def _heard(heard: Sequence[Heard | None]) -> Iterator[str]:
-    """What is heard, without rings of the timer, which are as many in each tick."""
-    told = [one.value for one in heard if one is not None and one is not Heard.RING]
-    yield from told
+def _deliveries(events: Sequence[Heard | None]) -> Iterator[str]:
+    """The events without rings of the timer, which are as many in each tick."""
+    yield from (event.value for event in events if event is not None and event is not Heard.RING)

@@ -1,7 +1,7 @@
-"""What the closed loop can do: a shortest violation, a run that owes for ever, a stop that stays.
+"""Exploration of the closed loop: a shortest violation, an endless debt, a stop that stays.
 
-All of it is reachability in a finite graph (`fretc.verification.loop.model`); what no finite run
-shows is asked of Spot. A run that is found is run again through the texts before it is told.
+All of it is reachability in a finite graph (`fretc.verification.loop.model`); Spot searches for
+endless runs. The texts replay each run before a result contains it.
 """
 
 from __future__ import annotations
@@ -21,9 +21,9 @@ from fretc.verification.monitor.text_check import strange
 from monitors.loading import load
 
 MOST_ATOMS = 8
-"""Each doubles the letters of a tick."""
+"""Each proposition doubles the letters of a tick."""
 LONGEST = 250
-"""Ticks: a longer bound is not given to Spot, which expands it."""
+"""Ticks: Spot expands bounds, so it gets no longer one."""
 
 _HALT, _TRIGGER = f.Atom("_halt_"), f.Atom("_trigger_")  # no names of FRETish
 RELEASE = f.implies(
@@ -41,17 +41,17 @@ class Case:
     safety: str
     """The text of the monitor that requests stops."""
     observer: str
-    """The text of the monitor that tells violations."""
+    """The text of the monitor that detects violations."""
     interceptor: str
     settings: Settings
     channel: Channel
     stands: str
     limit: int = 10**6
-    """The most states that are looked at."""
+    """The most states of the exploration."""
 
 
 @dataclass(frozen=True, slots=True)
-class Found:
+class Results:
     """The results of both claims."""
 
     kept: Result
@@ -59,21 +59,23 @@ class Found:
 
 
 class NotALoopError(Exception):
-    """The case cannot be explored; it says why."""
+    """The case cannot be explored; the text says why."""
 
 
-def search(case: Case) -> Found:
+def search(case: Case) -> Results:
     """Look for a violation, then for an endless one, then for a stop that stays."""
     try:
         parts = Parts.of(case)
         reached = reach(parts.loop, case.limit)
-        told = frozenset(() if is_safety(case.formula) else f.atoms(case.formula))
-        runs = Runs.of(parts.loop, told | {_TRIGGER.name, _HALT.name}, case.limit)
-        return Found(_kept(case, parts, reached, runs), _released(parts, runs))
+        visible = frozenset(() if is_safety(case.formula) else f.atoms(case.formula))
+        runs = Runs.of(parts.loop, visible | {_TRIGGER.name, _HALT.name}, case.limit)
+        return Results(
+            _requirement_result(case, parts, reached, runs), _release_result(parts, runs)
+        )
     except (NotALoopError, NotAnInterceptorError) as error:
-        return Found(NotChecked(str(error)), NotChecked(str(error)))
+        return Results(NotChecked(str(error)), NotChecked(str(error)))
     except TooManyStatesError as error:
-        return Found(NotChecked(str(error)), NotChecked(str(error)))
+        return Results(NotChecked(str(error)), NotChecked(str(error)))
 
 
 # Parts ----------------------------------------------------------------------------------------
@@ -110,12 +112,12 @@ class Parts:
 
 
 def watched(text: str, requirement: str) -> Watched:
-    """A monitor of the requirement; its text is executed only where it is laid out as ours are."""
+    """A monitor of the requirement; only a text in the layout of fretc is executed."""
     reason = strange(text)
     if reason is not None:
         raise NotALoopError(f"of the monitor: {reason}")
     monitor = load("monitor", text)
-    places = [i for i, known in enumerate(monitor.REQUIREMENTS) if known.id == requirement]
+    places = [i for i, each in enumerate(monitor.REQUIREMENTS) if each.id == requirement]
     if not places:
         raise NotALoopError("the monitor is of other requirements")
     return Watched(text, places[0])
@@ -126,7 +128,7 @@ def watched(text: str, requirement: str) -> Watched:
 
 @dataclass(frozen=True, slots=True)
 class Reached:
-    """Every state that comes before a violation, or the ways to a nearest violation."""
+    """The result of an exploration: its size, and a shortest run to a violation, if any."""
 
     states: int
     steps: int
@@ -144,7 +146,7 @@ def reach(loop: Loop, limit: int) -> Reached:
     """
     place = loop.environment.atoms.index(loop.environment.stands)
     came: dict[Node, tuple[Node, Tick] | None] = {loop.initial: None}
-    waiting, known = [loop.initial], set[Node]()
+    waiting, visited = [loop.initial], set[Node]()
     steps, triggered, moved = 0, False, False
     for node in waiting:
         for tick, begun in loop.begins(node):
@@ -153,9 +155,9 @@ def reach(loop: Loop, limit: int) -> Reached:
             if tick.violated:
                 run = (*_way(came, node), (tick, next(loop.ends(begun))))
                 return Reached(len(came), steps, run, triggered, moved)
-            if begun in known:
+            if begun in visited:
                 continue
-            known.add(begun)
+            visited.add(begun)
             for after in loop.ends(begun):
                 steps += 1
                 if after not in came:
@@ -175,9 +177,9 @@ def _way(came: dict[Node, tuple[Node, Tick] | None], node: Node) -> tuple[tuple[
     return tuple(reversed(way))
 
 
-def _kept(case: Case, parts: Parts, reached: Reached, runs: Runs) -> Result:
+def _requirement_result(case: Case, parts: Parts, reached: Reached, runs: Runs) -> Result:
     if reached.violation is not None:
-        trace, violated = shown(parts, reached.violation)
+        trace, violated = as_table(parts, reached.violation)
         assert violated, "the texts do not violate what the model violates"
         ticks = len(trace.rows)
         return Counterexample(f"violated at tick {ticks - 1}; no shorter run shows it", trace)
@@ -196,7 +198,7 @@ def _kept(case: Case, parts: Parts, reached: Reached, runs: Runs) -> Result:
     return Counterexample("what is owed never comes: the last ticks are repeated for ever", lasso)
 
 
-def _released(parts: Parts, runs: Runs) -> Result:
+def _release_result(parts: Parts, runs: Runs) -> Result:
     lasso = _lasso(parts, runs, RELEASE)
     if lasso is None:
         if not any(_HALT.name in label for label in runs.explored.kripke.labels):
@@ -205,18 +207,18 @@ def _released(parts: Parts, runs: Runs) -> Result:
     return Counterexample("the stop stays: the last ticks are repeated for ever", lasso)
 
 
-def shown(
+def as_table(
     parts: Parts, run: tuple[tuple[Tick, Node], ...], cycle: int | None = None
 ) -> tuple[Trace, bool]:
-    """The run as a table, run again through the texts; and whether it violates the requirement."""
-    told = moments(parts.loop, parts.loop.initial, run)
-    return replayed(told, parts.safety, parts.observer, parts.loop, cycle)
+    """The run as a table, replayed by the texts; and whether it violates the requirement."""
+    visible = moments(parts.loop, parts.loop.initial, run)
+    return replayed(visible, parts.safety, parts.observer, parts.loop, cycle)
 
 
 # Endless runs ---------------------------------------------------------------------------------
 
 Labelled = tuple[frozenset[str], Node]
-"""A state of a Kripke structure: what was true at the last tick, and how the loop stands now."""
+"""A state of a Kripke structure: the atoms of the last tick, and the node of the loop."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -224,33 +226,33 @@ class Runs:
     """All runs, also beyond violations, from before the first tick on."""
 
     loop: Loop
-    told: frozenset[str]
-    """The atoms that states are told apart by."""
+    visible: frozenset[str]
+    """The atoms that distinguish states."""
     explored: Explored[Labelled]
 
     @classmethod
-    def of(cls, loop: Loop, told: frozenset[str], limit: int) -> Runs:
+    def of(cls, loop: Loop, visible: frozenset[str], limit: int) -> Runs:
         """Raises TooManyStatesError where there are more states than the limit."""
 
         def successors(state: Labelled) -> Iterator[Labelled]:
-            known = set[tuple[frozenset[str], Node]]()
+            visited = set[tuple[frozenset[str], Node]]()
             for tick, begun in loop.begins(state[1]):
-                true = _true(loop, tick) & told
-                if (true, begun) not in known:
-                    known.add((true, begun))
+                true = _true(loop, tick) & visible
+                if (true, begun) not in visited:
+                    visited.add((true, begun))
                     for after in loop.ends(begun):
                         yield _label(loop, true, after), after
 
         start: Labelled = (frozenset(), loop.initial)
-        return cls(loop, told, explore(start, successors, lambda state: state[0], limit))
+        return cls(loop, visible, explore(start, successors, lambda state: state[0], limit))
 
     def tick(self, before: Node, label: frozenset[str], after: Node) -> Tick:
         """One of the ticks that lead from one state to the next."""
         return next(
             tick
-            for tick, other in self.loop.steps(before)
-            if other == after
-            and _label(self.loop, _true(self.loop, tick), other) & self.told == label
+            for tick, successor in self.loop.steps(before)
+            if successor == after
+            and _label(self.loop, _true(self.loop, tick), successor) & self.visible == label
         )
 
 
@@ -264,7 +266,7 @@ def _lasso(parts: Parts, runs: Runs, formula: f.Formula) -> Trace | None:
     for label, after in (runs.explored.states[number] for number in lasso.states[1:]):
         run.append((runs.tick(before, label, after), after))
         before = after
-    trace, _ = shown(parts, tuple(run), len(lasso.prefix) - 1)
+    trace, _ = as_table(parts, tuple(run), len(lasso.prefix) - 1)
     return trace
 
 

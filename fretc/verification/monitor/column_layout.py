@@ -1,4 +1,4 @@
-"""The column program of a generated monitor: names for columns, and what it tells of them."""
+"""The layout of a generated monitor's column program: named columns, then its signals."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ _COLUMNS = frozenset(
     "previous weak_previous once historically since released since_from since_between "
     "released_between".split()
 )
-"""What a column program calls."""
+"""The functions that a column program may call."""
 
 
 def check_columns(node: ast.stmt, literals: Sequence[str]) -> None:
@@ -24,8 +24,8 @@ def check_columns(node: ast.stmt, literals: Sequence[str]) -> None:
     Raises:
         StrangeError: it does something else.
     """
-    given = ", ".join(f"{name}: int" for name in literals)
-    arguments = f"every: int, *, {given}" if literals else "every: int"
+    parameters = ", ".join(f"{name}: int" for name in literals)
+    arguments = f"every: int, *, {parameters}" if literals else "every: int"
     *body, last = body_of(node, "columns", arguments, "staticmethod")
     bound = {"every", *literals}
     for statement in body:
@@ -37,14 +37,14 @@ def check_columns(node: ast.stmt, literals: Sequence[str]) -> None:
             case _:
                 demand(False, statement)
     match last:
-        case ast.Return(ast.Tuple(told)):
-            for one in told:
-                match one:
+        case ast.Return(ast.Tuple(entries)):
+            for entry in entries:
+                match entry:
                     case ast.Call(ast.Name("Signals"), [], keywords):
                         for keyword in keywords:
                             _check_column(keyword.value, bound)
                     case _:
-                        demand(False, one)
+                        demand(False, entry)
         case _:
             demand(False, last)
 

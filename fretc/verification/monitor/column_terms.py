@@ -1,8 +1,8 @@
 """The column program of a monitor's text as terms: equal terms are equal columns of any trace.
 
-Each name stands for what it was given, each parameter for the proposition that it is a literal of.
-So two programs of the same terms differ in the names of their variables and in nothing else, and
-whatever is shown of the one at all lengths of a trace holds of the other.
+A name stands for its assigned term, a parameter for its literal. So two programs with equal terms
+differ in the names of their variables only, and a proof about one, at all lengths of a trace, holds
+of the other.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from fretc.verification.monitor.text_check import own
 
 @dataclass(slots=True)
 class Terms:
-    """Terms as numbers, one for each that differs: texts are compared that share this table."""
+    """Terms as numbers, equal for equal terms; texts to compare share one table."""
 
     _numbers: dict[tuple[object, ...], int] = field(default_factory=dict)
 
@@ -52,17 +52,17 @@ class Terms:
         assert isinstance(last.value, ast.Tuple)
         signals = last.value.elts[place]
         assert isinstance(signals, ast.Call)
-        told = {keyword.arg: self._term(keyword.value, names) for keyword in signals.keywords}
-        return tuple(told[name] for name in SIGNALS)
+        terms = {keyword.arg: self._term(keyword.value, names) for keyword in signals.keywords}
+        return tuple(terms[name] for name in SIGNALS)
 
     def _literals(self, monitor: ast.ClassDef) -> dict[str, int]:
         for part in monitor.body:
             match part:
                 case ast.Assign([ast.Name("LITERALS")], value):
-                    given: tuple[tuple[str, str, bool], ...] = ast.literal_eval(value)
+                    literals: tuple[tuple[str, str, bool], ...] = ast.literal_eval(value)
                     return {
                         name: self._number("literal", proposition, positive)
-                        for name, proposition, positive in given
+                        for name, proposition, positive in literals
                     }
         return {}
 

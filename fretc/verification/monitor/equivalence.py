@@ -34,7 +34,7 @@ satisfies the sentence, as FRET judges finite traces, if it ends here."""
 
 
 class Machine(Protocol):
-    """A monitor that can be stopped, put back and stepped."""
+    """A monitor whose state can be saved, restored and stepped."""
 
     def save(self) -> Hashable:
         """Everything that its further steps depend on, and nothing else."""
@@ -48,10 +48,10 @@ class Machine(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class Proved:
-    """They say the same at every tick of every trace, up to the first violation."""
+    """Both judge every tick of every trace alike, up to the first violation."""
 
     states: int
-    """Pairs of a state of the automaton and one of the monitor that had to be looked at."""
+    """Compared pairs of a state of the automaton and one of the monitor."""
     steps: int
     """Steps of the monitor that were compared."""
 
@@ -62,14 +62,14 @@ class Refuted:
 
     word: tuple[Valuation, ...]
     expected: Judgement
-    found: Judgement
+    actual: Judgement
     shortest: bool = True
-    """No shorter trace tells them apart; False where there were too many pairs to know."""
+    """Whether no shorter trace shows the difference; False where there were too many pairs."""
 
 
 @dataclass(frozen=True, slots=True)
 class NotChecked:
-    """Nothing is known."""
+    """There is no result."""
 
     reason: str
 
@@ -83,15 +83,15 @@ def prove(
 ) -> Proved | Refuted | NotChecked:
     """Compare a monitor with the reference automaton of its sentence.
 
-    Below a violation nothing is compared: it is a monitor's last word.
+    After a violation nothing is compared: a monitor's verdict is then final.
 
     Args:
-        machine: the monitor, before its first tick; it is left in any state.
+        machine: the monitor, before its first tick; its state afterwards is arbitrary.
         sentence: a checked sentence.
         ticks: what its duration counts; without meaning where it has none.
         atoms: the order of the values in a letter, by the names that formulas have for them;
             at least every atom of the sentence.
-        limit: the most states of the automaton, and the most pairs that are looked at.
+        limit: the most states of the automaton, and the most pairs of states.
 
     Raises:
         KeyError: an atom of the sentence is not among `atoms`.
@@ -128,7 +128,7 @@ class _Reference:
     def of(cls, automaton: Automaton, letters: Mapping[Valuation, Letter]) -> _Reference:
         numbers = {letter: number for number, letter in enumerate(automaton.letters)}
         broken: Judgement = ("violated", False)
-        judged = (
+        judgements = (
             (verdict, accepts(automaton.template, state))
             for state, verdict in zip(automaton.states, automaton.verdicts, strict=True)
         )
@@ -136,22 +136,22 @@ class _Reference:
             tuple(letters),
             automaton.moves,
             tuple(numbers[letter] for letter in letters.values()),
-            (*judged, broken),
+            (*judgements, broken),
         )
 
 
 def _compared(machine: Machine, reference: _Reference, limit: int) -> Proved | Refuted | NotChecked:
     """Whether they are equal, by classes of states; if not, a shortest word, by all pairs."""
     start = machine.save()
-    found = _in_lock_step(machine, reference, _Classes(len(reference.moves)), limit)
-    if not isinstance(found, Refuted):
-        return found
+    result = _in_lock_step(machine, reference, _Classes(len(reference.moves)), limit)
+    if not isinstance(result, Refuted):
+        return result
     machine.load(start)
     shortest = _in_lock_step(machine, reference, _Pairs(), limit)
-    return shortest if isinstance(shortest, Refuted) else replace(found, shortest=False)
+    return shortest if isinstance(shortest, Refuted) else replace(result, shortest=False)
 
 
-class _Known(Protocol):
+class _Visited(Protocol):
     """The pairs of states that need not be looked at again."""
 
     def add(self, state: int, saved: Hashable) -> bool:
@@ -162,17 +162,17 @@ class _Pairs:
     """Every pair for itself."""
 
     def __init__(self) -> None:
-        self._seen: set[tuple[int, Hashable]] = set()
+        self._pairs: set[tuple[int, Hashable]] = set()
 
     def add(self, state: int, saved: Hashable) -> bool:
         """Whether the pair is new; it is known from now on."""
-        before = len(self._seen)
-        self._seen.add((state, saved))
-        return len(self._seen) > before
+        before = len(self._pairs)
+        self._pairs.add((state, saved))
+        return len(self._pairs) > before
 
 
 class _Classes:
-    """Sets of states that must be equal if all pairs are: what follows from others is known.
+    """Sets of states that must be equal if all pairs are: a pair that follows from others is known.
 
     There are no more new pairs than states on both sides together, where the pairs that can be
     reached may be as many as their product.
@@ -200,11 +200,11 @@ class _Classes:
 
 
 def _in_lock_step(
-    machine: Machine, reference: _Reference, known: _Known, limit: int
+    machine: Machine, reference: _Reference, visited: _Visited, limit: int
 ) -> Proved | Refuted | NotChecked:
     """Breadth first through the pairs that are new, from the present state of the machine."""
     start = (0, machine.save())
-    known.add(*start)
+    visited.add(*start)
     pairs = [start]
     origins: list[tuple[int, Valuation] | None] = [None]
     steps = 0
@@ -212,16 +212,16 @@ def _in_lock_step(
         row = reference.moves[state]
         for valuation, letter in zip(reference.valuations, reference.letters, strict=True):
             machine.load(saved)
-            found = machine.step(valuation)
+            judgement = machine.step(valuation)
             steps += 1
             after = row[letter]
             expected = reference.judgements[after]
-            if found != expected:
-                return Refuted((*_word(origins, place), valuation), expected, found)
+            if judgement != expected:
+                return Refuted((*_word(origins, place), valuation), expected, judgement)
             if expected[0] == "violated":
                 continue
             reached = machine.save()
-            if known.add(after, reached):
+            if visited.add(after, reached):
                 pairs.append((after, reached))
                 origins.append((place, valuation))
         if len(pairs) > limit:

@@ -25,57 +25,57 @@ ENGINE = "fretc, lock step with the counter automaton of the sentence"
 def evidence(
     rule: Rule, name: str, text: str, limits: Limits, others: Sequence[Rule] = ()
 ) -> v.Evidence:
-    """What can be shown of a monitor's text.
+    """The evidence about a monitor's text.
 
     Args:
         rule: its requirement.
         name: of the file.
-        text: what says to be its monitor, maybe beside others.
+        text: that of its monitor, maybe with monitors of other rules.
         limits: of the process that it is executed in.
         others: rules that the text may be of, too.
 
     Raises:
         NotAMonitorError: the text is no generated monitor.
     """
-    found = processes.confined(limits, verified, rule, text, MOST_STATES, tuple(others))
-    result = v.NotChecked(found.reason) if isinstance(found, Stopped) else as_result(found)
+    outcome = processes.confined(limits, verified, rule, text, MOST_STATES, tuple(others))
+    result = v.NotChecked(outcome.reason) if isinstance(outcome, Stopped) else as_result(outcome)
     return v.Evidence(rule.id, v.Layer.MONITOR, CLAIM, result, ENGINE, (), {name: sha256(text)})
 
 
-def as_result(found: Verified) -> v.Result:
-    """In the form that all layers share."""
-    match found.result:
+def as_result(outcome: Verified) -> v.Result:
+    """The result in the form that all layers share."""
+    match outcome.result:
         case Proved(states, steps):
             return v.Proved(
                 f"the same at every tick of every trace ({states} states, {steps} steps); "
-                f"columns agree on {found.compared} drawn ticks{_beside(found)}"
+                f"columns agree on {outcome.compared} drawn ticks{_comparison(outcome)}"
             )
-        case Refuted(word, expected, told, shortest):
+        case Refuted(word, expected, actual, shortest):
             length = f"{len(word)} tick{'' if len(word) == 1 else 's'}"
             kind = "the shortest trace" if shortest else "a trace"
             detail = (
-                f"{kind} that shows it has {length}; after it, {_judged(*told)}, and should be "
-                f"{_judged(*expected)}"
+                f"{kind} that shows it has {length}; after it, {_judgement(*actual)}, and should "
+                f"be {_judgement(*expected)}"
             )
-            return v.Counterexample(detail, v.Trace(found.atoms, word))
-        case Disagreement(word, what):
-            detail = f"{what} on a trace"
-            return v.Counterexample(detail, v.Trace(found.atoms, word))
+            return v.Counterexample(detail, v.Trace(outcome.atoms, word))
+        case Disagreement(word, fault):
+            detail = f"{fault} on a trace"
+            return v.Counterexample(detail, v.Trace(outcome.atoms, word))
         case NotChecked(reason):
             return v.NotChecked(reason)
         case _:
-            assert_never(found.result)
+            assert_never(outcome.result)
 
 
-def _beside(found: Verified) -> str:
-    """What else was compared of a text that is not the one that fretc writes."""
-    if not found.beside:
+def _comparison(outcome: Verified) -> str:
+    """The further comparisons for a text that differs from the one that fretc writes."""
+    if not outcome.compared_states:
         return ""
     return (
         "; triggers, answers, open demands and unknown values as in the text that fretc writes "
-        f"({found.beside} states)"
+        f"({outcome.compared_states} states)"
     )
 
 
-def _judged(verdict: str, finite: bool) -> str:
+def _judgement(verdict: str, finite: bool) -> str:
     return f"{verdict} ({'true' if finite else 'false'} if it ended there)"

@@ -1,7 +1,7 @@
-"""A monitor's text as a machine that can be stopped, put back and stepped.
+"""A monitor's text as a machine whose state can be saved, restored and stepped.
 
 That is sound only where a step depends on nothing but cells and propositions:
-`fretc.verification.monitor.text_check` reads that off the text before anything of it is executed.
+`fretc.verification.monitor.text_check` checks that on the text before anything of it is executed.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from monitors.kernel import Monitor
 
 
 class Cells:
-    """All cells of a rail: a step reads nothing else of what was before it."""
+    """All cells of a rail: a step reads nothing else of its past."""
 
     def __init__(self, rail: Any) -> None:
         """Of a rail that is laid out as fretc writes it."""
@@ -70,11 +70,11 @@ class Stepped:
             setattr(self._rail, name, -1)
 
     def step(self, letter: Valuation) -> Judgement:
-        """The verdict as the text's own step tells it, and FRET's finite verdict."""
-        told = self._step(**{p: letter[i] for p, i in self._parameters})
+        """The verdict of the text's own step, and FRET's finite verdict."""
+        verdicts = self._step(**{p: letter[i] for p, i in self._parameters})
         rail = self._rail
         signals, marks = rail.signals()[self._place], rail.marks()[self._place]
-        verdict = told if self._alone else told[self._place]
+        verdict = verdicts if self._alone else verdicts[self._place]
         return str(verdict), marks.broken < 0 and not signals.fails
 
     def demands(self) -> tuple[bool, bool]:

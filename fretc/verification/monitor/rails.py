@@ -1,9 +1,9 @@
-"""Whether two monitors tell the same of every trace, whatever of it is unknown.
+"""Whether two monitors have the same signals on every trace, with unknown values too.
 
 A monitor is two runs of one code, its rails: an unknown counts as false on the one and as true on
 the other. Each rail of the one monitor goes in lock step with that of the other over all letters,
 unknown values among them, until no new pair of states appears. At each step all signals are
-compared, and what is noted in marks.
+compared, and all marks.
 """
 
 from __future__ import annotations
@@ -27,41 +27,41 @@ Letter = tuple[Truth, ...]
 
 @dataclass(frozen=True, slots=True)
 class Same:
-    """They tell the same of every trace."""
+    """The monitors agree on every trace."""
 
     states: int
-    """Pairs of states of both rails that were looked at."""
+    """Compared pairs of states of both rails."""
 
 
 @dataclass(frozen=True, slots=True)
 class Apart:
-    """A shortest trace of one rail at whose last tick they tell something else."""
+    """A shortest trace of one rail at whose last tick the monitors differ."""
 
     word: tuple[Letter, ...]
-    what: str
+    signal: str
     """Which signal, or which mark."""
 
 
 def compared(
-    machine: Monitor, place: int, other: Monitor, atoms: Sequence[str], limit: int
+    machine: Monitor, place: int, reference: Monitor, atoms: Sequence[str], limit: int
 ) -> Same | Apart | None:
     """Compare a requirement of one monitor with the only one of the other.
 
     Args:
         machine: laid out as fretc writes it.
         place: of the requirement among those of the machine.
-        other: a monitor of one requirement.
+        reference: a monitor of one requirement.
         atoms: the order of the values in a letter; at least the propositions of both.
-        limit: the most pairs of states that are looked at; with more, nothing is known: None.
+        limit: the most pairs of states; with more the result is None.
     """
     states = 0
     for doubt in (False, True):
         left = _Rail(machine, place, doubt, atoms)
-        right = _Rail(other, 0, doubt, atoms)
-        found = _in_lock_step(left, right, len(atoms), limit)
-        if not isinstance(found, Same):
-            return found
-        states += found.states
+        right = _Rail(reference, 0, doubt, atoms)
+        result = _in_lock_step(left, right, len(atoms), limit)
+        if not isinstance(result, Same):
+            return result
+        states += result.states
     return Same(states)
 
 
@@ -88,15 +88,15 @@ class _Rail:
     def step(self, state: Hashable, letter: Letter) -> tuple[object, ...]:
         """The signals after one tick, and the marks from each of `_STARTS`."""
         row = tuple([letter[i] for i in self._order])
-        told: list[object] = []
+        marks: list[object] = []
         for start in _STARTS:
             self._cells.load(state)
             self._rail.tick = _TICK
             for mark, name in self._marks:
                 setattr(self._rail, name, start.get(mark, -1))
             self._rail.advance((row,))
-            told += self._rail.marks()[self._place]
-        return (*map(bool, self._rail.signals()[self._place]), *told)
+            marks += self._rail.marks()[self._place]
+        return (*map(bool, self._rail.signals()[self._place]), *marks)
 
 
 def _is_open(name: str) -> bool:
@@ -111,16 +111,16 @@ def _in_lock_step(left: _Rail, right: _Rail, atoms: int, limit: int) -> Same | A
     letters = tuple(product((False, True, None), repeat=atoms))
     pairs = [(left.save(), right.save())]
     origins: list[tuple[int, Letter] | None] = [None]
-    known = {*pairs}
-    for place, (one, other) in enumerate(pairs):  # grows while it is read
+    visited = {*pairs}
+    for place, (first, second) in enumerate(pairs):  # grows while it is read
         for letter in letters:
-            found, expected = left.step(one, letter), right.step(other, letter)
-            if found != expected:
-                what = next(n for n, a, b in zip(_NAMES, found, expected, strict=True) if a != b)
-                return Apart((*_word(origins, place), letter), what)
+            actual, expected = left.step(first, letter), right.step(second, letter)
+            if actual != expected:
+                signal = next(n for n, a, b in zip(_NAMES, actual, expected, strict=True) if a != b)
+                return Apart((*_word(origins, place), letter), signal)
             reached = left.save(), right.save()
-            if reached not in known:
-                known.add(reached)
+            if reached not in visited:
+                visited.add(reached)
                 pairs.append(reached)
                 origins.append((place, letter))
         if len(pairs) > limit:

@@ -1,4 +1,4 @@
-"""Statements of a text, held against those that fretc writes."""
+"""Statements of a text, compared with those that fretc writes."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from functools import cache
 
 
 class StrangeError(Exception):
-    """What is not as the generator writes it."""
+    """The text is not as the generator writes it."""
 
 
 def demand(right: bool, node: ast.AST) -> None:
@@ -26,8 +26,8 @@ def normal(text: str) -> str:
 
 def is_one_of(node: ast.AST, *texts: str) -> bool:
     """The node is one of these statements or expressions."""
-    found = ast.unparse(node)
-    return any(found == normal(text) for text in texts)
+    own = ast.unparse(node)
+    return any(own == normal(text) for text in texts)
 
 
 def reads(statements: Sequence[ast.stmt], text: str) -> bool:
@@ -54,9 +54,9 @@ def constants(node: ast.AST) -> tuple[object, ...]:
 
 def names_in(node: ast.AST) -> tuple[str, ...]:
     """The values of a tuple of texts."""
-    found = constants(node)
-    names = tuple(value for value in found if isinstance(value, str))
-    demand(names == found, node)
+    values = constants(node)
+    names = tuple(value for value in values if isinstance(value, str))
+    demand(names == values, node)
     return names
 
 

@@ -30,16 +30,16 @@ from fretish.reading.text_encoding import is_utf8
 from monitors.source_text import kernel
 
 _OF_RAILS = frozenset({"CELLS", "advance", "signals", "marks"})
-"""What else a rail has."""
+"""The other names of a rail."""
 
 
 def strange(text: str) -> str | None:
     """Why the text may do more than it seems to; None: it does not."""
     if not is_utf8(text):
         return "it declares another encoding than UTF-8, so Python would read another text"
-    head, found, own = text.partition(kernel().text)
+    head, runtime, own = text.partition(kernel().text)
     try:
-        if not found or not head.endswith("\n") or not own.startswith("\n") or not _is_head(head):
+        if not runtime or not head.endswith("\n") or not own.startswith("\n") or not _is_head(head):
             return "the run time in it is not the one of this version of fretc"
         _check_module(ast.parse(own))
     except SyntaxError as error:
@@ -50,7 +50,7 @@ def strange(text: str) -> str | None:
 
 
 def own(text: str) -> ast.Module:
-    """What of a monitor's text stands below the run time; it is laid out as fretc writes it."""
+    """The part of a monitor's text below the run time; `strange` has checked its layout."""
     return ast.parse(text.partition(kernel().text)[2])
 
 
@@ -60,7 +60,7 @@ def _is_head(head: str) -> bool:
 
 def _check_module(module: ast.Module) -> None:
     match module.body:
-        case [ast.ClassDef() as rail, ast.ClassDef() as monitor, named, run]:
+        case [ast.ClassDef() as rail, ast.ClassDef() as monitor, binding, run]:
             pass
         case _:
             raise StrangeError("it is not laid out as fretc writes it: two classes and no more")
@@ -68,20 +68,20 @@ def _check_module(module: ast.Module) -> None:
     demand(rail.name == f"{title}Rail" and title != "", rail)
     demand(monitor.name == f"{title}Monitor" and _is_plain(rail) and _is_plain(monitor), monitor)
     demand([ast.unparse(base) for base in (*rail.bases, *monitor.bases)] == ["Monitor"], monitor)
-    demand(is_one_of(named, f"MONITOR: type[Monitor] = {monitor.name}"), named)
+    demand(is_one_of(binding, f"MONITOR: type[Monitor] = {monitor.name}"), binding)
     _check_annotations(module, title)
     demand(is_one_of(run, 'if __name__ == "__main__":\n    sys.exit(main(MONITOR))'), run)
     names, advance = _rail(rail)
     inputs = _monitor(monitor, rail.name, names)
     reserved = {*FIXED, *_OF_RAILS, *locals_of(inputs.values())}
     demand(reserved.isdisjoint(names.cells), rail)
-    told = tuple(f"_{name}" for name in (*MARKS, *SIGNALS))
-    demand(not any(cell.startswith("_") or cell.endswith(told) for cell in names.cells), rail)
+    suffixes = tuple(f"_{name}" for name in (*MARKS, *SIGNALS))
+    demand(not any(cell.startswith("_") or cell.endswith(suffixes) for cell in names.cells), rail)
     check_advance(advance, names, inputs)
 
 
 def _check_annotations(module: ast.Module, title: str) -> None:
-    """They are evaluated when the text is executed: those that the generator writes do nothing."""
+    """Python evaluates annotations when it executes the text: only harmless ones are allowed."""
     allowed = {*_ANNOTATIONS, f"{title}Rail"}
     for node in ast.walk(module):
         match node:
@@ -107,7 +107,7 @@ def _is_plain(node: ast.ClassDef) -> bool:
 
 
 def _rail(node: ast.ClassDef) -> tuple[Rail, ast.stmt]:
-    """The names of a rail, once all of it but `advance` is known to be as it should."""
+    """The names of a rail, after a check of all of it but `advance`."""
     body = below_docstring(node)
     demand(len(body) == 6, node)
     slots, cells, initial, advance, signals, marks = body
@@ -119,18 +119,18 @@ def _rail(node: ast.ClassDef) -> tuple[Rail, ast.stmt]:
             pass
         case _:
             raise StrangeError("it is not laid out as fretc writes it: `__slots__`, `CELLS`")
-    prefixes = _told(signals, marks)
-    named = Rail(names_in(all_cells), frozenset(_windows(initial)), prefixes)
-    reserved = ("doubt", "tick", *named.marks, *named.signals)
-    everything = (*reserved, *named.cells)
+    prefixes = _prefixes(signals, marks)
+    names = Rail(names_in(all_cells), frozenset(_windows(initial)), prefixes)
+    reserved = ("doubt", "tick", *names.marks, *names.signals)
+    everything = (*reserved, *names.cells)
     demand(len({*everything}) == len(everything), cells)
     demand(sorted(names_in(all_slots)) == sorted(everything), slots)
-    _check_initial(initial, named)
-    return named, advance
+    _check_initial(initial, names)
+    return names, advance
 
 
-def _told(signals: ast.stmt, marks: ast.stmt) -> tuple[str, ...]:
-    """The prefixes of the requirements, from what a rail tells of them."""
+def _prefixes(signals: ast.stmt, marks: ast.stmt) -> tuple[str, ...]:
+    """The prefixes of the requirements, from the signals of a rail."""
     prefixes = tuple(
         node.attr.removesuffix("_trigger")
         for node in ast.walk(signals)
@@ -140,11 +140,11 @@ def _told(signals: ast.stmt, marks: ast.stmt) -> tuple[str, ...]:
         (signals, "signals", "Signals", SIGNALS),
         (marks, "marks", "Marks", MARKS),
     ):
-        told = ", ".join(
+        values = ", ".join(
             f"{kind}({', '.join(f'self.{prefix}_{name}' for name in names)})" for prefix in prefixes
         )
         body = body_of(function, name, "self")
-        demand(len(body) == 1 and is_one_of(body[0], f"return ({told},)"), function)
+        demand(len(body) == 1 and is_one_of(body[0], f"return ({values},)"), function)
     return prefixes
 
 
@@ -158,16 +158,16 @@ def _windows(initial: ast.stmt) -> Iterator[str]:
 def _check_initial(node: ast.stmt, rail: Rail) -> None:
     fixed = {"doubt": "doubt", **dict.fromkeys(("tick", *rail.marks), "-1")}
     fixed |= dict.fromkeys(rail.signals, "False")
-    found = []
+    names = []
     for statement in body_of(node, "__init__", "self, doubt: bool = False"):
         match statement:
             case ast.Assign([ast.Attribute(ast.Name("self"), name)], value):
                 right = name in rail.cells and _is_initial(value)
                 demand(right or is_one_of(value, fixed.get(name, "nothing")), statement)
-                found.append(name)
+                names.append(name)
             case _:
                 demand(False, statement)
-    demand(sorted(found) == sorted((*fixed, *rail.cells)), node)
+    demand(sorted(names) == sorted((*fixed, *rail.cells)), node)
 
 
 def _is_initial(node: ast.expr) -> bool:
@@ -181,40 +181,42 @@ def _is_initial(node: ast.expr) -> bool:
 
 
 def _monitor(node: ast.ClassDef, rail: str, names: Rail) -> Mapping[str, str]:
-    """Its propositions with their parameters, once it is known to be as it should."""
+    """The propositions of a monitor with their parameters, after a check of all of it."""
     body = below_docstring(node)
     demand(len(body) == 10, node)
-    program, requirements, propositions, literals, named, must, may, step, run, columns = body
+    program, requirements, propositions, literals, rail_binding, must, may, step, run, columns = (
+        body
+    )
     demand(isinstance(program, ast.Assign) and _is_text(program, "PROGRAM"), program)
     _check_requirements(requirements, names.prefixes)
     inputs = _inputs(propositions, names.prefixes)
-    given = _literals(literals, inputs)
-    demand(is_one_of(named, f"RAIL = {rail}"), named)
+    literal_names = _literals(literals, inputs)
+    demand(is_one_of(rail_binding, f"RAIL = {rail}"), rail_binding)
     demand(is_one_of(must, f"must: {rail}") and is_one_of(may, f"may: {rail}"), must)
     alone = names.prefixes[0] if len(names.prefixes) == 1 else None
     verdicts = "" if alone is None else "[0]"
     rows = "self, rows: Iterable[Row | Mapping[str, Truth]]"
-    told = f"self.advance(rows)\nreturn self.verdicts(){verdicts}"
-    demand(reads(body_of(run, "run", rows), told), run)
+    run_body = f"self.advance(rows)\nreturn self.verdicts(){verdicts}"
+    demand(reads(body_of(run, "run", rows), run_body), run)
     parameters = ", ".join(f"{name}: Truth" for name in inputs.values())
     stepped = body_of(step, "step", f"self, *, {parameters}" if inputs else "self")
     _check_step(stepped, tuple(inputs.values()), names.prefixes)
-    check_columns(columns, given)
+    check_columns(columns, literal_names)
     return inputs
 
 
 def _check_requirements(node: ast.stmt, prefixes: Sequence[str]) -> None:
     ids: list[str] = []
     match node:
-        case ast.Assign([ast.Name("REQUIREMENTS")], ast.Tuple(told)):
-            for one in told:
-                match one:
+        case ast.Assign([ast.Name("REQUIREMENTS")], ast.Tuple(entries)):
+            for entry in entries:
+                match entry:
                     case ast.Call(ast.Name("Requirement"), [ast.Constant(str(id)), *rest], []):
-                        demand(len(rest) == 3, one)
-                        demand(all(isinstance(value, ast.Constant) for value in rest), one)
+                        demand(len(rest) == 3, entry)
+                        demand(all(isinstance(value, ast.Constant) for value in rest), entry)
                         ids.append(id)
                     case _:
-                        demand(False, one)
+                        demand(False, entry)
         case _:
             demand(False, node)
     demand(bool(ids) and "" not in ids and len({*ids}) == len(ids), node)
@@ -222,7 +224,7 @@ def _check_requirements(node: ast.stmt, prefixes: Sequence[str]) -> None:
 
 
 def _inputs(node: ast.stmt, prefixes: Sequence[str]) -> Mapping[str, str]:
-    """The parameter of each proposition: the one that the generator makes of its name."""
+    """The parameter of each proposition: the one that the generator derives from its name."""
     match node:
         case ast.AnnAssign(ast.Name("PROPOSITIONS"), _, ast.Dict(keys, values)):
             names = names_in(ast.Tuple([key for key in keys if key is not None]))
@@ -238,13 +240,13 @@ def _inputs(node: ast.stmt, prefixes: Sequence[str]) -> Mapping[str, str]:
 def _literals(node: ast.stmt, inputs: Mapping[str, str]) -> tuple[str, ...]:
     """The names of literals: a proposition's parameter, or that of its negation."""
     match node:
-        case ast.Assign([ast.Name("LITERALS")], ast.Tuple(told)):
+        case ast.Assign([ast.Name("LITERALS")], ast.Tuple(entries)):
             names: list[str] = []
-            for one in told:
-                name, proposition, positive = (*constants(one), None, None, None)[:3]
+            for entry in entries:
+                name, proposition, positive = (*constants(entry), None, None, None)[:3]
                 parameter = inputs.get(str(proposition), "")
                 right = parameter if positive is True else negation(parameter)
-                demand(parameter != "" and isinstance(positive, bool) and name == right, one)
+                demand(parameter != "" and isinstance(positive, bool) and name == right, entry)
                 names.append(right)
             return tuple(names)
         case _:
@@ -253,7 +255,7 @@ def _literals(node: ast.stmt, inputs: Mapping[str, str]) -> tuple[str, ...]:
 
 
 def _check_step(body: Sequence[ast.stmt], inputs: Sequence[str], prefixes: Sequence[str]) -> None:
-    """Both rails take the row, and what they remember is told."""
+    """Check that both rails take the row, and that the verdicts follow from their marks."""
     fork = " or ".join(f"{name} is None" for name in inputs)
     text = f"row = ({', '.join(inputs)}{',' * (len(inputs) == 1)})\n"
     text += f"if {fork}:\n    self._fork()\n" if inputs else ""
@@ -268,14 +270,14 @@ def _check_step(body: Sequence[ast.stmt], inputs: Sequence[str], prefixes: Seque
     match body[head:]:
         case [ast.Return(ast.Tuple(verdicts))] if len(verdicts) == len(prefixes):
             for prefix, verdict in zip(prefixes, verdicts, strict=True):
-                forms = (_beside_others(*form) for form in _forms(prefix))
+                forms = (_in_tuple(*form) for form in _forms(prefix))
                 demand(is_one_of(verdict, *forms), verdict)
         case _:
             demand(False, body[-1])
 
 
 def _forms(prefix: str) -> Iterator[tuple[str, str | None]]:
-    """When a requirement is violated, and when it is satisfied: what can never be is left out."""
+    """When a requirement is violated, and when satisfied: the possible forms of both."""
     for doom in (False, True):
         violated, possible = (
             f"{rail}.{prefix}_broken >= 0" + f" or {rail}.{prefix}_doomed >= 0" * doom
@@ -291,7 +293,7 @@ def _alone(violated: str, satisfied: str | None) -> str:
     return f"{text}return PENDING"
 
 
-def _beside_others(violated: str, satisfied: str | None) -> str:
+def _in_tuple(violated: str, satisfied: str | None) -> str:
     rest = f"SATISFIED if {satisfied} else PENDING" if satisfied else "PENDING"
     return f"VIOLATED if {violated} else {rest}"
 

@@ -78,10 +78,10 @@ def _carried(statements: Sequence[ast.stmt], rail: Rail) -> Iterator[str]:
 def _check_end(
     statements: Sequence[ast.stmt], rail: Rail, carried: Iterable[str], bound: frozenset[str]
 ) -> None:
-    """What is done after the last row: cells and marks go back, signals are told."""
-    kept = {f"self.{name} = {name}" for name in ("tick", *carried)}
+    """Check the end of `advance`: it stores cells and marks, and assigns signals."""
+    pending = {f"self.{name} = {name}" for name in ("tick", *carried)}
     opened = {f"{p}_open = {p}_last if self.{p}_owed else -1": p for p in rail.prefixes}
-    told: set[str] = set()
+    assigned: set[str] = set()
     if len(statements) < 2:
         raise StrangeError("it is not laid out as fretc writes it: `advance` does not end")
     first, *rest, last = statements
@@ -89,21 +89,21 @@ def _check_end(
     demand(is_one_of(last, "return known"), last)
     for statement in rest:
         text = ast.unparse(statement)
-        if text in kept:
-            kept.remove(text)
+        if text in pending:
+            pending.remove(text)
             continue
         if text in opened:  # of the last tick, and not yet put back
-            demand(f"{opened[text]}_owed" in told, statement)
-            demand(f"self.{opened[text]}_open = {opened[text]}_open" in kept, statement)
+            demand(f"{opened[text]}_owed" in assigned, statement)
+            demand(f"self.{opened[text]}_open = {opened[text]}_open" in pending, statement)
             continue
         match statement:
             case ast.Assign([ast.Attribute(ast.Name("self"), name)], value):
-                demand(name in rail.signals and name not in told, statement)
+                demand(name in rail.signals and name not in assigned, statement)
                 _check_value(value, bound - rail.windows, frozenset())
-                told.add(name)
+                assigned.add(name)
             case _:
                 demand(False, statement)
-    demand(not kept, first)
+    demand(not pending, first)
 
 
 @dataclass(frozen=True, slots=True)

@@ -2,14 +2,14 @@
 
 The text is executed, stepped over every letter and compared with the counter automaton of the
 sentence (`fretc.verification.monitor.equivalence`). Its steps must depend on nothing but its cells,
-propositions and constants: that is read off its tree first
-(`fretc.verification.monitor.text_check`), so a step that looks at the number of the tick cannot
-hide. The automaton knows verdicts of known values. What else a monitor tells (triggers, answers,
-open demands, marks; all of it with unknown values too) is compared with the text that fretc writes
-for the sentence, state by state (`fretc.verification.monitor.rails`), and its column program with
-the one in that text, term by term (`fretc.verification.monitor.column_terms`); for the text itself
-nothing is left to compare. Its column program is also compared with its steps on drawn traces, some
-of which have unknown values: that shows where they differ.
+propositions and constants: `fretc.verification.monitor.text_check` checks that on its tree first,
+so a step that looks at the number of the tick cannot hide. The automaton knows verdicts of known
+values only. The other signals of a monitor (triggers, answers, open demands, marks; all of them
+with unknown values too) are compared with the text that fretc writes for the sentence, state by
+state (`fretc.verification.monitor.rails`), and its column program with the one in that text, term
+by term (`fretc.verification.monitor.column_terms`); the text that fretc writes needs neither. The
+column program is also compared with the steps on random traces, some with unknown values: that
+shows where they differ.
 """
 
 from __future__ import annotations
@@ -44,21 +44,21 @@ MOST_STATES = 10**6
 
 
 class NotAMonitorError(Exception):
-    """The text cannot be executed as a generated monitor; it says why."""
+    """The text cannot be executed as a generated monitor; the message says why."""
 
 
 @dataclass(frozen=True, slots=True)
 class Disagreement:
-    """A trace at whose last tick it tells something else than it should."""
+    """A trace at whose last tick the signals of the monitor are wrong."""
 
     word: tuple[tuple[Truth, ...], ...]
     """The values of `atoms`; None: unknown."""
-    what: str = "its column program and its steps differ"
+    fault: str = "its column program and its steps differ"
 
 
 @dataclass(frozen=True, slots=True)
 class Verified:
-    """What could be shown of one requirement's monitor."""
+    """The result for one requirement's monitor."""
 
     requirement: str
     atoms: tuple[str, ...]
@@ -66,7 +66,7 @@ class Verified:
     result: Proved | Refuted | NotChecked | Disagreement
     compared: int = 0
     """Ticks of drawn traces on which the column program agreed with the steps."""
-    beside: int = 0
+    compared_states: int = 0
     """States in which it was compared with the text that fretc writes; 0: it is that text."""
 
 
@@ -77,9 +77,9 @@ def verified(
 
     Args:
         rule: one that a monitor can be made of, on its own clock.
-        text: what says to be its monitor, maybe beside others.
-        limit: the most states that are looked at.
-        others: rules that the text may be of, too; of a text that fretc writes for several.
+        text: that of its monitor, maybe with monitors of other rules.
+        limit: the most states of the exploration.
+        others: further rules that the text may implement.
 
     Raises:
         NotAMonitorError: the text is no generated monitor.
@@ -93,12 +93,14 @@ def verified(
     except Exception as error:
         reason = f"it cannot be executed: {type(error).__name__}: {error}"
         return Verified(rule.id, (), NotChecked(reason))
-    return _shown(rule, text, monitor, limit, others)
+    return _compared(rule, text, monitor, limit, others)
 
 
-def _shown(rule: Rule, text: str, monitor: Monitor, limit: int, others: Sequence[Rule]) -> Verified:
-    """What is known of a text that may be executed."""
-    places = [i for i, known in enumerate(monitor.REQUIREMENTS) if known.id == rule.id]
+def _compared(
+    rule: Rule, text: str, monitor: Monitor, limit: int, others: Sequence[Rule]
+) -> Verified:
+    """The result for a text that is safe to execute."""
+    places = [i for i, each in enumerate(monitor.REQUIREMENTS) if each.id == rule.id]
     if not places:
         return Verified(rule.id, (), NotChecked("the monitor is of other requirements"))
     place = places[0]
@@ -109,48 +111,48 @@ def _shown(rule: Rule, text: str, monitor: Monitor, limit: int, others: Sequence
         return Verified(rule.id, atoms, result)
     written = target.text(rule)
     if text != written:
-        (stated,) = load("written", written).REQUIREMENTS
-        if tuple(monitor.REQUIREMENTS[place]) != tuple(stated):
+        (expected,) = load("written", written).REQUIREMENTS
+        if tuple(monitor.REQUIREMENTS[place]) != tuple(expected):
             reason = "it decides the same, but states another sentence or deadline"
             return Verified(rule.id, atoms, NotChecked(reason))
     compared, word = _columns_compared(monitor, place, atoms, rule.ticks or 0)
     if word is not None:
         return Verified(rule.id, atoms, Disagreement(word), compared)
-    if text == written or _is_written(text, monitor, (*others, rule)):
+    if text == written or _is_generated(text, monitor, (*others, rule)):
         return Verified(rule.id, atoms, result, compared)
-    beside = _beside_its_own(written, text, monitor, place, atoms, limit)
-    if isinstance(beside, int):
-        return Verified(rule.id, atoms, result, compared, beside)
-    return Verified(rule.id, atoms, beside, compared)
+    compared_states = _compared_with_generated(written, text, monitor, place, atoms, limit)
+    if isinstance(compared_states, int):
+        return Verified(rule.id, atoms, result, compared, compared_states)
+    return Verified(rule.id, atoms, compared_states, compared)
 
 
-def _is_written(text: str, monitor: Monitor, rules: Sequence[Rule]) -> bool:
-    """Whether it is what fretc writes for these rules, or for some of them, but for comments."""
-    known = {rule.id: rule for rule in rules}
+def _is_generated(text: str, monitor: Monitor, rules: Sequence[Rule]) -> bool:
+    """Whether fretc writes this text for some of these rules, but for comments."""
+    by_id = {rule.id: rule for rule in rules}
     ids = [requirement.id for requirement in monitor.REQUIREMENTS]
-    if not all(id in known for id in ids):
+    if not all(id in by_id for id in ids):
         return False
-    written = target.text(*(known[id] for id in ids))
-    return ast.dump(own(written)) == ast.dump(own(text))
+    generated = target.text(*(by_id[id] for id in ids))
+    return ast.dump(own(generated)) == ast.dump(own(text))
 
 
-def _beside_its_own(
+def _compared_with_generated(
     written: str, text: str, monitor: Monitor, place: int, atoms: Sequence[str], limit: int
 ) -> int | Disagreement | NotChecked:
-    """In how many states it tells the same as the text that fretc writes for the rule."""
+    """In how many states it agrees with the text that fretc writes for the rule."""
     if len(atoms) > rails.MOST_PROPOSITIONS:
         most = rails.MOST_PROPOSITIONS
         return NotChecked(
             f"it is not the text that fretc writes, and {len(atoms)} propositions, more than "
             f"{most}, are too many to compare both with unknown values"
         )
-    found = rails.compared(monitor, place, load("written", written), atoms, limit)
-    match found:
+    comparison = rails.compared(monitor, place, load("written", written), atoms, limit)
+    match comparison:
         case None:
             return NotChecked(f"with unknown values there are more than {limit} states")
-        case rails.Apart(word, what):
-            told = f"the text that fretc writes tells another {what}"
-            return Disagreement(word, told)
+        case rails.Apart(word, signal):
+            fault = f"the text that fretc writes tells another {signal}"
+            return Disagreement(word, fault)
         case rails.Same(states):
             terms = Terms()
             if terms.of(text, place) == terms.of(written, 0):
@@ -162,14 +164,14 @@ def _beside_its_own(
 
 
 def _demand_monitor(text: str) -> None:
-    """It is Python, and names a monitor."""
+    """Demand that it is Python and names a monitor."""
     runtime = kernel().text
     try:  # the run time is Python, and long: lines keep their numbers without it
         tree = ast.parse(text.replace(runtime, "\n" * runtime.count("\n"), 1))
     except (SyntaxError, ValueError, RecursionError) as error:
         raise NotAMonitorError(f"it is no Python: {error}") from None
-    named = (node.target for node in tree.body if isinstance(node, ast.AnnAssign))
-    if not any(isinstance(target, ast.Name) and target.id == "MONITOR" for target in named):
+    targets = (node.target for node in tree.body if isinstance(node, ast.AnnAssign))
+    if not any(isinstance(target, ast.Name) and target.id == "MONITOR" for target in targets):
         raise NotAMonitorError("it names no `MONITOR`")
 
 
@@ -186,16 +188,16 @@ def _columns_compared(
     for number in range(count):
         odds = 0.02 if number % 2 else 0.0
         drawn = {name: _drawn(choose, length, bound, odds) for name in atoms}
-        wrong = _first_difference(monitor, place, drawn, length)
-        if wrong is not None:
-            return 0, tuple(_rows(drawn, wrong + 1))
+        tick = _first_difference(monitor, place, drawn, length)
+        if tick is not None:
+            return 0, tuple(_rows(drawn, tick + 1))
     return count * length, None
 
 
 def _first_difference(
     monitor: Monitor, place: int, columns: Mapping[str, Column], length: int
 ) -> int | None:
-    """The first tick of which both programs do not tell the same signals, on either rail."""
+    """The first tick at which the signals of both programs differ, on either rail."""
     every = (1 << length) - 1
     try:
         must, may = (
@@ -211,9 +213,9 @@ def _first_difference(
     values = [truths(columns[name], length) for name in monitor.PROPOSITIONS]
     for tick in range(length):
         monitor.advance([tuple([column[tick] for column in values])])
-        for rail, told in ((monitor.must, must), (monitor.may, may)):
-            found = [bool(value) for value in rail.signals()[place]]
-            if found != [bool(column >> tick & 1) for column in told]:
+        for rail, expected in ((monitor.must, must), (monitor.may, may)):
+            actual = [bool(value) for value in rail.signals()[place]]
+            if actual != [bool(column >> tick & 1) for column in expected]:
                 return tick
     return None
 

@@ -63,8 +63,8 @@ def parts(
 
 def modelled(percepts: tuple[str, ...], agent: Agent, properties: str, in_turn: bool) -> bool:
     """What the model says of the runs in which the agent perceives in one of the two ways."""
-    said = read(Source("SIF.psl", properties))
-    assert not isinstance(said, Diagnostic)
+    diagnostic = read(Source("SIF.psl", properties))
+    assert not isinstance(diagnostic, Diagnostic)
     model = Model(agent, percepts)
     explored = explore(
         model.initial,
@@ -72,7 +72,7 @@ def modelled(percepts: tuple[str, ...], agent: Agent, properties: str, in_turn: 
         model.label,
         200_000,
     )
-    return check(explored.kripke, said[0].formula) is None
+    return check(explored.kripke, diagnostic[0].formula) is None
 
 
 @pytest.mark.slow

@@ -187,9 +187,9 @@ def test_beyond_the_model_or_its_limit_nothing_is_known() -> None:
 def test_a_users_mistake_is_a_diagnostic(
     properties: str, percepts: list[str], agent: str, code: Code
 ) -> None:
-    told = refused(properties, percepts, agent)
-    assert told.code is code
-    assert told.help
+    diagnostic = refused(properties, percepts, agent)
+    assert diagnostic.code is code
+    assert diagnostic.help
 
 
 def test_a_percept_is_spelt_as_the_agent_spells_it() -> None:

@@ -32,11 +32,11 @@ def agent(text: str) -> Agent:
 
 def refused(old: str, new: str) -> Diagnostic:
     assert AGENT.count(old) == 1
-    told = read(Source("a.gwen", AGENT.replace(old, new)))
-    assert isinstance(told, Diagnostic), told
-    assert told.span is not None
-    assert told.help
-    return told
+    diagnostic = read(Source("a.gwen", AGENT.replace(old, new)))
+    assert isinstance(diagnostic, Diagnostic), diagnostic
+    assert diagnostic.span is not None
+    assert diagnostic.help
+    return diagnostic
 
 
 def test_an_agent_is_its_beliefs_and_its_plans_in_their_order() -> None:
@@ -62,15 +62,15 @@ def test_comments_white_space_and_an_empty_section_of_rules_say_nothing() -> Non
 
 
 def test_the_listing_of_the_paper_lacks_two_sections() -> None:
-    told = read(
+    diagnostic = read(
         Source(
             "sif.gwen",
             "GWENDOLEN\n:name: agilex_agent\n\n:Plans:\n"
             "+too_close: {True} <-\n    stop_moving,\n    +stopped;\n",
         )
     )
-    assert isinstance(told, Diagnostic)
-    assert render(told) == (
+    assert isinstance(diagnostic, Diagnostic)
+    assert render(diagnostic) == (
         "F610 `:Plans:` stands in the wrong place\n"
         "  --> sif.gwen:4:1\n"
         "   | :Plans:\n"
@@ -125,22 +125,22 @@ TRAPS = [
 
 @pytest.mark.parametrize(("old", "new", "message", "place"), TRAPS)
 def test_what_mcapl_misreads_is_a_mistake(old: str, new: str, message: str, place: str) -> None:
-    told = refused(old, new)
-    assert (told.code, told.message) == (Code.BAD_AGENT, message)
-    assert told.span is not None
-    assert told.span.text == place
+    diagnostic = refused(old, new)
+    assert (diagnostic.code, diagnostic.message) == (Code.BAD_AGENT, message)
+    assert diagnostic.span is not None
+    assert diagnostic.span.text == place
 
 
 def test_an_agent_without_plans_is_none() -> None:
-    told = read(Source("a", "GWENDOLEN :name: a :Initial Beliefs: :Initial Goals: :Plans:"))
-    assert isinstance(told, Diagnostic)
-    assert told.message == "there is no plan"
+    diagnostic = read(Source("a", "GWENDOLEN :name: a :Initial Beliefs: :Initial Goals: :Plans:"))
+    assert isinstance(diagnostic, Diagnostic)
+    assert diagnostic.message == "there is no plan"
 
 
 def test_a_section_that_is_missing_at_the_end_is_named() -> None:
-    told = read(Source("a", "GWENDOLEN :name: a :Initial Beliefs: b"))
-    assert isinstance(told, Diagnostic)
-    assert told.message == "the section `:Initial Goals:` is missing"
+    diagnostic = read(Source("a", "GWENDOLEN :name: a :Initial Beliefs: b"))
+    assert isinstance(diagnostic, Diagnostic)
+    assert diagnostic.message == "the section `:Initial Goals:` is missing"
 
 
 BEYOND = [
@@ -168,9 +168,9 @@ BEYOND = [
 def test_gwendolen_that_the_model_does_not_have_is_told_apart(
     old: str, new: str, what: str
 ) -> None:
-    told = refused(old, new)
-    assert told.code is Code.BEYOND_MODEL
-    assert told.message == f"{what} is Gwendolen, but not in the model of fretc"
+    diagnostic = refused(old, new)
+    assert diagnostic.code is Code.BEYOND_MODEL
+    assert diagnostic.message == f"{what} is Gwendolen, but not in the model of fretc"
 
 
 def test_a_very_deep_term_is_no_crash() -> None:

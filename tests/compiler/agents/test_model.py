@@ -6,7 +6,7 @@ from itertools import pairwise
 import pytest
 
 from compiler.agents.gwendolen import Agent, Change, read
-from compiler.agents.model import Intention, Model, Stage, State, told
+from compiler.agents.model import Intention, Model, Stage, State, narration
 from compiler.logic import formula as f
 from compiler.logic.kripke import Explored, TooManyStatesError, check
 from fretish.diagnostics.diagnostic import Diagnostic
@@ -75,21 +75,21 @@ def test_the_counterexample_of_the_guards_is_a_run_of_the_model() -> None:
     assert states[0] == model.initial
     for before, after in pairwise(states):
         assert after in [state for _, state in model.steps(before)]
-    said = told(model, found, lasso.states)
-    lost = said.index("drops +near: there is nothing to do")
-    assert "does release; the environment shows near" in said[:lost]
-    assert "removes halted" in said[lost:]
-    assert not any(words.startswith("plans +near") for words in said[lost : len(lasso.prefix)])
+    actions = narration(model, found, lasso.states)
+    lost = actions.index("drops +near: there is nothing to do")
+    assert "does release; the environment shows near" in actions[:lost]
+    assert "removes halted" in actions[lost:]
+    assert not any(words.startswith("plans +near") for words in actions[lost : len(lasso.prefix)])
 
 
 def first(words: str, steps: list[tuple[str, State]]) -> State:
-    return next(state for said, state in steps if said == words)
+    return next(state for action, state in steps if action == words)
 
 
 def test_a_percept_becomes_an_event_a_plan_and_deeds_one_stage_each() -> None:
     model = Model(agent(RELEASED), ("near",))
     state = model.initial
-    for said in (
+    for action in (
         "the environment shows near",
         "perceives +near",
         "perceives nothing new",
@@ -108,7 +108,7 @@ def test_a_percept_becomes_an_event_a_plan_and_deeds_one_stage_each() -> None:
         "the environment shows nothing",
         "perceives -near",
     ):
-        state = first(said, list(model.steps(state)))
+        state = first(action, list(model.steps(state)))
     assert model.label(state) == {"B(ag,halted)", "D(ag,halt)"}
 
 
@@ -215,7 +215,7 @@ def test_an_agent_may_take_each_percept_in_a_turn_of_its_own() -> None:
     model = Model(agent(RELEASED), ("near",))
     begun = [s for words, s in model.steps(model.initial) if words.endswith("shows near")]
     (state,) = [state for state in begun if state.in_turn]
-    for said in (
+    for action in (
         "perceives +near: one a turn",
         "turns to the percept +near",
         "goes on",
@@ -224,8 +224,8 @@ def test_an_agent_may_take_each_percept_in_a_turn_of_its_own() -> None:
         "turns to +near",
         "plans +near",
     ):
-        assert ("B(ag,near)" in model.label(state)) is (said in AFTER)
-        state = first(said, list(model.steps(state)))
+        assert ("B(ag,near)" in model.label(state)) is (action in AFTER)
+        state = first(action, list(model.steps(state)))
 
 
 def test_a_percept_that_waits_is_not_noticed_twice() -> None:
@@ -234,7 +234,7 @@ def test_a_percept_that_waits_is_not_noticed_twice() -> None:
     state = replace(model.initial, percepts=near, stage=Stage.PERCEIVE, in_turn=True)
     ((_, noticed),) = model.steps(state)
     assert events(noticed) == ["the percept +near"]
-    again = replace(noticed, told=False, stage=Stage.PERCEIVE)
+    again = replace(noticed, up_to_date=False, stage=Stage.PERCEIVE)
     ((_, still),) = model.steps(again)
     assert events(still) == ["the percept +near"]
 

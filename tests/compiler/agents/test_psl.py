@@ -25,13 +25,13 @@ def formula(text: str) -> f.Formula:
 
 
 def refused(text: str) -> Diagnostic:
-    told = read(Source("p.psl", text))
-    assert isinstance(told, Diagnostic), told
-    assert told.code is Code.BAD_PROPERTY
-    assert told.is_error
-    assert told.help
-    assert told.span is not None
-    return told
+    diagnostic = read(Source("p.psl", text))
+    assert isinstance(diagnostic, Diagnostic), diagnostic
+    assert diagnostic.code is Code.BAD_PROPERTY
+    assert diagnostic.is_error
+    assert diagnostic.help
+    assert diagnostic.span is not None
+    return diagnostic
 
 
 # What AJPF reads as it is written ---------------------------------------------------------------
@@ -102,10 +102,10 @@ def test_atoms_are_spelt_without_white_space_and_numbers_by_value(text: str, nam
 def test_a_string_is_read_with_a_warning_since_it_matches_nothing() -> None:
     (found,) = properties('R1: B(a,at("room 1"))')
     assert found.formula == f.Atom("B(a,at('room 1'))")
-    (told,) = found.remarks
-    assert told.severity is Severity.WARNING
-    assert told.span is not None
-    assert told.span.text == '"room 1"'
+    (diagnostic,) = found.remarks
+    assert diagnostic.severity is Severity.WARNING
+    assert diagnostic.span is not None
+    assert diagnostic.span.text == '"room 1"'
 
 
 def test_a_file_has_several_properties_and_lines_are_put_together() -> None:
@@ -125,7 +125,7 @@ def test_a_file_of_comments_has_no_property() -> None:
 
 
 @pytest.mark.parametrize(
-    ("text", "said", "at"),
+    ("text", "message", "at"),
     [
         ("X B(a,p)", "`X` cannot begin a formula", "X"),
         ("[] (B(a,p) -> X B(a,q))", "`X` cannot begin a formula", "X"),
@@ -189,16 +189,16 @@ def test_a_file_of_comments_has_no_property() -> None:
         ("B(a,p\u00e9)", "`\u00e9` is not ASCII", "\u00e9"),
     ],
 )
-def test_what_ajpf_repairs_drops_or_crashes_on_is_refused(text: str, said: str, at: str) -> None:
-    told = refused(f"# one\nR1: {text}\n")
-    assert told.message.startswith(said), told.message
-    assert told.span is not None
-    assert told.span.text == at
-    assert told.span.line == 2
+def test_what_ajpf_repairs_drops_or_crashes_on_is_refused(text: str, message: str, at: str) -> None:
+    diagnostic = refused(f"# one\nR1: {text}\n")
+    assert diagnostic.message.startswith(message), diagnostic.message
+    assert diagnostic.span is not None
+    assert diagnostic.span.text == at
+    assert diagnostic.span.line == 2
 
 
 @pytest.mark.parametrize(
-    ("text", "said", "line"),
+    ("text", "message", "line"),
     [
         ("R1:\nB(a,p)", "nothing stands behind the `:`", 1),
         (":", "`` is no key", 1),
@@ -221,11 +221,11 @@ def test_what_ajpf_repairs_drops_or_crashes_on_is_refused(text: str, said: str, 
         ("R1: B(a,p)\nR2: X", "`X` cannot begin a formula", 2),
     ],
 )
-def test_the_file_reader_of_ajpf_has_traps_of_its_own(text: str, said: str, line: int) -> None:
-    told = refused(text)
-    assert told.message.startswith(said), told.message
-    assert told.span is not None
-    assert told.span.line == line
+def test_the_file_reader_of_ajpf_has_traps_of_its_own(text: str, message: str, line: int) -> None:
+    diagnostic = refused(text)
+    assert diagnostic.message.startswith(message), diagnostic.message
+    assert diagnostic.span is not None
+    assert diagnostic.span.line == line
 
 
 def test_a_refusal_shows_the_place_and_the_way_out() -> None:

@@ -4,10 +4,10 @@ import random
 
 import pytest
 
+from tests.demands import demands_of
 from tests.meaning import SCOPES
 from tests.monitoring import monitor, over
 from tests.strategies import templates
-from tests.telling import told
 
 LENGTH, TRACES = 9, 15
 
@@ -24,7 +24,7 @@ def test_triggers_answers_violations_and_open_demands_are_those_of_the_definitio
         for _ in range(TRACES):
             odds = {name: choose.choice((0.2, 0.5, 0.8)) for name in template.columns}
             columns = {name: [choose.random() < odds[name] for _ in range(LENGTH)] for name in odds}
-            found, expected = over(machine, columns), told(template, columns)
+            found, expected = over(machine, columns), demands_of(template, columns)
             assert found.triggers == expected.triggers, (template, columns)
             assert found.answers == expected.answers, (template, columns)
             assert found.violations == expected.violations, (template, columns)

@@ -20,12 +20,12 @@ def copy(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path
 
 
-def told() -> str:
+def edition_now() -> str:
     return edition.__wrapped__()
 
 
 def test_a_copy_is_the_same_edition(copy: Path) -> None:
-    assert told() == edition()
+    assert edition_now() == edition()
 
 
 @pytest.mark.parametrize(
@@ -33,15 +33,15 @@ def test_a_copy_is_the_same_edition(copy: Path) -> None:
 )
 def test_a_changed_text_is_another_edition(copy: Path, name: str) -> None:
     (copy / name).write_text((copy / name).read_text("utf-8") + "\n", "utf-8")
-    assert told() != edition()
+    assert edition_now() != edition()
 
 
 def test_a_file_more_is_another_edition(copy: Path) -> None:
     (copy / "monitors/more.py").touch()
-    assert told() != edition()
+    assert edition_now() != edition()
 
 
 def test_another_library_is_another_edition(monkeypatch: pytest.MonkeyPatch) -> None:
-    before = told()
+    before = edition_now()
     monkeypatch.setattr(module, "version", lambda library: "0")
-    assert told() != before
+    assert edition_now() != before

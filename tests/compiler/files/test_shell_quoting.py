@@ -85,9 +85,9 @@ def test_a_name_that_cannot_be_pasted_is_told_in_a_comment(tmp_path: Path, name:
         word(name)
     with pytest.raises(UnsayableError):
         check_of([("0" * 64, name)])
-    told = unsayable(name)
-    assert told.isprintable()
-    assert (shell(told, tmp_path).stdout, os.listdir(tmp_path)) == ("", [])
+    comment = unsayable(name)
+    assert comment.isprintable()
+    assert (shell(comment, tmp_path).stdout, os.listdir(tmp_path)) == ("", [])
 
 
 @pytest.mark.parametrize("sha256", ["", "0" * 63, "0" * 65, "A" * 64, "0" * 64 + "\n", "$(x)"])

@@ -18,8 +18,8 @@ from tests.each import each
 
 def rule(sentence: str) -> Rule:
     ((requirement,), _) = requirements(Source("r.fret", sentence))
-    formalized, said = formalize(requirement, None)
-    assert formalized is not None, said
+    formalized, diagnostics = formalize(requirement, None)
+    assert formalized is not None, diagnostics
     return formalized
 
 

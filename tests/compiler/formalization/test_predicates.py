@@ -30,8 +30,8 @@ TABLE = Path(__file__).parents[2] / "data/fret_templates.json"
 @cache
 def rule(sentence: str) -> Rule:
     ((requirement,), _) = requirements(Source("r.fret", sentence))
-    formalized, said = formalize(requirement, None)
-    assert formalized is not None, said
+    formalized, diagnostics = formalize(requirement, None)
+    assert formalized is not None, diagnostics
     return formalized
 
 
@@ -438,9 +438,9 @@ def test_within_a_scope_a_previous_value_of_the_first_tick_is_refused_too() -> N
 @pytest.mark.parametrize("text", ["FTP = 1", "x + FTP > 2", "absReal(FTP) > 1"])
 def test_the_first_tick_is_no_number(text: str) -> None:
     ((requirement,), _) = requirements(Source("r.fret", f"whenever {text} sw shall satisfy q"))
-    made, said = formalize(requirement, None)
+    made, diagnostics = formalize(requirement, None)
     assert made is None
-    assert [one.code for one in said] == [Code.WRONG_KIND]
+    assert [one.code for one in diagnostics] == [Code.WRONG_KIND]
 
 
 # What stays a proposition ---------------------------------------------------------------------

@@ -47,8 +47,8 @@ Valuation = tuple[bool, ...]
 @cache
 def ruled(sentence: str) -> Rule:
     ((requirement,), _) = requirements(Source("r.fret", sentence))
-    rule, said = formalize(requirement, None)
-    assert rule is not None, said
+    rule, diagnostics = formalize(requirement, None)
+    assert rule is not None, diagnostics
     return rule
 
 

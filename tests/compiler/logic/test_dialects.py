@@ -28,8 +28,8 @@ FIRST = f.Iff(f.Historically(f.And((a, f.Not(b))), f.EVER), f.Or((f.FIRST, f.Onc
 
 def rule(sentence: str) -> Rule:
     ((requirement,), _) = requirements(Source("r.fret", sentence))
-    formalized, said = formalize(requirement, None)
-    assert formalized is not None, said
+    formalized, diagnostics = formalize(requirement, None)
+    assert formalized is not None, diagnostics
     return formalized
 
 

@@ -150,19 +150,19 @@ def test_what_is_told_of_unknown_atoms_holds_whatever_they_were(
     formula: f.Formula, trace: list[dict[str, bool | None]], data: st.DataObject
 ) -> None:
     _, columns = packed({name: [row[name] for row in trace] for name in ("a", "b")})
-    told = evaluate_unknown(formula, columns, len(trace))
+    truths = evaluate_unknown(formula, columns, len(trace))
     value = st.booleans()
     really = [{n: data.draw(value) if v is None else v for n, v in row.items()} for row in trace]
     for at in range(len(trace)):
-        assert told.at(at) in (None, holds(formula, really, at))
+        assert truths.at(at) in (None, holds(formula, really, at))
     if all(None not in row.values() for row in trace):
-        assert told.unknown == 0
+        assert truths.unknown == 0
 
 
 def test_unknown_is_told_by_the_parts() -> None:
     _, columns = packed({"a": [None, True, False], "b": [True, None, False]})
     a, b = f.Atom("a"), f.Atom("b")
-    told = [
+    truths = [
         [evaluate_unknown(formula, columns, 3).at(tick) for tick in range(3)]
         for formula in (
             f.Not(a),
@@ -173,7 +173,7 @@ def test_unknown_is_told_by_the_parts() -> None:
             f.Iff(a, b),
         )
     ]
-    assert told == [
+    assert truths == [
         [None, False, True],
         [None, None, False],
         [True, True, False],
@@ -193,12 +193,12 @@ def test_the_future_at_the_first_tick_is_the_past_at_the_last(scope: str) -> Non
             continue
         made, machine = rule(template.sentence), monitor(template.sentence)
         columns = drawn(template.columns, 24, choose)
-        told = steps(machine, columns)
+        outcome = steps(machine, columns)
         for ticks in range(1, 25):
             prefix = numbers({name: values[:ticks] for name, values in columns.items()})
             ahead = evaluate(made.ft_finite, prefix, ticks) & 1
             back = evaluate(made.pt, prefix, ticks) >> (ticks - 1) & 1
-            assert ahead == back == told[ticks - 1].finite, (template, columns, ticks)
+            assert ahead == back == outcome[ticks - 1].finite, (template, columns, ticks)
 
 
 @pytest.mark.slow

@@ -216,9 +216,9 @@ def test_two_names_are_two_propositions(one: str, two: str) -> None:
 )
 def test_two_names_that_formulas_would_spell_alike_are_refused(one: str, two: str) -> None:
     text = f"the sw shall always satisfy {one} -> {two}"
-    rule, said = formalize(Requirement("R1", Source("r.fret", text).span()), None)
+    rule, diagnostics = formalize(Requirement("R1", Source("r.fret", text).span()), None)
     assert rule is None
-    assert [d.code for d in said] == [Code.NAME_CLASH]
+    assert [d.code for d in diagnostics] == [Code.NAME_CLASH]
 
 
 def test_a_variable_whose_text_looks_like_a_comparison_is_not_that_comparison() -> None:

@@ -31,8 +31,8 @@ def sentences(scopes: tuple[str, ...]) -> Iterator[str]:
 def formulas(sentence: str) -> tuple[f.Formula, f.Formula]:
     """On infinite and on finite traces."""
     ((requirement,), _) = requirements(Source("r.fret", sentence))
-    rule, said = formalize(requirement, None)
-    assert rule is not None, said
+    rule, diagnostics = formalize(requirement, None)
+    assert rule is not None, diagnostics
     return rule.ft_infinite, rule.ft_finite
 
 

@@ -19,18 +19,18 @@ def written(parents: Mapping[str, str]) -> list[Requirement]:
     return [Requirement(id, place, parents=tuple(above)) for id, above in parents.items()]
 
 
-def told(parents: Mapping[str, str]) -> list[str]:
+def messages(parents: Mapping[str, str]) -> list[str]:
     return [diagnostic.message for diagnostic in circles(written(parents))]
 
 
 def test_a_circle_is_shown_once_and_whole() -> None:
-    assert told({"A": "A"}) == ["A is its own ancestor: A → A"]
-    assert told({"A": "B", "B": "CH", "C": "A"}) == ["A is its own ancestor: A → B → C → A"]
-    assert told({"A": "B", "B": "B", "C": "DA", "D": "C"}) == [
+    assert messages({"A": "A"}) == ["A is its own ancestor: A → A"]
+    assert messages({"A": "B", "B": "CH", "C": "A"}) == ["A is its own ancestor: A → B → C → A"]
+    assert messages({"A": "B", "B": "B", "C": "DA", "D": "C"}) == [
         "B is its own ancestor: B → B",
         "C is its own ancestor: C → D → C",
     ]
-    assert told({"A": "BC", "B": "D", "C": "D", "D": "H"}) == []
+    assert messages({"A": "BC", "B": "D", "C": "D", "D": "H"}) == []
 
 
 graphs = st.fixed_dictionaries(
@@ -52,7 +52,7 @@ def test_each_requirement_in_a_circle_is_in_one_that_is_told_or_meets_one(
     parents: dict[str, str],
 ) -> None:
     own = {name for name in NAMES if name in reach(parents, name)}
-    shown = [message.partition(": ")[2].split(" → ") for message in told(parents)]
+    shown = [message.partition(": ")[2].split(" → ") for message in messages(parents)]
     assert bool(shown) == bool(own)
     for way in shown:
         assert way[0] == way[-1]

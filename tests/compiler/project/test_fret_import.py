@@ -344,9 +344,9 @@ def test_no_project_takes_the_file_of_another(fretc: Fretc, projects: tuple[str,
 def test_a_new_id_is_told(fretc: Fretc) -> None:
     records = [record("R2", project="A"), record("R2", project="A"), record("r2", project="B")]
     run = fretc("import", export(records))
-    told = [line for line in run.err.splitlines() if line.startswith("F531")]
+    lines = [line for line in run.err.splitlines() if line.startswith("F531")]
     why = "is taken, and capitals do not tell ids apart"
-    assert told == [
+    assert lines == [
         f"F531 warning: requirement 2 (R2 of project A) is imported as `A-R2`: `R2` {why}",
         f"F531 warning: requirement 3 (r2 of project B) is imported as `B-r2`: `r2` {why}",
     ]
@@ -379,8 +379,8 @@ def test_a_variable_that_says_something_else_is_told(
         "import", export({"requirements": [], "variables": [STOPPED, {**STOPPED, **change}]})
     )
     assert run.status == 0
-    told = f"F530 warning: a second variable `stopped` is left out: it has {lost}\n"
-    assert told in run.err
+    warning = f"F530 warning: a second variable `stopped` is left out: it has {lost}\n"
+    assert warning in run.err
     assert 'component = "rover"' in written()["bindings.toml"]
 
 

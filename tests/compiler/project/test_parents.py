@@ -202,23 +202,25 @@ def test_reqif_gives_every_object_by_its_foreign_id() -> None:
 def test_a_document_that_cannot_be_read_is_told(path: str, text: str | None, why: str) -> None:
     if text is not None:
         write(path, text)
-    found, (said,) = parents(Settings(Path.cwd(), (path,)))
+    found, (diagnostic,) = parents(Settings(Path.cwd(), (path,)))
     assert found == {}
-    assert said.code is Code.BAD_PARENTS
-    assert said.message.startswith(f"the parents in `{path}` cannot be read: {why}")
+    assert diagnostic.code is Code.BAD_PARENTS
+    assert diagnostic.message.startswith(f"the parents in `{path}` cannot be read: {why}")
 
 
 def test_a_folder_without_items_is_told() -> None:
     write("reqs/a.md", "x")
-    _, (said,) = parents(Settings(Path.cwd(), ("reqs",)))
-    assert "no export of Doorstop (`*.yml`) is in it" in said.message
+    _, (diagnostic,) = parents(Settings(Path.cwd(), ("reqs",)))
+    assert "no export of Doorstop (`*.yml`) is in it" in diagnostic.message
 
 
 def test_a_folder_of_items_is_to_be_exported() -> None:
     write("reqs/.doorstop.yml", "settings: {}\n")
     write("reqs/SAFE001.yml", "active: true\nlevel: 1.0\ntext: The robot stops.\n")
-    _, (said,) = parents(Settings(Path.cwd(), ("reqs",)))
-    assert "it holds the items; `doorstop export --yaml all FOLDER` writes them" in said.message
+    _, (diagnostic,) = parents(Settings(Path.cwd(), ("reqs",)))
+    assert (
+        "it holds the items; `doorstop export --yaml all FOLDER` writes them" in diagnostic.message
+    )
 
 
 def test_a_document_beyond_all_measure_is_not_read(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -226,16 +228,16 @@ def test_a_document_beyond_all_measure_is_not_read(monkeypatch: pytest.MonkeyPat
     with zipfile.ZipFile("bomb.reqifz", "w", zipfile.ZIP_DEFLATED) as archive:
         archive.writestr("a.reqif", " " * 1024**2 + REQIF)
     for path in ("bomb.reqifz", write("a.yml", "# " * 1024**2)):
-        found, (said,) = parents(Settings(Path.cwd(), (path,)))
-        assert (found, "it is larger than 1 MiB" in said.message) == ({}, True)
+        found, (diagnostic,) = parents(Settings(Path.cwd(), (path,)))
+        assert (found, "it is larger than 1 MiB" in diagnostic.message) == ({}, True)
 
 
 def test_reqif_without_its_library_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "reqif.parser", None)
-    found, (said,) = parents(Settings(Path.cwd(), (write("a.reqif", REQIF),)))
-    assert (found, said.code) == ({}, Code.MISSING_EXTRA)
-    assert said.help is not None
-    assert "pip install 'fretc[reqif]'" in said.help
+    found, (diagnostic,) = parents(Settings(Path.cwd(), (write("a.reqif", REQIF),)))
+    assert (found, diagnostic.code) == ({}, Code.MISSING_EXTRA)
+    assert diagnostic.help is not None
+    assert "pip install 'fretc[reqif]'" in diagnostic.help
 
 
 # Settings --------------------------------------------------------------------------------------
@@ -255,7 +257,7 @@ def test_the_nearest_settings_upwards_hold() -> None:
 
 
 @pytest.mark.parametrize(
-    ("text", "told"),
+    ("text", "message"),
     [
         ('[tool.fretc]\nparent = ["a"]\n', "F520 `parent` is no field of [tool.fretc]"),
         ('[tool.fretc]\nparents = "a"\n', "F520 `parents` must be a list of paths"),
@@ -263,11 +265,11 @@ def test_the_nearest_settings_upwards_hold() -> None:
         ("[tool.fretc\n", "F520 pyproject.toml is not TOML"),
     ],
 )
-def test_settings_with_a_mistake_are_told(text: str, told: str) -> None:
+def test_settings_with_a_mistake_are_told(text: str, message: str) -> None:
     write("pyproject.toml", text)
     found = settings(".")
     assert isinstance(found, Diagnostic)
-    assert render(found).startswith(told)
+    assert render(found).startswith(message)
 
 
 def test_settings_above_the_repository_are_anybodys() -> None:

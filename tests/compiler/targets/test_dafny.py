@@ -87,8 +87,8 @@ def bound(text: str = BINDINGS) -> Declarations:
 
 def rule(sentence: str, declarations: Declarations | None = None) -> Rule:
     requirement = Requirement("R1", Source("r.fret", sentence).span())
-    made, said = formalize(requirement, declarations)
-    assert made is not None, said
+    made, diagnostics = formalize(requirement, declarations)
+    assert made is not None, diagnostics
     return made
 
 
@@ -190,11 +190,11 @@ def test_the_interceptor_does_in_each_state_what_the_core_does(options: core.Opt
         assert read.InRange(alike(state))
         assert read.Halted(alike(state)) == core.halted(state, options)
         for ours, theirs in messages:
-            after, said = core.step(state, ours, options)
-            told = read.InterceptorStep(alike(state), theirs)
-            assert told.state == alike(after), (state, ours)
-            published = read.Nothing if said is None else read.Output(read.Velocity(*said))
-            assert told.published == published, (state, ours)
+            after, output = core.step(state, ours, options)
+            outcome = read.InterceptorStep(alike(state), theirs)
+            assert outcome.state == alike(after), (state, ours)
+            published = read.Nothing if output is None else read.Output(read.Velocity(*output))
+            assert outcome.published == published, (state, ours)
 
 
 def in_range(options: core.Options) -> Iterator[core.State]:
@@ -341,14 +341,14 @@ def test_a_lost_message_costs_the_time_to_the_next(requests: str, reach: str | N
     bindings = BINDINGS.replace("lost    = 1", f"lost = 2\n{requests}")
     found = emitted("whenever p robot shall eventually satisfy q", bindings)
     declarations = bound(bindings)
-    told = claims(rule("whenever p robot shall eventually satisfy q", declarations), declarations)
+    lines = claims(rule("whenever p robot shall eventually satisfy q", declarations), declarations)
     if reach is None:
-        assert told[-1].unshown is not None
-        assert told[-1].unshown.endswith("([assume] requests, lost and no heartbeat)")
+        assert lines[-1].unshown is not None
+        assert lines[-1].unshown.endswith("([assume] requests, lost and no heartbeat)")
     else:
-        assert f"reach = {reach} ticks ([assume] latency and lost)" in told[-1].assumptions
-        assert told[-1].sentence.endswith(f"within {int(reach) + 3} ticks, the declared delay")
-    assert ("or one from before" in told[-1].assumptions[1]) == ("edge" in requests)
+        assert f"reach = {reach} ticks ([assume] latency and lost)" in lines[-1].assumptions
+        assert lines[-1].sentence.endswith(f"within {int(reach) + 3} ticks, the declared delay")
+    assert ("or one from before" in lines[-1].assumptions[1]) == ("edge" in requests)
     assert "AnsweredInTime" in found
 
 
@@ -359,7 +359,7 @@ def test_a_declared_delay_above_the_bound_is_not_claimed() -> None:
 
 
 @pytest.mark.parametrize(
-    ("sentence", "told"),
+    ("sentence", "message"),
     [
         ("in m robot shall satisfy q", "the scope `in` of R1"),
         ("only before m robot shall satisfy q", "the scope `only before` of R1"),
@@ -370,10 +370,10 @@ def test_a_declared_delay_above_the_bound_is_not_claimed() -> None:
         ),
     ],
 )
-def test_what_has_no_proof_is_refused(sentence: str, told: str) -> None:
+def test_what_has_no_proof_is_refused(sentence: str, message: str) -> None:
     found = TARGET.refuse(rule(sentence))
     assert found is not None
-    assert render(found).startswith(f"F601 Dafny cannot express {told}\n")
+    assert render(found).startswith(f"F601 Dafny cannot express {message}\n")
 
 
 # Golden ----------------------------------------------------------------------------------------

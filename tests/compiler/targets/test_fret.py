@@ -432,9 +432,9 @@ def test_free_text_alone_can_be_emitted(fretc: Fretc) -> None:
 
 
 def test_title_and_text_survive_an_export_and_an_import(fretc: Fretc) -> None:
-    said = 'title = "Stop: \\"near\\" things"\ntext = "It stops.\\nAt once."\n'
+    fields = 'title = "Stop: \\"near\\" things"\ntext = "It stops.\\nAt once."\n'
     sentence = "the robot shall always satisfy stopped"
-    write("r1.fret", f'+++\nid = "R1"\n{said}status = "approved"\n+++\n{sentence}\n')
+    write("r1.fret", f'+++\nid = "R1"\n{fields}status = "approved"\n+++\n{sentence}\n')
     assert fretc("r1.fret", "--emit", "fret-json", "-o", "out").status == 0
     assert fretc("import", "out/fret.json", "-o", "back").status == 0
     (back,) = Path("back").glob("*.fret")

@@ -208,10 +208,11 @@ def test_storm_computes_the_probability_that_the_sentence_means(
 @pytest.mark.parametrize("condition", CONDITIONS)
 @pytest.mark.parametrize("timing", TIMINGS)
 def test_storm_reads_every_timing(storm: Check, condition: str, timing: str) -> None:
-    said = TIMINGS[timing].format(n=2)
+    wording = TIMINGS[timing].format(n=2)
     for op in (">=", "=", "!=", "<"):
         storm(
-            f"{CONDITIONS[condition]} the sw shall with probability {op} 0.9 {said} satisfy q", {}
+            f"{CONDITIONS[condition]} the sw shall with probability {op} 0.9 {wording} satisfy q",
+            {},
         )
 
 
@@ -235,7 +236,7 @@ def test_a_sentence_without_a_probability_is_refused() -> None:
 
 
 @pytest.mark.parametrize(
-    ("sentence", "told"),
+    ("sentence", "message"),
     [
         (
             "in m mode the sw shall with probability > 0.9 within 65 ticks satisfy q",
@@ -247,8 +248,8 @@ def test_a_sentence_without_a_probability_is_refused() -> None:
         ),
     ],
 )
-def test_what_its_formulas_cannot_say_is_refused(sentence: str, told: str) -> None:
-    assert refused("prism", sentence).startswith(told)
+def test_what_its_formulas_cannot_say_is_refused(sentence: str, message: str) -> None:
+    assert refused("prism", sentence).startswith(message)
 
 
 def test_a_long_bound_around_states_is_one_operator() -> None:

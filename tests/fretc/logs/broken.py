@@ -108,7 +108,7 @@ def raw(time: int, payload: bytes, channel: int = 1) -> McapRecord:
     return Message(channel, time, payload, time, 0)
 
 
-def made(*records: McapRecord, chunked: bool = True) -> bytes:
+def log_of(*records: McapRecord, chunked: bool = True) -> bytes:
     """A log of nothing but these, in one chunk; its end states nothing."""
     content = b"".join(map(framed, records))
     if chunked:
@@ -179,8 +179,8 @@ REFUSED = [
     Refused("magic only", lambda s: s.cut(8), Code.TRUNCATED_LOG),
     Refused("header cut", lambda s: s.cut(12), Code.TRUNCATED_LOG),
     Refused("bad start magic", lambda s: s.poked(0, b"\x88"), Code.NOT_A_LOG),
-    Refused("no messages", lambda s: made(FLOAT, TOPIC), Code.EMPTY_LOG),
-    Refused("channel missing", lambda s: made(raw(1, b"", channel=9)), Code.DAMAGED_CHUNK),
+    Refused("no messages", lambda s: log_of(FLOAT, TOPIC), Code.EMPTY_LOG),
+    Refused("channel missing", lambda s: log_of(raw(1, b"", channel=9)), Code.DAMAGED_CHUNK),
 ]
 
 
@@ -266,23 +266,23 @@ SOUND = [
 
 NAN = float("nan")
 ODD = [
-    Odd("unchunked", made(FLOAT, TOPIC, message(1, 0.5), message(2, 1.5), chunked=False),
+    Odd("unchunked", log_of(FLOAT, TOPIC, message(1, 0.5), message(2, 1.5), chunked=False),
         [(1, 0.5), (2, 1.5)], ("F415",)),
-    Odd("out of order", made(FLOAT, TOPIC, *(message(t, t / 2) for t in (5, 3, 9, 1))),
+    Odd("out of order", log_of(FLOAT, TOPIC, *(message(t, t / 2) for t in (5, 3, 9, 1))),
         [(1, 0.5), (3, 1.5), (5, 2.5), (9, 4.5)], ("F411",)),
-    Odd("equal times", made(FLOAT, TOPIC, *(message(5, v) for v in (2.0, 3.0, 1.0))),
+    Odd("equal times", log_of(FLOAT, TOPIC, *(message(5, v) for v in (2.0, 3.0, 1.0))),
         [(5, 2.0), (5, 3.0), (5, 1.0)]),
-    Odd("time 0 and the largest", made(FLOAT, TOPIC, message(0, 0.5), message(2**64 - 1, 1.5)),
+    Odd("time 0 and the largest", log_of(FLOAT, TOPIC, message(0, 0.5), message(2**64 - 1, 1.5)),
         [(0, NAN)], ("F416", "F404"), ((0, 0),), intact=False),
-    Odd("a log that begins at time 0", made(FLOAT, TOPIC, message(0, 0.5), message(9, 1.5)),
+    Odd("a log that begins at time 0", log_of(FLOAT, TOPIC, message(0, 0.5), message(9, 1.5)),
         [(0, 0.5), (9, 1.5)]),
-    Odd("empty payload", made(FLOAT, TOPIC, message(1, 0.5), raw(2, b"")),
+    Odd("empty payload", log_of(FLOAT, TOPIC, message(1, 0.5), raw(2, b"")),
         [(1, 0.5), (2, NAN)], ("F412",)),
-    Odd("short payload", made(FLOAT, TOPIC, message(1, 0.5), raw(2, LITTLE)),
+    Odd("short payload", log_of(FLOAT, TOPIC, message(1, 0.5), raw(2, LITTLE)),
         [(1, 0.5), (2, NAN)], ("F412",)),
-    Odd("big-endian CDR", made(FLOAT, TOPIC, raw(1, BIG + struct.pack(">d", 0.5))), [(1, 0.5)]),
-    Odd("schemaless", made(Channel(1, "/x", "cdr", {}, 0), message(1, 0.5)), [], ("F408",)),
+    Odd("big-endian CDR", log_of(FLOAT, TOPIC, raw(1, BIG + struct.pack(">d", 0.5))), [(1, 0.5)]),
+    Odd("schemaless", log_of(Channel(1, "/x", "cdr", {}, 0), message(1, 0.5)), [], ("F408",)),
     Odd("channel missing for one of two",
-        made(FLOAT, TOPIC, message(1, 0.5), raw(2, b"", channel=9), message(3, 1.5)),
+        log_of(FLOAT, TOPIC, message(1, 0.5), raw(2, b"", channel=9), message(3, 1.5)),
         [(1, 0.5), (3, 1.5)], ("F404",), ((1, 3),), intact=False),
 ]  # fmt: skip

@@ -89,10 +89,10 @@ def test_of_many_damaged_places_twenty_are_told() -> None:
         "the log is damaged near byte 7: it is broken; no message is known to be lost"
     )
     assert findings.few([one] * 20, PLACE) == [one] * 20
-    told = findings.few([one] * 25, PLACE)
-    assert told[:20] == [one] * 20
-    assert told[20].message == "the log is damaged in 5 more places"
-    assert len(told) == 21
+    diagnostics = findings.few([one] * 25, PLACE)
+    assert diagnostics[:20] == [one] * 20
+    assert diagnostics[20].message == "the log is damaged in 5 more places"
+    assert len(diagnostics) == 21
 
 
 def test_a_topic_without_messages_is_told_from_one_that_is_not_there() -> None:

@@ -101,8 +101,8 @@ def test_the_outline_counts_where_it_is_measured_from(field: str) -> None:
     for reduce, counts in ((Reduce.OUTLINE, True), (Reduce.MIN, False)):
         one = replace(known.signals["x"], reduce=reduce)
         other = replace(one, **{field: OUTLINE[field]})
-        told = [bound(replace(known, signals={"x": each}), ["p"]) for each in (one, other)]
-        assert (told[0] != told[1]) is counts
+        meanings = [bound(replace(known, signals={"x": each}), ["p"]) for each in (one, other)]
+        assert (meanings[0] != meanings[1]) is counts
 
 
 @pytest.mark.parametrize("field", PROPOSITION)

@@ -120,7 +120,7 @@ def test_an_interceptor_needs_no_clock() -> None:
 
 
 @pytest.mark.parametrize(
-    ("old", "new", "told"),
+    ("old", "new", "message"),
     [
         ("ros  ", "rose ", "F302 23: `rose` is no field of [interceptor]"),
         ('"/cmd_vel"', '"cmd vel"', "F303 13: `command` must be a topic"),
@@ -161,9 +161,9 @@ def test_an_interceptor_needs_no_clock() -> None:
         ("planner ", "planer ", "F302 30: `planer` is no field of [assume]"),
     ],
 )  # fmt: skip
-def test_each_mistake_has_its_place(old: str, new: str, told: str) -> None:
+def test_each_mistake_has_its_place(old: str, new: str, message: str) -> None:
     assert GOOD.count(old) == 1, old
-    assert mistakes(GOOD.replace(old, new)) == [told]
+    assert mistakes(GOOD.replace(old, new)) == [message]
 
 
 def test_the_event_form_measures_no_time() -> None:

@@ -113,7 +113,7 @@ def test_a_proposition_is_read() -> None:
     assert (too_close.role, too_close.aggregate) == (Role.INPUT, Aggregate.ANY)
     assert (too_close.text, too_close.on_unknown) == ("an obstacle is nearer than 5 cm", None)
     slow = e.Comparison("<", e.Call("abs", (e.Name("vx"),)), e.Quantity("0.01", "m/s"))
-    assert stopped.expression == e.Held(slow, 200_000_000)
+    assert stopped.expression == e.Persistence(slow, 200_000_000)
     assert (stopped.role, stopped.kind) == (Role.OUTPUT, "physical")
 
 
@@ -121,12 +121,12 @@ def test_a_proposition_is_read() -> None:
 @pytest.mark.parametrize("unit", ["m/s", "mm/s", "km/h"])
 def test_a_number_may_have_an_exponent_with_and_without_a_unit(digits: str, unit: str) -> None:
     plain = read(GOOD.replace('unit = "m/s"\n', "").replace("0.01 m/s", digits))
-    assert plain.propositions["stopped"].expression == e.Held(
+    assert plain.propositions["stopped"].expression == e.Persistence(
         e.Comparison("<", e.Call("abs", (e.Name("vx"),)), e.Number(digits)), 200_000_000
     )
     for space in ("", " "):
         found = read(changed("0.01 m/s", f"{digits}{space}{unit}")).propositions["stopped"]
-        assert found.expression == e.Held(
+        assert found.expression == e.Persistence(
             e.Comparison("<", e.Call("abs", (e.Name("vx"),)), e.Quantity(digits, unit)), 200_000_000
         )
 
@@ -144,7 +144,7 @@ def test_a_modality_is_read_of_propositions_and_variables(modality: Modality) ->
 def test_a_duration_holds_for_all_that_stands_before_it() -> None:
     text = changed("abs(vx) < 0.01 m/s for", "vx < 1 m/s and vx > 0 m/s or vx = 2 m/s for")
     held = read(text).propositions["stopped"].expression
-    assert isinstance(held, e.Held)
+    assert isinstance(held, e.Persistence)
     assert isinstance(held.arg, e.Or)
 
 
@@ -174,7 +174,7 @@ def test_a_laser_scan_is_read_as_rep_117_says() -> None:
     line = next(line for line in GOOD.splitlines() if line.startswith("invalid"))
     found = read(GOOD.replace(line + "\n", ""))
     assert found.signals["min_range"].invalid == REP_117
-    assert any("REP 117" in said for said in found.assumptions)
+    assert any("REP 117" in text for text in found.assumptions)
 
 
 def test_windows_line_ends_change_nothing() -> None:
@@ -346,15 +346,15 @@ def test_a_mistake_is_told_once_at_its_place(old: str, new: str, place: str, mes
 
 
 def test_a_table_that_holds_no_tables_is_told_once() -> None:
-    told = mistakes(changed("[signal.vx]", "[signal]\nvx = 3"))
-    assert len([message for _, message in told if "must hold tables" in message]) == 1
+    messages = mistakes(changed("[signal.vx]", "[signal]\nvx = 3"))
+    assert len([message for _, message in messages if "must hold tables" in message]) == 1
 
 
 @pytest.mark.parametrize("valid", ["x", "x + range_min", "1 m"])
 def test_what_is_valid_must_be_true_or_false(valid: str) -> None:
-    told = mistakes(changed("range_min <= x and x <= range_max", valid))
-    assert len(told) == 1
-    assert told[0][0].split()[1].startswith("bindings.toml:11:")
+    messages = mistakes(changed("range_min <= x and x <= range_max", valid))
+    assert len(messages) == 1
+    assert messages[0][0].split()[1].startswith("bindings.toml:11:")
 
 
 def test_a_clock_is_asked_for() -> None:
@@ -407,8 +407,8 @@ def test_metres_are_not_compared_with_seconds() -> None:
     ],
 )
 def test_two_dimensions_never_meet(expression: str, message: str) -> None:
-    told = mistakes(changed('"min_range < 5 cm"', f'"{expression}"'))
-    assert [said for _, said in told] == [message]
+    messages = mistakes(changed('"min_range < 5 cm"', f'"{expression}"'))
+    assert [text for _, text in messages] == [message]
 
 
 @pytest.mark.parametrize(
@@ -458,8 +458,8 @@ def test_a_plain_number_beside_percent_is_warned_of(expression: str) -> None:
     ["level < 20 %", "level < 0.2", "level <= 1", "level > 0", "ratio > 20", "level < 20 * ratio"],
 )
 def test_a_percentage_or_a_part_of_one_is_not(expression: str) -> None:
-    declarations, said = read_bindings(Source("bindings.toml", PERCENT.format(expression)))
-    assert (declarations is not None, said) == (True, ())
+    declarations, diagnostics = read_bindings(Source("bindings.toml", PERCENT.format(expression)))
+    assert (declarations is not None, diagnostics) == (True, ())
 
 
 NAMED_AS_UNITS = """

@@ -9,7 +9,7 @@ from compiler.targets.python import monitor
 from fretish.bindings.declarations import Declarations
 from fretish.bindings.reader import read_bindings
 from fretish.diagnostics.diagnostic import Code, Diagnostic
-from fretish.diagnostics.explanations import Explained, as_record, explanations, text
+from fretish.diagnostics.explanations import Explanation, as_record, explanations, text
 from fretish.diagnostics.source import Source
 from fretish.documents import requirements
 from tests.each import each
@@ -18,7 +18,7 @@ from tests.mending import toml_in
 EXAMPLES = {number: each for number, each in explanations().items() if each.wrong}
 
 
-def told(kind: str, declared: str, example: str) -> list[Diagnostic]:
+def diagnostics_of(kind: str, declared: str, example: str) -> list[Diagnostic]:
     """All that is said of an example."""
     if kind == "bindings":
         return list(read_bindings(Source("bindings.toml", example))[1])
@@ -26,8 +26,8 @@ def told(kind: str, declared: str, example: str) -> list[Diagnostic]:
     if declared:
         beside, wrong = read_bindings(Source("bindings.toml", declared))
         assert beside is not None, wrong
-    written, said = requirements(Source("r.fret", example.strip("\n")))
-    found: list[Diagnostic] = [*said, *duplicates(written).values()]
+    written, diagnostics = requirements(Source("r.fret", example.strip("\n")))
+    found: list[Diagnostic] = [*diagnostics, *duplicates(written).values()]
     for requirement in written:
         rule, remarks = formalize(requirement, beside)
         found.extend(remarks)
@@ -36,9 +36,9 @@ def told(kind: str, declared: str, example: str) -> list[Diagnostic]:
     return found
 
 
-def given(kind: str, declared: str, example: str) -> set[str]:
+def codes_of(kind: str, declared: str, example: str) -> set[str]:
     """The codes of all that is said of an example."""
-    return {diagnostic.code.number for diagnostic in told(kind, declared, example)}
+    return {diagnostic.code.number for diagnostic in diagnostics_of(kind, declared, example)}
 
 
 def test_every_code_is_explained_and_nothing_else() -> None:
@@ -48,14 +48,14 @@ def test_every_code_is_explained_and_nothing_else() -> None:
 @pytest.mark.parametrize("number", EXAMPLES)
 def test_an_example_gives_its_code_and_the_mended_one_gives_none(number: str) -> None:
     example = EXAMPLES[number]
-    assert number in given(example.kind, example.declared, example.wrong)
-    assert not given(example.kind, example.declared, example.mended)
+    assert number in codes_of(example.kind, example.declared, example.wrong)
+    assert not codes_of(example.kind, example.declared, example.mended)
 
 
 @pytest.mark.parametrize("number", EXAMPLES)
 def test_the_toml_that_an_example_is_told_to_write_parses(number: str) -> None:
     example = EXAMPLES[number]
-    for diagnostic in told(example.kind, example.declared, example.wrong):
+    for diagnostic in diagnostics_of(example.kind, example.declared, example.wrong):
         for fragment in (*toml_in(diagnostic.help or ""), diagnostic.paste):
             tomllib.loads(fragment)
 
@@ -91,7 +91,7 @@ def test_the_text_of_a_code() -> None:
 
 def test_a_code_without_an_example_has_none_in_its_record() -> None:
     assert as_record(Code.INTERNAL)["example"] is None
-    assert explanations()["F999"] == Explained(
+    assert explanations()["F999"] == Explanation(
         "fretc met a state that it does not expect. No verdict was given.",
         "Report it with the input; `FRETC_TRACEBACK=1` shows where it comes from.",
     )

@@ -22,12 +22,14 @@ def texts(module: Path) -> Iterator[str]:
     """Every text of a module but its docstrings; what is filled in later is `X`."""
     nodes = list(ast.walk(ast.parse(module.read_text("utf-8"))))
     inner = {id(part) for node in nodes if isinstance(node, ast.JoinedStr) for part in node.values}
-    said = {id(node.value) for node in nodes if isinstance(node, ast.Expr)}
+    statements = {id(node.value) for node in nodes if isinstance(node, ast.Expr)}
     for node in nodes:
         if isinstance(node, ast.JoinedStr):
             parts = (p.value if isinstance(p, ast.Constant) else "X" for p in node.values)
             yield "".join(map(str, parts))
-        elif isinstance(node, ast.Constant) and id(node) not in inner and id(node) not in said:
+        elif (
+            isinstance(node, ast.Constant) and id(node) not in inner and id(node) not in statements
+        ):
             yield str(node.value)
 
 

@@ -31,18 +31,18 @@ def test_what_is_read_within_its_limits_is_given() -> None:
 def test_reading_without_end_is_f930(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(limits, "SECONDS", 0.2)
     start = time.process_time()
-    told = within(10, PLACE, endless)
+    diagnostic = within(10, PLACE, endless)
     assert time.process_time() - start < 2
-    assert isinstance(told, Diagnostic)
-    assert (told.code, told.span) == (Code.TOO_COSTLY, PLACE)
-    assert told.message.startswith("it would take more than 0.2 seconds of a processor")
+    assert isinstance(diagnostic, Diagnostic)
+    assert (diagnostic.code, diagnostic.span) == (Code.TOO_COSTLY, PLACE)
+    assert diagnostic.message.startswith("it would take more than 0.2 seconds of a processor")
 
 
 def test_reading_that_takes_more_and_more_memory_is_f930(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(limits, "MEMORY", 40 * 2**20)
-    told = within(10, PLACE, growing)
-    assert isinstance(told, Diagnostic)
-    assert told.message.startswith("it would take more than 40 MiB of memory")
+    diagnostic = within(10, PLACE, growing)
+    assert isinstance(diagnostic, Diagnostic)
+    assert diagnostic.message.startswith("it would take more than 40 MiB of memory")
 
 
 def test_a_library_that_takes_every_exception_for_its_own_is_ended_all_the_same(

@@ -34,15 +34,15 @@ class Options:
     """How an interceptor behaves. Times are ticks of its own timer."""
 
     hold: int
-    """For so many ticks after a request zero is published, whatever is heard meanwhile."""
+    """For so many ticks after a request zero is published, whatever messages come meanwhile."""
     stop_timeout: int
-    """After so many ticks without a word of the safety function the robot is halted; 0: never."""
+    """After so many ticks without a message of the safety function the robot halts; 0: never."""
     scan_timeout: int
     """The same for scans."""
     command_timeout: int
     """The same for commands."""
     event_driven: bool = False
-    """It speaks only when a command comes, and its timer does nothing: the node of the paper."""
+    """It publishes only when a command comes, and its timer does nothing: the node of the paper."""
     latching: bool = False
     """The first stop is for ever."""
 
@@ -58,7 +58,7 @@ class State:
     command: Velocity
     """The last one."""
     stop_age: int
-    """Ticks since the safety function was heard; no more than the timeout. The others likewise."""
+    """Ticks since the last message of the safety function, at most the timeout; likewise below."""
     scan_age: int
     command_age: int
 
@@ -79,7 +79,7 @@ class CommandHeard:
 
 @dataclass(frozen=True, slots=True)
 class ScanHeard:
-    """A message of the sensor; what it says is for the safety function."""
+    """A message of the sensor; only the safety function reads its content."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -88,7 +88,7 @@ class TimerRang:
 
 
 def initial(options: Options) -> State:
-    """Nothing is heard yet: every watchdog has run out, so that a watched robot stands.
+    """No message has come yet: every watchdog has run out, so that a watched robot stands.
 
     pre: min(options.hold, options.stop_timeout) >= 0
     pre: min(options.scan_timeout, options.command_timeout) >= 0
@@ -188,7 +188,7 @@ def hear_scan(state: State, options: Options) -> tuple[State, Velocity | None]:
 
 
 def ring(state: State, options: Options) -> tuple[State, Velocity | None]:
-    """Time passes: what was heard grows older, and zero that is owed is paid.
+    """Time passes: the last messages grow older, and `held` counts down.
 
     pre: within(state, options)
     post: within(__return__[0], options)
@@ -209,21 +209,21 @@ def ring(state: State, options: Options) -> tuple[State, Velocity | None]:
         scan_age=min(state.scan_age + 1, options.scan_timeout),
         command_age=min(state.command_age + 1, options.command_timeout),
     )
-    said = ZERO if halted(older, options) else state.command
-    return replace(older, held=max(state.held - 1, 0)), said
+    output = ZERO if halted(older, options) else state.command
+    return replace(older, held=max(state.held - 1, 0)), output
 
 
 def step(
-    state: State, heard: StopHeard | CommandHeard | ScanHeard | TimerRang, options: Options
+    state: State, event: StopHeard | CommandHeard | ScanHeard | TimerRang, options: Options
 ) -> tuple[State, Velocity | None]:
-    """The state after what was heard, and what is published; None: nothing is.
+    """The state after an event, and what is published; None: nothing is.
 
     pre: within(state, options)
     post: within(__return__[0], options)
     post: __return__[0].stop or not (options.latching and state.stop)
     post: __return__[1] is None or __return__[1] is ZERO or not halted(__return__[0], options)
     """
-    match heard:
+    match event:
         case StopHeard(requested):
             return hear_stop(state, requested, options)
         case CommandHeard(command):
@@ -278,9 +278,9 @@ FLUSH = 0.1
 
 
 class Gate:
-    """Hands on what is heard, and publishes what `step` says.
+    """Gives each event to `step`, and publishes what it returns.
 
-    One at a time: what is published comes in the order of the states.
+    A lock keeps these outputs in the order of the states.
     """
 
     def __init__(
@@ -293,22 +293,22 @@ class Gate:
         self._alone, self._closed = True, False
         self._lock = Lock()
 
-    def take(self, heard: StopHeard | CommandHeard | ScanHeard | TimerRang) -> None:
+    def take(self, event: StopHeard | CommandHeard | ScanHeard | TimerRang) -> None:
         """One step; of several safety functions none is trusted: each moment requests a stop."""
         with self._lock:
             alone = self._speakers() <= 1
             if not alone:
                 self._step(StopHeard(True))
-            if alone or not isinstance(heard, StopHeard):
-                self._step(heard)
+            if alone or not isinstance(event, StopHeard):
+                self._step(event)
             if alone != self._alone:
                 self._alone = alone
                 tell(CROWD if not alone else f"{STOP} has one publisher again, which decides")
 
-    def _step(self, heard: StopHeard | CommandHeard | ScanHeard | TimerRang) -> None:
-        self.state, said = step(self.state, heard, OPTIONS)
-        if said is not None:
-            self._publish(said)
+    def _step(self, event: StopHeard | CommandHeard | ScanHeard | TimerRang) -> None:
+        self.state, output = step(self.state, event, OPTIONS)
+        if output is not None:
+            self._publish(output)
 
     def hear_stop(self, message: Any) -> None:
         """A std_msgs/Bool."""

@@ -30,8 +30,8 @@ def outcomes(machine: Monitor, trace: Trace) -> tuple[Outcome, Outcome]:
     """Of both engines."""
     names = tuple(machine.PROPOSITIONS)
     ticks, columns = columns_of(zip(*(trace[name] for name in names), strict=True), len(names))
-    given = dict(zip(names, columns, strict=True))
-    (whole,), (online,) = evaluate(machine, given, ticks), stepped(machine, given, ticks)
+    by_name = dict(zip(names, columns, strict=True))
+    (whole,), (online,) = evaluate(machine, by_name, ticks), stepped(machine, by_name, ticks)
     return whole, online
 
 
@@ -45,7 +45,7 @@ def completions(trace: Trace) -> Iterator[dict[str, list[Truth]]]:
         yield full
 
 
-def told(outcome: Outcome) -> set[tuple[int, object]]:
+def demands_of(outcome: Outcome) -> set[tuple[int, object]]:
     """Each trigger with its answer, or with the deadline of its open demand."""
     return {*outcome.answers, *((trigger, (deadline,)) for trigger, deadline in outcome.open)}
 
@@ -60,12 +60,14 @@ def drawn(choose: random.Random, names: Sequence[str], ticks: int, most: int) ->
     return trace
 
 
-def judged(machine: Monitor, trace: Trace) -> tuple[set[int], set[int]]:
+def certainties(machine: Monitor, trace: Trace) -> tuple[set[int], set[int]]:
     """The triggers that are said to be certain, and those that are by all completions."""
     outcome, online = outcomes(machine, trace)
     assert outcome == online
-    listed = told(outcome)
-    everywhere = set.intersection(*(told(outcomes(machine, t)[0]) for t in completions(trace)))
+    listed = demands_of(outcome)
+    everywhere = set.intersection(
+        *(demands_of(outcomes(machine, t)[0]) for t in completions(trace))
+    )
     assert everywhere & {pair for pair in everywhere if pair[0] in outcome.triggers} <= listed
     assert {*outcome.uncertain} <= {trigger for trigger, _ in listed}
     certain = {trigger for trigger, _ in listed} - {*outcome.uncertain}
@@ -80,7 +82,7 @@ def test_what_is_said_to_be_certain_is_so_for_all_values_of_the_unknown(scope: s
             continue
         machine, choose = monitor(template.sentence), random.Random(repr(template))
         for _ in range(4):
-            certain, right = judged(machine, drawn(choose, tuple(machine.PROPOSITIONS), 6, 3))
+            certain, right = certainties(machine, drawn(choose, tuple(machine.PROPOSITIONS), 6, 3))
             assert certain <= right, template
 
 
@@ -90,7 +92,7 @@ def test_what_is_certain_is_said_to_be(sentence: str) -> None:
     counts = [0, 0]
     for _ in range(120):
         trace = drawn(choose, ("p", "q"), 6, 4)
-        certain, right = judged(machine, trace)
+        certain, right = certainties(machine, trace)
         assert certain == right, trace
         counts[0] += len(certain)
         counts[1] += len(outcomes(machine, trace)[0].uncertain)

@@ -36,7 +36,7 @@ def rows(machine: Monitor, count: int, seed: int, unknown: float = 0.1) -> Rows:
     return [tuple(value() for _ in range(width)) for _ in range(count)]
 
 
-def told(machine: Monitor) -> tuple[object, ...]:
+def outputs(machine: Monitor) -> tuple[object, ...]:
     return machine.tick, machine.verdicts(), machine.standings(), step(machine)
 
 
@@ -51,7 +51,7 @@ def test_a_run_is_its_steps_however_it_is_cut(sentence: str, unknown: float) -> 
         single.advance([row])
     for first in range(0, len(table), 1_700):
         pieces.advance(iter(table[first : first + 1_700]))
-    assert told(whole) == told(single) == told(pieces)
+    assert outputs(whole) == outputs(single) == outputs(pieces)
 
 
 def test_rows_may_be_given_by_name() -> None:
@@ -72,7 +72,7 @@ def test_booleans_of_numpy_are_those_of_python(sentence: str) -> None:
     stepped: Any = single
     for row in same:
         stepped.step(**dict(zip(single.PROPOSITIONS.values(), row, strict=True)))
-    assert told(python) == told(numpy) == told(single)
+    assert outputs(python) == outputs(numpy) == outputs(single)
     assert type(numpy.must.signals()[0].trigger) is bool
 
 
@@ -91,7 +91,7 @@ def test_a_bad_value_leaves_the_last_whole_piece(sentence: str, bad: Any, unknow
     other.advance(table[:4_096])
     machine.advance(table[4_096:])
     other.advance(table[4_096:])
-    assert told(machine) == told(other)
+    assert outputs(machine) == outputs(other)
 
 
 def test_rows_that_can_be_read_once_leave_no_half_step() -> None:
@@ -129,10 +129,10 @@ def test_a_monitor_goes_on_from_its_state(unknown: float) -> None:
         for row in table[cut:]:
             whole.advance([row])
             restored.advance([row])
-            assert told(whole) == told(restored)
+            assert outputs(whole) == outputs(restored)
 
 
-def made(*named: tuple[str, str], clock: Clock | None = None) -> Monitor:
+def monitor_of(*named: tuple[str, str], clock: Clock | None = None) -> Monitor:
     return load("m", target.text(*(rule(text, id, clock) for id, text in named)))
 
 
@@ -143,20 +143,20 @@ B = ("B", "whenever m sw shall within 5 ticks satisfy s")
 @pytest.mark.parametrize(
     "other",
     [
-        lambda: made(B, A),
-        lambda: made(A),
-        lambda: made(A, ("C", B[1])),
-        lambda: made(A, ("B", B[1].replace("5", "6"))),
+        lambda: monitor_of(B, A),
+        lambda: monitor_of(A),
+        lambda: monitor_of(A, ("C", B[1])),
+        lambda: monitor_of(A, ("B", B[1].replace("5", "6"))),
     ],
 )
 def test_a_state_fits_no_other_monitor(other: Callable[[], Monitor]) -> None:
     with pytest.raises(ValueError, match="another monitor"):
-        other().restore(made(A, B).state())
+        other().restore(monitor_of(A, B).state())
 
 
 def test_a_state_fits_no_other_clock() -> None:
     text = ("A", "upon p sw shall for 1 second satisfy q")
-    slow, fast = (made(text, clock=Clock(period)) for period in (5 * 10**8, 10**8))
+    slow, fast = (monitor_of(text, clock=Clock(period)) for period in (5 * 10**8, 10**8))
     with pytest.raises(ValueError, match="another monitor"):
         fast.restore(slow.state())
 
@@ -173,7 +173,7 @@ def changed(state: Mapping[str, Any], *path: str, value: Any) -> dict[str, Any]:
 def test_a_state_that_was_changed_is_refused() -> None:
     machine = monitor(WINDOW, SENTENCES[0])
     machine.advance(rows(machine, 30, 4, 0.3))
-    state, before = machine.state(), told(machine)
+    state, before = machine.state(), outputs(machine)
     names = [(rail, name) for rail in ("must", "may") for name in state[rail]]
     wrong: list[Any] = [changed(state, *path, value=-999) for path in names]
     wrong += [changed(state, "may", value=None), changed(state, "must", "doubt", value=True)]
@@ -181,7 +181,7 @@ def test_a_state_that_was_changed_is_refused() -> None:
     for other in wrong:
         with pytest.raises(ValueError, match="state"):
             machine.restore(other)
-        assert told(machine) == before
+        assert outputs(machine) == before
     assert len(names) > 20
 
 

@@ -142,10 +142,10 @@ def test_any_text_gives_rows_or_an_input_error(text: str) -> None:
         try:
             found = rows(table, "p", "q")
         except InputError as error:
-            told = str(error)
+            complaint = str(error)
         else:
-            told = "" if all(len(row) == 2 for row in found) else "\n"
-        assert "\n" not in told
+            complaint = "" if all(len(row) == 2 for row in found) else "\n"
+        assert "\n" not in complaint
 
 
 @given(st.lists(st.integers(-2, 3), min_size=1, max_size=6))

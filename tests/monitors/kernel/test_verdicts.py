@@ -40,8 +40,8 @@ def test_no_completion_contradicts_a_definite_verdict() -> None:
 
 def test_frets_finite_verdict_is_false_as_soon_as_one_reason_is_certain() -> None:
     for known in product((False, True, None), repeat=2):
-        told = {finite_verdict(*values) for values in product(*map(filled, known))}
-        assert finite_verdict(*known) == (told.pop() if len(told) == 1 else None), known
+        verdicts = {finite_verdict(*values) for values in product(*map(filled, known))}
+        assert finite_verdict(*known) == (verdicts.pop() if len(verdicts) == 1 else None), known
 
 
 def test_both_rails_make_one_truth_value() -> None:

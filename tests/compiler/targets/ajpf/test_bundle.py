@@ -31,21 +31,21 @@ WEAKEN = Options(weaken=True)
 
 
 def declared(text: str) -> Declarations:
-    found, said = read_bindings(Source("bindings.toml", text))
-    assert found is not None, said
+    found, diagnostics = read_bindings(Source("bindings.toml", text))
+    assert found is not None, diagnostics
     return found
 
 
 def rule(sentence: str, id: str = "R1", bindings: str | None = None) -> Rule:
     requirement = Requirement(id, Source("r.fret", sentence).span())
-    made, said = formalize(requirement, declared(bindings) if bindings else None)
-    assert made is not None, said
+    made, diagnostics = formalize(requirement, declared(bindings) if bindings else None)
+    assert made is not None, diagnostics
     return made
 
 
 def bundle(made: Rule, options: Options = DEFAULT) -> dict[str, str]:
-    told = refusal(made, options)
-    assert told is None, render(told)
+    diagnostic = refusal(made, options)
+    assert diagnostic is None, render(diagnostic)
     return {str(artifact.path): artifact.text for artifact in emit([made], options)}
 
 
@@ -55,10 +55,10 @@ def plans(files: dict[str, str], name: str = "SIF.gwen") -> list[str]:
 
 
 def refused(sentence: str, bindings: str | None = None) -> Diagnostic:
-    told = refusal(rule(sentence, bindings=bindings))
-    assert told is not None
-    assert told.help
-    return told
+    diagnostic = refusal(rule(sentence, bindings=bindings))
+    assert diagnostic is not None
+    assert diagnostic.help
+    return diagnostic
 
 
 # The paper's requirement ------------------------------------------------------------------------
@@ -166,10 +166,10 @@ def test_a_plan_for_each_event_that_can_make_the_condition_true(
 def test_an_agent_that_responds_too_often_says_so() -> None:
     made = rule("whenever a & !b the ag shall eventually satisfy r")
     assert TARGET.remark is not None
-    told = TARGET.remark(made)
-    assert told is not None
-    assert told.code is Code.OVER_RESPONDS
-    assert not told.is_error
+    diagnostic = TARGET.remark(made)
+    assert diagnostic is not None
+    assert diagnostic.code is Code.OVER_RESPONDS
+    assert not diagnostic.is_error
     files = bundle(made)
     assert json.loads(files["r1_ajpf/manifest.json"])["over_responds"]
     assert "// It responds to every event" in files["r1_ajpf/SIF.gwen"]
@@ -181,8 +181,8 @@ def test_an_agent_that_responds_too_often_says_so() -> None:
 
 
 def test_where_neither_form_is_shown_to_keep_it_there_is_none() -> None:
-    told = refused("whenever a & !b the ag shall always satisfy r")
-    assert told.code is Code.NOT_KEPT
+    diagnostic = refused("whenever a & !b the ag shall always satisfy r")
+    assert diagnostic.code is Code.NOT_KEPT
 
 
 def test_a_response_that_is_an_action_is_that_action() -> None:
@@ -224,14 +224,14 @@ def test_a_deadline_is_lost_only_where_that_is_asked_for() -> None:
     ],
 )
 def test_what_no_agent_is_made_of_is_refused(sentence: str, what: str) -> None:
-    told = refused(sentence)
-    assert told.code is Code.NOT_EXPRESSIBLE
-    assert told.message == f"an agent cannot express {what} of R1"
+    diagnostic = refused(sentence)
+    assert diagnostic.code is Code.NOT_EXPRESSIBLE
+    assert diagnostic.message == f"an agent cannot express {what} of R1"
 
 
 def test_what_ajpf_cannot_say_is_refused_first() -> None:
-    told = refused("whenever a the ag shall at the next timepoint satisfy r")
-    assert told.message.startswith("AJPF cannot express")
+    diagnostic = refused("whenever a the ag shall at the next timepoint satisfy r")
+    assert diagnostic.message.startswith("AJPF cannot express")
 
 
 @pytest.mark.parametrize(
@@ -242,8 +242,8 @@ def test_what_ajpf_cannot_say_is_refused_first() -> None:
     ],
 )
 def test_modalities_that_no_agent_brings_about_are_refused(bindings: str, what: str) -> None:
-    told = refused("whenever a the ag shall satisfy r", bindings)
-    assert told.message == f"an agent cannot express {what} of R1"
+    diagnostic = refused("whenever a the ag shall satisfy r", bindings)
+    assert diagnostic.message == f"an agent cannot express {what} of R1"
 
 
 @pytest.mark.parametrize(
@@ -258,9 +258,9 @@ def test_modalities_that_no_agent_brings_about_are_refused(bindings: str, what: 
     ],
 )
 def test_an_agent_that_would_break_its_requirement_is_not_emitted(sentence: str) -> None:
-    told = refused(sentence)
-    assert told.code is Code.NOT_KEPT
-    assert re.search(r"a run of \d+ stages breaks it", told.message)
+    diagnostic = refused(sentence)
+    assert diagnostic.code is Code.NOT_KEPT
+    assert re.search(r"a run of \d+ stages breaks it", diagnostic.message)
 
 
 def test_names_are_legal_in_every_language() -> None:
@@ -340,11 +340,11 @@ def test_the_bindings_name_the_action_of_agent_and_mutant() -> None:
 
 @pytest.mark.parametrize("name", ["print", "achieve"])
 def test_an_action_that_means_something_else_is_refused(name: str) -> None:
-    told = refused(R1, NAMED.format(name))
-    assert f"the action `{name}`" in told.message
+    diagnostic = refused(R1, NAMED.format(name))
+    assert f"the action `{name}`" in diagnostic.message
 
 
 def test_an_action_is_a_name_of_gwendolen() -> None:
-    found, (said,) = read_bindings(Source("bindings.toml", NAMED.format("Stop-it")))
+    found, (diagnostic,) = read_bindings(Source("bindings.toml", NAMED.format("Stop-it")))
     assert found is None
-    assert said.message.startswith("`action` must be a name of Gwendolen")
+    assert diagnostic.message.startswith("`action` must be a name of Gwendolen")

@@ -41,24 +41,24 @@ def target(options: Options) -> Target:
 def rule(sentence: str, id: str = "R1", bindings: str = "") -> Rule:
     declarations, wrong = read_bindings(Source("bindings.toml", bindings))
     assert not wrong, wrong
-    made, said = formalize(Requirement(id, Source("r.fret", sentence).span()), declarations)
-    assert made is not None, said
+    made, diagnostics = formalize(Requirement(id, Source("r.fret", sentence).span()), declarations)
+    assert made is not None, diagnostics
     return made
 
 
 def emitted(sentence: str, options: Options = DEFAULT, id: str = "R1", bindings: str = "") -> str:
     made = rule(sentence, id, bindings)
-    told = target(options).refuse(made)
-    assert told is None, told
+    diagnostic = target(options).refuse(made)
+    assert diagnostic is None, diagnostic
     (file,) = target(options).emit([made], options)
     return file.text
 
 
 def refused(sentence: str, options: Options = DEFAULT) -> str:
-    told = target(options).refuse(rule(sentence))
-    assert told is not None
-    assert told.code is Code.NOT_EXPRESSIBLE
-    return render(told)
+    diagnostic = target(options).refuse(rule(sentence))
+    assert diagnostic is not None
+    assert diagnostic.code is Code.NOT_EXPRESSIBLE
+    return render(diagnostic)
 
 
 def properties(text: str) -> dict[str, f.Formula]:
@@ -106,17 +106,17 @@ def test_every_template_is_emitted_or_refused_for_the_right_reason() -> None:
     counts = {"emitted": 0, "constant": 0, "counts ticks": 0}
     for template in templates((2,)):
         made = rule(template.sentence)
-        told = TARGETS["ajpf"].refuse(made)
-        if told is None:
+        diagnostic = TARGETS["ajpf"].refuse(made)
+        if diagnostic is None:
             counts["emitted"] += 1
         elif template.timing == "finally":
             counts["constant"] += 1
             assert template.scope in ("null", "after", "onlyBefore")
-            assert told.message == "AJPF cannot express a formula that is constant of R1"
+            assert diagnostic.message == "AJPF cannot express a formula that is constant of R1"
         else:
             counts["counts ticks"] += 1
             assert template.timing in ("next", "within", "for", "after")
-            assert told.message.startswith("AJPF cannot express the timing `")
+            assert diagnostic.message.startswith("AJPF cannot express the timing `")
     assert counts == {"emitted": 183, "constant": 9, "counts ticks": 96}
 
 
@@ -167,9 +167,9 @@ _sentences = st.builds(
 @given(_sentences)
 def test_compound_sentences_keep_their_language(sentence: s.Sentence) -> None:
     made = rule(canonical(sentence))
-    told = TARGETS["ajpf"].refuse(made)
-    if told is not None:
-        assert told.message == "AJPF cannot express a formula that is constant of R1"
+    diagnostic = TARGETS["ajpf"].refuse(made)
+    if diagnostic is not None:
+        assert diagnostic.message == "AJPF cannot express a formula that is constant of R1"
         return
     (file,) = TARGETS["ajpf"].emit([made])
     found = properties(file.text)
@@ -480,9 +480,9 @@ def test_what_is_not_proved_is_not_emitted(monkeypatch: pytest.MonkeyPatch) -> N
         ("when p sw shall eventually satisfy q", DEFAULT),
         (LATE.replace("2 seconds", "2 ticks"), WEAKEN),
     ):
-        told = target(options).refuse(rule(sentence))
-        assert told is not None
-        assert told.code is Code.NOT_PROVED
+        diagnostic = target(options).refuse(rule(sentence))
+        assert diagnostic is not None
+        assert diagnostic.code is Code.NOT_PROVED
     assert target(DEFAULT).refuse(rule(R1)) is None, "its own formula has no X"
 
 
@@ -513,9 +513,9 @@ def test_what_is_not_proved_is_not_emitted(monkeypatch: pytest.MonkeyPatch) -> N
 def test_what_no_agent_can_do_is_warned_of(sentence: str, code: Code | None) -> None:
     made = rule(sentence)
     assert TARGETS["ajpf"].refuse(made) is None
-    told = TARGETS["ajpf"].remark(made)
-    assert (told.code if told else None) is code
-    assert told is None or told.severity is Severity.WARNING
+    diagnostic = TARGETS["ajpf"].remark(made)
+    assert (diagnostic.code if diagnostic else None) is code
+    assert diagnostic is None or diagnostic.severity is Severity.WARNING
 
 
 # Weaker, on request ---------------------------------------------------------------------------
@@ -536,10 +536,10 @@ def test_within_becomes_eventually_on_request_and_the_file_says_so() -> None:
     made = rule(LATE, bindings=BINDINGS)
     assert ajpf.weakened(made, WEAKEN) == loss
     assert ajpf.weakened(made) is None
-    told = target(WEAKEN).remark(made)
-    assert told is not None
-    assert told.code is Code.WEAKENED
-    assert loss in told.message
+    diagnostic = target(WEAKEN).remark(made)
+    assert diagnostic is not None
+    assert diagnostic.code is Code.WEAKENED
+    assert loss in diagnostic.message
 
 
 @pytest.mark.slow

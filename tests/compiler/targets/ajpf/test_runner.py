@@ -54,8 +54,8 @@ CRASH = "====== results\nerror #1: gov.nasa.jpf.vm.NoUncaughtExceptionsProperty\
     ],
 )
 def test_only_a_clear_verdict_is_one(text: str, status: int, expected: str) -> None:
-    told, why = verdict(text, status)
-    assert told == expected
+    answer, why = verdict(text, status)
+    assert answer == expected
     assert bool(why) is (expected == ERROR)
 
 
@@ -151,7 +151,7 @@ def test_all_as_expected_is_shown(mcapl: Mcapl) -> None:
 
 
 @pytest.mark.parametrize(
-    ("said", "status", "line"),
+    ("answers", "status", "line"),
     [
         ({"R1.jpf": (SAYS_VIOLATED, 0)}, 1, "R1.jpf: VIOLATED, EXPECTED HOLDS"),
         ({"R1_reach.jpf": (SAYS_HOLDS, 0)}, 3, "R1_reach.jpf: HOLDS, EXPECTED VIOLATED"),
@@ -167,9 +167,9 @@ def test_all_as_expected_is_shown(mcapl: Mcapl) -> None:
     ],
 )
 def test_what_is_not_expected_is_no_success(
-    mcapl: Mcapl, said: dict[str, tuple[str, int]], status: int, line: str
+    mcapl: Mcapl, answers: dict[str, tuple[str, int]], status: int, line: str
 ) -> None:
-    mcapl.says(said)
+    mcapl.says(answers)
     done = mcapl.run()
     assert done.returncode == status
     assert line in done.stdout
@@ -183,7 +183,7 @@ def test_an_answer_that_does_not_come_is_none(mcapl: Mcapl) -> None:
 
 
 def test_without_ajpf_nothing_is_run(mcapl: Mcapl, tmp_path: Path) -> None:
-    for environment, told in (
+    for environment, message in (
         ({"AJPF_HOME": ""}, "set AJPF_HOME to the folder of MCAPL"),
         ({"AJPF_HOME": str(tmp_path / "nowhere")}, "set AJPF_HOME to the folder of MCAPL"),
         ({"AJPF_HOME": str(tmp_path / "said")}, "there is no RunJPF.jar below"),
@@ -191,7 +191,7 @@ def test_without_ajpf_nothing_is_run(mcapl: Mcapl, tmp_path: Path) -> None:
     ):
         done = mcapl.run(**environment)
         assert done.returncode == 2
-        assert told in done.stderr
+        assert message in done.stderr
         assert done.stdout == ""
 
 
@@ -349,11 +349,11 @@ def test_an_agent_of_ones_own_is_checked_where_that_is_asked_for(mcapl: Mcapl) -
 
 def test_an_agent_of_another_name_is_refused(mcapl: Mcapl) -> None:
     own = mcapl.folder / "other.gwen"
-    for text, told in ((":name: rover", "is called `rover`"), ("", "has no `:name:`")):
+    for text, message in ((":name: rover", "is called `rover`"), ("", "has no `:name:`")):
         own.write_text(f"GWENDOLEN\n{text}\n")
         done = mcapl.run("--agent", str(own))
         assert done.returncode == 2
-        assert told in done.stderr
+        assert message in done.stderr
     assert mcapl.run("--agent", str(mcapl.folder / "nowhere.gwen")).returncode == 2
 
 
@@ -456,8 +456,8 @@ def test_the_second_round_of_a_loop_is_left_out(
     ],
 )
 def test_what_is_no_verdict_says_why(text: str, why: str) -> None:
-    told, reason = verdict(text, 0)
-    assert told == ERROR
+    answer, reason = verdict(text, 0)
+    assert answer == ERROR
     assert why in reason
 
 
@@ -489,7 +489,7 @@ def test_a_result_is_what_its_schema_says_and_names_what_was_run(mcapl: Mcapl) -
 
 
 @pytest.mark.parametrize(
-    ("said", "verdict_"),
+    ("answers", "verdict_"),
     [
         ({"R1.jpf": (RECORDED, 0)}, "refuted"),
         ({"R1_mutant.jpf": (ENDING, 0)}, "not shown"),
@@ -497,9 +497,9 @@ def test_a_result_is_what_its_schema_says_and_names_what_was_run(mcapl: Mcapl) -
     ],
 )
 def test_a_result_that_shows_nothing_is_written_too(
-    mcapl: Mcapl, said: dict[str, tuple[str, int]], verdict_: str
+    mcapl: Mcapl, answers: dict[str, tuple[str, int]], verdict_: str
 ) -> None:
-    mcapl.says(said)
+    mcapl.says(answers)
     mcapl.run()
     found = mcapl.result()
     jsonschema.validate(found, SCHEMA)

@@ -215,7 +215,7 @@ def test_graphviz_draws_it(sentence: str, tmp_path: Path) -> None:
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
-    ("sentence", "told"),
+    ("sentence", "message"),
     [
         (PROBABLE, "F601 DOT cannot express the probability of R1"),
         (LOOKING_BACK, "F601 DOT cannot express the predicate `persisted` of R1"),
@@ -225,5 +225,5 @@ def test_graphviz_draws_it(sentence: str, tmp_path: Path) -> None:
         ),
     ],
 )
-def test_it_is_refused(sentence: str, told: str) -> None:
-    assert refused("dot", sentence).startswith(told)
+def test_it_is_refused(sentence: str, message: str) -> None:
+    assert refused("dot", sentence).startswith(message)

@@ -112,12 +112,12 @@ class Model:
 
     def tick(self, inputs: Mapping[str, bool]) -> dict[str, bool]:
         """What is defined at a tick; then the state is that of the next."""
-        told = {name: self.value(value, inputs) for name, value in self.defined.items()}
+        values = {name: self.value(value, inputs) for name, value in self.defined.items()}
         after = {name: self.value(value, inputs) for name, value in self.then.items()}
         for name, value in after.items():
             assert self.allowed(name, value), f"{name} := {value}"
         self.state = after
-        return told
+        return values
 
     def allowed(self, name: str, value: object) -> bool:
         type_ = self.types[name]
@@ -227,12 +227,12 @@ def assert_runs_as_defined(sentence: str, traces: int, length: int) -> None:
         for _ in range(length):
             row = {name: choose.random() < odds[name] for name in order}
             rows.append(row)
-            told = model.tick({name: row[atoms[name]] for name in atoms})
+            values = model.tick({name: row[atoms[name]] for name in atoms})
             letter = letters[tuple(row[name] for name in order)]
             state = counters.step(known, state, *letter) if state is not None else None
-            assert told["violated"] is (state is None), (sentence, rows)
+            assert values["violated"] is (state is None), (sentence, rows)
             kept = state is not None and accepts(known, state)
-            ends = not told["violated"] and not told.get("unmet", False)
+            ends = not values["violated"] and not values.get("unmet", False)
             assert ends is kept, (sentence, rows)
         assert ends is holds(made.pt, rows, length - 1), (sentence, rows)
 
@@ -332,11 +332,11 @@ def test_the_grammar_refuses_what_nusmv_would() -> None:
 
 
 @pytest.mark.parametrize(
-    ("sentence", "told"),
+    ("sentence", "message"),
     [
         (PROBABLE, "F601 NuSMV cannot express the probability of R1"),
         (LOOKING_BACK, "F601 NuSMV cannot express the predicate `persisted` of R1"),
     ],
 )
-def test_it_is_refused(sentence: str, told: str) -> None:
-    assert refused("smv", sentence).startswith(told)
+def test_it_is_refused(sentence: str, message: str) -> None:
+    assert refused("smv", sentence).startswith(message)

@@ -28,7 +28,7 @@ from monitors import interceptor
 from monitors.loading import executed
 from monitors.source_text import interceptor as core
 from tests.command import Fretc, write
-from tests.monitors.test_interceptor import heard, options
+from tests.monitors.test_interceptor import events, options
 
 MS = 1_000_000
 NODE = Interception(
@@ -93,16 +93,16 @@ def test_durations_become_ticks_rounded_up_and_say_where_they_are_from() -> None
     assert "    scan_timeout=0,  # no scan_timeout is declared\n" in text(NODE, "b.toml")
 
 
-@given(options, st.lists(heard, max_size=12))
+@given(options, st.lists(events, max_size=12))
 def test_the_emitted_step_is_the_core(made: interceptor.Options, messages: list[Any]) -> None:
     module = MODULE
     state, mine = interceptor.initial(made), module.initial(made)
     for message in messages:
         same = getattr(module, type(message).__name__)
         values = [getattr(message, name) for name in message.__dataclass_fields__]
-        state, said = interceptor.step(state, message, made)
-        mine, told = module.step(mine, same(*values), made)
-        assert told == said
+        state, output = interceptor.step(state, message, made)
+        mine, own_output = module.step(mine, same(*values), made)
+        assert own_output == output
         assert repr(mine) == repr(state)
 
 
@@ -153,12 +153,12 @@ def test_what_can_go_wrong_is_said() -> None:
     assert codes(f'{watched}hold = "250 ms"\n{assume}') == ["F630"]
     assert codes(f'{watched}hold = "251 ms"\n{assume}') == []
     assert codes(f"{watched}{assume.replace('lost = 2', 'lost = 0')}") == []
-    (told,) = TARGET.remarks(Options(declarations=declared(watched + assume)))
-    assert told.message == (
+    (diagnostic,) = TARGET.remarks(Options(declarations=declared(watched + assume)))
+    assert diagnostic.message == (
         "zero is held for 0 s for certain, and messages may be lost for 200 ms: a robot that was "
         "stopped may move between two requests"
     )
-    assert told.help == "make `hold` longer than 250 ms"
+    assert diagnostic.help == "make `hold` longer than 250 ms"
 
 
 def test_evidence_does_not_grow_stale_where_only_the_interceptor_changes() -> None:
@@ -360,8 +360,8 @@ def test_the_node_for_ros_2_hears_and_speaks() -> None:
         "/cmd_vel": "Twist",
         "/scan": "LaserScan",
     }
-    said = [STILL, FAST, FAST, STILL, FAST, STILL, STILL, STILL, STILL]
-    assert ros.says == [("/wheels", one) for one in said]
+    outputs = [STILL, FAST, FAST, STILL, FAST, STILL, STILL, STILL, STILL]
+    assert ros.says == [("/wheels", one) for one in outputs]
     assert ros.closed == ["rclpy"]
 
 
@@ -390,13 +390,13 @@ def test_the_last_that_the_wheels_hear_is_zero_whatever_ends_the_node(
 
 def test_the_end_waits_for_whoever_speaks_and_nobody_speaks_after_it() -> None:
     """The thread that ends the node needs the lock; no signal can take it from its holder."""
-    module, said = executed(text(NODE, "bindings.toml"), "interceptor"), list[Any]()
+    module, outputs = executed(text(NODE, "bindings.toml"), "interceptor"), list[Any]()
     inside, go = Event(), Event()
 
     def publish(velocity: Any) -> None:
         inside.set()
         assert go.wait(5)
-        said.append(velocity)
+        outputs.append(velocity)
 
     gate = module.Gate(publish)
     module.FLUSH = 0.0
@@ -409,7 +409,7 @@ def test_the_end_waits_for_whoever_speaks_and_nobody_speaks_after_it() -> None:
     closing.join(5)
     gate.ring()
     gate.close()
-    assert said == [module.ZERO, module.ZERO]
+    assert outputs == [module.ZERO, module.ZERO]
 
 
 def test_of_two_safety_functions_none_moves_the_robot(capsys: pytest.CaptureFixture[str]) -> None:
@@ -430,7 +430,7 @@ def test_of_two_safety_functions_none_moves_the_robot(capsys: pytest.CaptureFixt
     ros = Ros(story=story)
     node = Interception("/stop", "/cmd_vel", "/wheels", period=50 * MS)
     assert run(node, ros, ros2(ros)) == 0
-    moving = [said == FAST for _, said in ros.says]
+    moving = [output == FAST for _, output in ros.says]
     assert moving == [True, *[False] * (len(moving) - 3), True, False]
     assert capsys.readouterr().err == (
         "interceptor.py: /stop has several publishers: the robot stands until one is left\n"
@@ -438,27 +438,27 @@ def test_of_two_safety_functions_none_moves_the_robot(capsys: pytest.CaptureFixt
     )
 
 
-@given(options, st.lists(st.tuples(heard, st.booleans()), max_size=20))
+@given(options, st.lists(st.tuples(events, st.booleans()), max_size=20))
 def test_while_there_are_two_safety_functions_nothing_but_zero_is_said(
     made: interceptor.Options, messages: list[tuple[Any, bool]]
 ) -> None:
     """And with one of them the gate is the core alone, from the state that it has come to."""
-    module, said, count = executed(text(NODE, "bindings.toml"), "interceptor"), list[Any](), [1]
+    module, outputs, count = executed(text(NODE, "bindings.toml"), "interceptor"), list[Any](), [1]
     module.OPTIONS = module.Options(*(getattr(made, n) for n in made.__dataclass_fields__))
     module.tell = lambda what: None
-    gate = module.Gate(said.append, lambda: count[0])
+    gate = module.Gate(outputs.append, lambda: count[0])
     for message, alone in messages:
         count[0] = 1 if alone else 2
         values = [getattr(message, name) for name in message.__dataclass_fields__]
         same = getattr(module, type(message).__name__)(*values)
-        state, told = module.step(gate.state, same, module.OPTIONS)
-        said.clear()
+        state, output = module.step(gate.state, same, module.OPTIONS)
+        outputs.clear()
         gate.take(same)
         if alone:
-            assert (gate.state, said) == (state, [] if told is None else [told])
+            assert (gate.state, outputs) == (state, [] if output is None else [output])
         else:
             assert gate.state.stop
-            assert not any(map(any, said))
+            assert not any(map(any, outputs))
 
 
 def test_the_papers_node_for_ros_1_has_no_timer() -> None:
@@ -480,8 +480,8 @@ def test_what_ends_the_node_of_ros_1_is_told_by_its_status(
     ros = Ros(signalled=False)
     assert run(PAPER, ros, ros1(ros)) == 4
     assert ros.says == [("/wheels", STILL)]
-    said = "interceptor.py: ROS has ended it: new node registered with same name\n"
-    assert capsys.readouterr().err == said
+    message = "interceptor.py: ROS has ended it: new node registered with same name\n"
+    assert capsys.readouterr().err == message
 
     def wait_for_a_master() -> None:
         ros.interrupt()
@@ -491,8 +491,8 @@ def test_what_ends_the_node_of_ros_1_is_told_by_its_status(
     ros = Ros(join=wait_for_a_master)
     assert run(PAPER, ros, ros1(ros)) == 3
     over.set()
-    said = "interceptor.py: no ROS master has answered at http://master:11311\n"
-    assert (ros.says, capsys.readouterr().err) == ([], said)
+    message = "interceptor.py: no ROS master has answered at http://master:11311\n"
+    assert (ros.says, capsys.readouterr().err) == ([], message)
 
 
 def test_the_timer_of_ros_1_is_steady_and_makes_up_for_nothing() -> None:

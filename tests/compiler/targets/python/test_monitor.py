@@ -118,8 +118,8 @@ def test_violated_is_said_at_the_first_tick_that_nothing_can_repair(scope: str) 
                 lost = not any(
                     template.satisfied(columns_of(names, prefix + rest)) for rest in rows(names, 2)
                 )
-                told = steps(machine, columns_of(names, prefix))[-1]
-                assert (told.verdict == told.decided == "violated") is lost, (template, prefix)
+                last = steps(machine, columns_of(names, prefix))[-1]
+                assert (last.verdict == last.decided == "violated") is lost, (template, prefix)
 
 
 @pytest.mark.slow
@@ -257,8 +257,8 @@ def test_what_is_definite_stays_whatever_the_unknown_values_are(scope: str) -> N
                         "settled",
                         "answer",
                     ):
-                        told = getattr(known, field)
-                        assert told in (None, getattr(full, field)), (template, columns, field)
+                        value = getattr(known, field)
+                        assert value in (None, getattr(full, field)), (template, columns, field)
                     assert known.decided in ("pending", full.decided), (template, columns)
                     assert known.verdict in ("no data", full.verdict), (template, columns)
 
@@ -406,9 +406,9 @@ def test_a_chain_of_differences_makes_no_exponential_code() -> None:
 def test_a_monitor_with_a_long_duration_steps_to_its_deadline() -> None:
     machine = monitor("when p the sw shall within 1000 ticks satisfy q")
     p = [tick == 0 for tick in range(1002)]
-    told = steps(machine, {"p": p, "q": [False] * 1002})
-    assert [step.verdict for step in told[999:]] == ["inconclusive", "violated", "violated"]
-    assert [step.decided for step in told[999:]] == ["pending", "violated", "violated"]
+    outputs = steps(machine, {"p": p, "q": [False] * 1002})
+    assert [step.verdict for step in outputs[999:]] == ["inconclusive", "violated", "violated"]
+    assert [step.decided for step in outputs[999:]] == ["pending", "violated", "violated"]
 
 
 @pytest.mark.parametrize(
@@ -448,8 +448,8 @@ def test_names_of_any_kind_are_kept_apart(p: str, q: str) -> None:
     machine = monitor(f"when {p} the sw shall within 1 ticks satisfy {q}")
     first, second = machine.PROPOSITIONS
     seen = {first: [False, True, False, False], second: [True, False, False, True]}
-    told = [step.verdict for step in steps(machine, seen)]
-    assert told == ["vacuous", "inconclusive", "violated", "violated"]
+    verdicts = [step.verdict for step in steps(machine, seen)]
+    assert verdicts == ["vacuous", "inconclusive", "violated", "violated"]
     assert over(machine, seen).verdict == "violated"
 
 
@@ -485,9 +485,9 @@ def test_names_that_the_code_uses_itself_change_nothing(
             renamed: dict[str, list[Any]] = {
                 taken if name == "q" else name: column for name, column in columns.items()
             }
-            told = [v.finite for v in steps(machine, renamed)]
+            verdicts = [v.finite for v in steps(machine, renamed)]
             expected = [template.satisfied(cut(columns, length)) for length in range(1, 9)]
-            assert told == expected, taken
+            assert verdicts == expected, taken
 
 
 HOSTILE = [

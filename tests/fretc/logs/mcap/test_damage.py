@@ -102,7 +102,7 @@ NOTHING = no_summary(100)
 
 def settled(damages: Damages) -> list[tuple[str, tuple[int, int] | None]]:
     found = damages.settled(NOTHING, (), Counter(), 100)
-    return [(damage.what, gap) for damage, gap in found]
+    return [(damage.description, gap) for damage, gap in found]
 
 
 def test_a_damage_costs_the_time_between_the_messages_around_it() -> None:
@@ -137,12 +137,12 @@ def test_what_loses_nothing_and_what_may_lose_anything_stand_by_themselves() -> 
     assert settled(damages) == [("here", (10, 30)), ("nothing", None), ("anything", (10, 30))]
 
 
-@pytest.mark.parametrize(("count", "told"), [(1, []), (2, ["a"])])
-def test_a_doubt_counts_where_a_message_is_missing(count: int, told: list[str]) -> None:
+@pytest.mark.parametrize(("count", "descriptions"), [(1, []), (2, ["a"])])
+def test_a_doubt_counts_where_a_message_is_missing(count: int, descriptions: list[str]) -> None:
     damages = Damages()
     damages.doubt(1, "a")
     damages.passed(10)
     summary = no_summary(100)
     summary.statistics = Statistics(0, 1, {7: count}, 0, count, 10, 0, 10, 1)
     found = damages.settled(summary, (), Counter({7: 1}), 100)
-    assert [damage.what for damage, _ in found][:1] == told
+    assert [damage.description for damage, _ in found][:1] == descriptions

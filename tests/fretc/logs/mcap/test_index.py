@@ -9,7 +9,7 @@ from mcap.records import Channel, McapRecord, Schema
 
 from fretc.logs.signals.integrity import Integrity
 from tests.fretc.logs.logs import S
-from tests.fretc.logs.mcap.test_projection import float_of, image, told, whole
+from tests.fretc.logs.mcap.test_projection import facts, float_of, image, whole
 from tests.fretc.logs.pieces import Piece, built, channel
 
 ONE = Piece([float_of(1, 1000 * S, 0.5), float_of(3, 1001 * S, 1.5)])
@@ -20,7 +20,7 @@ def both(path: Path, pieces: Sequence[Piece], **options: Any) -> bool:
     """Whether the log is read by its index; what is read is the same as record by record."""
     path.write_bytes(bytes(built(pieces, **options).data))
     found = whole(path, Integrity.HASH)
-    assert told(found) == told(whole(path, Integrity.FULL))
+    assert facts(found) == facts(whole(path, Integrity.FULL))
     return found.checked.by_index
 
 
@@ -70,7 +70,7 @@ def test_statistics_that_are_wrong_are_not_believed(tmp_path: Path, stated: dict
         assert found.samples["x"].values.tolist() == full.samples["x"].values.tolist()
         return
     assert not found.checked.by_index
-    assert told(found) == told(full)
+    assert facts(found) == facts(full)
 
 
 def test_the_time_of_a_log_without_a_bound_topic_is_that_of_its_messages(tmp_path: Path) -> None:

@@ -72,7 +72,7 @@ def whole(path: Path, integrity: Integrity, clock: str = "log_time") -> Recordin
     return found
 
 
-def told(recording: Recording) -> dict[str, Any]:
+def facts(recording: Recording) -> dict[str, Any]:
     """All that a verdict can depend on, bit by bit."""
     return {
         "samples": {
@@ -142,10 +142,10 @@ def test_by_its_index_a_sound_log_is_read_as_record_by_record(
 ) -> None:
     path = tmp_path / "log.mcap"
     path.write_bytes(bytes(built(pieces, **options).data))
-    full = told(whole(path, Integrity.FULL, clock))
+    full = facts(whole(path, Integrity.FULL, clock))
     for integrity in BY_INDEX:
         found = whole(path, integrity, clock)
-        assert told(found) == full
+        assert facts(found) == full
         if found.checked.by_index:
             assert all(piece.chunked and piece.messages for piece in pieces)
 
@@ -169,14 +169,14 @@ def test_how_many_messages_are_read_at_once_makes_no_difference(
 ) -> None:
     path = tmp_path / "log.mcap"
     path.write_bytes(bytes(built(pieces).data))
-    expected = told(whole(path, Integrity.FULL, clock))
+    expected = facts(whole(path, Integrity.FULL, clock))
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(columns, "_MOST", most)
         patch.setattr(columns, "_ENOUGH", enough)
         patch.setattr(projection, "SIZE", size)
         patch.setattr(extraction, "_FEW", 0)
         for integrity in Integrity:
-            assert told(whole(path, integrity, clock)) == expected
+            assert facts(whole(path, integrity, clock)) == expected
 
 
 def test_the_logs_of_these_tests_are_read_by_their_index(tmp_path: Path) -> None:
@@ -226,7 +226,7 @@ def test_a_chunk_is_unpacked_up_to_the_last_message_that_is_wanted(
     assert found.checked.crc_checked == checked + 1
     assert found.checked.crc_unchecked == unchecked
     assert found.checked.skipped == skipped
-    assert told(found) == told(whole(path, Integrity.FULL))
+    assert facts(found) == facts(whole(path, Integrity.FULL))
 
 
 @pytest.mark.parametrize("compression", sorted(PACK))
@@ -287,7 +287,7 @@ def test_no_changed_byte_that_a_crc_covers_changes_what_is_read_unseen(
     put = built([replace(piece, compression=compression, crc=crc) for piece in MUTATED])
     data, path = bytes(put.data), tmp_path / "log.mcap"
     path.write_bytes(data)
-    sound = told(whole(path, Integrity.HASH, clock))
+    sound = facts(whole(path, Integrity.HASH, clock))
     assert sound["intact"]
     # The second chunk is unpacked up to its image only, whatever CRC it has.
     unprotected = {*put.packed[1]} if crc else {at for some in put.packed for at in some}
@@ -298,7 +298,7 @@ def test_no_changed_byte_that_a_crc_covers_changes_what_is_read_unseen(
         if isinstance(found, Diagnostic) or not found.intact:
             seen += 1
             continue
-        assert told(found)["samples"] == sound["samples"], at
+        assert facts(found)["samples"] == sound["samples"], at
         assert (found.start_ns, found.end_ns, found.gaps) == (*sound["span"], ()), at
     assert seen
 

@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from fretc.logs.messages.json_messages import held, stated
+from fretc.logs.messages.json_messages import message_paths, schema_paths
 from fretc.logs.reader import look
 from fretc.logs.signals.samples import Recording
 from fretish.diagnostics.diagnostic import Code
@@ -155,14 +155,14 @@ def test_the_numbers_of_a_schema_are_listed_through_its_references() -> None:
             "not a name": {"type": "number"},
         },
     }
-    assert stated(json.dumps(schema).encode()) == ("n", "r[:]", "pose.x", "one.x")
+    assert schema_paths(json.dumps(schema).encode()) == ("n", "r[:]", "pose.x", "one.x")
 
 
 def test_a_schema_that_holds_itself_ends() -> None:
     schema = b'{"properties": {"x": {"type": "number"}, "next": {"$ref": "#"}}}'
-    assert stated(schema) == ("x",)
-    assert stated(b'{"$ref": "#"}') == ()
-    assert stated(b'{"properties": {"a": {"$ref": "#/no/where"}}, "type": 3}') == ()
+    assert schema_paths(schema) == ("x",)
+    assert schema_paths(b'{"$ref": "#"}') == ()
+    assert schema_paths(b'{"properties": {"a": {"$ref": "#/no/where"}}, "type": 3}') == ()
 
 
 def test_a_schema_whose_parts_multiply_ends() -> None:
@@ -171,11 +171,11 @@ def test_a_schema_whose_parts_multiply_ends() -> None:
         f"d{n}": {"properties": {k: {"$ref": v["$ref"].format(n + 1)} for k, v in parts.items()}}
         for n in range(19)
     }
-    assert stated(json.dumps({"$defs": levels, "$ref": "#/$defs/d0"}).encode()) == ()
+    assert schema_paths(json.dumps({"$defs": levels, "$ref": "#/$defs/d0"}).encode()) == ()
 
 
 def test_the_numbers_that_messages_hold_are_listed() -> None:
-    assert held([b'{"a": {"b": 1}, "c": "x"}', b"bad", b'{"d": [1, null], "e": []}']) == (
+    assert message_paths([b'{"a": {"b": 1}, "c": "x"}', b"bad", b'{"d": [1, null], "e": []}']) == (
         "a.b",
         "d[:]",
     )

@@ -29,7 +29,7 @@ def read(encoder: Encoder, payloads: list[bytes]) -> int:
         rows += len(group.rows)
         messages = [decode(payloads[row]) for row in group.rows]  # never one that is refused
         for where in wanted:
-            field = group.layout.found[where]
+            field = group.layout.locations[where]
             found = batch.gathered(group.rows, field.at, field.dtype, field.count)
             assert len(found) == len(messages)
             with np.errstate(invalid="ignore"):  # of a NaN that signals
@@ -97,7 +97,7 @@ def stream(text: str, *, ros1: bool = False, name: str = "one/T") -> Stream:
 
 
 def at(shape: Shape, payload: bytes, *where: str) -> tuple[int, int | None]:
-    found = shape.layout(memoryview(payload), [where]).found[where]
+    found = shape.layout(memoryview(payload), [where]).locations[where]
     return found.at, found.count
 
 
@@ -198,7 +198,7 @@ def test_a_truth_value_of_any_byte_is_one() -> None:
     batch = Payloads.of([PLAIN + b"\2\0\xff"])
     (group,) = Layouts(found, [("a",), ("b",)]).groups(batch)
     assert group.layout is not None
-    fields = [group.layout.found[where,] for where in "ab"]
+    fields = [group.layout.locations[where,] for where in "ab"]
     numbers: list[Any] = [
         batch.gathered(group.rows, f.at, f.dtype, f.count).tolist() for f in fields
     ]

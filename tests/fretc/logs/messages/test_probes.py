@@ -58,7 +58,7 @@ def renamed(text: str, *, ros1: bool) -> bool:
 
 
 @pytest.mark.parametrize(
-    ("said", "meant"),
+    ("stated_fields", "true_fields"),
     [
         ("int32 a\nint32 b", "int32 b\nint32 a"),
         ("int32 a", "uint32 a"),
@@ -69,8 +69,13 @@ def renamed(text: str, *, ros1: bool) -> bool:
         ("one/E e\nint8 a\n===\nMSG: one/E\n", "int8 a"),
     ],
 )
-def test_a_shape_of_other_fields_than_the_decoder_has_is_not_trusted(said: str, meant: str) -> None:
-    known, decode = shape(stream(said, ros1=False)), decoder(stream(meant, ros1=False))
+def test_a_shape_of_other_fields_than_the_decoder_has_is_not_trusted(
+    stated_fields: str, true_fields: str
+) -> None:
+    known, decode = (
+        shape(stream(stated_fields, ros1=False)),
+        decoder(stream(true_fields, ros1=False)),
+    )
     assert known is not None
     assert callable(decode)
     assert not trusted(known, decode)

@@ -44,7 +44,7 @@ def parsed(text: str) -> e.Expression:
     return found
 
 
-def judged(text: str, x: Any, kind: np.dtype[Any], name: str = "1") -> bool:
+def is_true(text: str, x: Any, kind: np.dtype[Any], name: str = "1") -> bool:
     scope = Scope(1, {"x": np.array([x], kind)}, scales={"x": FACTORS[name].factor})
     return bool(truth(parsed(text), scope)[0] == TRUE)
 
@@ -74,7 +74,7 @@ def test_equal_constants_of_two_units_judge_each_sample_alike(
         st.one_of(st.just(moved(near, apart)), st.floats(width=64 if kind == DOUBLE else 32))
     )
     one, other = (written(constant * FACTORS[pair[0]].factor, name) for name in (pair[0], pair[1]))
-    assert judged(f"x {op} {one}", x, kind, field) == judged(f"x {op} {other}", x, kind, field)
+    assert is_true(f"x {op} {one}", x, kind, field) == is_true(f"x {op} {other}", x, kind, field)
 
 
 def same(one: str, other: str) -> bool:
@@ -100,7 +100,7 @@ def test_a_sample_that_was_a_decimal_is_judged_as_that_decimal(
     bound = data.draw(st.one_of(st.just(sample), decimals(MOST_DIGITS[kind])))
     x = np.float32(str(float(sample))) if kind == SINGLE else float(sample)
     text = f"x {op} {written(bound * FACTORS[pair[0]].factor, pair[1])}"
-    assert judged(text, x, kind, pair[0]) == OPERATORS[op](sample, bound)
+    assert is_true(text, x, kind, pair[0]) == OPERATORS[op](sample, bound)
 
 
 @pytest.mark.parametrize(
@@ -124,20 +124,20 @@ def test_a_sample_that_was_a_decimal_is_judged_as_that_decimal(
 def test_the_same_length_in_two_units_is_the_same(
     x: float, field: str, text: str, expected: bool
 ) -> None:
-    assert judged(text, x, DOUBLE, field) is expected
+    assert is_true(text, x, DOUBLE, field) is expected
 
 
 def test_a_32_bit_float_is_compared_with_the_nearest_32_bit_float() -> None:
     assert float(np.float32(0.9)) < 0.9
-    assert judged("x = 0.9 and not x < 90 %", np.float32(0.9), SINGLE)
-    assert judged("x < 0.9", moved(np.float32(0.9), -1), SINGLE)
-    assert judged("x < 0.9", float(np.float32(0.9)), DOUBLE)
+    assert is_true("x = 0.9 and not x < 90 %", np.float32(0.9), SINGLE)
+    assert is_true("x < 0.9", moved(np.float32(0.9), -1), SINGLE)
+    assert is_true("x < 0.9", float(np.float32(0.9)), DOUBLE)
 
 
 def test_the_nearest_32_bit_float_is_not_that_of_the_nearest_64_bit_float() -> None:
     above = "1.00000005960464477540"  # just above the middle between 1 and the float after it
     assert np.float32(float(above)) == 1
-    assert judged(f"x = {above}", moved(np.float32(1), 1), SINGLE)
+    assert is_true(f"x = {above}", moved(np.float32(1), 1), SINGLE)
 
 
 INTEGERS = st.one_of(
@@ -168,8 +168,8 @@ def test_whole_numbers_of_64_bits_are_compared_as_whole_numbers(
     )
     for kind in kinds:
         for term in ("x", "min(x, x)", "max(x, x)"):
-            assert judged(f"{term} {op} {text}", x, kind, field) == expected
-            assert judged(f"{text} {mirrored} {term}", x, kind, field) == expected
+            assert is_true(f"{term} {op} {text}", x, kind, field) == expected
+            assert is_true(f"{text} {mirrored} {term}", x, kind, field) == expected
 
 
 def test_a_fraction_among_whole_numbers_stays_a_fraction() -> None:
@@ -213,6 +213,6 @@ def test_constants_beyond_all_floats_are_infinite() -> None:
     scope = Scope(2, {"x": np.array([1e308, math.inf])})
     assert truth(parsed("x < 1e999"), scope).tolist() == [2, 0]
     assert truth(parsed("x > -1e999"), scope).tolist() == [2, 2]
-    assert judged("x < 1e999 and x > -1e999", 2**64 - 1, EXACT)
+    assert is_true("x < 1e999 and x > -1e999", 2**64 - 1, EXACT)
     assert truth(parsed("1 / 0 < 1 or 1e400 < 1e401"), scope).tolist() == [2, 2]
     assert truth(parsed("1 / 0 < 1"), scope).tolist() == [1, 1]

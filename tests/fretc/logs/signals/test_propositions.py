@@ -260,7 +260,7 @@ def test_logic_is_kleenes(expression: e.Expression, expected: int) -> None:
 
 @pytest.mark.parametrize(
     "expression",
-    [e.Number("1"), e.Comparison("<", T, e.Number("1")), U, e.Held(T, 5), e.Call("sin", ())],
+    [e.Number("1"), e.Comparison("<", T, e.Number("1")), U, e.Persistence(T, 5), e.Call("sin", ())],
 )
 def test_what_has_no_truth_is_refused(expression: e.Expression) -> None:
     with pytest.raises(ExpressionError):
@@ -400,7 +400,7 @@ class Slowly:
             case e.And(args):
                 each = [self.truth(arg, moment) for arg in args]
                 return False if False in each else None if None in each else True
-            case e.Held(arg, duration):
+            case e.Persistence(arg, duration):
                 return self.held(arg, moment[0], duration)
             case _:
                 raise AssertionError(expression)

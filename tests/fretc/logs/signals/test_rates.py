@@ -7,7 +7,7 @@ from fretc.logs.signals.rates import slow_topics
 from tests.fretc.logs.logs import MS, X_TEXT, S, declare, number, recorded, write
 
 
-def told(path: Path, period: int, text: str = X_TEXT, jitter: int = 0) -> list[str]:
+def warnings_of(path: Path, period: int, text: str = X_TEXT, jitter: int = 0) -> list[str]:
     sent = [number(1.0, 1000 * S + i * period + i % 2 * jitter) for i in range(9)]
     declarations = declare(text)
     recording = recorded(write(path / "log.mcap", sent), declarations)
@@ -19,24 +19,24 @@ def told(path: Path, period: int, text: str = X_TEXT, jitter: int = 0) -> list[s
 
 @pytest.mark.parametrize("period", [10 * MS, 100 * MS, 109 * MS])
 def test_a_topic_that_comes_with_each_tick_is_fast_enough(tmp_path: Path, period: int) -> None:
-    assert told(tmp_path, period) == []
-    assert told(tmp_path, period, jitter=MS) == []
+    assert warnings_of(tmp_path, period) == []
+    assert warnings_of(tmp_path, period, jitter=MS) == []
 
 
 def test_one_slower_than_the_tick_is_told(tmp_path: Path) -> None:
-    assert told(tmp_path, 200 * MS) == [
+    assert warnings_of(tmp_path, 200 * MS) == [
         "F315 `/x` comes every 200 ms, and the clock ticks every 100 ms: most ticks see a sample "
         "of an earlier one"
     ]
 
 
 def test_one_slower_than_max_age_is_told_as_that(tmp_path: Path) -> None:
-    assert told(tmp_path, 500 * MS) == [
+    assert warnings_of(tmp_path, 500 * MS) == [
         "F315 `/x` comes every 500 ms, and a sample of `x` counts for 250 ms: in between it is "
         "unknown"
     ]
     aged = X_TEXT.replace('"100 ms"', '"1 s"').replace("250 ms", "499 ms")
-    assert len(told(tmp_path, 500 * MS, aged)) == 1
+    assert len(warnings_of(tmp_path, 500 * MS, aged)) == 1
 
 
 def test_a_clock_that_ticks_by_message_is_as_fast_as_its_topic(tmp_path: Path) -> None:

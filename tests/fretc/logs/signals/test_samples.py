@@ -28,7 +28,7 @@ def sent(kind: str, value: float, time: int) -> Sent:
     return Sent("/x", f"std_msgs/msg/{kind}", data, time)
 
 
-def judged(
+def true_ticks(
     path: Path, messages: Sequence[Sent], unit: str, text: str, field: str = "/x.data"
 ) -> int:
     """At how many ticks it is true, with a message at each of them."""
@@ -70,7 +70,7 @@ def test_a_number_of_a_log_is_the_number_that_was_recorded(
     tmp_path: Path, count: int, kind: str, value: float, unit: str, text: str, expected: bool
 ) -> None:
     messages = [sent(kind, value, S + i * 100 * MS) for i in range(count)]
-    assert judged(tmp_path, messages, unit, text) == (count if expected else 0)
+    assert true_ticks(tmp_path, messages, unit, text) == (count if expected else 0)
 
 
 @pytest.mark.parametrize("encoding", ["cdr", "ros1"])
@@ -80,8 +80,8 @@ def test_an_element_of_a_scan_is_compared_with_32_bit_floats(
 ) -> None:
     messages = [scan([0.9, 2.3], S + i * 100 * MS, encoding=encoding) for i in range(count)]
     for text in ("x < 0.9 m", "x > 90 cm"):
-        assert judged(tmp_path, messages, "m", text, "/scan.ranges[0]") == 0
-    assert judged(tmp_path, messages, "m", "x = 230 cm", "/scan.ranges[1]") == count
+        assert true_ticks(tmp_path, messages, "m", text, "/scan.ranges[0]") == 0
+    assert true_ticks(tmp_path, messages, "m", "x = 230 cm", "/scan.ranges[1]") == count
 
 
 @pytest.mark.parametrize("first", [1, MANY])
@@ -90,7 +90,7 @@ def test_whole_numbers_that_outgrow_floats_keep_those_before_them(
 ) -> None:
     numbers = [*range(first), 2**53 + 1, 2**53, 5]
     messages = [sent("Int64", value, S + i * 100 * MS) for i, value in enumerate(numbers)]
-    assert judged(tmp_path, messages, "1", "x < 9007199254740993") == first + 2
+    assert true_ticks(tmp_path, messages, "1", "x < 9007199254740993") == first + 2
 
 
 def test_the_kind_of_a_series_is_the_narrowest_that_holds_all() -> None:

@@ -323,11 +323,11 @@ def test_messages_that_stand_still_are_those_of_long_runs(runs: list[tuple[int, 
     assert still(np.array(times, np.int64)) == sum(n for n in lengths if n >= 10)
 
 
-@pytest.mark.parametrize(("count", "told"), [(9, []), (10, ["F420"]), (60, ["F420"])])
-def test_a_clock_that_stands_still_is_told(tmp_path: Path, count: int, told: list[str]) -> None:
+@pytest.mark.parametrize(("count", "expected"), [(9, []), (10, ["F420"]), (60, ["F420"])])
+def test_a_clock_that_stands_still_is_told(tmp_path: Path, count: int, expected: list[str]) -> None:
     stood = [1000 * S + 200 * MS] * count
     recording = scans(tmp_path, [None, None, *stood, None])
-    assert [code for code in codes(recording) if code == "F420"] == told
+    assert [code for code in codes(recording) if code == "F420"] == expected
     for finding in recording.findings:
         if finding.code.number == "F420":
             assert finding.message == (

@@ -36,8 +36,8 @@ BASE = interceptor.text(DECLARED, "bindings.toml")
 SETTINGS = Settings(hold=4)
 OPTIONS = Options(4, 0, 0, 0)
 BAD = """
-def step(state, heard, options):
-    match heard:
+def step(state, event, options):
+    match event:
         case CommandHeard(command):
             return state, command
         case _:
@@ -99,7 +99,7 @@ TEXTS = {
     "frame": end("sys._getframe().f_globals['step'] = lambda s, h, o: (s, s.command)"),
     "exec": end("exec('def step(s, h, o): return s, s.command')"),
     "code of step": end(
-        "step.__code__ = (lambda state, heard, options: (state, state.command)).__code__"
+        "step.__code__ = (lambda state, event, options: (state, state.command)).__code__"
     ),
     "code of step by setattr": end(
         "setattr(step, '__code__', (lambda s, h, o: (s, s.command)).__code__)"
@@ -148,13 +148,13 @@ TEXTS = {
     ),
     "identity by a tuple": sub(
         "        case CommandHeard(command):\n",
-        "        case CommandHeard(command) if (command,) != (command,) or (heard,) != (heard,):\n            return state, command\n"
+        "        case CommandHeard(command) if (command,) != (command,) or (event,) != (event,):\n            return state, command\n"
         "        case CommandHeard(command) if state.stop and not (command in (state.command, command)):\n            return state, command\n"
         "        case CommandHeard(command):\n",
     ),
     "identity by states": sub(
         "        case CommandHeard(command):\n",
-        "        case CommandHeard(command) if state.stop and state.held == 0 and heard != CommandHeard(state.command):\n            return state, command\n"
+        "        case CommandHeard(command) if state.stop and state.held == 0 and event != CommandHeard(state.command):\n            return state, command\n"
         "        case CommandHeard(command):\n",
     ),
     "str of a command": sub(
@@ -340,7 +340,7 @@ OUTSIDE = (
     "len",
     "OPTIONS",
     "options.__class__",
-    "step(state=state, heard=0, options=options)",
+    "step(state=state, event=0, options=options)",
     "replace(state, **options)",
     "replace(*options)",
     "replace()",

@@ -20,16 +20,18 @@ USUAL = Settings(hold=4, stop_timeout=24)
 DECLARED = Channel(2, latency=2, lost=1, braking=4)
 
 
-def asked(
+def question(
     sentence: str, settings: Settings = USUAL, channel: Channel = DECLARED, core: str = CORE
 ) -> Question:
-    made = rule(sentence)
-    return Question(case(sentence, settings, channel, core), made.sentence, made.ticks, HUNDRED_MS)
+    parsed = rule(sentence)
+    return Question(
+        case(sentence, settings, channel, core), parsed.sentence, parsed.ticks, HUNDRED_MS
+    )
 
 
 @pytest.mark.slow
 def test_a_bound_that_is_long_enough() -> None:
-    found = search(asked(WITHIN.format(4)))
+    found = search(question(WITHIN.format(4)))
     assert isinstance(found.answered, Proved)
     assert found.answered.detail.startswith("by an inductive invariant; ")
     assert found.enough == Proved(
@@ -40,7 +42,7 @@ def test_a_bound_that_is_long_enough() -> None:
 
 @pytest.mark.slow
 def test_a_bound_that_is_a_tick_too_short_is_shown_by_a_run() -> None:
-    found = search(asked(WITHIN.format(3)))
+    found = search(question(WITHIN.format(3)))
     assert isinstance(found.answered, Proved), "the law holds all the same"
     assert isinstance(found.enough, Counterexample)
     assert found.enough.detail == "the least that is kept is 4 ticks (400 ms)"
@@ -50,7 +52,7 @@ def test_a_bound_that_is_a_tick_too_short_is_shown_by_a_run() -> None:
 
 @pytest.mark.slow
 def test_without_a_bound_the_least_is_told() -> None:
-    found = search(asked(EVENTUALLY))
+    found = search(question(EVENTUALLY))
     assert found.enough == Proved("the least that is kept is 4 ticks (400 ms)")
 
 
@@ -67,7 +69,7 @@ def test_without_a_bound_the_least_is_told() -> None:
     ],
 )
 def test_the_least_bound_is_the_one_that_is_proved(channel: Channel, least: int) -> None:
-    found = search(asked(EVENTUALLY, Settings(), channel))
+    found = search(question(EVENTUALLY, Settings(), channel))
     assert isinstance(found.enough, Proved)
     assert found.enough.detail.startswith(f"the least that is kept is {least} tick")
 
@@ -77,7 +79,7 @@ def test_a_loop_that_does_something_else_is_not_checked() -> None:
         CORE, "return after, ZERO if halted(after, options) else command", "return after, command"
     )
     reason = NotChecked("the loop does what its model in whole numbers does not")
-    assert search(asked(WITHIN.format(4), core=wrong)) == Answer(reason, reason)
+    assert search(question(WITHIN.format(4), core=wrong)) == Answer(reason, reason)
 
 
 FORGETS = (
@@ -97,36 +99,38 @@ def test_small_times_say_nothing_of_long_ones_where_the_core_is_another() -> Non
     core = CORE
     for old, new in FORGETS:
         core = edited(core, old, new)
-    small = search(asked(WITHIN.format(4), Settings(hold=1), core=core))
+    small = search(question(WITHIN.format(4), Settings(hold=1), core=core))
     assert isinstance(small.enough, Proved), "under the declared times it is as good as any"
     assert isinstance(small.answered, NotChecked)
     assert small.answered.reason.startswith("the interceptor's core is not the one that fretc")
     large = Channel(1, latency=2, lost=40, braking=4)
-    assert not isinstance(search(asked(EVENTUALLY, Settings(hold=1), large, core)).enough, Proved)
+    assert not isinstance(
+        search(question(EVENTUALLY, Settings(hold=1), large, core)).enough, Proved
+    )
 
 
 def test_a_twin_that_promises_too_much_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
     """Held against the loop with one lost message less than there is."""
     loop = Parts.of(case(WITHIN.format(9), Settings(), Channel(1, lost=2))).loop
-    assert covered(loop, 10**5, 9).strange is None
+    assert covered(loop, 10**5, 9).uncovered is None
     loop.channel = replace(loop.channel, lost=1)
     monkeypatch.setattr(Loop, "_fates", lambda *_: [(True, 0), (False, 2)])
-    strange = covered(loop, 10**5, 9).strange
-    assert strange is not None
-    assert strange[1].losses == 2
+    uncovered = covered(loop, 10**5, 9).uncovered
+    assert uncovered is not None
+    assert uncovered[1].losses == 2
 
 
 def test_a_twin_whose_heart_beats_too_fast_is_found() -> None:
     loop = Parts.of(
         case(WITHIN.format(9), Settings(), Channel(1, lost=1, edge=True, heartbeat=3))
     ).loop
-    assert covered(loop, 10**5, 9).strange is None
+    assert covered(loop, 10**5, 9).uncovered is None
     right = looptwin.times_of
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(looptwin, "times_of", lambda known: right(known)._replace(heartbeat=2))
-        strange = covered(loop, 10**5, 9).strange
-    assert strange is not None
-    assert (strange[0].silent, strange[1].silent) == (2, 3)
+        uncovered = covered(loop, 10**5, 9).uncovered
+    assert uncovered is not None
+    assert (uncovered[0].silent, uncovered[1].silent) == (2, 3)
 
 
 def test_an_invariant_that_is_too_strong_is_not_proved(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -135,11 +139,11 @@ def test_an_invariant_that_is_too_strong_is_not_proved(monkeypatch: pytest.Monke
 
     real = bounds._invariant
     monkeypatch.setattr(bounds, "_invariant", too_strong)
-    found = search(asked(EVENTUALLY, Settings(), Channel(1)))
+    found = search(question(EVENTUALLY, Settings(), Channel(1)))
     assert found.answered == NotChecked("of the invariant: a step does not keep it")
 
 
 def test_without_z3_it_is_told_how_to_get_it(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(bounds, "find_spec", lambda _: None)
     reason = NotChecked("z3 is not installed: pip install 'fretc[bounds]'")
-    assert search(asked(EVENTUALLY)) == Answer(reason, reason)
+    assert search(question(EVENTUALLY)) == Answer(reason, reason)

@@ -52,8 +52,8 @@ class Simulation:
         near = self.choose.random() < 0.3
         stopped = self._stands()
         self.monitor.step(near=near, stopped=stopped)
-        (told,) = self.monitor.must.signals()
-        request = bool(told.trigger or told.owed)
+        (signals,) = self.monitor.must.signals()
+        request = bool(signals.trigger or signals.owed)
         self._send(request)
         end = self.now + self.channel.cells * PERIOD
         commands = sorted(
@@ -107,11 +107,11 @@ class Simulation:
                 return
             self.now += 1
 
-    def _hear(self, heard: Any) -> None:
-        self.state, said = self.core["step"](self.state, heard, self.options)
-        if said is not None and any(said):
+    def _hear(self, event: Any) -> None:
+        self.state, output = self.core["step"](self.state, event, self.options)
+        if output is not None and any(output):
             self.since = None
-        elif said is not None and self.since is None:
+        elif output is not None and self.since is None:
             self.since = self.now
 
 

@@ -26,7 +26,7 @@ def trace(result: Result) -> list[str]:
     assert isinstance(result, Counterexample)
     assert result.trace is not None
     digits = ("".join("-" if v is None else str(int(v)) for v in row) for row in result.trace.rows)
-    return [f"{row} {told}" for row, told in zip(digits, result.trace.actions, strict=True)]
+    return [f"{row} {action}" for row, action in zip(digits, result.trace.actions, strict=True)]
 
 
 # The loops of the paper and their mends -------------------------------------------------------
@@ -85,11 +85,11 @@ def test_a_watchdog_lets_go_where_the_heartbeat_is_faster(timeout: int, released
 
 
 def test_a_heartbeat_of_one_tick_speaks_at_every_tick() -> None:
-    told = {
+    traces = {
         search(case(WITHIN.format(3), TIMER, channel)).kept
         for channel in (Channel(1, lost=2), Channel(1, lost=2, edge=True, heartbeat=1))
     }
-    (result,) = {status(one) for one in told}
+    (result,) = {status(one) for one in traces}
     assert result == "proved"
 
 

@@ -100,7 +100,7 @@ def test_the_order_of_the_atoms_is_the_callers() -> None:
 
     assert isinstance(prove(swapped(within(3)), sentence_within(3), 3, ("q", "p")), Proved)
     assert prove(swapped(within(3)), sentence_within(3), 3, ("p", "q")) == Refuted(
-        valuations("q - - -"), expected=PENDING, found=VIOLATED
+        valuations("q - - -"), expected=PENDING, actual=VIOLATED
     )
 
 
@@ -124,19 +124,19 @@ def test_nothing_is_asked_below_a_violation() -> None:
 def test_satisfied_is_for_ever_and_must_be_said_at_once() -> None:
     sentence = read("the sw shall within 1 tick satisfy q")
 
-    said = ("satisfied", True)
+    judgement = ("satisfied", True)
     right: Table = {
         (0, False): (1, PENDING),
-        (0, True): (2, said),
+        (0, True): (2, judgement),
         (1, False): (1, VIOLATED),
-        (1, True): (2, said),
-        (2, False): (2, said),
-        (2, True): (2, said),
+        (1, True): (2, judgement),
+        (2, False): (2, judgement),
+        (2, True): (2, judgement),
     }
     late: Table = right | {(0, True): (2, PENDING)}
     assert isinstance(prove(tabled(right), sentence, 1, ("q",)), Proved)
     assert prove(tabled(late), sentence, 1, ("q",)) == Refuted(
-        ((True,),), expected=said, found=PENDING
+        ((True,),), expected=judgement, actual=PENDING
     )
 
 
@@ -145,7 +145,7 @@ def test_a_lost_cause_is_told_though_fret_would_still_accept_the_trace() -> None
     sentence = read("whenever p the sw shall after 2 ticks satisfy q")
     silent = Monitor(0, lambda state, letter: (0, PENDING))
     only_broken = prove(silent, sentence, 2, ("p", "q"))
-    assert only_broken == Refuted(valuations("pq"), expected=VIOLATED, found=PENDING)
+    assert only_broken == Refuted(valuations("pq"), expected=VIOLATED, actual=PENDING)
 
     def step(seen: int, letter: Valuation) -> tuple[int, Judgement]:
         p, q = letter
@@ -195,13 +195,13 @@ def test_the_verdict_on_the_finite_trace_counts() -> None:
         return after, (verdict, after == 0)
 
     found = prove(Monitor(0, step), sentence_within(2), 2, ("p", "q"))
-    assert found == Refuted(valuations("p"), expected=PENDING, found=("pending", False))
+    assert found == Refuted(valuations("p"), expected=PENDING, actual=("pending", False))
 
 
 def test_a_rule_for_every_tick_is_not_one_for_rising_edges() -> None:
     sentence = read("upon p the sw shall within 1 tick satisfy q")
     found = prove(within(1), sentence, 1, ("p", "q"))
-    assert found == Refuted(valuations("pq p -"), expected=PENDING, found=VIOLATED)
+    assert found == Refuted(valuations("pq p -"), expected=PENDING, actual=VIOLATED)
 
 
 def test_no_shorter_word_tells_the_two_apart() -> None:
@@ -210,9 +210,9 @@ def test_no_shorter_word_tells_the_two_apart() -> None:
     assert isinstance(found, Refuted)
 
     def judged(monitor: Monitor, word: tuple[Valuation, ...]) -> list[Judgement]:
-        said = [monitor.step(letter) for letter in word]
-        lost = [k for k, judgement in enumerate(said) if judgement == VIOLATED]
-        return said[: lost[0] + 1] if lost else said
+        judgements = [monitor.step(letter) for letter in word]
+        lost = [k for k, judgement in enumerate(judgements) if judgement == VIOLATED]
+        return judgements[: lost[0] + 1] if lost else judgements
 
     for length in range(1, len(found.word)):
         for word in product(LETTERS, repeat=length):
@@ -263,7 +263,7 @@ def test_what_is_proved_is_equal_and_what_is_equal_is_proved(changes: Steps) -> 
     if isinstance(found, Refuted):
         right, wrong = within(2), Monitor(0, machine.transition)
         judged = [(right.step(letter), wrong.step(letter)) for letter in found.word]
-        assert judged[-1] == (found.expected, found.found)
+        assert judged[-1] == (found.expected, found.actual)
         assert all(one == other for one, other in judged[:-1])
 
 

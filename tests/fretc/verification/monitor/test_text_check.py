@@ -70,5 +70,5 @@ def test_whatever_is_left_out_of_a_text_or_swapped_it_is_told_in_words(seed: int
             value[choose.randrange(len(value))] = choose.choice(choose.choice(like))
         else:
             setattr(node, name, value[rest])
-        told = told_of(tree)
-        assert told is None or told.startswith(("it is", "what it does at a tick")), told
+        reason_ = told_of(tree)
+        assert reason_ is None or reason_.startswith(("it is", "what it does at a tick")), reason_

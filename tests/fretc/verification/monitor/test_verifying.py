@@ -133,7 +133,7 @@ PENDING, VIOLATED = ("pending", True), ("violated", False)
 
 
 @pytest.mark.parametrize(
-    ("edits", "word", "told", "found"),
+    ("edits", "word", "actual", "found"),
     [
         ([(">= 3\n", ">= 4\n")], (P, NONE, NONE, NONE), VIOLATED, PENDING),
         ([(">= 3\n", ">= 2\n")], (P, NONE, NONE), PENDING, VIOLATED),
@@ -155,11 +155,11 @@ PENDING, VIOLATED = ("pending", True), ("violated", False)
 def test_a_wrong_step_is_refuted_by_a_shortest_trace(
     edits: list[tuple[str, str]],
     word: tuple[Valuation, ...],
-    told: Judgement,
+    actual: Judgement,
     found: Judgement,
 ) -> None:
     result = check(WITHIN, edited(emitted(WITHIN), *edits)).result
-    assert result == Refuted(word, told, found)
+    assert result == Refuted(word, actual, found)
 
 
 def test_a_monitor_of_another_sentence_with_the_same_id_is_refuted() -> None:
@@ -229,8 +229,8 @@ def test_the_trace_of_a_disagreement_names_the_atoms_in_their_order() -> None:
 
 
 def test_predicates_about_other_ticks_are_not_checked() -> None:
-    told = reason(check("whenever occurred(3, p) the sw shall satisfy q"))
-    assert told == "`occurred` speaks of other ticks, and the automaton knows one"
+    why = reason(check("whenever occurred(3, p) the sw shall satisfy q"))
+    assert why == "`occurred` speaks of other ticks, and the automaton knows one"
 
 
 def test_more_than_twelve_propositions_are_not_checked() -> None:
@@ -442,8 +442,8 @@ HIDDEN: dict[str, list[tuple[str, str]]] = {
 @pytest.mark.parametrize("what", HIDDEN)
 def test_what_may_hide_something_is_never_proved(what: str) -> None:
     text = edited(emitted(WITHIN), *HIDDEN[what])
-    told = reason(check(WITHIN, text))
-    assert told.startswith((LAYOUT, "what it does at a tick depends on")), told
+    why = reason(check(WITHIN, text))
+    assert why.startswith((LAYOUT, "what it does at a tick depends on")), why
 
 
 WINDOWED = "only in m mode whenever p the sw shall after 2 ticks satisfy q"
@@ -465,8 +465,8 @@ WINDOW = "            since_1 = kept_since_1.step("
 def test_a_window_is_stepped_and_nothing_else(edit: tuple[str, str]) -> None:
     text = emitted(WINDOWED)
     assert isinstance(check(WINDOWED, text).result, Proved)
-    told = reason(check(WINDOWED, edited(text, edit)))
-    assert told.startswith((LAYOUT, "what it does at a tick depends on")), told
+    why = reason(check(WINDOWED, edited(text, edit)))
+    assert why.startswith((LAYOUT, "what it does at a tick depends on")), why
 
 
 def test_the_reason_shows_the_place() -> None:
@@ -499,7 +499,7 @@ def test_a_time_bomb_goes_off_where_it_is_not_looked_at(what: str) -> None:
 
 
 @pytest.mark.parametrize(
-    ("text", "told"),
+    ("text", "message"),
     [
         ("x = 1\n", "names no"),
         ("", "names no"),
@@ -510,8 +510,8 @@ def test_a_time_bomb_goes_off_where_it_is_not_looked_at(what: str) -> None:
         ("x = '\0'\n", "no Python"),
     ],
 )
-def test_what_is_no_monitor_is_told(text: str, told: str) -> None:
-    with pytest.raises(NotAMonitorError, match=told):
+def test_what_is_no_monitor_is_told(text: str, message: str) -> None:
+    with pytest.raises(NotAMonitorError, match=message):
         check(WITHIN, text)
 
 

@@ -1,6 +1,6 @@
-"""What is told of a trace, tick by tick, from the definition: triggers, answers, open, violations.
+"""Demands of a trace, tick by tick, from the definition: triggers, answers, open, violations.
 
-As `tests/meaning.py`, it shares nothing with the formalizer: every demand is looked at by itself.
+As `tests/meaning.py`, it shares nothing with the formalizer: it treats every demand by itself.
 """
 
 from __future__ import annotations
@@ -34,8 +34,8 @@ _ENDLESS = ("null", "after", "onlyBefore")
 
 
 @dataclass(frozen=True)
-class Told:
-    """The fields of an outcome that tell of single demands."""
+class Demands:
+    """The fields of an outcome about single demands."""
 
     triggers: tuple[int, ...]
     answers: tuple[tuple[int, int], ...]
@@ -44,8 +44,8 @@ class Told:
     """None where a demand has been broken: nothing is promised of those that follow."""
 
 
-def told(template: Template, columns: Mapping[str, Column]) -> Told:
-    """Of one template on one trace."""
+def demands_of(template: Template, columns: Mapping[str, Column]) -> Demands:
+    """The demands of one template on one trace."""
     m, p, q, s = (columns.get(name, columns["q"]) for name in "mpqs")
     timing, negated = template.timing, False
     if template.scope.startswith("only"):
@@ -60,7 +60,7 @@ def told(template: Template, columns: Mapping[str, Column]) -> Told:
     broken = {k for demand in demands for k in range(last + 1) if demand.broken(k)}
     if timing == "after" and template.scope in _ENDLESS:
         broken |= {b.t for a in demands for b in demands if a.t < b.t and not any(q[a.t : b.t])}
-    return Told(
+    return Demands(
         tuple(demand.t for demand in demands),
         tuple(pair for demand in demands for pair in demand.answers()),
         tuple(_runs(sorted(broken))),
