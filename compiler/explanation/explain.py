@@ -84,13 +84,10 @@ def _notes(rule: Rule, reason: str, satisfied: int, violated: int) -> Iterator[s
         yield "no other way to violate the sentence was found"
     if rule.sentence.probability is not None:
         yield "a run counts as one that satisfies or violates; the probability is over many runs"
-    if isinstance(rule.sentence.timing, s.Finally) and _ends_with_run(rule):
-        yield "on a run without end nothing is required"
-
-
-def _ends_with_run(rule: Rule) -> bool:
     scope = rule.sentence.scope
-    return scope is None or scope.kind in (s.ScopeKind.AFTER, s.ScopeKind.ONLY_BEFORE)
+    needs_end = s.SHAPES[type(rule.sentence.timing)].extent.needs_end
+    if needs_end and s.ends_with_run(scope.kind if scope else None):
+        yield "on a run without end nothing is required"
 
 
 # Traces -----------------------------------------------------------------------------------------

@@ -126,8 +126,9 @@ def _parts(tree: s.Sentence) -> dict[str, Any]:
             "pre_condition": condition,
             "regular_condition": condition,
         }
-    if isinstance(tree.timing, s.Until | s.Before):
-        found["stop_condition"] = f"({expression(tree.timing.stop)})"
+    stop = s.stop(tree.timing)
+    if stop is not None:
+        found["stop_condition"] = f"({expression(stop)})"
     counted = s.duration(tree.timing)
     if counted is not None:
         found["duration"] = str(counted.amount)

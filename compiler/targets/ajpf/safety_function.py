@@ -144,11 +144,11 @@ def _responses(rule: Rule) -> tuple[str, ...] | Diagnostic:
 def _percepts(sentence: s.Sentence) -> tuple[str, ...]:
     """What is drawn freely: everything that says when, and nothing that says what."""
     assert sentence.condition is not None
-    timing = sentence.timing
+    stop = s.stop(sentence.timing)
     said = [
         *([sentence.scope.mode] if sentence.scope else []),
         sentence.condition.expression,
-        *([timing.stop] if isinstance(timing, s.Until | s.Before) else []),
+        *([stop] if stop else []),
     ]
     return tuple(dict.fromkeys(name.id for part in said for name in e.names(part)))
 

@@ -123,7 +123,7 @@ def _answered(asked: Question | str) -> str:
 
 
 def _enough(rule: Rule) -> str:
-    if not isinstance(rule.sentence.timing, s.Within):
+    if s.deadline(rule.sentence.timing) is None:
         return "some bound is enough"
     return f"the bound of {_ticks(rule.ticks or 0)} is enough"
 
@@ -143,7 +143,7 @@ def question(rule: Rule, setup: Setup) -> Question | str:
     sentence = rule.sentence
     if sentence.scope is not None:
         return "it has a scope; only requirements about the whole run are looked at"
-    if not isinstance(sentence.timing, s.Within | s.Eventually):
+    if not (s.deadline(sentence.timing) or s.is_eventual(sentence.timing)):
         return "its timing is neither `within` nor `eventually`"
     if made.settings.event_driven:
         return "an interceptor without a timer stops nothing before the next command"
@@ -152,7 +152,7 @@ def question(rule: Rule, setup: Setup) -> Question | str:
     if not _answers(sentence, made.stands):
         return f"`{made.stands}` alone does not answer it"
     assert rule.clock is not None
-    bound = rule.ticks if isinstance(sentence.timing, s.Within) else None
+    bound = rule.ticks if s.deadline(sentence.timing) else None
     if not is_same(made.safety, made.observer):
         return "the monitor is not the one that fretc writes for it, and only that is looked at"
     return Question(made, sentence, bound, rule.clock.period or 0)
