@@ -18,6 +18,7 @@ from compiler.logic.definition import holds
 from compiler.logic.formula import longest_bound
 from compiler.targets import ltl
 from fretish import syntax as s
+from fretish.diagnostics import signs
 from fretish.diagnostics.rendering import visible
 
 SCHEMA = "fretc-explanation-1"
@@ -185,7 +186,8 @@ def _table(explained: Explanation, shown: Shown) -> str:
         mark = "  …repeats" if row.repeats else "  ← decided" if row.decides else ""
         lines.append(f"    {label:<{width}}{cells}{mark}".rstrip())
     end = _UNDECIDED if shown.decided is None else f"decided at tick {shown.decided}"
-    verdict = "✔ satisfied" if shown.satisfied else "✘ violated"
+    sign = signs.GOOD if shown.satisfied else signs.BAD
+    verdict = f"{sign.glyph} {'satisfied' if shown.satisfied else 'violated'}"
     return "\n".join([f"  {verdict}: {visible(shown.reason)}", *lines, f"    {end}", ""])
 
 
