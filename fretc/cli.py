@@ -14,6 +14,7 @@ from pathlib import Path
 
 import click
 
+from compiler.emit import TARGETS
 from compiler.files.edition import __version__
 from compiler.files.processes import shield
 from fretc.commands.audit import audit, info
@@ -33,9 +34,18 @@ from fretc.terminal.output import BAD, INTERRUPTED, SHOWN, not_written, say, say
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.reading.limits import ExceededError, exceeded
 
+_HELP = f"""From FRETish requirements to monitors, audited logs and a traceability report.
+
+`fretc FILE...` parses and formalizes requirements; with `--emit` it makes files of them:
+{", ".join(TARGETS)}. `fretc FILE --help` says more.
+"""
+
 
 @click.group(
-    cls=Commands, no_args_is_help=True, context_settings={"help_option_names": ["-h", "--help"]}
+    cls=Commands,
+    no_args_is_help=True,
+    context_settings={"help_option_names": ["-h", "--help"]},
+    help=_HELP,
 )
 @click.version_option(__version__, prog_name="fretc", message="%(prog)s %(version)s")
 @click.option(
@@ -46,11 +56,7 @@ from fretish.reading.limits import ExceededError, exceeded
     help="Parents of requirements may be in this folder, too, outside of the project.",
 )
 def cli(folders: tuple[str, ...]) -> None:
-    """From FRETish requirements to monitors, audited logs and a traceability report.
-
-    `fretc FILE...` parses and formalizes requirements; with `--emit` it makes files of them:
-    ltl, monitor, ajpf, smv, hoa, dot, prism, json, fret-json. `fretc FILE --help` says more.
-    """
+    """The command itself; its help is `_HELP`."""
     if folders:
         from compiler.files.settings import OUTSIDE
 
