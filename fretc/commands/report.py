@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from fretc.report.forms.table import FORMS, Form, Subject
+from fretc.report.outputs import FORMS, Form, Subject
 from fretc.terminal.group import Grouped
 from fretc.terminal.output import BAD, NOT_SHOWN, SHOWN, VIOLATION, deliver, say, stop
 from fretish.diagnostics.diagnostic import Diagnostic, has_errors
