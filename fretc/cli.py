@@ -17,11 +17,12 @@ import click
 from compiler.emit import TARGETS
 from compiler.files.edition import __version__
 from compiler.files.processes import shield
-from fretc.commands.audit import audit, info
+from fretc.commands.audit import audit
 from fretc.commands.bind import bind
 from fretc.commands.check import check
 from fretc.commands.explain import explain
 from fretc.commands.formalize import compile_, fmt, import_
+from fretc.commands.info import info
 from fretc.commands.report import report
 from fretc.commands.review import diff, lock
 from fretc.commands.sbom import sbom
