@@ -8,12 +8,13 @@ propositional temporal logic, POPL 1986 (data independence).
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import fields
 from enum import Enum
 from typing import Any
 
 from fretc.verification.interceptor.file import core
 from fretc.verification.interceptor.opaque import InspectedError, Opaque, is_opaque, is_zero
+from monitors.interceptor import Options
 
 
 class NotAnInterceptorError(Exception):
@@ -42,27 +43,15 @@ _KEPT, _NEW = Opaque(), Opaque()
 """Velocities that move: the one that a state holds, and the next one that is heard."""
 
 
-@dataclass(frozen=True, slots=True)
-class Settings:
-    """The options of an interceptor by name, in ticks of its timer."""
-
-    hold: int = 0
-    stop_timeout: int = 0
-    scan_timeout: int = 0
-    command_timeout: int = 0
-    event_driven: bool = False
-    latching: bool = False
-
-
 class Gate:
     """The step of an interceptor's text, over encoded states, each computed once."""
 
-    def __init__(self, text: str, settings: Settings, most: int = 10**6) -> None:
+    def __init__(self, text: str, options: Options, most: int = 10**6) -> None:
         """Raises NotAnInterceptorError where the text is none that can be explored.
 
         Args:
             text: with the step.
-            settings: its options.
+            options: its own, in ticks of its timer.
             most: states; where there are more, NotAnInterceptorError is raised, too.
         """
         self._most = most
@@ -70,7 +59,7 @@ class Gate:
         if isinstance(read, str):
             raise NotAnInterceptorError(read)
         self._module = module = read.module
-        named = {field.name: getattr(settings, field.name) for field in fields(settings)}
+        named = {field.name: getattr(options, field.name) for field in fields(options)}
         self._options = self._called(module.Options, **named)
         self._fields = tuple(getattr(module.State, "__dataclass_fields__", ()))
         if "command" not in self._fields:

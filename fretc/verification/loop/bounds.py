@@ -32,7 +32,7 @@ from compiler.targets.python import monitor as target
 from fretc.verification.engines import sandbox as processes
 from fretc.verification.engines.sandbox import Limits, Stopped
 from fretc.verification.interceptor.file import is_original
-from fretc.verification.interceptor.machine import NotAnInterceptorError, Settings
+from fretc.verification.interceptor.machine import NotAnInterceptorError
 from fretc.verification.loop.abstraction import (
     ARRIVED,
     NONE,
@@ -53,6 +53,7 @@ from fretish.clock import in_words
 from fretish.diagnostics.source import Source
 from fretish.documents import Requirement
 from fretish.printer import canonical
+from monitors.interceptor import Options
 
 _MORE = "as many more, at least one, as `latency` and `braking` fill together"
 ANSWERED = f"every demand is answered within `lost` ticks and {_MORE}"
@@ -225,7 +226,7 @@ def _channel(declared: Channel, cells: int, latency: int, lost: int, braking: in
     )
 
 
-def _short(settings: Settings) -> Settings:
+def _short(settings: Options) -> Options:
     """The same with short times: what the twin says does not depend on them."""
     return replace(
         settings,
