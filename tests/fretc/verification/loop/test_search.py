@@ -199,7 +199,7 @@ def test_a_safety_function_that_is_a_tick_late_is_refuted() -> None:
         (
             FORWARDS,
             "return after, ZERO if command.vx > 1 else command",
-            "its step looks into a velocity",
+            "it looks into a command: what is shown with one would not hold for all",
         ),
         (
             "return replace(state, scan_age=0), None",
@@ -215,27 +215,27 @@ def test_a_safety_function_that_is_a_tick_late_is_refuted() -> None:
             "return replace(state, scan_age=0), None",
             "after = replace(state, command=ZERO)\n    return (after, ZERO) if after == state "
             "else (state, None)",
-            "its step looks into a velocity",
+            "it looks into a command: what is shown with one would not hold for all",
         ),
         (
             FORWARDS,
             "return (after, None) if after == state else (after, command)",
-            "its step looks into a velocity",
+            "it looks into a command: what is shown with one would not hold for all",
         ),
         (
             "    return replace(state, scan_age=0), None",
             "    return state.command",
-            "its step gives no pair",
+            "a step gives no state and command",
         ),
         (
             "command=command, command_age=0",
             "command=command, stop=command, command_age=0",
-            "its step looks into a velocity",
+            "it looks into a command: what is shown with one would not hold for all",
         ),
         (
             "command=command, command_age=0",
             "command=command, held=command, command_age=0",
-            "its step looks into a velocity",
+            "it looks into a command: what is shown with one would not hold for all",
         ),
         ("def halted(", "def stopped(", "its core has no `halted`"),
         (
