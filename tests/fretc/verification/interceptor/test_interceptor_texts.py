@@ -16,7 +16,7 @@ from hypothesis import strategies as st
 
 from compiler.logic.claims import Proved
 from compiler.targets.python import interceptor
-from fretc.verification.engines.provers import stated
+from fretc.verification.engines.crosshair import stated
 from fretc.verification.interceptor.contracts import contracts
 from fretc.verification.interceptor.file import Head, core, head, otherwise
 from fretc.verification.interceptor.machine import (
