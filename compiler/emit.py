@@ -1,34 +1,46 @@
-"""The targets, in one table: what `--emit` can make."""
+"""The targets, in one table: what `--emit` can make.
+
+The names are there at once; a target is imported when it is asked for, so that help is quick.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from types import MappingProxyType
+from collections.abc import Iterator, Mapping
+from importlib import import_module
+from typing import TYPE_CHECKING, cast
 
-from compiler.targets import dafny, fret, ltl, prism
-from compiler.targets import json_record as records
-from compiler.targets.ajpf import bundle
-from compiler.targets.ajpf import properties as ajpf
-from compiler.targets.automata import dot, hoa, smv
-from compiler.targets.python import interceptor, monitor
-from compiler.targets.target import Target
+if TYPE_CHECKING:
+    from compiler.targets.target import Target
 
-TARGETS: Mapping[str, Target] = MappingProxyType(
-    {
-        target.name: target
-        for target in (
-            ltl.TARGET,
-            monitor.TARGET,
-            ajpf.TARGET,
-            bundle.TARGET,
-            smv.TARGET,
-            hoa.TARGET,
-            dot.TARGET,
-            prism.TARGET,
-            records.TARGET,
-            fret.TARGET,
-            interceptor.TARGET,
-            dafny.TARGET,
-        )
-    }
-)
+_MODULES: Mapping[str, str] = {
+    "ltl": "ltl",
+    "monitor": "python.monitor",
+    "ajpf": "ajpf.properties",
+    "ajpf-bundle": "ajpf.bundle",
+    "interceptor": "python.interceptor",
+    "dafny": "dafny",
+    "smv": "automata.smv",
+    "hoa": "automata.hoa",
+    "dot": "automata.dot",
+    "prism": "prism",
+    "json": "json_record",
+    "fret-json": "fret",
+}
+"""In the order of the help; each module below `compiler.targets` has its `TARGET`."""
+
+
+class _Targets(Mapping[str, "Target"]):
+    def __getitem__(self, name: str) -> Target:
+        return cast("Target", import_module(f"compiler.targets.{_MODULES[name]}").TARGET)
+
+    def __contains__(self, name: object) -> bool:
+        return name in _MODULES
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(_MODULES)
+
+    def __len__(self) -> int:
+        return len(_MODULES)
+
+
+TARGETS: Mapping[str, Target] = _Targets()

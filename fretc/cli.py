@@ -14,14 +14,16 @@ from pathlib import Path
 
 import click
 
+from compiler.emit import TARGETS
 from compiler.files.edition import __version__
 from compiler.files.processes import shield
 from fretc.api.refusal import too_deep
-from fretc.commands.audit import audit, info
+from fretc.commands.audit import audit
 from fretc.commands.bind import bind
 from fretc.commands.check import check
 from fretc.commands.explain import explain
 from fretc.commands.formalize import compile_, fmt, import_
+from fretc.commands.info import info
 from fretc.commands.report import report
 from fretc.commands.review import diff, lock
 from fretc.commands.sbom import sbom
@@ -34,9 +36,18 @@ from fretc.terminal.output import BAD, INTERRUPTED, SHOWN, not_written, say, say
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.reading.limits import ExceededError, exceeded
 
+_HELP = f"""From FRETish requirements to monitors, audited logs and a traceability report.
+
+`fretc FILE...` parses and formalizes requirements; with `--emit` it makes files of them:
+{", ".join(TARGETS)}. `fretc FILE --help` says more.
+"""
+
 
 @click.group(
-    cls=Commands, no_args_is_help=True, context_settings={"help_option_names": ["-h", "--help"]}
+    cls=Commands,
+    no_args_is_help=True,
+    context_settings={"help_option_names": ["-h", "--help"]},
+    help=_HELP,
 )
 @click.version_option(__version__, prog_name="fretc", message="%(prog)s %(version)s")
 @click.option(
@@ -47,11 +58,7 @@ from fretish.reading.limits import ExceededError, exceeded
     help="Parents of requirements may be in this folder, too, outside of the project.",
 )
 def cli(folders: tuple[str, ...]) -> None:
-    """From FRETish requirements to monitors, audited logs and a traceability report.
-
-    `fretc FILE...` parses and formalizes requirements; with `--emit` it makes files of them:
-    ltl, monitor, ajpf, smv, hoa, dot, prism, json, fret-json. `fretc FILE --help` says more.
-    """
+    """The command itself; its help is `_HELP`."""
     if folders:
         from compiler.files.settings import OUTSIDE
 

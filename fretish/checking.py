@@ -10,7 +10,7 @@ from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
 from fretish.diagnostics.source import Span
 from fretish.expressions import depth
 from fretish.reading.recursion import MOST
-from fretish.syntax import Before, Sentence, Until
+from fretish.syntax import Sentence, stop
 
 RESERVED = frozenset(
     "A E F G H O R S T U V X Y Z AF AG AX EF EG EX ABF ABG EBF EBG BU "
@@ -33,8 +33,9 @@ def conditions(sentence: Sentence) -> Iterator[e.Expression]:
         yield sentence.scope.mode
     if sentence.condition is not None:
         yield sentence.condition.expression
-    if isinstance(sentence.timing, Until | Before):
-        yield sentence.timing.stop
+    stop_condition = stop(sentence.timing)
+    if stop_condition is not None:
+        yield stop_condition
     yield sentence.response
 
 

@@ -5,9 +5,20 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from enum import StrEnum
 from fractions import Fraction
+from typing import assert_never
 
 from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
-from fretish.syntax import After, Duration, Sentence, TimeUnit, Within, duration
+from fretish.syntax import (
+    SHAPES,
+    Duration,
+    Extent,
+    Quantifier,
+    Sentence,
+    TimeUnit,
+    Timing,
+    duration,
+    timing_key,
+)
 
 NANOSECONDS: dict[TimeUnit, int] = {
     "microsecond": 10**3,
@@ -121,11 +132,26 @@ def _fewer_is_stricter(sentence: Sentence) -> bool | None:
     at one tick, and another number of ticks is another tick.
     """
     odds = sentence.probability
-    if isinstance(sentence.timing, After) or (odds and odds.op in ("=", "!=")):
+    fewer = _fewer_asks_more(sentence.timing)
+    if fewer is None or (odds and odds.op in ("=", "!=")):
         return None
     negated = sentence.scope is not None and sentence.scope.kind.negates
     rarely = odds is not None and odds.op in ("<", "<=")
-    return isinstance(sentence.timing, Within) != (negated != rarely)
+    return fewer != (negated != rarely)
+
+
+def _fewer_asks_more(timing: Timing) -> bool | None:
+    """The same of a timing that counts ticks, alone."""
+    shape = SHAPES[type(timing)]
+    match shape.extent:
+        case Extent.DURATION:
+            return shape.quantifier is Quantifier.SOME
+        case Extent.BEYOND:
+            return None
+        case Extent.TRIGGER | Extent.NEXT | Extent.LAST | Extent.INTERVAL | Extent.STOP:
+            raise AssertionError(f"it counts nothing: {timing}")
+        case _:
+            assert_never(shape.extent)
 
 
 def assumed_ticks(sentence: Sentence, clock: Clock | None) -> Diagnostic | None:
@@ -165,10 +191,12 @@ def _no_stricter_side(
     sentence: Sentence, bound: Duration, clock: Clock, exact: Fraction
 ) -> Diagnostic:
     odds = sentence.probability
-    part = "`after`" if isinstance(sentence.timing, After) or odds is None else f"`{odds.op}`"
+    part = timing_key(sentence)
+    if odds is not None and _fewer_asks_more(sentence.timing) is not None:
+        part = odds.op
     inexact = _inexact(bound, clock, exact)
     return replace(
-        inexact, message=f"{inexact.message}, and {part} has no stricter side to round to"
+        inexact, message=f"{inexact.message}, and `{part}` has no stricter side to round to"
     )
 
 

@@ -20,7 +20,7 @@ _ENDS = (
 def surprises(sentence: s.Sentence) -> Iterator[Diagnostic]:
     """F204-F208, each with what is meant and how to say the other thing."""
     yield from _edge(sentence.condition)
-    if isinstance(sentence.timing, s.Eventually) and not sentence.timing.explicit:
+    if s.timing_key(sentence) == "null":
         yield _warning(
             Code.NO_TIMING,
             "without a timing the response is required at some time, however late",
@@ -31,7 +31,7 @@ def surprises(sentence: s.Sentence) -> Iterator[Diagnostic]:
     if scope is None:
         return
     m = expression(scope.mode)
-    if isinstance(sentence.timing, s.Within) and scope.kind in _ENDS:
+    if s.deadline(sentence.timing) and scope.kind in _ENDS:
         yield _warning(
             Code.SHORT_SCOPE,
             f"where `{m}` ends the scope before the deadline, nothing is required",

@@ -5,10 +5,11 @@ The tree keeps `3 seconds`; how many ticks that is belongs to `fretish.clock`.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
-from enum import StrEnum
+from enum import Enum, StrEnum, auto
 from fractions import Fraction
-from typing import Literal
+from typing import Literal, assert_never
 
 from fretish.diagnostics.source import Span
 from fretish.expressions import ComparisonOperator, Expression
@@ -29,6 +30,19 @@ class ScopeKind(StrEnum):
     def negates(self) -> bool:
         """`only` scopes demand the negated timing outside of themselves."""
         return self in (ScopeKind.ONLY_IN, ScopeKind.ONLY_BEFORE, ScopeKind.ONLY_AFTER)
+
+
+def ends_with_run(scope: ScopeKind | None) -> bool:
+    """Whether an interval, once it has begun, lasts as long as the run."""
+    match scope:
+        case None | ScopeKind.AFTER | ScopeKind.ONLY_BEFORE:
+            return True
+        case ScopeKind.IN | ScopeKind.NOT_IN | ScopeKind.ONLY_IN:
+            return False
+        case ScopeKind.BEFORE | ScopeKind.ONLY_AFTER:
+            return False
+        case _:
+            assert_never(scope)
 
 
 @dataclass(frozen=True, slots=True)
@@ -155,6 +169,81 @@ Timing = (
 )
 
 
+class Extent(Enum):
+    """The ticks that a timing is about, seen from a trigger."""
+
+    TRIGGER = auto()
+    """The tick of the trigger."""
+    NEXT = auto()
+    """The tick after it."""
+    LAST = auto()
+    """The last tick of the interval."""
+    INTERVAL = auto()
+    """All from the trigger to the end of the interval."""
+    DURATION = auto()
+    """All from the trigger to the one that the duration counts to."""
+    BEYOND = auto()
+    """The tick after those; on them it asks for the opposite."""
+    STOP = auto()
+    """All from the trigger to the one before the stop condition."""
+
+    @property
+    def counts(self) -> bool:
+        """Whether a duration says which ticks they are."""
+        match self:
+            case Extent.DURATION | Extent.BEYOND:
+                return True
+            case Extent.TRIGGER | Extent.NEXT | Extent.LAST | Extent.INTERVAL | Extent.STOP:
+                return False
+            case _:
+                assert_never(self)
+
+    @property
+    def needs_end(self) -> bool:
+        """Whether an interval without end asks for nothing."""
+        match self:
+            case Extent.LAST:
+                return True
+            case Extent.TRIGGER | Extent.NEXT | Extent.INTERVAL | Extent.DURATION:
+                return False
+            case Extent.BEYOND | Extent.STOP:
+                return False
+            case _:
+                assert_never(self)
+
+
+class Quantifier(Enum):
+    """At how many of the ticks the response must be true."""
+
+    ALL = auto()
+    SOME = auto()
+    NONE = auto()
+
+
+@dataclass(frozen=True, slots=True)
+class Shape:
+    """What a timing asks for; no two timings ask for the same."""
+
+    extent: Extent
+    quantifier: Quantifier
+
+
+SHAPES: Mapping[type[Timing], Shape] = {
+    Immediately: Shape(Extent.TRIGGER, Quantifier.ALL),
+    Next: Shape(Extent.NEXT, Quantifier.ALL),
+    Finally: Shape(Extent.LAST, Quantifier.ALL),
+    Eventually: Shape(Extent.INTERVAL, Quantifier.SOME),
+    Always: Shape(Extent.INTERVAL, Quantifier.ALL),
+    Never: Shape(Extent.INTERVAL, Quantifier.NONE),
+    Within: Shape(Extent.DURATION, Quantifier.SOME),
+    For: Shape(Extent.DURATION, Quantifier.ALL),
+    After: Shape(Extent.BEYOND, Quantifier.ALL),
+    Until: Shape(Extent.STOP, Quantifier.ALL),
+    Before: Shape(Extent.STOP, Quantifier.SOME),
+}
+"""Each timing once; what asks which timing it is asks here, or names all of them."""
+
+
 @dataclass(frozen=True, slots=True)
 class Probability:
     """`with probability >= 0.9`."""
@@ -204,5 +293,40 @@ def duration(timing: Timing) -> Duration | None:
     match timing:
         case Within(duration) | For(duration) | After(duration):
             return duration
-        case _:
+        case Immediately() | Next() | Finally() | Eventually() | Always() | Never():
             return None
+        case Until() | Before():
+            return None
+        case _:
+            assert_never(timing)
+
+
+def stop(timing: Timing) -> Expression | None:
+    """The stop condition of the timing, if it has one."""
+    match timing:
+        case Until(stop) | Before(stop):
+            return stop
+        case Immediately() | Next() | Finally() | Eventually() | Always() | Never():
+            return None
+        case Within() | For() | After():
+            return None
+        case _:
+            assert_never(timing)
+
+
+def deadline(timing: Timing) -> Duration | None:
+    """The duration within which one response is enough: that of `within`."""
+    match timing:
+        case Within(duration):
+            return duration
+        case Immediately() | Next() | Finally() | Eventually() | Always() | Never():
+            return None
+        case For() | After() | Until() | Before():
+            return None
+        case _:
+            assert_never(timing)
+
+
+def is_eventual(timing: Timing) -> bool:
+    """Whether one response is enough, however late in the interval: `eventually`, or no timing."""
+    return SHAPES[type(timing)] == Shape(Extent.INTERVAL, Quantifier.SOME)

@@ -1,25 +1,35 @@
 """Closed loops in tests: sentences, numbers in cells, and the texts that fretc makes."""
 
 from dataclasses import replace
+from typing import Any
 
 from compiler.targets.python import monitor as target
-from fretc.verification.interceptor.machine import Settings
 from fretc.verification.loop.model import Channel
 from fretc.verification.loop.search import Case
+from monitors.interceptor import Options
 from monitors.source_text import interceptor
 from tests.monitoring import rule
 
 WITHIN = "whenever near the sw shall within {} ticks satisfy stopped"
 EVENTUALLY = "whenever near the sw shall eventually satisfy stopped"
-LATCH = Settings(event_driven=True, latching=True)
+
+
+def interceptor_options(**some: int | bool) -> Options:
+    """Options of an interceptor; a time that is not given is none."""
+    times = ("hold", "stop_timeout", "scan_timeout", "command_timeout")
+    none: dict[str, Any] = dict.fromkeys(times, 0)
+    return Options(**{**none, **some})
+
+
+LATCH = interceptor_options(event_driven=True, latching=True)
 """The node of the Safe-ROS paper."""
-TIMER = Settings()
+TIMER = interceptor_options()
 CORE = f"{interceptor().imports}\n\n{interceptor().text}\n"
 
 
 def case(
     sentence: str,
-    settings: Settings = TIMER,
+    settings: Options = TIMER,
     channel: Channel = Channel(1),  # noqa: B008
     core: str = CORE,
 ) -> Case:

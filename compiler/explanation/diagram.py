@@ -11,6 +11,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
+from typing import assert_never
 
 from compiler.explanation.windows import Column, Need, Window, intervals, windows
 from compiler.formalization.reference import Template, template
@@ -18,7 +19,7 @@ from compiler.formalization.rule import Rule
 from fretish import syntax as s
 from fretish.meaning import span as in_ticks
 from fretish.printer import expression
-from fretish.syntax import ScopeKind
+from fretish.syntax import Extent, ScopeKind
 
 _LEAD, _TAIL, _WAIT = 2, 2, 3
 """Ticks before the scope and after it, and ticks to wait where the sentence sets no bound."""
@@ -107,7 +108,7 @@ def diagram(rule: Rule) -> Diagram:
     trace = _trace(drawn)
     found = windows(drawn, trace.m, trace.p, trace.s)
     ticks = len(trace.m)
-    ends = drawn.timing is s.Finally and _is_open(drawn.scope)
+    ends = s.SHAPES[drawn.timing].extent.needs_end and s.ends_with_run(drawn.scope)
     return Diagram(
         title=f"What {rule.id} means",
         ticks=ticks,
@@ -117,11 +118,6 @@ def diagram(rule: Rule) -> Diagram:
         trace=trace,
         windows=found,
     )
-
-
-def _is_open(scope: ScopeKind | None) -> bool:
-    """Whether the interval that is drawn ends with the run."""
-    return scope in (None, ScopeKind.AFTER, ScopeKind.ONLY_BEFORE)
 
 
 # The trace --------------------------------------------------------------------------------------
@@ -135,7 +131,7 @@ def _trace(drawn: Template) -> Trace:
     begin = lead if drawn.condition is None else lead + 1
     late = begin if drawn.condition is None else begin + 1  # the last tick that may trigger
     right = late + _reach(drawn) + 1
-    ticks = right + 1 if _is_open(drawn.scope) else right + 1 + _TAIL
+    ticks = right + 1 if s.ends_with_run(drawn.scope) else right + 1 + _TAIL
     stop = late + _WAIT
     return Trace(
         m=tuple(_mode(drawn.scope, t, lead, right) for t in range(ticks)),
@@ -146,13 +142,20 @@ def _trace(drawn: Template) -> Trace:
 
 def _reach(drawn: Template) -> int:
     """How many ticks after a trigger something is asked for."""
-    if drawn.timing in (s.Within, s.For):
-        return drawn.ticks
-    if drawn.timing is s.After:
-        return drawn.ticks + 1
-    if drawn.timing is s.Immediately:
-        return 1
-    return 2 if drawn.timing is s.Next else _WAIT
+    extent = s.SHAPES[drawn.timing].extent
+    match extent:
+        case Extent.DURATION:
+            return drawn.ticks
+        case Extent.BEYOND:
+            return drawn.ticks + 1
+        case Extent.TRIGGER:
+            return 1
+        case Extent.NEXT:
+            return 2
+        case Extent.LAST | Extent.INTERVAL | Extent.STOP:
+            return _WAIT
+        case _:
+            assert_never(extent)
 
 
 def _mode(scope: ScopeKind | None, t: int, left: int, right: int) -> bool:
@@ -183,7 +186,7 @@ def _lanes(
 ) -> Iterator[Lane]:
     """From above: where, when, until when, and what."""
     sentence = rule.sentence
-    scope, condition, timing = sentence.scope, sentence.condition, sentence.timing
+    scope, condition, stop = sentence.scope, sentence.condition, s.stop(sentence.timing)
     if scope is not None:
         yield Lane(Kind.MODE, expression(scope.mode), "true", _true(trace.m))
     enforced = tuple(
@@ -195,8 +198,8 @@ def _lanes(
         yield Lane(Kind.CONDITION, expression(condition.expression), "true", _true(trace.p))
     starts = tuple(Stretch(window.trigger, window.trigger) for window in found)
     yield Lane(Kind.TRIGGER, "", "triggers" if condition else "begins", starts)
-    if isinstance(timing, s.Until | s.Before):
-        yield Lane(Kind.STOP, expression(timing.stop), "true", _true(trace.s))
+    if stop is not None:
+        yield Lane(Kind.STOP, expression(stop), "true", _true(trace.s))
     yield from _needs(rule, drawn, found, end)
 
 
@@ -218,7 +221,16 @@ def _needs(rule: Rule, drawn: Template, found: Sequence[Window], end: int) -> It
 
 def _goes_on(drawn: Template, last: int, end: int) -> bool:
     """A demand as long as the interval, in one that lasts as long as the run."""
-    return last >= end and drawn.timing in (s.Eventually, s.Always, s.Never)
+    extent = s.SHAPES[drawn.timing].extent
+    match extent:
+        case Extent.INTERVAL:
+            return last >= end
+        case Extent.TRIGGER | Extent.NEXT | Extent.LAST | Extent.DURATION:
+            return False
+        case Extent.BEYOND | Extent.STOP:
+            return False
+        case _:
+            assert_never(extent)
 
 
 def _need(single: bool, need: Need) -> str:

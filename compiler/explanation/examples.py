@@ -11,7 +11,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 from compiler.explanation.shortest_words import Move, Run, Waypoint, Words
-from compiler.explanation.windows import kept
+from compiler.explanation.windows import has_deadline, kept
 from compiler.formalization import reference as counters
 from compiler.formalization.letters import (
     MOST_ATOMS,
@@ -28,7 +28,6 @@ from compiler.formalization.reference import (
     explore,
 )
 from compiler.formalization.rule import Rule
-from fretish import syntax as s
 
 MOST_STATES = 120_000
 """Seconds of search; a longer bound gets no examples."""
@@ -204,10 +203,9 @@ class _Search:
 
     def _too_late(self, broken: Run) -> Run | None:
         """The same with the response one tick after the deadline, where there is one."""
-        negated = self.template.scope is not None and self.template.scope.negates
-        timing = s.For if negated else s.Within
-        if self.template.timing is not timing:
+        if not has_deadline(self.template):
             return None
+        negated = self.template.scope is not None and self.template.scope.negates
         last = broken.moves[-1]
         for m, p, q, stop in self.words.automaton.letters:
             if m == last.letter[0] and p == last.letter[1] and q is not negated:

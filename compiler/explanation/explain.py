@@ -18,6 +18,7 @@ from compiler.logic.definition import holds
 from compiler.logic.formula import longest_bound
 from compiler.targets import ltl
 from fretish import syntax as s
+from fretish.diagnostics import signs
 from fretish.diagnostics.rendering import visible
 
 SCHEMA = "fretc-explanation-1"
@@ -84,13 +85,10 @@ def _notes(rule: Rule, reason: str, satisfied: int, violated: int) -> Iterator[s
         yield "no other way to violate the sentence was found"
     if rule.sentence.probability is not None:
         yield "a run counts as one that satisfies or violates; the probability is over many runs"
-    if isinstance(rule.sentence.timing, s.Finally) and _ends_with_run(rule):
-        yield "on a run without end nothing is required"
-
-
-def _ends_with_run(rule: Rule) -> bool:
     scope = rule.sentence.scope
-    return scope is None or scope.kind in (s.ScopeKind.AFTER, s.ScopeKind.ONLY_BEFORE)
+    needs_end = s.SHAPES[type(rule.sentence.timing)].extent.needs_end
+    if needs_end and s.ends_with_run(scope.kind if scope else None):
+        yield "on a run without end nothing is required"
 
 
 # Traces -----------------------------------------------------------------------------------------
@@ -188,7 +186,8 @@ def _table(explained: Explanation, shown: Shown) -> str:
         mark = "  …repeats" if row.repeats else "  ← decided" if row.decides else ""
         lines.append(f"    {label:<{width}}{cells}{mark}".rstrip())
     end = _UNDECIDED if shown.decided is None else f"decided at tick {shown.decided}"
-    verdict = "✔ satisfied" if shown.satisfied else "✘ violated"
+    sign = signs.GOOD if shown.satisfied else signs.BAD
+    verdict = f"{sign.glyph} {'satisfied' if shown.satisfied else 'violated'}"
     return "\n".join([f"  {verdict}: {visible(shown.reason)}", *lines, f"    {end}", ""])
 
 

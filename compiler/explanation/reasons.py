@@ -4,13 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import assert_never
 
-from compiler.explanation.windows import Column, Need, Part, Window, intervals, windows
+from compiler.explanation.windows import Column, Need, Part, Window, intervals, need, windows
 from compiler.formalization.reference import Letter, Template, template
 from compiler.formalization.rule import Rule
 from fretish import syntax as s
 from fretish.meaning import span as in_ticks
 from fretish.printer import expression
+from fretish.syntax import Extent
 
 _MOST = 2
 """Triggers that are told one by one."""
@@ -95,7 +97,7 @@ class _Teller:
 
     def bound(self) -> str:
         """What the duration counts."""
-        if self.counted.timing not in _COUNTED:
+        if not self._extent.counts:
             return ""
         return f"; the bound is {in_ticks(self.counted.ticks, self.rule.clock)}"
 
@@ -105,9 +107,17 @@ class _Teller:
 
     @property
     def _stop(self) -> str:
-        timing = self.rule.sentence.timing
-        assert isinstance(timing, s.Until | s.Before)
-        return f"`{expression(timing.stop)}`"
+        stop = s.stop(self.rule.sentence.timing)
+        assert stop is not None
+        return f"`{expression(stop)}`"
+
+    @property
+    def _extent(self) -> Extent:
+        return s.SHAPES[self.counted.timing].extent
+
+    @property
+    def _stops(self) -> bool:
+        return s.stop(self.rule.sentence.timing) is not None
 
     def _hit(self, first: int, *, value: bool) -> int | None:
         return next((t for t in range(first, len(self.q)) if self.q[t] is value), None)
@@ -125,13 +135,23 @@ class _Teller:
 
     def _end(self, part: Part, window: Window) -> str:
         """What ends a demand that is not counted."""
-        timing = self.counted.timing
         if part.last < window.right:
-            return f", until {self._stop}" if timing in (s.Until, s.Before) else ""
-        full = window.trigger + self.counted.ticks
-        if timing in (s.Immediately, s.Next) or (timing in _COUNTED and part.last >= full):
+            return f", until {self._stop}" if self._stops else ""
+        if self._is_complete(part, window):
             return ""
         return f", where the {'scope' if self._is_closed(window) else 'run'} ends"
+
+    def _is_complete(self, part: Part, window: Window) -> bool:
+        """Whether the demand would end there in a longer interval, too."""
+        match self._extent:
+            case Extent.TRIGGER | Extent.NEXT:
+                return True
+            case Extent.DURATION | Extent.BEYOND:
+                return part.last >= window.trigger + self.counted.ticks
+            case Extent.LAST | Extent.INTERVAL | Extent.STOP:
+                return False
+            case _:
+                assert_never(self._extent)
 
     def _is_closed(self, window: Window) -> bool:
         return window.right < len(self.q) - 1
@@ -150,53 +170,68 @@ class _Teller:
         if self.endless and not self._is_closed(window):
             return f"{self._name} is never {wanted} from that tick on"
         late = part.last + 1
-        if late <= self.shown and self.q[late] is value and self.counted.timing in _COUNTED:
+        if late <= self.shown and self.q[late] is value and self._extent.counts:
             return f"{self._name} is {wanted} at tick {late} only, one tick too late"
         end = self._end(part, window)
-        if self.counted.timing in (s.Before, s.Until):
+        if self._stops:
             end = f", and then {self._stop} is true"
         return f"{said} at {_ticks(part.first, part.last)}{end}"
 
     def _must(self, part: Part, wanted: str) -> str:
-        timing = self.counted.timing
-        if timing is s.Finally:
-            return f", the last tick; it must be {wanted} there"
-        if timing in (s.Until, s.Before):
-            return f"; it must be {wanted} until {self._stop} is true"
-        if timing in (s.Eventually, s.Always, s.Never):
-            return f"; it must be {wanted} from tick {part.first} on"
-        if part.first == part.last:
-            return f"; it must be {wanted} there"
-        return f"; it must be {wanted} at {_ticks(part.first, part.last)}"
+        match self._extent:
+            case Extent.LAST:
+                return f", the last tick; it must be {wanted} there"
+            case Extent.STOP:
+                return f"; it must be {wanted} until {self._stop} is true"
+            case Extent.INTERVAL:
+                return f"; it must be {wanted} from tick {part.first} on"
+            case Extent.TRIGGER | Extent.NEXT | Extent.DURATION | Extent.BEYOND:
+                one = part.first == part.last
+                where = "there" if one else f"at {_ticks(part.first, part.last)}"
+                return f"; it must be {wanted} {where}"
+            case _:
+                assert_never(self._extent)
 
     def _spared(self, window: Window) -> str:
         """Why a trigger asks for nothing, or for nothing more."""
-        timing = self.counted.timing
-        if timing in (s.Until, s.Before):
-            negated = self.counted.scope is not None and self.counted.scope.negates
-            if (timing is s.Until) is not negated:
-                return f"{self._stop} is true at that same tick: nothing is required"
-            hit = self._hit(window.trigger, value=not negated)
-            if hit is None or hit > self.shown:
-                return f"{self._stop} does not come: nothing is required"
-            value = str(not negated).lower()
-            later = _later(hit - window.trigger)
-            return f"{self._name} is {value} at tick {hit}, {later}, and {self._stop} not before"
-        if timing is s.Next:
-            return "the last tick of the scope: nothing is required"
-        wanted = timing is not s.For
+        match self._extent:
+            case Extent.STOP:
+                return self._unstopped(window)
+            case Extent.NEXT:
+                return "the last tick of the scope: nothing is required"
+            case Extent.DURATION:
+                wanted = s.SHAPES[self.counted.timing].quantifier is s.Quantifier.SOME
+                return self._too_short(window, self.counted.ticks, wanted=wanted)
+            case Extent.BEYOND:
+                return self._too_short(window, self.counted.ticks + 1, wanted=True)
+            case Extent.TRIGGER | Extent.LAST | Extent.INTERVAL:
+                raise AssertionError("its triggers always ask for something")
+            case _:
+                assert_never(self._extent)
+
+    def _unstopped(self, window: Window) -> str:
+        """The stop condition comes at once, or not at all, or after the response."""
+        negated = self.counted.scope is not None and self.counted.scope.negates
+        if need(self.counted) in (Need.ALL, Need.NONE):
+            return f"{self._stop} is true at that same tick: nothing is required"
+        hit = self._hit(window.trigger, value=not negated)
+        if hit is None or hit > self.shown:
+            return f"{self._stop} does not come: nothing is required"
+        value = str(not negated).lower()
+        later = _later(hit - window.trigger)
+        return f"{self._name} is {value} at tick {hit}, {later}, and {self._stop} not before"
+
+    def _too_short(self, window: Window, ticks: int, *, wanted: bool) -> str:
+        """The interval ends before the deadline, with the response or without it."""
         hit = self._hit(window.trigger, value=wanted)
         if hit is not None and hit <= window.right:
             later = _later(hit - window.trigger)
             return f"{self._name} is {str(wanted).lower()} at tick {hit}, {later}"
-        deadline = window.trigger + self.counted.ticks + (timing is s.After)
+        deadline = window.trigger + ticks
         return (
             f"and the scope ends at tick {window.right}, before the deadline at tick {deadline}: "
             "nothing is required"
         )
-
-
-_COUNTED = (s.Within, s.For, s.After)
 
 
 def _wanted(part: Part) -> bool:

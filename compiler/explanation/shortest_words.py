@@ -136,7 +136,7 @@ class Words:
     @property
     def needs_end(self) -> bool:
         """Whether only the end of an interval can violate the sentence."""
-        return self.template.timing is s.Finally
+        return s.SHAPES[self.template.timing].extent.needs_end
 
     def decided(self, run: Run, *, satisfied: bool) -> int | None:
         """The first tick after which no continuation changes the verdict; None: there is none.

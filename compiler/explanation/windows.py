@@ -14,7 +14,7 @@ from typing import assert_never
 
 from compiler.formalization.reference import Template
 from fretish import syntax as s
-from fretish.syntax import ConditionKind, ScopeKind
+from fretish.syntax import ConditionKind, Extent, Quantifier, ScopeKind
 
 Column = Sequence[bool]
 """One truth value for each tick of a finite trace, from tick 0 on."""
@@ -141,41 +141,67 @@ def triggers(condition: ConditionKind | None, p: Column, left: int, right: int) 
 def window(template: Template, t: int, right: int, stops: Column) -> Window:
     """What the trigger at tick `t` asks for, in an interval that ends with tick `right`."""
     negated = template.scope is not None and template.scope.negates
-    each, some = (Need.NONE, Need.MISS) if negated else (Need.ALL, Need.SOME)
-    n = template.ticks
+    each = Need.NONE if negated else Need.ALL
+    whole, n = need(template), template.ticks
+    waits = whole in (Need.SOME, Need.MISS)
 
     def asks(*parts: tuple[int, int, Need], either: bool = False) -> Window:
         return Window(t, right, tuple(Part(*part) for part in parts), either)
 
-    timing = template.timing
-    if timing is s.Immediately:
-        return asks((t, t, each))
-    if timing is s.Next:
-        return asks((t + 1, t + 1, each)) if t < right else asks()
-    if timing is s.Finally:
-        return asks((right, right, each))
-    if timing in (s.Eventually, s.Always, s.Never):
-        return asks((t, right, _for_ever(timing, negated=negated)))
-    if timing in (s.Within, s.For):
-        if (timing is s.Within) is not negated:  # a short interval asks for nothing
-            return asks((t, t + n, some)) if t + n <= right else asks()
-        return asks((t, min(t + n, right), each))
-    if timing is s.After:
-        late = (t + n + 1, t + n + 1, each)
-        if negated:
-            return asks((t, t + n, Need.SOME), late, either=True) if t + n < right else asks()
-        early = (t, min(t + n, right), Need.NONE)
-        return asks(early, late) if t + n < right else asks(early)
-    stop = next((k for k in range(t, right + 1) if stops[k]), None)
-    if (timing is s.Before) is not negated:
-        return asks() if stop is None else asks((t, stop - 1, some))
-    last = right if stop is None else stop - 1
-    return asks((t, last, each)) if last >= t else asks()
+    extent = s.SHAPES[template.timing].extent
+    match extent:
+        case Extent.TRIGGER:
+            return asks((t, t, each))
+        case Extent.NEXT:
+            return asks((t + 1, t + 1, each)) if t < right else asks()
+        case Extent.LAST:
+            return asks((right, right, each))
+        case Extent.INTERVAL:
+            return asks((t, right, whole))
+        case Extent.DURATION if waits:  # a short interval asks for nothing
+            return asks((t, t + n, whole)) if t + n <= right else asks()
+        case Extent.DURATION:
+            return asks((t, min(t + n, right), whole))
+        case Extent.BEYOND:
+            late = (t + n + 1, t + n + 1, each)
+            if negated:
+                return asks((t, t + n, Need.SOME), late, either=True) if t + n < right else asks()
+            early = (t, min(t + n, right), Need.NONE)
+            return asks(early, late) if t + n < right else asks(early)
+        case Extent.STOP:
+            stop = next((k for k in range(t, right + 1) if stops[k]), None)
+            if waits:
+                return asks() if stop is None else asks((t, stop - 1, whole))
+            last = right if stop is None else stop - 1
+            return asks((t, last, whole)) if last >= t else asks()
+        case _:
+            assert_never(extent)
 
 
-def _for_ever(timing: type[s.Timing], *, negated: bool) -> Need:
-    if timing is s.Eventually:
-        return Need.NONE if negated else Need.SOME
-    if timing is s.Always:
-        return Need.MISS if negated else Need.ALL
-    return Need.SOME if negated else Need.NONE
+def has_deadline(template: Template) -> bool:
+    """Whether it is too late for the response once the duration is over."""
+    extent = s.SHAPES[template.timing].extent
+    match extent:
+        case Extent.DURATION:
+            return need(template) in (Need.SOME, Need.MISS)
+        case Extent.TRIGGER | Extent.NEXT | Extent.LAST | Extent.INTERVAL:
+            return False
+        case Extent.BEYOND | Extent.STOP:
+            return False
+        case _:
+            assert_never(extent)
+
+
+def need(template: Template) -> Need:
+    """What the response must be on the ticks that the timing is about."""
+    negated = template.scope is not None and template.scope.negates
+    quantifier = s.SHAPES[template.timing].quantifier
+    match quantifier:
+        case Quantifier.ALL:
+            return Need.MISS if negated else Need.ALL
+        case Quantifier.SOME:
+            return Need.NONE if negated else Need.SOME
+        case Quantifier.NONE:
+            return Need.SOME if negated else Need.NONE
+        case _:
+            assert_never(quantifier)

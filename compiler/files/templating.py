@@ -14,6 +14,8 @@ from typing import Any
 import tomli_w
 from jinja2 import Environment, FileSystemLoader, StrictUndefined, select_autoescape
 
+from fretish.diagnostics import signs
+
 
 def template_root() -> Path:
     """`compiler/templates` in an installed wheel, `templates` beside us in a checkout."""
@@ -49,6 +51,7 @@ def _environment() -> Environment:
     environment.filters["key"] = key
     environment.filters["hoa"] = quoted
     environment.filters["dot"] = quoted
+    environment.globals["signs"] = signs
     return environment
 
 

@@ -15,9 +15,10 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import assert_never
 
 from compiler.formalization.letters import MOST_ATOMS, meanings, temporal_predicate
-from compiler.formalization.obligation import Demand, Kind, Obligation
+from compiler.formalization.obligation import TRAITS, Demand, Kind, Obligation, Trait
 from compiler.formalization.past import Stage, Watch, staged
 from compiler.formalization.reference import (
     BROKEN,
@@ -82,7 +83,7 @@ def _parts(obligation: Obligation) -> Iterable[f.Formula]:
     if obligation.condition is not None:
         yield obligation.trigger
     yield obligation.demand.response
-    if obligation.demand.kind in (Kind.UNTIL, Kind.BEFORE):
+    if Trait.STOPS in TRAITS[obligation.demand.kind]:
         yield obligation.demand.stop
 
 
@@ -149,6 +150,8 @@ def _counted(demand: Demand, stage: Stage, short: int) -> Iterable[_Observable]:
         case Kind.NOT_AFTER:
             recent = stage.open(f.not_(q), f.Interval(0, n))
             yield _Observable(recent, lambda state: state.counted > 0)
+        case _:
+            assert_never(demand.kind)
 
 
 def _open_for(q: f.Formula, age: int, stage: Stage) -> f.Formula:

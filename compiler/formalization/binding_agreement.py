@@ -1,4 +1,6 @@
-"""Whether a comparison that a sentence states is the one that its binding makes.
+"""Whether what a requirement states is what its bindings make of it.
+
+A proposition needs a binding, and a number that the requirement states stands in it, too.
 
 `[proposition."(speed <= 1.5)"]` binds a comparison by its text. Nothing else holds the two
 together: a binding that compares with another number would be audited in its place.
@@ -13,11 +15,14 @@ from compiler.formalization.obligation import atom, variable
 from compiler.formalization.rule import Rule
 from fretish import expressions as e
 from fretish import units
+from fretish.bindings.constants import constants
 from fretish.bindings.declarations import Declarations, Proposition
 from fretish.checking import conditions
-from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
 from fretish.diagnostics.source import Source, Span
+from fretish.documents import Requirement
 from fretish.parser import parse
+from fretish.reading.toml_text import as_key
 from fretish.syntax import Sentence
 
 _MIRRORED = {"<": ">", "<=": ">=", ">": "<", ">=": "<=", "=": "=", "!=": "!="}
@@ -157,3 +162,65 @@ def _drifted(rule: Rule, name: str, stated: e.Expression, bound: Proposition) ->
         help="state the operator and the number of the sentence in the binding, the number with "
         "its unit, or give the proposition a name without a number",
     )
+
+
+# What has no binding, and what states another number ------------------------------------------
+
+
+def drift(requirement: Requirement, declarations: Declarations) -> Iterator[Diagnostic]:
+    """F310: a number that the requirement states is not the one its binding compares with."""
+    for name, text in requirement.params.items():
+        place = requirement.place("params", name)
+        proposition = declarations.propositions.get(name)
+        if proposition is None and ("proposition", name) not in declarations.mistakes:
+            yield Diagnostic(
+                Code.UNKNOWN_NAME,
+                f"`params` states a number for `{name}`, which has no binding",
+                place,
+                help="name the proposition that the number belongs to, and bind it",
+            )
+            continue
+        stated = units.quantity(text)
+        if stated is None:
+            yield Diagnostic(
+                Code.BAD_FIELD,
+                f"`{text}` is no quantity",
+                place,
+                help='write a number and a unit: `"5 cm"`',
+            )
+        elif proposition is not None and stated not in constants(proposition.expression):
+            yield Diagnostic(
+                Code.PARAMETER_DRIFT,
+                f"the requirement states {text} for `{name}`, and its binding has another number",
+                proposition.span,
+                help="make the binding or `params` say what is meant",
+                severity=Severity.WARNING,
+            )
+
+
+def unbound(rule: Rule, declarations: Declarations) -> Iterator[Diagnostic]:
+    """F304 for every proposition of the sentence that the bindings do not have.
+
+    Where they have one that cannot be used, it is the mistakes in its tables. No other proposition
+    is proposed in its place: the nearest name may be another safety claim.
+    """
+    for name in rule.watched:
+        mistakes = declarations.mistakes.get(("proposition", name), ())
+        yield from mistakes
+        if mistakes or name in declarations.propositions:
+            continue
+        yield Diagnostic(
+            Code.UNBOUND,
+            f"`{name}` of {rule.id} has no binding in {declarations.source.name}",
+            place(rule, name),
+            help=f"add `[proposition.{as_key(name)}]` there",
+        )
+
+
+def place(rule: Rule, name: str) -> Span:
+    """Where the sentence names it first; the whole sentence for a comparison."""
+    for expression in conditions(rule.sentence):
+        for mention in e.names(expression):
+            if mention.id == name and mention.span is not None:
+                return mention.span
+    return rule.requirement.wording

@@ -9,27 +9,22 @@ from functools import partial
 
 from compiler.formalization import predicates
 from compiler.formalization.anticipation import anticipated
-from compiler.formalization.binding_agreement import disagreements
+from compiler.formalization.binding_agreement import disagreements, drift, place
 from compiler.formalization.future import future, probabilistic
 from compiler.formalization.obligation import obligation
 from compiler.formalization.past import past, watch
 from compiler.formalization.rule import Rule
 from compiler.logic.formula import endless
 from compiler.logic.printing import identifier
-from fretish import expressions as e
-from fretish import units
-from fretish.bindings.constants import constants
 from fretish.bindings.declarations import Declarations, Modality, Variable
-from fretish.checking import conditions, temporal_predicates, too_deep
+from fretish.checking import temporal_predicates, too_deep
 from fretish.clock import Clock, assumed_ticks, in_ticks
 from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
-from fretish.diagnostics.source import Span
 from fretish.documents import Requirement
 from fretish.parser import parse
 from fretish.pitfalls import surprises
 from fretish.reading.limits import within
 from fretish.reading.recursion import deep
-from fretish.reading.toml_text import as_key
 from fretish.syntax import Sentence
 
 
@@ -79,7 +74,7 @@ def clashes(rules: Sequence[Rule]) -> Iterator[Diagnostic]:
                 yield Diagnostic(
                     Code.NAME_CLASH,
                     f"`{first}` and `{name}` would be one name in formulas: `{identifier(name)}`",
-                    _place(rule, name),
+                    place(rule, name),
                     help="rename one of them",
                 )
 
@@ -166,65 +161,6 @@ def _remarks(
     yield from temporal_predicates(sentence)
     if declarations is not None:
         yield from drift(requirement, declarations)
-
-
-def drift(requirement: Requirement, declarations: Declarations) -> Iterator[Diagnostic]:
-    """F310: a number that the requirement states is not the one its binding compares with."""
-    for name, text in requirement.params.items():
-        place = requirement.place("params", name)
-        proposition = declarations.propositions.get(name)
-        if proposition is None and ("proposition", name) not in declarations.mistakes:
-            yield Diagnostic(
-                Code.UNKNOWN_NAME,
-                f"`params` states a number for `{name}`, which has no binding",
-                place,
-                help="name the proposition that the number belongs to, and bind it",
-            )
-            continue
-        stated = units.quantity(text)
-        if stated is None:
-            yield Diagnostic(
-                Code.BAD_FIELD,
-                f"`{text}` is no quantity",
-                place,
-                help='write a number and a unit: `"5 cm"`',
-            )
-        elif proposition is not None and stated not in constants(proposition.expression):
-            yield Diagnostic(
-                Code.PARAMETER_DRIFT,
-                f"the requirement states {text} for `{name}`, and its binding has another number",
-                proposition.span,
-                help="make the binding or `params` say what is meant",
-                severity=Severity.WARNING,
-            )
-
-
-def unbound(rule: Rule, declarations: Declarations) -> Iterator[Diagnostic]:
-    """F304 for every proposition of the sentence that the bindings do not have.
-
-    Where they have one that cannot be used, it is the mistakes in its tables. No other proposition
-    is proposed in its place: the nearest name may be another safety claim.
-    """
-    for name in rule.watched:
-        mistakes = declarations.mistakes.get(("proposition", name), ())
-        yield from mistakes
-        if mistakes or name in declarations.propositions:
-            continue
-        yield Diagnostic(
-            Code.UNBOUND,
-            f"`{name}` of {rule.id} has no binding in {declarations.source.name}",
-            _place(rule, name),
-            help=f"add `[proposition.{as_key(name)}]` there",
-        )
-
-
-def _place(rule: Rule, name: str) -> Span:
-    """Where the sentence names it first; the whole sentence for a comparison."""
-    for expression in conditions(rule.sentence):
-        for variable in e.names(expression):
-            if variable.id == name and variable.span is not None:
-                return variable.span
-    return rule.requirement.wording
 
 
 def duplicates(requirements: Sequence[Requirement]) -> Mapping[int, Diagnostic]:

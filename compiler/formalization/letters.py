@@ -89,12 +89,12 @@ Parts = tuple[f.Formula | None, f.Formula | None, f.Formula | None, f.Formula | 
 
 def parts(sentence: s.Sentence) -> Parts:
     """Mode, condition, response and stop condition; None where it has none."""
-    scope, condition, timing = sentence.scope, sentence.condition, sentence.timing
+    scope, condition, stop = sentence.scope, sentence.condition, s.stop(sentence.timing)
     return (
         _formula(scope.mode) if scope else None,
         _formula(condition.expression) if condition else None,
         _formula(sentence.response),
-        _formula(timing.stop) if isinstance(timing, s.Until | s.Before) else None,
+        _formula(stop) if stop else None,
     )
 
 

@@ -8,9 +8,9 @@ natural language requirements, IST 137 (2021), section 4.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from enum import Enum, auto
+from enum import Enum, Flag, auto
 from functools import partial
 from typing import Protocol, assert_never
 
@@ -35,6 +35,48 @@ class Kind(Enum):
     """The dual of `AFTER`: the response comes too early, or not right after."""
     UNTIL = auto()
     BEFORE = auto()
+
+
+class Trait(Flag):
+    """What is true of some kinds of demand and not of others."""
+
+    STEPS = auto()
+    """Its verdict may change where a trace stutters."""
+    COUNTS = auto()
+    """A counter of ticks tells how long it has been open."""
+    DOWN = auto()
+    """The counter counts down to where the demand ends."""
+    REGISTERS = auto()
+    """The counter is a register with a bit for each trigger."""
+    WAITS = auto()
+    """One response settles it."""
+    RENEWED = auto()
+    """A trigger replaces the demand of the trigger before it."""
+    STOPS = auto()
+    """It has a stop condition."""
+    FORBIDS = auto()
+    """It only forbids, with no deadline: it is met where nothing has broken it."""
+    OPPOSITES = auto()
+    """It asks for the response at a tick and for its opposite at others: so does its dual."""
+    LAST = auto()
+    """It is about the last tick of its interval alone."""
+    UNMET = auto()
+    """It fails where its interval ends too soon."""
+
+
+TRAITS: Mapping[Kind, Trait] = {
+    Kind.IMMEDIATELY: Trait(0),
+    Kind.NEXT: Trait.STEPS | Trait.RENEWED,
+    Kind.FINALLY: Trait.LAST | Trait.UNMET,
+    Kind.EVENTUALLY: Trait.WAITS | Trait.UNMET,
+    Kind.ALWAYS: Trait.FORBIDS,
+    Kind.WITHIN: Trait.STEPS | Trait.COUNTS | Trait.WAITS,
+    Kind.FOR: Trait.STEPS | Trait.COUNTS | Trait.DOWN | Trait.RENEWED,
+    Kind.AFTER: Trait.STEPS | Trait.COUNTS | Trait.WAITS | Trait.OPPOSITES,
+    Kind.NOT_AFTER: Trait.STEPS | Trait.COUNTS | Trait.REGISTERS | Trait.RENEWED | Trait.OPPOSITES,
+    Kind.UNTIL: Trait.STOPS | Trait.FORBIDS,
+    Kind.BEFORE: Trait.STOPS | Trait.FORBIDS,
+}
 
 
 @dataclass(frozen=True, slots=True)
@@ -149,7 +191,7 @@ def _demand(timing: s.Timing, read: Read, satisfied: e.Expression, ticks: int) -
             assert_never(timing)
 
 
-_DUALS = {
+_DUALS: Mapping[Kind, Kind] = {
     Kind.IMMEDIATELY: Kind.IMMEDIATELY,
     Kind.NEXT: Kind.NEXT,
     Kind.FINALLY: Kind.FINALLY,
@@ -157,6 +199,8 @@ _DUALS = {
     Kind.ALWAYS: Kind.EVENTUALLY,
     Kind.WITHIN: Kind.FOR,
     Kind.FOR: Kind.WITHIN,
+    Kind.AFTER: Kind.NOT_AFTER,
+    Kind.NOT_AFTER: Kind.AFTER,
     Kind.UNTIL: Kind.BEFORE,
     Kind.BEFORE: Kind.UNTIL,
 }
@@ -164,9 +208,9 @@ _DUALS = {
 
 def dual(demand: Demand) -> Demand:
     """The negated timing: what an `only` scope demands outside of itself."""
-    if demand.kind is Kind.AFTER:
-        return Demand(Kind.NOT_AFTER, demand.response, demand.ticks)
-    return Demand(_DUALS[demand.kind], f.not_(demand.response), demand.ticks, demand.stop)
+    kind = _DUALS[demand.kind]
+    response = demand.response if Trait.OPPOSITES in TRAITS[kind] else f.not_(demand.response)
+    return Demand(kind, response, demand.ticks, demand.stop)
 
 
 def boolean(expression: e.Expression, expand: Expand) -> f.Formula:

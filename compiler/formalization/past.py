@@ -13,7 +13,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import assert_never
 
-from compiler.formalization.obligation import Demand, Kind, Obligation
+from compiler.formalization.obligation import TRAITS, Demand, Kind, Obligation, Trait
 from compiler.logic.formula import (
     EVER,
     FALSE,
@@ -125,6 +125,7 @@ def watch(obligation: Obligation) -> Watch:
     stage, demand = staged(obligation), obligation.demand
     breach = or_(_broken(demand, stage), _broken_at_end(demand, stage))
     owed, fails = _owed(demand, stage), _fails(demand, stage)
+    traits = TRAITS[demand.kind]
     return Watch(
         trigger=stage.trigger,
         breach=breach,
@@ -132,13 +133,10 @@ def watch(obligation: Obligation) -> Watch:
         owed=owed,
         fails=fails,
         settled=TRUE if breach == owed == fails == FALSE else _settled(demand, stage),
-        answer=and_(stage.inside, demand.response) if demand.kind in _WAITING else None,
+        answer=and_(stage.inside, demand.response) if Trait.WAITS in traits else None,
         horizon=_horizon(demand),
-        renewed=demand.kind in (Kind.NEXT, Kind.FOR, Kind.NOT_AFTER),
+        renewed=Trait.RENEWED in traits,
     )
-
-
-_WAITING = (Kind.EVENTUALLY, Kind.WITHIN, Kind.AFTER)
 
 
 # Scope and condition -----------------------------------------------------------------------
@@ -226,8 +224,12 @@ def _broken(demand: Demand, stage: Stage) -> Formula:
         case Kind.NOT_AFTER:
             silent = previous(stage.open(not_(q), Interval(n, n)))
             return and_(stage.inside, silent, q)
-        case _:
+        case Kind.IMMEDIATELY | Kind.NEXT | Kind.FINALLY | Kind.EVENTUALLY | Kind.ALWAYS:
             return _broken_plainly(demand, stage)
+        case Kind.UNTIL | Kind.BEFORE:
+            return _broken_plainly(demand, stage)
+        case _:
+            assert_never(demand.kind)
 
 
 def _overdue(q: Formula, n: int, stage: Stage) -> Formula:
@@ -298,8 +300,12 @@ def _fails(demand: Demand, stage: Stage) -> Formula:
             return and_(stage.open(TRUE), not_(demand.response))
         case Kind.EVENTUALLY:
             return stage.open(not_(demand.response))
-        case _:
+        case Kind.IMMEDIATELY | Kind.NEXT | Kind.ALWAYS | Kind.WITHIN | Kind.FOR | Kind.AFTER:
             return FALSE
+        case Kind.NOT_AFTER | Kind.UNTIL | Kind.BEFORE:
+            return FALSE
+        case _:
+            assert_never(demand.kind)
 
 
 def _owed(demand: Demand, stage: Stage) -> Formula:
@@ -333,17 +339,23 @@ def _doom(demand: Demand, stage: Stage) -> Formula:
 
     Where an interval can end before the deadline, its end would void them.
     """
-    if not stage.endless:
+    if not (stage.endless and stage.recurs):
         return FALSE
-    if demand.kind is Kind.AFTER and stage.recurs:
-        # The response may not come up to n ticks after this trigger, and must come before that.
-        return and_(stage.trigger, previous(stage.open(not_(demand.response))))
-    return FALSE
+    match demand.kind:
+        case Kind.AFTER:
+            # The response may not come up to n ticks after this trigger, and must come before.
+            return and_(stage.trigger, previous(stage.open(not_(demand.response))))
+        case Kind.IMMEDIATELY | Kind.NEXT | Kind.FINALLY | Kind.EVENTUALLY | Kind.ALWAYS:
+            return FALSE
+        case Kind.WITHIN | Kind.FOR | Kind.NOT_AFTER | Kind.UNTIL | Kind.BEFORE:
+            return FALSE
+        case _:
+            assert_never(demand.kind)
 
 
 def _settled(demand: Demand, stage: Stage) -> Formula:
     """Every demand has been met, and no other can begin."""
-    if demand.kind is Kind.FINALLY and stage.endless:
+    if Trait.LAST in TRAITS[demand.kind] and stage.endless:
         return TRUE  # an interval without an end has no last tick
     return stage.over if stage.recurs else or_(stage.over, _met(demand, stage))
 

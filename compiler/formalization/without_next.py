@@ -13,9 +13,10 @@ from __future__ import annotations
 
 from dataclasses import replace
 from functools import cache
+from typing import assert_never
 
 from compiler.formalization.future import future
-from compiler.formalization.obligation import Demand, Kind, Obligation
+from compiler.formalization.obligation import TRAITS, Demand, Kind, Obligation, Trait
 from compiler.logic import formula as f
 from compiler.logic.formula import (
     FALSE,
@@ -30,12 +31,7 @@ from compiler.logic.formula import (
     release,
     until,
 )
-from fretish.syntax import ConditionKind, ScopeKind
-
-COUNTING = frozenset({Kind.NEXT, Kind.WITHIN, Kind.FOR, Kind.AFTER, Kind.NOT_AFTER})
-"""Demands that count ticks: a trace that stutters may change their verdict."""
-_OPEN = (None, ScopeKind.AFTER, ScopeKind.ONLY_BEFORE)
-"""Scopes with an interval that never ends."""
+from fretish.syntax import ConditionKind, ScopeKind, ends_with_run
 
 
 def is_next_free(formula: Formula) -> bool:
@@ -64,7 +60,7 @@ def is_next_free(formula: Formula) -> bool:
 
 def next_free(obligation: Obligation) -> Formula | None:
     """The formula on infinite traces without X; None where the demand counts ticks."""
-    if obligation.demand.kind in COUNTING:
+    if Trait.STEPS in TRAITS[obligation.demand.kind]:
         return None
     return _Interval(obligation.scope, obligation.mode).everywhere(obligation)
 
@@ -87,12 +83,18 @@ def unbounded(obligation: Obligation) -> Formula | None:
     where a demand within a bound is one that is not met for that long.
     """
     scope = obligation.scope
-    if obligation.demand.kind is not Kind.WITHIN or (scope is not None and scope.negates):
+    if not _has_deadline(obligation.demand.kind) or (scope is not None and scope.negates):
         return None
     interval = _Interval(scope, obligation.mode)
     met = or_(interval.outside, obligation.demand.response)
     weak = replace(obligation, demand=Demand(Kind.EVENTUALLY, met))
     return interval.everywhere(weak, eventually(met))
+
+
+def _has_deadline(kind: Kind) -> bool:
+    """Whether one response up to a deadline is enough."""
+    traits = TRAITS[kind]
+    return Trait.COUNTS | Trait.WAITS in traits and Trait.OPPOSITES not in traits
 
 
 @cache
@@ -171,11 +173,11 @@ class _Interval:
     @property
     def outside(self) -> Formula:
         """False at each tick of the interval, and true behind its end."""
-        return FALSE if self.scope in _OPEN else not_(self.last)
+        return FALSE if ends_with_run(self.scope) else not_(self.last)
 
     def release(self, frees: Formula, x: Formula) -> Formula:
         """X from here on, up to and including the first tick with `frees`, inside."""
-        if self.scope in _OPEN:
+        if ends_with_run(self.scope):
             return release(frees, x)
         here = release(or_(not_(self.last), frees), _given(self.last, x))
         if self.scope is not ScopeKind.ONLY_AFTER:
@@ -184,7 +186,7 @@ class _Interval:
 
     def until(self, g: Formula, h: Formula) -> Formula:
         """H at some tick from here on, and g at all ticks before it, inside."""
-        if self.scope in _OPEN:
+        if ends_with_run(self.scope):
             return until(g, h)
         here = until(and_(self.last, g), and_(self.last, h))
         if self.scope is not ScopeKind.ONLY_AFTER:
@@ -245,12 +247,14 @@ class _Interval:
                 return self.release(r, not_(q))
             case Kind.FINALLY:
                 return self._finally(r)
-            case _:
+            case Kind.NEXT | Kind.WITHIN | Kind.FOR | Kind.AFTER | Kind.NOT_AFTER:
                 raise AssertionError(f"it counts ticks: {demand.kind}")
+            case _:
+                assert_never(demand.kind)
 
     def _finally(self, r: Formula) -> Formula:
         """No stretch without r leads up to the end of the interval."""
-        if self.scope in _OPEN:
+        if ends_with_run(self.scope):
             return TRUE
         idle = and_(self.last, not_(r))
         return self.throughout(not_(and_(idle, until(idle, not_(self.last)))))

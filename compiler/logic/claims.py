@@ -9,9 +9,10 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import StrEnum
-from typing import Any, assert_never
+from typing import TYPE_CHECKING, Any, assert_never
 
-from monitors.kernel.verdicts import Truth
+if TYPE_CHECKING:
+    from monitors.kernel.verdicts import Truth
 
 SCHEMA = "fretc-verification-1"
 

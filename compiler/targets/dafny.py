@@ -164,16 +164,16 @@ _TRIGGERS: Mapping[ConditionKind | None, Trigger] = {
 def _monitor(rule: Rule) -> str:
     sentence, timing = rule.sentence, rule.sentence.timing
     fields = _fields(atoms_of(sentence))
-    stop = timing.stop if isinstance(timing, s.Until | s.Before) else None
+    stop, shape = s.stop(timing), s.SHAPES[type(timing)]
     return render(
-        f"dafny/{_counter(timing)}.dfy.j2",
+        f"dafny/{_COUNTERS[type(timing)]}.dfy.j2",
         fields=fields,
         condition=_dafny(sentence.condition.expression, fields) if sentence.condition else None,
         response=_dafny(sentence.response, fields),
         stop=_dafny(stop, fields) if stop else None,
         trigger=_trigger(rule),
-        clash=isinstance(timing, s.After),
-        sign="!" if isinstance(timing, s.Never) else "",
+        clash=_COUNTERS[type(timing)] == "after",
+        sign="!" if shape.quantifier is s.Quantifier.NONE else "",
         **_bound(rule),
     )
 
@@ -183,9 +183,20 @@ def _trigger(rule: Rule) -> Trigger:
     return _TRIGGERS[condition.kind if condition else None]
 
 
-def _counter(timing: s.Timing) -> str:
-    """The name of its template; `never` is `always not`."""
-    return "always" if isinstance(timing, s.Never) else type(timing).__name__.lower()
+_COUNTERS: Mapping[type[s.Timing], str] = {
+    s.Immediately: "immediately",
+    s.Next: "next",
+    s.Finally: "finally",
+    s.Eventually: "eventually",
+    s.Always: "always",
+    s.Never: "always",  # not
+    s.Within: "within",
+    s.For: "for",
+    s.After: "after",
+    s.Until: "until",
+    s.Before: "before",
+}
+"""The template of each timing."""
 
 
 def _bound(rule: Rule) -> Mapping[str, object]:

@@ -49,7 +49,7 @@ def loopless(rule: Rule, declarations: Declarations | None) -> str | None:
     if declarations.interceptor.form is Form.EVENT:
         return "the event form waits for a command to stop, so no delay bounds its answer"
     timing = rule.sentence.timing
-    if not isinstance(timing, s.Within | s.Eventually):
+    if not (s.deadline(timing) or s.is_eventual(timing)):
         return f"it is about answers, and `{printed(timing)}` asks for something else"
     assumed = declarations.assumed
     response = boolean(rule.sentence.response, Uninterpreted().alone())
@@ -96,7 +96,7 @@ def claims(rule: Rule, declarations: Declarations | None) -> tuple[Claim, ...]:
 def _monitor_claim(rule: Rule) -> Claim:
     timing = rule.sentence.timing
     every = ", for every bound" if s.duration(timing) else ""
-    if isinstance(timing, s.Eventually | s.Finally):
+    if s.is_eventual(timing) or s.SHAPES[type(timing)].extent.needs_end:
         statement = "has an open demand exactly where the definition leaves one unanswered"
     else:
         statement = "is violated exactly where the definition is"

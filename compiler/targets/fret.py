@@ -126,8 +126,9 @@ def _parts(tree: s.Sentence) -> dict[str, Any]:
             "pre_condition": condition,
             "regular_condition": condition,
         }
-    if isinstance(tree.timing, s.Until | s.Before):
-        fields["stop_condition"] = f"({expression(tree.timing.stop)})"
+    stop = s.stop(tree.timing)
+    if stop is not None:
+        fields["stop_condition"] = f"({expression(stop)})"
     duration = s.duration(tree.timing)
     if duration is not None:
         fields["duration"] = str(duration.amount)

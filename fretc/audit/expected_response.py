@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import assert_never
+
 from compiler.formalization.rule import Rule
 from fretc.audit.measurements.violations import Demand
 from fretish import expressions as e
@@ -21,13 +23,13 @@ def demand(rule: Rule) -> Demand:
     match sentence.timing:
         case s.Never():
             return Demand(expression(e.Not(sentence.response)))
-        case s.Until() | s.Before() | s.After():
-            return Demand(f"{timing(sentence.timing)} satisfy {response}", _horizon(rule))
+        case s.After():
+            return Demand(f"{timing(sentence.timing)} satisfy {response}", rule.watch.horizon)
+        case s.Until() | s.Before():
+            return Demand(f"{timing(sentence.timing)} satisfy {response}")
+        case s.Immediately() | s.Next() | s.Within():
+            return Demand(response, rule.watch.horizon)
+        case s.Finally() | s.Eventually() | s.Always() | s.For():
+            return Demand(response)  # what must hold all the time has no latest tick
         case _:
-            return Demand(response, _horizon(rule))
-
-
-def _horizon(rule: Rule) -> int | None:
-    """Ticks from a trigger to the latest response; what must hold all the time has no latest."""
-    waits = isinstance(rule.sentence.timing, s.Immediately | s.Next | s.Within | s.After)
-    return rule.watch.horizon if waits else None
+            assert_never(sentence.timing)

@@ -81,8 +81,8 @@ class Audit:
                 lines.append((str(run), None))
             verdict = VERDICTS[result["verdict"]]
             name = f"{result['requirement']:<{width}}"
-            line = f"  {verdict.glyph} {name}  {verdict.word:<12}  {result['reason']}"
-            lines.append((line, verdict.colour))
+            line = f"  {verdict.sign.glyph} {name}  {verdict.word:<12}  {result['reason']}"
+            lines.append((line, verdict.sign.colour))
         for one in self.estimates:
             lines.extend(_block(one))
         return tuple((visible(line), colour) for line, colour in lines)
@@ -93,7 +93,7 @@ def _block(one: Estimated) -> Iterator[tuple[str, str | None]]:
     first, *rest = one.lines
     verdict = VERDICTS[one.answer]
     yield f"{one.requirement} over all runs, {one.text}", None
-    yield f"  {verdict.glyph} {first}", verdict.colour
+    yield f"  {verdict.sign.glyph} {first}", verdict.sign.colour
     yield from ((f"    {line}", None) for line in rest)
 
 

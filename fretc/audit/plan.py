@@ -10,7 +10,7 @@ from dataclasses import astuple, dataclass, field, replace
 from functools import lru_cache, partial
 
 from compiler.files.edition import edition
-from compiler.formalization.formalize import unbound
+from compiler.formalization.binding_agreement import unbound
 from compiler.formalization.record import wording
 from compiler.formalization.rule import Rule
 from compiler.project.folder import Project

@@ -1,4 +1,4 @@
-"""The commands about runs: audit, info."""
+"""The command that audits runs."""
 
 from __future__ import annotations
 
@@ -273,37 +273,3 @@ def _nothing_kept() -> Diagnostic:
         "`--resume` goes on with evidence in a file, and this is printed",
         help="name a file with `--evidence`",
     )
-
-
-@click.command(short_help="Say what is in recorded runs, and how healthy they are.")
-@click.argument("paths", nargs=-1, required=True, metavar="LOG...")
-@click.option("--all", "whole", is_flag=True, help="Name every field that a signal can read.")
-@click.option(
-    "--format", "form", type=click.Choice(("text", "json")), default="text", show_default=True
-)
-def info(paths: tuple[str, ...], whole: bool, form: str) -> None:
-    """Say what is in recorded runs, and how healthy they are.
-
-    LOG is an MCAP file, a bag (.bag, .db3), a folder (all logs below it), a quoted pattern
-    ('runs/**/*.mcap'), a URL, or - for standard input. Of each topic its type, count, rate and
-    longest gap, and the fields that a signal of `bindings.toml` can read. Exit status: 0 read, 3
-    something is damaged, 2 a log cannot be read.
-    """
-    from compiler.files.templating import to_json
-    from fretc.audit.log_paths import logs as logs_of
-    from fretc.audit.outputs.overview import as_record, text
-    from fretc.logs.reader import look
-
-    logs = logs_of(paths)
-    if isinstance(logs, Diagnostic):
-        stop(logs)
-    found = [look(log) for log in logs]
-    wrong = [one for one in found if isinstance(one, Diagnostic)]
-    read = [one for one in found if not isinstance(one, Diagnostic)]
-    say([*wrong, *(finding for one in read for finding in one.recording.findings)])
-    if form == "json":
-        click.echo(to_json([as_record(one) for one in read]))
-    else:
-        click.echo("\n".join(text(one, whole=whole) for one in read), nl=False)
-    intact = all(one.recording.intact for one in read)
-    raise SystemExit(BAD if wrong else SHOWN if intact else NOT_SHOWN)

@@ -167,7 +167,7 @@ def _check(paths: tuple[str, ...], project: Project, form: str, jobs: int) -> No
 
 def _unbound(project: Project) -> list[Diagnostic]:
     """What the requirements name and the bindings do not have."""
-    from compiler.formalization.formalize import unbound
+    from compiler.formalization.binding_agreement import unbound
 
     assert project.declarations is not None
     rules = [rule for rule in project.rules if rule.requirement.status != "retired"]

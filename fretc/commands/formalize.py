@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import click
 
+from compiler.emit import TARGETS
 from fretc.terminal.group import DEFAULT, Compile
 from fretc.terminal.output import BAD, SHOWN, VIOLATION, deliver, say, say_line, stop
 from fretish.diagnostics.diagnostic import Code, Diagnostic, has_errors
@@ -17,10 +18,6 @@ if TYPE_CHECKING:
     from compiler.project.folder import Project
     from compiler.targets.target import Options, Target
 
-_EMITS = (
-    "ltl", "monitor", "ajpf", "ajpf-bundle", "interceptor", "dafny", "smv", "hoa", "dot", "prism",
-    "json", "fret-json",
-)  # fmt: skip
 _NOTATIONS = ("plain", "fret", "spot", "nusmv", "latex")
 
 
@@ -30,7 +27,7 @@ _NOTATIONS = ("plain", "fret", "spot", "nusmv", "latex")
     "--emit",
     "kinds",
     multiple=True,
-    type=click.Choice(_EMITS),
+    type=click.Choice([*TARGETS]),
     help="Make this kind of file; may be given several times.",
 )
 @click.option("-o", "--output", default="build", show_default=True, help="Folder; `-` prints.")
@@ -99,8 +96,6 @@ def compile_(
 
 def _check_weaken(kinds: Sequence[str]) -> None:
     """F907 where no kind of file that is asked for has a weaker form."""
-    from compiler.emit import TARGETS
-
     weak = [f"`--emit {name}`" for name, target in TARGETS.items() if target.weak is not None]
     if not any(TARGETS[kind].weak for kind in kinds):
         told = f"`--weaken` is for {' and '.join(weak)}"
@@ -134,8 +129,6 @@ def _print_formulas(project: Project, options: Options) -> None:
 
 def _emit(project: Project, kinds: dict[str, None], output: str, options: Options) -> None:
     """Write whatever can be; what a target refuses is told and keeps nothing else from it."""
-    from compiler.emit import TARGETS
-
     named = [TARGETS[kind] for kind in kinds]
     targets = [(options.weaken and target.weak) or target for target in named]
     made = [(target, *_emitted(target, project.rules, options)) for target in targets]

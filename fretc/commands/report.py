@@ -8,13 +8,12 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from fretc.report.outputs import FORMS, Form, Subject
 from fretc.terminal.group import Grouped
 from fretc.terminal.output import BAD, NOT_SHOWN, SHOWN, VIOLATION, deliver, say, stop
 from fretish.diagnostics.diagnostic import Diagnostic, has_errors
 
 if TYPE_CHECKING:
-    from compiler.project.folder import Project
-    from fretc.report.make import Made
     from fretc.report.model.views import Report
 
 _HEADINGS = {
@@ -28,21 +27,25 @@ _HEADINGS = {
         "waivers",
         "signers",
     ),
-    "Forms": ("html", "json_", "csv", "junit", "sarif", "markdown", "reqif", "gsn"),
+    "Forms": tuple(FORMS),
 }
+
+
+def _forms(command: Callable[..., None]) -> Callable[..., None]:
+    """The option of each form."""
+    for form in FORMS.values():
+        shown = form.default is not None
+        option = click.option(
+            f"--{form.name}", default=form.default, show_default=shown, help=form.help
+        )
+        command = option(command)
+    return command
 
 
 @click.command(
     cls=Grouped, headings=_HEADINGS, short_help="Trace hazard to verdict in one HTML file."
 )
-@click.option("--html", default="build/report.html", show_default=True, help="One file, offline.")
-@click.option("--json", "json_", help="What the report says, for programs.")
-@click.option("--csv", help="A row for each requirement and run, for a spreadsheet.")
-@click.option("--junit", help="A test case for each requirement, for a CI server.")
-@click.option("--sarif", help="What the runs show, for code scanning.")
-@click.option("--markdown", help="A comment for a pull request.")
-@click.option("--gsn", help="The assurance argument, as YAML that gsn2x reads.")
-@click.option("--reqif", help="Requirements and verdicts, for a requirements tool.")
+@_forms
 @click.option(
     "--requirements", default="requirements", show_default=True, help="Folder, or one file."
 )
@@ -69,7 +72,6 @@ _HEADINGS = {
     help="Exit as the report says: 1 violated or suspect, 3 something is not shown.",
 )
 def report(
-    html: str,
     requirements: str,
     bindings: str | None,
     hazards: str | None,
@@ -80,7 +82,7 @@ def report(
     waivers: str | None,
     signers: str | None,
     strict: bool,
-    **forms: str | None,
+    **places: str | None,
 ) -> None:
     """Trace hazard, requirement, formula, artefact, run and verdict in one HTML file.
 
@@ -89,14 +91,15 @@ def report(
     """
     from compiler.project.folder import beside, companions, requirement_files, whole
     from fretc.attestation.signatures import SIGNERS
-    from fretc.report.forms.extras import missing_reqif
     from fretc.report.make import make
     from fretc.verification.ajpf_results import written as results
     from fretc.verification.reader import written
 
-    absent = missing_reqif() if forms["reqif"] is not None else None
-    if absent is not None:
-        stop(absent)
+    wanted = [(form, path) for name, form in FORMS.items() if (path := places[name]) is not None]
+    for form, _ in wanted:
+        absent = form.missing()
+        if absent is not None:
+            stop(absent)
     files = requirement_files(requirements)
     if isinstance(files, Diagnostic):
         stop(files)
@@ -120,60 +123,25 @@ def report(
     say([*project.diagnostics, *made.diagnostics])
     if made.report is None:
         raise SystemExit(BAD)
-    wanted = {"html": html, **{name: path for name, path in forms.items() if path is not None}}
-    texts = _texts(made, project, evidence)
+    subject = Subject(made, made.report, project, _audited(evidence, made.report))
     read = filter(None, (bindings, hazards, verification, lock, waivers, signers, *said))
-    logs = [str(result["run"]) for result in _audited(evidence, made.report)]
-    _deliver(wanted, texts, [evidence, *files, *companions(files), *read, *dict.fromkeys(logs)])
+    logs = [str(result["run"]) for result in subject.results]
+    _deliver(wanted, subject, [evidence, *files, *companions(files), *read, *dict.fromkeys(logs)])
     if has_errors([*project.diagnostics, *made.diagnostics]):
         raise SystemExit(BAD)
     raise SystemExit(_status(made.report) if strict else SHOWN)
 
 
-def _deliver(
-    wanted: Mapping[str, str], texts: Mapping[str, Callable[[], str]], read: Sequence[str]
-) -> None:
+def _deliver(wanted: Sequence[tuple[Form, str]], subject: Subject, read: Sequence[str]) -> None:
     """Each form to its own place."""
     from fretc.terminal.output import not_written
 
     paths: dict[Path, str] = {}
-    for form, path in wanted.items():
+    for form, path in wanted:
         if Path(path) in paths:
             stop(not_written(path, "two outputs would go there"))
-        paths[Path(path)] = texts[form]()
+        paths[Path(path)] = form.text(subject)
     deliver(paths, read)
-
-
-def _texts(made: Made, project: Project, evidence: str) -> dict[str, Callable[[], str]]:
-    """How each form is made; none before it is wanted."""
-    from fretc.report.forms.csv_rows import csv_text
-    from fretc.report.forms.gsn import gsn
-    from fretc.report.forms.junit import junit
-    from fretc.report.forms.markdown import markdown
-    from fretc.report.forms.sarif import sarif
-
-    whole = made.report
-    assert whole is not None
-    said = [*project.diagnostics, *made.diagnostics]
-    return {
-        "html": lambda: made.html or "",
-        "json_": lambda: made.json or "",
-        "csv": lambda: csv_text(whole),
-        "junit": lambda: junit(whole),
-        "sarif": lambda: sarif(
-            whole, _audited(evidence, whole), project.rules, said, project.without_rule
-        ),
-        "markdown": lambda: markdown(whole),
-        "gsn": lambda: gsn(whole),
-        "reqif": lambda: _reqif(whole),
-    }
-
-
-def _reqif(whole: Report) -> str:
-    """Imported only here: it needs what an extra installs."""
-    from fretc.report.forms.reqif import reqif
-
-    return reqif(whole)
 
 
 def _audited(evidence: str, whole: Report) -> Sequence[Mapping[str, Any]]:

@@ -91,7 +91,7 @@ def _verdicts(summary: Summary) -> tuple[list[str], list[list[str]]]:
     from fretc.audit.evidence.verdicts import VERDICTS
     from fretc.audit.outputs.summary import COUNTED
 
-    counted = (f"{VERDICTS[word].glyph} {word}" for word in COUNTED.values())
+    counted = (f"{VERDICTS[word].sign.glyph} {word}" for word in COUNTED.values())
     head = ["requirement", "runs", *counted, "violations"]
     rows = [
         [

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import click
 
+from compiler.logic.claims import PROVERS, Layer
 from fretc.terminal.group import Grouped
 from fretc.terminal.output import (
     BAD,
@@ -28,7 +29,7 @@ if TYPE_CHECKING:
     from fretc.verification.verify import Request
     from fretish.diagnostics.source import Source
 
-_LAYERS = ("monitor", "interceptor", "loop", "bounds", "agent", "ajpf")
+_LAYERS = tuple(map(str, Layer))
 _HEADINGS = {
     "What is looked at": ("layers", "monitor", "provers", "bindings", "limit"),
     "Texts in place of new ones": ("path", "interceptor", "agent", "properties", "percepts"),
@@ -55,7 +56,7 @@ _HEADINGS = {
     "--with",
     "provers",
     multiple=True,
-    type=click.Choice(("dafny", "crosshair")),
+    type=click.Choice(PROVERS),
     help="A prover to ask as well, if it is installed.",
 )
 @click.option("--file", "path", help="A monitor that was made before.")
@@ -116,7 +117,6 @@ def verify(
     Exit status: 0 all proved, 1 a claim about a requirement is refuted, 2 bad use or input,
     3 something is vacuous, not checked, or stays stopped.
     """
-    from compiler.logic.claims import Layer
     from compiler.project.folder import companions
     from fretc.verification.ajpf_results import written
     from fretc.verification.engines.sandbox import Limits

@@ -318,10 +318,9 @@ def _report(
     return made.html == there.text
 
 
-_GLYPHS = {"stands": ("✔", "green"), "differs": ("✘", "red"), "not checked": ("?", "magenta")}
-
-
 def _print(found: Sequence[Rechecked], same: bool | None, against: str) -> None:
+    from fretc.reproduction.outcome import SIGNS, Finding
+
     lines: list[tuple[str, str | None]] = []
     width = max((len(one.requirement) for one in found), default=0)
     run = None
@@ -329,13 +328,13 @@ def _print(found: Sequence[Rechecked], same: bool | None, against: str) -> None:
         if one.run != run:
             run = one.run
             lines.append((run, None))
-        glyph, colour = _GLYPHS[str(one.finding)]
+        sign = SIGNS[one.finding]
         told = ": ".join(filter(None, (one.finding, one.claim, "; ".join(one.reasons))))
-        lines.append((f"  {glyph} {one.requirement:<{width}}  {told}", colour))
+        lines.append((f"  {sign.glyph} {one.requirement:<{width}}  {told}", sign.colour))
     if same is not None:
-        glyph, colour = _GLYPHS["stands" if same else "differs"]
+        sign = SIGNS[Finding.STANDS if same else Finding.DIFFERS]
         told = "the same, byte for byte" if same else "another one is made now"
-        lines.append((f"{glyph} report  {told}", colour))
+        lines.append((f"{sign.glyph} report  {told}", sign.colour))
     counted = ", ".join(f"{finding} {count}" for finding, count in _counts(found, same).items())
     lines.append((f"{counted} ({against})", None))
     click.echo(coloured([(visible(line), colour) for line, colour in lines]), nl=False)

@@ -13,33 +13,28 @@ from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial, reduce
 from operator import add
-from statistics import median
 
-import numpy as np
-
-from fretc.logs import findings
+from fretc.logs import containers, findings
 from fretc.logs.first_messages import Examples
-from fretc.logs.mcap.container import MAGIC, BrokenError
-from fretc.logs.mcap.contents import contents
+from fretc.logs.mcap.container import BrokenError
 from fretc.logs.mcap.damage import Damage
 from fretc.logs.mcap.messages import Sink
 from fretc.logs.messages.decoding import decoder, numbers
-from fretc.logs.messages.json_messages import message_paths as stated_fields
 from fretc.logs.signals.integrity import Checked, Integrity
-from fretc.logs.signals.samples import Gap, Recording, Samples, Topic
-from fretc.logs.signals.stamps import JUMP, Stamps, stamps, still
-from fretc.logs.storage import bags, refusals
+from fretc.logs.signals.samples import Gap, Recording, Samples
+from fretc.logs.storage import refusals
 from fretc.logs.storage.bags import NOWHERE
 from fretc.logs.storage.folders import METADATA, Folder, folder, is_folder, of_all
 from fretc.logs.storage.inputs import Input, opened, shown
 from fretc.logs.storage.parts import Numbered, Part, around, widened
-from fretc.logs.storage.splits import ACTIVE, run_name, split, unclosed_backup
-from fretc.logs.topic_columns import Column, Columns
+from fretc.logs.storage.splits import ACTIVE, run_name, split
+from fretc.logs.topic_columns import Columns
+from fretc.logs.topics import clocks, never_stated, topic
 from fretish.bindings.declarations import Declarations, Signal
 from fretish.clock import Clock
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.source import Source, Span
-from fretish.reading.limits import grant, within
+from fretish.reading.limits import within
 
 _MOST_TICKS = 20_000_000
 
@@ -180,7 +175,7 @@ def _tried(
 def _file(
     path: str, log: Input, sink: Sink, integrity: Integrity, place: Span
 ) -> _Run | Diagnostic:
-    part = _part(log, sink, integrity, place)
+    part = containers.part(log, sink, integrity, place)
     if isinstance(part, Diagnostic):
         return part
     if part.span is None:
@@ -206,57 +201,6 @@ def _alone(path: str, place: Span) -> Iterator[Diagnostic]:
     yield refusals.part_of_a_run(about.files.index(name), len(about.files), whole, place)
 
 
-def _part(log: Input, sink: Sink, integrity: Integrity, place: Span) -> Part | Diagnostic:
-    """The messages of one file; or what keeps the whole file from being read.
-
-    Raises:
-        BrokenError: the file is not as its index says.
-    """
-    grant(log.size)
-    part = _taken(log, sink, integrity, place)
-    return findings.changed(place) if log.changed() else part
-
-
-def _taken(log: Input, sink: Sink, integrity: Integrity, place: Span) -> Part | Diagnostic:
-    log.stream.seek(0)
-    start = log.stream.read(16)
-    if not start:
-        return findings.empty(place)
-    if integrity is not Integrity.INDEX:
-        log.begin()
-    if start.startswith((bags.BAG, bags.DB3)):
-        if log.file is None or log.same is None:
-            return refusals.bag_of_no_file(place)
-        found = bags.read(log.file, log.same, start, sink, place)
-        if isinstance(found, Diagnostic):
-            return found
-        damages = (*found.damages, *_reindexed(log.file, found.span))
-        return Part(log.sha256(), log.size, found.span, damages, found.notes)
-    if not start.startswith(MAGIC):
-        return findings.not_a_log(start, place)
-    held = contents(log.stream, log.size, sink, integrity)
-    if held.span is not None:
-        digest = log.sha256() if held.checked.hashed else held.summary_sha256
-        notes = (refusals.without_crc(place),) if held.unprotected else ()
-        return Part(digest, log.size, held.span, held.damages, notes, held.checked)
-    if held.cut is not None:
-        return findings.truncated(held.cut, place)
-    if held.damages:
-        return findings.nothing_whole(held.damages[0][0], place)
-    return Part(log.sha256(), log.size, None, ())
-
-
-def _reindexed(file: str, span: Gap | None) -> Iterator[tuple[Damage, Gap | None]]:
-    """What a bag has lost that was mended by `rosbag reindex`."""
-    backup = unclosed_backup(file)
-    if backup is not None and span is not None:
-        what = (
-            f"it was reindexed, and the chunk that was being written when its recording broke off "
-            f"is not in it (`{backup}` is beside it)"
-        )
-        yield Damage(NOWHERE, what, code=Code.REINDEXED), (span[1], span[1])
-
-
 def _folder(
     about: Folder | Diagnostic, one: Sink, integrity: Integrity, place: Span
 ) -> _Run | Diagnostic:
@@ -271,7 +215,9 @@ def _folder(
     for file in places:
         sink.next_file()
         with opened(file.source.name) as log:
-            found.append(log if isinstance(log, Diagnostic) else _part(log, sink, integrity, file))
+            found.append(
+                log if isinstance(log, Diagnostic) else containers.part(log, sink, integrity, file)
+            )
     parts = [part for part in found if isinstance(part, Part)]
     spans = [part.span for part in parts if part.span is not None]
     if not spans:
@@ -334,110 +280,15 @@ def _recording(
         samples=samples,
         ticks=columns.ticks(),
         gaps=gaps,
-        topics={name: _topic(column) for name, column in sorted(columns.topics.items())},
+        topics={name: topic(column) for name, column in sorted(columns.topics.items())},
         nearest=columns.nearest,
         findings=(
             *columns.findings(),
-            *_clocks(columns, wanted),
-            *_never_stated(samples, examples, wanted),
+            *clocks(columns, wanted),
+            *never_stated(samples, examples, wanted),
             *findings.few(told, place),
             *run.notes,
         ),
         intact=not run.damages,
         checked=run.checked,
-    )
-
-
-def _never_stated(
-    samples: Mapping[str, Samples], examples: Examples, wanted: Sequence[Signal]
-) -> list[Diagnostic]:
-    """About signals that are unknown in all messages, in JSON that has no such field."""
-    found = []
-    for signal in wanted:
-        values = samples[signal.name].values
-        payloads = examples.of(signal.path.topic)
-        if not payloads or not len(values) or not np.isnan(values).all():
-            continue
-        known = stated_fields(payloads)
-        if ".".join(signal.path.fields) not in {path.removesuffix("[:]") for path in known}:
-            found.append(findings.never_stated(signal, known))
-    return found
-
-
-def _clocks(columns: Columns, wanted: Sequence[Signal]) -> list[Diagnostic]:
-    """What is odd about the clocks of the topics that the signals read."""
-    found = list(_unmoved(columns))
-    ahead: dict[str, int] = {}
-    signals = {
-        signal.path.topic: signal for signal in wanted if signal.path.topic in columns.topics
-    }
-    for topic, signal in signals.items():
-        column = columns.topics[topic]
-        clock = _stamps(column)
-        if clock is not None and clock.jumps:
-            found.append(findings.clock_jumps(signal, clock.jumps, clock.largest))
-        if clock is not None and not column.unstamped:
-            ahead[topic] = clock.ahead
-    middle = median(ahead.values()) if ahead else 0
-    true = min(ahead, key=lambda topic: (abs(ahead[topic] - middle), abs(ahead[topic])), default="")
-    for topic, shift in ahead.items():
-        if abs(shift - ahead[true]) > JUMP:
-            found.append(findings.mixed_clocks(signals[topic], true, shift - ahead[true]))
-    return found
-
-
-def _unmoved(columns: Columns) -> Iterator[Diagnostic]:
-    """About clocks that were never set, or that stand still."""
-    for topic, place in columns.readers().items():
-        column, time = columns.topics[topic], columns.clock.time
-        if zero := int(column.unset.sum()):
-            yield findings.zero_stamps(topic, place, zero, column.count, time)
-        if same := still(column.stamps()[~column.unset]):
-            yield findings.still_clock(topic, place, same, column.count, time)
-
-
-def _stamps(column: Column) -> Stamps | None:
-    """Of the messages that the declared clock has a time for."""
-    known = ~column.unset
-    return stamps(np.array(column.logs, np.int64)[known], column.stamps()[known])
-
-
-def _topic(column: Column) -> Topic:
-    if column.stated:
-        return _counted(column)
-    times = np.sort(column.stamps())
-    steps = np.diff(times)
-    clock = _stamps(column) if column.bound else None  # of another there are only log times
-    return Topic(
-        name=column.name,
-        type=column.type,
-        encoding=column.encoding,
-        count=column.count,
-        first_ns=int(times[0]) if len(times) else None,
-        last_ns=int(times[-1]) if len(times) else None,
-        longest_gap_ns=int(steps.max(initial=0)),
-        out_of_order=column.late(),
-        equal_stamps=int((steps == 0).sum()),
-        median_period_ns=int(np.median(steps)) if len(steps) else None,
-        unstamped=column.unstamped,
-        zero_stamps=int(column.unset.sum()),
-        clock_jumps=clock.jumps if clock is not None else 0,
-    )
-
-
-def _counted(column: Column) -> Topic:
-    """A topic whose messages were only counted."""
-    return Topic(
-        name=column.name,
-        type=column.type,
-        encoding=column.encoding,
-        count=column.count,
-        first_ns=None,
-        last_ns=None,
-        longest_gap_ns=None,
-        out_of_order=None,
-        equal_stamps=None,
-        unstamped=None,
-        zero_stamps=None,
-        clock_jumps=None,
     )

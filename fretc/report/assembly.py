@@ -22,7 +22,6 @@ from fretc.report.model.headlines import broken, outdated
 from fretc.report.model.views import (
     SCHEMA,
     Count,
-    Mark,
     NotShown,
     Overall,
     Planned,
@@ -30,6 +29,7 @@ from fretc.report.model.views import (
     RequirementView,
     Signatures,
     Withdrawal,
+    sign_mark,
     verdict_mark,
     worst_first,
 )
@@ -47,6 +47,7 @@ from fretc.report.traceability.lock import Lock, Withdrawn, withdrawn
 from fretc.report.traceability.waivers import Waiver
 from fretc.verification.ajpf_results import merged
 from fretc.verification.reader import Proofs
+from fretish.diagnostics import signs
 from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity, has_errors
 from fretish.diagnostics.source import Source
 from monitors import kernel
@@ -153,10 +154,10 @@ def _not_shown(view: RequirementView) -> NotShown:
 
 # In words --------------------------------------------------------------------------------------
 
-_ALL = Mark("all shown", "✔", "satisfied")
-_PART = Mark("not all shown", "◔", "inconclusive")
-_NONE = Mark("nothing shown", "○", "not-exercised")
-_BROKEN = Mark("violated", "✘", "violated")
+_ALL = sign_mark("all shown", signs.GOOD)
+_PART = sign_mark("not all shown", signs.OPEN)
+_NONE = sign_mark("nothing shown", signs.UNUSED)
+_BROKEN = sign_mark("violated", signs.BAD)
 
 
 def _overall(

@@ -7,6 +7,9 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from enum import StrEnum
 
+from fretish.diagnostics import signs
+from fretish.diagnostics.signs import Sign
+
 FILE, ALL_RUNS, PROOFS = "the file", "all runs", "proofs"
 """In the place of a run."""
 
@@ -17,6 +20,13 @@ class Finding(StrEnum):
     STANDS = "stands"
     DIFFERS = "differs"
     UNKNOWN = "not checked"
+
+
+SIGNS: Mapping[Finding, Sign] = {
+    Finding.STANDS: signs.GOOD,
+    Finding.DIFFERS: signs.BAD,
+    Finding.UNKNOWN: signs.UNKNOWN,
+}
 
 
 @dataclass(frozen=True, slots=True)

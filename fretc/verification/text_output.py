@@ -17,6 +17,8 @@ from compiler.logic.claims import (
     Trace,
     Vacuous,
 )
+from fretish.diagnostics import signs
+from fretish.diagnostics.signs import Sign
 from monitors.kernel.verdicts import Truth
 
 Line = tuple[str, str | None]
@@ -31,9 +33,9 @@ def lines(evidence: Sequence[Evidence]) -> Iterator[Line]:
         max(len(one.layer) for one in evidence),
     ]
     for one in evidence:
-        glyph, colour = _mark(one.result)
-        head = f"{glyph} {one.requirement:<{widths[0]}}  {one.layer:<{widths[1]}}"
-        yield f"{head}  {_result(one, numbers)}", colour
+        sign = _sign(one.result)
+        head = f"{sign.glyph} {one.requirement:<{widths[0]}}  {one.layer:<{widths[1]}}"
+        yield f"{head}  {_result(one, numbers)}", sign.colour
         if isinstance(one.result, Counterexample) and one.result.trace is not None:
             for row in table(one.result.trace):
                 yield f"    {row}", None
@@ -49,16 +51,16 @@ def _numbers(evidence: Sequence[Evidence]) -> Mapping[str, int]:
     return {text: number for number, text in enumerate(texts, 1)}
 
 
-def _mark(result: Result) -> tuple[str, str]:
+def _sign(result: Result) -> Sign:
     match result:
         case Proved():
-            return "✔", "green"
+            return signs.GOOD
         case Counterexample():
-            return "✘", "red"
+            return signs.BAD
         case Vacuous():
-            return "∅", "bright_black"
+            return signs.EMPTY
         case NotChecked():
-            return "?", "magenta"
+            return signs.UNKNOWN
         case _:
             assert_never(result)
 

@@ -19,7 +19,8 @@ from compiler.targets.ajpf import properties as ajpf
 from compiler.targets.python import interceptor, monitor
 from compiler.targets.target import stem
 from fretc.verification.engines import sandbox as processes
-from fretc.verification.engines.provers import stated, with_crosshair, with_dafny
+from fretc.verification.engines.crosshair import stated, with_crosshair
+from fretc.verification.engines.dafny import with_dafny
 from fretc.verification.engines.sandbox import Limits, Stopped
 from fretc.verification.interceptor.contracts import contracts
 from fretc.verification.interceptor.file import head, otherwise

@@ -14,7 +14,7 @@ import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import PurePosixPath
-from typing import Literal
+from typing import Literal, assert_never
 
 from compiler.agents.psl_grammar import AGENT, FUNCTOR, KEY_WORDS
 from compiler.agents.psl_printing import property_text
@@ -44,8 +44,6 @@ from fretish.reading.recursion import deep
 HOLDS: Literal["HOLDS"] = "HOLDS"
 VIOLATED: Literal["VIOLATED"] = "VIOLATED"
 _WEAKEN = Options(weaken=True)
-_COUNTING = (s.Next, s.Within, s.For, s.After)
-"""A reasoning cycle of an agent is many states: a number of them means nothing, not even 0."""
 _MOST_LEVELS = 500
 _MONITOR = "check it with `--emit monitor`"
 
@@ -119,7 +117,7 @@ def _can_be_weakened(rule: Rule) -> bool:
     """
     scope = rule.sentence.scope
     negates = scope is not None and scope.kind.negates
-    return isinstance(rule.sentence.timing, s.Within) and not negates
+    return s.deadline(rule.sentence.timing) is not None and not negates
 
 
 # Refusals ---------------------------------------------------------------------------------------
@@ -146,7 +144,7 @@ def _refused_timing(rule: Rule, options: Options) -> Diagnostic | None:
                 )
                 return _not(rule, f"`{name}`", mend)
     timing = rule.sentence.timing
-    if not isinstance(timing, _COUNTING) or weakened(rule, options):
+    if not _counts_states(timing) or weakened(rule, options):
         return None
     mend = f"AJPF has no next, no past and no time; {_MONITOR}"
     if _can_be_weakened(rule):
@@ -157,6 +155,18 @@ def _refused_timing(rule: Rule, options: Options) -> Diagnostic | None:
     elif options.weaken:
         mend = f"no weaker form of it says anything of use: {_MONITOR}"
     return _not(rule, f"the timing `{printing_of(timing)}`", mend)
+
+
+def _counts_states(timing: s.Timing) -> bool:
+    """A reasoning cycle of an agent is many states: a number of them means nothing, not even 0."""
+    extent = s.SHAPES[type(timing)].extent
+    match extent:
+        case s.Extent.NEXT | s.Extent.DURATION | s.Extent.BEYOND:
+            return True
+        case s.Extent.TRIGGER | s.Extent.LAST | s.Extent.INTERVAL | s.Extent.STOP:
+            return False
+        case _:
+            assert_never(extent)
 
 
 def _refused_name(rule: Rule) -> Diagnostic | None:
@@ -234,10 +244,10 @@ def _controls(rule: Rule, key: str) -> Iterator[tuple[str, f.Formula, str]]:
     negates = duty.scope is not None and duty.scope.negates
     # What `never` forbids, an `only` scope demands outside of its mode, and the other way round: a
     # prohibition is kept by not responding, and nothing is wrong with that.
-    if negates is isinstance(timing, s.Never):
+    if negates is (s.SHAPES[type(timing)].quantifier is s.Quantifier.NONE):
         reason = f"the response comes; if it never does, {key} holds without it"
         yield "resp", f.globally(f.not_(response)), reason
-    if isinstance(timing, s.Before) and not negates:
+    if s.stop(timing) and s.SHAPES[type(timing)].quantifier is s.Quantifier.SOME and not negates:
         reason = f"the stop condition comes; if it never does, {key} demands nothing"
         yield "stop", f.globally(f.not_(duty.demand.stop)), reason
 
@@ -269,8 +279,7 @@ def remark(rule: Rule, options: Options = DEFAULT) -> Diagnostic | None:
         return _warning(rule, Code.WEAKENED, message, "check the bound with `--emit monitor`")
     sentence = rule.sentence
     scope = sentence.scope.kind if sentence.scope else None
-    now = isinstance(sentence.timing, s.Immediately | s.Always | s.Until)
-    if not now or (scope is not None and scope.negates):
+    if not _begins_at_once(sentence.timing) or (scope is not None and scope.negates):
         return None
     if sentence.condition is None and scope in (None, s.ScopeKind.NOT_IN, s.ScopeKind.BEFORE):
         return _warning(
@@ -337,3 +346,15 @@ TARGET = Target(
     _remark,
     weak=Target("ajpf", _SUMMARY, emit, _refuse_weak, _remark_weak),
 )
+
+
+def _begins_at_once(timing: s.Timing) -> bool:
+    """Whether the response has to be true in the state of the trigger."""
+    shape = s.SHAPES[type(timing)]
+    match shape.extent:
+        case s.Extent.TRIGGER | s.Extent.INTERVAL | s.Extent.STOP:
+            return shape.quantifier is s.Quantifier.ALL
+        case s.Extent.NEXT | s.Extent.LAST | s.Extent.DURATION | s.Extent.BEYOND:
+            return False
+        case _:
+            assert_never(shape.extent)

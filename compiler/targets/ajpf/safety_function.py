@@ -144,11 +144,11 @@ def _responses(rule: Rule) -> tuple[str, ...] | Diagnostic:
 def _percepts(sentence: s.Sentence) -> tuple[str, ...]:
     """The propositions of scope, condition and stop condition, which the environment draws."""
     assert sentence.condition is not None
-    timing = sentence.timing
+    stop = s.stop(sentence.timing)
     expressions = [
         *([sentence.scope.mode] if sentence.scope else []),
         sentence.condition.expression,
-        *([timing.stop] if isinstance(timing, s.Until | s.Before) else []),
+        *([stop] if stop else []),
     ]
     return tuple(dict.fromkeys(name.id for part in expressions for name in e.names(part)))
 

@@ -11,6 +11,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from functools import lru_cache
+from typing import assert_never
 
 from compiler.formalization.letters import occurring, parts
 from compiler.formalization.obligation import Kind, obligation
@@ -165,9 +166,6 @@ _PHASES: Mapping[Phase, str] = {
     Phase.OVER: "not enforced any more",
 }
 
-COUNTING = (Kind.WITHIN, Kind.FOR, Kind.AFTER, Kind.NOT_AFTER)
-"""The demands whose counter counts ticks."""
-
 
 def _counter_words(demanded: Kind, count: int) -> str:
     match demanded:
@@ -192,6 +190,8 @@ def _counter_words(demanded: Kind, count: int) -> str:
         case Kind.NOT_AFTER:
             ago = [str(k + 1) for k in range(count.bit_length()) if count >> k & 1]
             return f"open since {', '.join(ago)} ticks ago"
+        case _:
+            assert_never(demanded)
 
 
 def _ticks(count: int) -> str:

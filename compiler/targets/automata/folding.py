@@ -9,10 +9,10 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 
-from compiler.formalization.obligation import Kind
+from compiler.formalization.obligation import TRAITS, Trait
 from compiler.formalization.reference import Letter, State
 from compiler.formalization.rule import Rule
-from compiler.targets.automata.chart import COUNTING, START, Chart, chart, kind, words
+from compiler.targets.automata.chart import START, Chart, chart, kind, words
 
 VIOLATED, SATISFIED = "violated", "satisfied"
 OPEN = ("open", "open twice", "owed")
@@ -69,7 +69,9 @@ class _Folding:
         self.demanded = kind(rule)
         self.scoped = rule.sentence.scope is not None
         self.ticks = unfolded.template.ticks
-        self.registers = self.demanded is Kind.NOT_AFTER and rule.sentence.condition is not None
+        self.traits = TRAITS[self.demanded]
+        triggered = rule.sentence.condition is not None
+        self.registers = Trait.REGISTERS in self.traits and triggered
         self.groups: dict[object, list[int]] = {}
         for index, state in enumerate(unfolded.states):
             self.groups.setdefault(self._key(index, state), []).append(index)
@@ -86,7 +88,7 @@ class _Folding:
         count = state.counted
         if self.registers:
             count = 0  # conditions on edges show its triggers
-        elif self.demanded in COUNTING:
+        elif Trait.COUNTS in self.traits:
             count = (count > 0) - (count < 0)
         return state.phase, state.held, count
 
@@ -109,9 +111,9 @@ class _Folding:
         count = self.chart.states[index].counted
         if self.registers:
             return count
-        if self.demanded not in COUNTING or count == 0:
+        if Trait.COUNTS not in self.traits or count == 0:
             return None
-        if self.demanded is Kind.NOT_AFTER:
+        if Trait.REGISTERS in self.traits:
             return count.bit_length()
         return abs(count)
 
@@ -121,7 +123,7 @@ class _Folding:
         counts = sorted(k for index in members if (k := self._count(index)) is not None)
         if counts and not self.registers:  # one k stands for the ticks of all members
             word = 1 if self.scoped else 0
-            phrases[word] = "owed" if self.demanded is Kind.FOR else OPEN[state.counted < 0]
+            phrases[word] = "owed" if Trait.DOWN in self.traits else OPEN[state.counted < 0]
         return Node(
             self.names[members[0]],
             tuple(phrases),

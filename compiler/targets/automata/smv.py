@@ -16,7 +16,7 @@ from pathlib import PurePosixPath
 from compiler.files.artifact import Artifact
 from compiler.files.templating import render
 from compiler.formalization.letters import atoms_of
-from compiler.formalization.obligation import Kind, Obligation, obligation
+from compiler.formalization.obligation import TRAITS, Obligation, Trait, obligation
 from compiler.formalization.record import wording
 from compiler.formalization.rule import Rule
 from compiler.logic import printing
@@ -100,8 +100,9 @@ def _specs(
     prefix, instance = names
     ft, pt = printing.text(rule.ft_infinite, dialect), printing.text(rule.pt, dialect)
     safe = f"(G (!{instance}.violated))"
-    unmet = demanded.demand.kind in (Kind.EVENTUALLY, Kind.FINALLY)
-    if demanded.demand.kind is Kind.EVENTUALLY:
+    traits = TRAITS[demanded.demand.kind]
+    unmet = Trait.UNMET in traits
+    if unmet and Trait.LAST not in traits:
         safe = f"({safe} & (G (F (!{instance}.unmet))))"
     ends = f"(!{instance}.violated{f' & !{instance}.unmet' if unmet else ''})"
     specs = [

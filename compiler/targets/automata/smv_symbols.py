@@ -11,7 +11,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import assert_never
 
-from compiler.formalization.obligation import Kind, Obligation
+from compiler.formalization.obligation import TRAITS, Kind, Obligation, Trait
 from fretish.syntax import ConditionKind, ScopeKind
 
 Cases = tuple[tuple[str, str], ...]
@@ -54,7 +54,7 @@ def monitor(obligation: Obligation) -> Module:
     `unmet` (a demand is open that the end of the interval would break).
     """
     counter = _counter(obligation)
-    stops = obligation.demand.kind in (Kind.UNTIL, Kind.BEFORE)
+    stops = Trait.STOPS in TRAITS[obligation.demand.kind]
     has = {
         "mode": obligation.scope is not None,
         "condition": obligation.condition is not None,

@@ -17,6 +17,7 @@ from pathlib import PurePosixPath
 from compiler.files.artifact import Artifact
 from compiler.files.edition import __version__
 from compiler.files.templating import render
+from compiler.formalization.obligation import TRAITS, Trait, obligation
 from compiler.formalization.rule import Rule, plain
 from compiler.logic import printing
 from compiler.targets.python.program import (
@@ -33,6 +34,7 @@ from fretish.checking import LOOK_AHEAD, calls, conditions
 from fretish.clock import assumed_ticks
 from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
 from fretish.expressions import depth
+from fretish.reading.recursion import deep
 from monitors.source_text import kernel
 
 
@@ -83,6 +85,7 @@ _ASKS_FOR_FIRST = re.compile(r'^[^"].*\bFTP\b')
 """An atom whose text has the first tick in it; a quoted name only looks like one."""
 
 
+@deep
 def remark(rule: Rule) -> Diagnostic | None:
     """F203: after any prefix of a run, both verdicts are still possible.
 
@@ -92,11 +95,9 @@ def remark(rule: Rule) -> Diagnostic | None:
     """
     sentence = rule.sentence
     scope = sentence.scope.kind if sentence.scope else None
-    if sentence.condition is None:
-        return None
-    later = scope in (None, s.ScopeKind.AFTER) and isinstance(sentence.timing, s.Eventually)
-    negated = scope is s.ScopeKind.ONLY_BEFORE and isinstance(sentence.timing, s.Always | s.Never)
-    if not later and not negated:
+    owed = TRAITS[obligation(sentence, rule.ticks or 0).demand.kind]
+    later = Trait.UNMET in owed and Trait.LAST not in owed
+    if sentence.condition is None or not later or not s.ends_with_run(scope):
         return None
     return Diagnostic(
         Code.NEVER_DECIDED,

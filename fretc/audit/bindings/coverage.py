@@ -20,6 +20,7 @@ from fretc.logs.reader import read
 from fretc.logs.signals.samples import Recording
 from fretc.logs.signals.traces import trace
 from fretish.bindings.declarations import Declarations, Signal
+from fretish.diagnostics import signs
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.rendering import as_json, visible
 
@@ -92,8 +93,8 @@ class Coverage:
 
     def _lines(self, name: str) -> Iterator[tuple[str, str | None]]:
         took_both = self._took_both(name)
-        glyph, colour = ("✔", "green") if took_both else ("?", "magenta")
-        yield f"{glyph} {name}: {_expression(self.declarations, name)}", colour
+        sign = signs.GOOD if took_both else signs.UNKNOWN
+        yield f"{sign.glyph} {name}: {_expression(self.declarations, name)}", sign.colour
         for signal in self.declarations.propositions[name].signals:
             yield f"    {_bound(self.declarations.signals[signal])}", None
         width = max((len(log.run) for log in self.logs), default=0)
@@ -111,10 +112,16 @@ class Coverage:
             if phases.text
         ]
         if told:
-            yield "? phase of the ticks: verdicts depend on it", "magenta"
+            yield (
+                f"{signs.UNKNOWN.glyph} phase of the ticks: verdicts depend on it",
+                signs.UNKNOWN.colour,
+            )
             yield from ((line, None) for line in told)
         elif self._phased:
-            yield "✔ phase of the ticks: no verdict depends on it", "green"
+            yield (
+                f"{signs.GOOD.glyph} phase of the ticks: no verdict depends on it",
+                signs.GOOD.colour,
+            )
 
     def _record(self) -> dict[str, Any]:
         return {

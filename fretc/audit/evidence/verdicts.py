@@ -1,4 +1,4 @@
-"""Every verdict: its sign, its colour and what other tools take it for, the worst first.
+"""Every verdict: its sign and what other tools take it for, the worst first.
 
 A verdict is what the evidence shows. Whether it is about the requirement as it is now is another
 fact, its currency: a verdict is suspect where something that it rests on has changed. A suspect
@@ -14,6 +14,8 @@ from dataclasses import dataclass
 from enum import StrEnum
 
 from fretc.audit.measurements.confidence_intervals import REFUTED, SUPPORTED
+from fretish.diagnostics import signs
+from fretish.diagnostics.signs import Sign
 from monitors import kernel
 
 UNFORMALIZED = "unformalized"
@@ -34,13 +36,10 @@ class Level(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Verdict:
-    """A verdict as it is shown and counted; `kind` is its class in the report's style sheet."""
+    """A verdict as it is shown and counted."""
 
     word: str
-    glyph: str
-    kind: str
-    colour: str
-    """In a terminal."""
+    sign: Sign
     level: Level
     junit: str
     """The element of JUnit for it; empty: the case passes."""
@@ -50,17 +49,17 @@ _ERROR, _WARNING, _NONE = Level.ERROR, Level.WARNING, Level.NONE
 VERDICTS: Mapping[str, Verdict] = {
     each.word: each
     for each in (
-        Verdict(kernel.VIOLATED, "✘", "violated", "red", _ERROR, "failure"),
-        Verdict(REFUTED, "✘", "violated", "red", _ERROR, "failure"),
-        Verdict(UNFORMALIZED, "!", "unformalized", "red", _ERROR, "error"),
-        Verdict(kernel.NO_DATA, "?", "no-data", "magenta", _WARNING, "error"),
-        Verdict(kernel.INCONCLUSIVE, "◔", "inconclusive", "yellow", _WARNING, "skipped"),
-        Verdict(kernel.VACUOUS, "∅", "vacuous", "bright_black", _WARNING, "skipped"),
-        Verdict(NOT_EXERCISED, "○", "not-exercised", "bright_black", _WARNING, "skipped"),
-        Verdict(WAIVED, "w", "waived", "blue", _WARNING, "skipped"),
-        Verdict(SUPPORTED, "✔", "satisfied", "green", _NONE, ""),
-        Verdict(kernel.SATISFIED, "✔", "satisfied", "green", _NONE, ""),
-        Verdict(RETIRED, "\N{EN DASH}", "retired", "bright_black", _NONE, "skipped"),
+        Verdict(kernel.VIOLATED, signs.BAD, _ERROR, "failure"),
+        Verdict(REFUTED, signs.BAD, _ERROR, "failure"),
+        Verdict(UNFORMALIZED, signs.FLAWED, _ERROR, "error"),
+        Verdict(kernel.NO_DATA, signs.UNKNOWN, _WARNING, "error"),
+        Verdict(kernel.INCONCLUSIVE, signs.OPEN, _WARNING, "skipped"),
+        Verdict(kernel.VACUOUS, signs.EMPTY, _WARNING, "skipped"),
+        Verdict(NOT_EXERCISED, signs.UNUSED, _WARNING, "skipped"),
+        Verdict(WAIVED, signs.WAIVED, _WARNING, "skipped"),
+        Verdict(SUPPORTED, signs.GOOD, _NONE, ""),
+        Verdict(kernel.SATISFIED, signs.GOOD, _NONE, ""),
+        Verdict(RETIRED, signs.RETIRED, _NONE, "skipped"),
     )
 }
 """That of several runs is the worst of theirs."""

@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 
 from compiler.formalization import predicates
 from compiler.formalization.future import demanded_at, end_marker
-from compiler.formalization.obligation import Demand, Kind, Obligation, obligation
+from compiler.formalization.obligation import TRAITS, Demand, Obligation, Trait, obligation
 from compiler.formalization.past import staged
 from compiler.formalization.rule import Rule
 from compiler.logic.evaluation import evaluate_unknown
@@ -49,10 +49,6 @@ def chance(rule: Rule) -> Chance | None:
     return Chance(odds.op, odds.digits, told)
 
 
-_LASTING = (Kind.ALWAYS, Kind.UNTIL, Kind.BEFORE)
-"""They only forbid: they are met when the log ends, if nothing has broken them."""
-
-
 @deep
 def trials(told: Obligation, columns: Mapping[str, Column], ticks: int) -> Trials:
     """What each trigger of one run came to.
@@ -74,7 +70,8 @@ def trials(told: Obligation, columns: Mapping[str, Column], ticks: int) -> Trial
     ahead = (1 << longer) - (1 << ticks)
     unending = {name: Column(c.true, c.unknown | ahead) for name, c in columns.items()}
     shown = evaluate_unknown(met, unending, longer)
-    at_end = evaluate_unknown(met, columns, ticks).true if demand.kind in _LASTING else 0
+    forbids = Trait.FORBIDS in TRAITS[demand.kind]
+    at_end = evaluate_unknown(met, columns, ticks).true if forbids else 0
     answered = triggers.true & (shown.true | at_end)
     failed = triggers.true & ~(shown.true | shown.unknown)
     return Trials(
@@ -87,7 +84,7 @@ def trials(told: Obligation, columns: Mapping[str, Column], ticks: int) -> Trial
 
 def _met(demand: Demand, end: Formula) -> Formula:
     """The formula at a trigger; where the end of its interval is unknown, it still comes."""
-    if demand.kind is Kind.FINALLY and demand.response == FALSE:
+    if Trait.LAST in TRAITS[demand.kind] and demand.response == FALSE:
         return FALSE
     return demanded_at(demand, end)
 

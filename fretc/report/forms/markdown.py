@@ -11,6 +11,7 @@ from collections.abc import Iterator
 from fretc.audit.evidence.verdicts import SUSPECT
 from fretc.report.model.phrases import visible
 from fretc.report.model.views import Mark, Report, RequirementView, worst_first
+from fretish.diagnostics import signs
 
 _MARKUP = re.compile(r"([\\`*_{}\[\]()<>#+!|~&:@-])")
 _LISTED = 50
@@ -56,7 +57,8 @@ def _row(view: RequirementView) -> str:
 
 
 def _verdict(mark: Mark) -> str:
-    return f"{mark.glyph} {mark.word}, ⚠ {SUSPECT}" if mark.suspect else f"{mark.glyph} {mark.word}"
+    suspect = f", {signs.SUSPECT.glyph} {SUSPECT}" if mark.suspect else ""
+    return f"{mark.glyph} {mark.word}{suspect}"
 
 
 def _changes(report: Report) -> Iterator[str]:

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from fretc.audit.evidence.verdicts import SUSPECT, VERDICTS, severity, shows
 from fretc.report.model.pictures import Histogram, Timeline
 from fretc.report.traceability.artefacts import Product
+from fretish.diagnostics.signs import Sign
 
 SCHEMA = "fretc-report-1"
 
@@ -44,8 +45,12 @@ class Mark:
 
 def verdict_mark(word: str, *, suspect: bool = False) -> Mark:
     """A verdict as it is shown."""
-    found = VERDICTS[word]
-    return Mark(word, found.glyph, found.kind, suspect)
+    return sign_mark(word, VERDICTS[word].sign, suspect=suspect)
+
+
+def sign_mark(word: str, sign: Sign, *, suspect: bool = False) -> Mark:
+    """Any outcome as it is shown."""
+    return Mark(word, sign.glyph, sign.kind, suspect)
 
 
 @dataclass(frozen=True, slots=True)

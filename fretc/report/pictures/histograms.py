@@ -122,7 +122,7 @@ def _without(unanswered: int, waiting: int) -> str:
 
 def _seconds_allowed(rule: Rule | None) -> float | None:
     """What `within` allows, where a tick is a time."""
-    if rule is None or not isinstance(rule.sentence.timing, syntax.Within):
+    if rule is None or syntax.deadline(rule.sentence.timing) is None:
         return None
     if rule.clock is None or rule.clock.period is None or rule.ticks is None:
         return None

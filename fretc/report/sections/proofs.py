@@ -16,15 +16,16 @@ from compiler.logic.claims import (
 )
 from compiler.project.interceptor_options import ASSUMED
 from fretc.report.model import phrases
-from fretc.report.model.views import Mark, ProofView, RequirementView
+from fretc.report.model.views import Mark, ProofView, RequirementView, sign_mark
 from fretc.report.traceability.artefacts import Product
 from fretc.verification.reader import Proof
+from fretish.diagnostics import signs
 
 _MARKS: Mapping[str, Mark] = {
-    COUNTEREXAMPLE: Mark(COUNTEREXAMPLE, "✘", "violated"),
-    NOT_CHECKED: Mark(NOT_CHECKED, "?", "no-data"),
-    VACUOUS: Mark(VACUOUS, "∅", "vacuous"),
-    PROVED: Mark(PROVED, "✔", "satisfied"),
+    COUNTEREXAMPLE: sign_mark(COUNTEREXAMPLE, signs.BAD),
+    NOT_CHECKED: sign_mark(NOT_CHECKED, signs.UNKNOWN),
+    VACUOUS: sign_mark(VACUOUS, signs.EMPTY),
+    PROVED: sign_mark(PROVED, signs.GOOD),
 }
 """The worst first, as for verdicts."""
 _OF_MONITOR = (str(Layer.MONITOR), str(Layer.LOOP), str(Layer.BOUNDS))

@@ -138,7 +138,7 @@ def _latency(result: Result, rule: Rule | None) -> Latency | None:
         median=phrases.seconds(median(result.latencies)),
         longest=f"{phrases.seconds(longest)}{after}",
         longest_s=longest,
-        is_bounded=rule is None or not isinstance(rule.sentence.timing, syntax.Eventually),
+        is_bounded=rule is None or not syntax.is_eventual(rule.sentence.timing),
         bound=_bound(rule),
         waits=_waits(result),
     )
@@ -148,17 +148,16 @@ def _bound(rule: Rule | None) -> str:
     """What the sentence says about how long the response may take."""
     if rule is None:
         return ""
-    match rule.sentence.timing:
-        case syntax.Eventually(written):
-            how = "says `eventually`" if written else "gives no timing, which means `eventually`"
-            return (
-                f"No bound was required: the sentence {how}, so a response satisfies it however "
-                "late it comes."
-            )
-        case syntax.Within():
-            return f"The sentence allows {span(rule.ticks or 0, rule.clock)}."
-        case _:
-            return ""
+    if syntax.deadline(rule.sentence.timing):
+        return f"The sentence allows {span(rule.ticks or 0, rule.clock)}."
+    if not syntax.is_eventual(rule.sentence.timing):
+        return ""
+    word = syntax.timing_key(rule.sentence)
+    how = "gives no timing, which means `eventually`" if word == "null" else f"says `{word}`"
+    return (
+        f"No bound was required: the sentence {how}, so a response satisfies it however late it "
+        "comes."
+    )
 
 
 def _waits(result: Result) -> tuple[str, ...]:

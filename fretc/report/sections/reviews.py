@@ -8,17 +8,18 @@ from fretc.attestation.signatures import Book
 from fretc.audit.evidence.verdicts import SUSPECT
 from fretc.report.model import phrases
 from fretc.report.model.claims import Claim, thing
-from fretc.report.model.views import Change, Listing, Mark, ReviewView, WaiverView
+from fretc.report.model.views import Change, Listing, ReviewView, WaiverView, sign_mark
 from fretc.report.sections.signatures import of_review, of_waiver
 from fretc.report.traceability.chain import Suspect
 from fretc.report.traceability.comparison import Difference, difference
 from fretc.report.traceability.lock import Withdrawn
+from fretish.diagnostics import signs
 
 _LISTED = 40
-_ACCEPTED = Mark("reviewed", "✔", "satisfied")
-_UNSIGNED = Mark("reviewed", "◔", "inconclusive")
-_OPEN = Mark("not reviewed", "○", "not-exercised")
-_SUSPECT = Mark(SUSPECT, "⚠", SUSPECT)
+_ACCEPTED = sign_mark("reviewed", signs.GOOD)
+_UNSIGNED = sign_mark("reviewed", signs.OPEN)
+_OPEN = sign_mark("not reviewed", signs.UNUSED)
+_SUSPECT = sign_mark(SUSPECT, signs.SUSPECT)
 
 
 def review(claim: Claim, book: Book) -> ReviewView:

@@ -8,13 +8,14 @@ from dataclasses import dataclass
 from compiler.project.folder import Project
 from fretc.audit.evidence.reader import Checked, Evidence, Finding, Result, Topic
 from fretc.report.model import phrases
-from fretc.report.model.views import Mark, Remark, RunView, TopicView
+from fretc.report.model.views import Remark, RunView, TopicView, sign_mark
+from fretish.diagnostics import signs
 from fretish.diagnostics.diagnostic import Severity
 
 _NONE = "\N{EN DASH}"
-_INTACT = Mark("no damage found", "✔", "satisfied")
-_DAMAGED = Mark("damaged", "✘", "violated")
-_UNREAD = Mark("not readable", "?", "no-data")
+_INTACT = sign_mark("no damage found", signs.GOOD)
+_DAMAGED = sign_mark("damaged", signs.BAD)
+_UNREAD = sign_mark("not readable", signs.UNKNOWN)
 
 
 @dataclass(frozen=True, slots=True)

@@ -10,15 +10,16 @@ from fretc.attestation.statement import Subject
 from fretc.audit.evidence.reader import Evidence
 from fretc.report.model import phrases
 from fretc.report.model.claims import Claim
-from fretc.report.model.views import Mark, Signatures, SignatureView, Signed
+from fretc.report.model.views import Signatures, SignatureView, Signed, sign_mark
 from fretc.report.traceability.lock import Review
 from fretc.report.traceability.waivers import Waiver
 from fretc.verification.reader import Proofs
+from fretish.diagnostics import signs
 from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
 
-_SIGNED = Mark("signed", "✔", "satisfied")
-_UNSIGNED = Mark("unauthenticated", "◔", "inconclusive")
-BROKEN = Mark("does not verify", "✘", "violated")
+_SIGNED = sign_mark("signed", signs.GOOD)
+_UNSIGNED = sign_mark("unauthenticated", signs.OPEN)
+BROKEN = sign_mark("does not verify", signs.BAD)
 
 
 def of_review(book: Book, review: Review) -> SignatureView:

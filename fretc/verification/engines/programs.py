@@ -18,6 +18,11 @@ _LIMITED = f'ulimit -c 0; ulimit -f {_MOST_OUTPUT // 512}; ulimit -d "$0" && exe
 """For `sh`: no core file, no endless output, and memory as data: what a run time reserves and
 never writes does not count."""
 
+MEMORY = 4 * 2**30
+"""Bytes for each process of a prover."""
+STARTED = 30.0
+"""Seconds in which a prover tells its version, or has read its text."""
+
 
 @dataclass(frozen=True, slots=True)
 class Ran:

@@ -9,10 +9,9 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from typing import Any, NamedTuple
 
-from fretc.verification.interceptor.file import core
 from fretc.verification.interceptor.heard import (
     COMMAND,
     RELEASE,
@@ -24,14 +23,11 @@ from fretc.verification.interceptor.heard import (
     after,
     first,
 )
-from fretc.verification.interceptor.opaque import InspectedError, Opaque, is_opaque, is_zero
+from fretc.verification.interceptor.machine import Core, NotAnInterceptorError
+from fretc.verification.interceptor.opaque import InspectedError, Opaque, is_opaque
 from monitors.interceptor import Options
 
 Key = tuple[object, ...]
-
-
-class _StrangeError(Exception):
-    """Nothing can be said, and why."""
 
 
 @dataclass(slots=True)
@@ -68,12 +64,9 @@ def explored(
         broken: whether a step breaks a contract, for each contract.
         most: states.
     """
-    read = core(text)
-    if isinstance(read, str):
-        return read
     try:
-        return _Walk(read.module, options, broken, most).search()
-    except _StrangeError as error:
+        return _Walk(text, options, broken, most).search()
+    except NotAnInterceptorError as error:
         return str(error)
 
 
@@ -90,23 +83,19 @@ class _Walk:
     """The breadth-first walk through the product of the core and what was heard."""
 
     def __init__(
-        self, module: Any, options: Options, broken: Sequence[Callable[[Moment], bool]], most: int
+        self, text: str, options: Options, broken: Sequence[Callable[[Moment], bool]], most: int
     ) -> None:
-        self.module, self.declared, self.broken, self.most = module, options, broken, most
-        self.fields = tuple(getattr(module.State, "__dataclass_fields__", ()))
-        try:
-            self.options = module.Options(**asdict(options))
-        except TypeError as error:
-            raise _StrangeError(f"its options are others: {error}") from None
-        own = getattr(module, "OPTIONS", self.options)
-        if own != self.options:
-            raise _StrangeError("its options are not those that are declared")
-        self.tokens = tuple(Opaque() for _ in range(2 * len(self.fields) + 4))
+        self.core = Core(text, options)
+        self.declared, self.broken, self.most = options, broken, most
+        own = getattr(self.core.module, "OPTIONS", self.core.options)
+        if own != self.core.options:
+            raise NotAnInterceptorError("its options are not those that are declared")
+        self.tokens = tuple(Opaque() for _ in range(2 * len(self.core.fields) + 4))
 
     def search(self) -> Search:
         """Until no new state is found."""
         seen = first(self.declared)
-        state = self._called(lambda: self.module.initial(self.options))
+        state = self.core.initial()
         place = self._normal(state, seen)
         found = Search({place.key: None}, {})
         for i in self._wrong(Moment(seen, "", seen, "nothing", state)):
@@ -114,7 +103,7 @@ class _Walk:
         queue = deque([place])
         while queue:
             if len(found.came) > self.most:
-                raise _StrangeError(
+                raise NotAnInterceptorError(
                     f"it has more than {self.most} states: make the period in [interceptor] longer"
                 )
             queue.extend(self._from(queue.popleft(), found))
@@ -122,12 +111,12 @@ class _Walk:
 
     def _from(self, place: _Place, found: Search) -> Iterator[_Place]:
         """The new ones that one message leads to."""
-        state = self.module.State(**place.values)
+        state = self.core.module.State(**place.values)
         kept = {id(place.seen.last), *map(id, place.values.values())}
         command = next(token for token in self.tokens if id(token) not in kept)
         for heard, message in self._messages(command):
             found.steps += 1
-            then, said = self._step(state, message)
+            then, said = self.core.step(state, message)
             now = after(place.seen, heard, command, self.declared)
             told = self._told(said, now)
             step = (place.key, heard, told, now)
@@ -139,28 +128,12 @@ class _Walk:
                 yield target
 
     def _messages(self, command: object) -> Iterator[tuple[str, Any]]:
-        module = self.module
-        yield STOP, self._called(lambda: module.StopHeard(True))
-        yield RELEASE, self._called(lambda: module.StopHeard(False))
-        yield COMMAND, self._called(lambda: module.CommandHeard(command))
-        yield SCAN, self._called(lambda: module.ScanHeard())
-        yield RING, self._called(lambda: module.TimerRang())
-
-    def _step(self, state: Any, message: Any) -> tuple[Any, Any]:
-        given = self._called(lambda: self.module.step(state, message, self.options))
-        if type(given) is not tuple or len(given) != 2:
-            raise _StrangeError("a step gives no state and command")
-        return given[0], given[1]
-
-    def _called(self, call: Callable[[], Any]) -> Any:
-        try:
-            return call()
-        except InspectedError:
-            raise _StrangeError(
-                "it looks into a command: what is shown with one would not hold for all"
-            ) from None
-        except Exception as error:
-            raise _StrangeError(f"a step fails: {type(error).__name__}: {error}") from None
+        module, called = self.core.module, self.core.called
+        yield STOP, called(module.StopHeard, True)
+        yield RELEASE, called(module.StopHeard, False)
+        yield COMMAND, called(module.CommandHeard, command)
+        yield SCAN, called(module.ScanHeard)
+        yield RING, called(module.TimerRang)
 
     def _wrong(self, moment: Moment) -> Iterator[int]:
         for i, broken in enumerate(self.broken):
@@ -168,25 +141,25 @@ class _Walk:
                 if broken(moment):
                     yield i
             except InspectedError:
-                raise _StrangeError("its state has a command in the place of a number") from None
+                raise NotAnInterceptorError(
+                    "its state has a command in the place of a number"
+                ) from None
             except (AttributeError, TypeError) as error:
-                raise _StrangeError(f"its state is another one: {error}") from None
+                raise NotAnInterceptorError(f"its state is another one: {error}") from None
 
     def _told(self, said: Any, now: Seen) -> str:
         if said is None:
             return "nothing"
         if is_opaque(said):
             return "last" if said is now.last else "other"
-        return "zero" if is_zero(said, self.module.Velocity) else "other"
+        return "zero" if self.core.is_zero(said) else "other"
 
     def _normal(self, state: Any, seen: Seen) -> _Place:
         """One of all states that differ only in which commands they hold."""
-        if type(state) is not self.module.State:
-            raise _StrangeError("a step gives no `State`")
         numbers: dict[int, int] = {}
         key: list[object] = []
         values: dict[str, Any] = {}
-        for name in self.fields:
+        for name in self.core.fields:
             value = getattr(state, name)
             if is_opaque(value):
                 number = numbers.setdefault(id(value), len(numbers))
@@ -195,11 +168,13 @@ class _Walk:
             elif value is None or isinstance(value, int | float):
                 values[name] = value
                 key.append((type(value), value))  # beyond 2^53 equal numbers add up differently
-            elif is_zero(value, self.module.Velocity):
-                values[name] = self.module.ZERO
+            elif self.core.is_zero(value):
+                values[name] = self.core.module.ZERO
                 key.append("zero")
             else:
-                raise _StrangeError(f"`{name}` of its state is neither a number nor a command")
+                raise NotAnInterceptorError(
+                    f"`{name}` of its state is neither a number nor a command"
+                )
         last = None
         if seen.last is not None:
             last = numbers.setdefault(id(seen.last), len(numbers))

@@ -8,12 +8,13 @@ propositional temporal logic, POPL 1986 (data independence).
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import fields
 from enum import Enum
 from typing import Any
 
 from fretc.verification.interceptor.file import core
 from fretc.verification.interceptor.opaque import InspectedError, Opaque, is_opaque, is_zero
+from monitors.interceptor import Options
 
 
 class NotAnInterceptorError(Exception):
@@ -42,60 +43,97 @@ _KEPT, _NEW = Opaque(), Opaque()
 """Velocities that move: the one that a state holds, and the next one that is heard."""
 
 
-@dataclass(frozen=True, slots=True)
-class Settings:
-    """The options of an interceptor by name, in ticks of its timer."""
+class Core:
+    """The core of an interceptor's text, executed; what it does wrong is NotAnInterceptorError."""
 
-    hold: int = 0
-    stop_timeout: int = 0
-    scan_timeout: int = 0
-    command_timeout: int = 0
-    event_driven: bool = False
-    latching: bool = False
+    def __init__(self, text: str, options: Options) -> None:
+        """Execute the definitions of a text that is known to be pure.
+
+        Args:
+            text: with the step.
+            options: its own, in ticks of its timer.
+        """
+        read = core(text)
+        if isinstance(read, str):
+            raise NotAnInterceptorError(read)
+        self.module = module = read.module
+        self.fields = tuple(getattr(module.State, "__dataclass_fields__", ()))
+        named = {field.name: getattr(options, field.name) for field in fields(options)}
+        try:
+            self.options = module.Options(**named)
+        except TypeError as error:
+            raise NotAnInterceptorError(f"its options are others: {error}") from None
+
+    def initial(self) -> Any:
+        """The state at first."""
+        return self.is_state(self.called(self.module.initial, self.options))
+
+    def step(self, state: Any, message: Any) -> tuple[Any, Any]:
+        """The state after a message, and what is published; None: nothing."""
+        given = self.called(self.module.step, state, message, self.options)
+        if type(given) is not tuple or len(given) != 2:
+            raise NotAnInterceptorError("a step gives no state and command")
+        return self.is_state(given[0]), given[1]
+
+    def is_state(self, state: Any) -> Any:
+        """The same, once it is known to be a `State` of the text."""
+        if type(state) is not self.module.State:
+            raise NotAnInterceptorError("a step gives no `State`")
+        return state
+
+    def is_zero(self, velocity: Any) -> bool:
+        """Whether it is a velocity of the text that stands."""
+        return is_zero(velocity, self.module.Velocity)
+
+    def called(self, function: Any, *arguments: Any) -> Any:
+        """What a function of the text gives."""
+        try:
+            return function(*arguments)
+        except InspectedError:
+            raise NotAnInterceptorError(
+                "it looks into a command: what is shown with one would not hold for all"
+            ) from None
+        except Exception as error:
+            why = f"a step fails: {type(error).__name__}: {error}"
+            raise NotAnInterceptorError(why) from None
 
 
 class Gate:
     """The step of an interceptor's text, over encoded states, each computed once."""
 
-    def __init__(self, text: str, settings: Settings, most: int = 10**6) -> None:
+    def __init__(self, text: str, options: Options, most: int = 10**6) -> None:
         """Raises NotAnInterceptorError where the text is none that can be explored.
 
         Args:
             text: with the step.
-            settings: its options.
+            options: its own, in ticks of its timer.
             most: states; where there are more, NotAnInterceptorError is raised, too.
         """
         self._most = most
-        read = core(text)
-        if isinstance(read, str):
-            raise NotAnInterceptorError(read)
-        self._module = module = read.module
-        named = {field.name: getattr(settings, field.name) for field in fields(settings)}
-        self._options = self._called(module.Options, **named)
-        self._fields = tuple(getattr(module.State, "__dataclass_fields__", ()))
-        if "command" not in self._fields:
+        self._core = Core(text, options)
+        self._module = module = self._core.module
+        self._options = self._core.options
+        if "command" not in self._core.fields:
             raise NotAnInterceptorError("its `State` has no `command`")
         self._events = {
-            Heard.STOP: self._called(module.StopHeard, True),
-            Heard.RELEASE: self._called(module.StopHeard, False),
-            Heard.MOVE: self._called(module.CommandHeard, _NEW),
-            Heard.STAND: self._called(module.CommandHeard, module.ZERO),
-            Heard.SCAN: self._called(module.ScanHeard),
-            Heard.RING: self._called(module.TimerRang),
+            Heard.STOP: self._core.called(module.StopHeard, True),
+            Heard.RELEASE: self._core.called(module.StopHeard, False),
+            Heard.MOVE: self._core.called(module.CommandHeard, _NEW),
+            Heard.STAND: self._core.called(module.CommandHeard, module.ZERO),
+            Heard.SCAN: self._core.called(module.ScanHeard),
+            Heard.RING: self._core.called(module.TimerRang),
         }
         self._known: dict[tuple[State, Heard], tuple[State, Said]] = {}
         self._objects: dict[State, Any] = {}
-        self.initial = self._encoded(self._called(module.initial, self._options))
+        self.initial = self._encoded(self._core.initial())
 
     def hear(self, state: State, heard: Heard) -> tuple[State, Said]:
         """The state after it, and what is published."""
         found = self._known.get((state, heard))
         if found is None:
             event = self._events[heard]
-            told = self._called(self._module.step, self._objects[state], event, self._options)
-            if type(told) is not tuple or len(told) != 2:
-                raise NotAnInterceptorError("its step gives no pair")
-            found = self._known[state, heard] = self._encoded(told[0]), self._said(told[1])
+            after, said = self._core.step(self._objects[state], event)
+            found = self._known[state, heard] = self._encoded(after), self._said(said)
         return found
 
     def stopping(self, state: State) -> bool:
@@ -117,19 +155,8 @@ class Gate:
         after, said = self._module.step(state, self._events[heard], self._options)
         return after, self._said(said)
 
-    def _called(self, function: Any, *arguments: Any, **named: Any) -> Any:
-        try:
-            return function(*arguments, **named)
-        except InspectedError:
-            raise NotAnInterceptorError("its step looks into a velocity") from None
-        except Exception as error:
-            why = f"{function.__name__} fails: {type(error).__name__}: {error}"
-            raise NotAnInterceptorError(why) from None
-
     def _encoded(self, state: Any) -> State:
-        if type(state) is not self._module.State:
-            raise NotAnInterceptorError("its step gives no State")
-        values = {name: getattr(state, name) for name in self._fields}
+        values = {name: getattr(state, name) for name in self._core.fields}
         moves = self._said(values["command"])
         if moves is None or not all(
             type(value) in (bool, int) for name, value in values.items() if name != "command"
@@ -148,6 +175,6 @@ class Gate:
             return None
         if is_opaque(velocity):
             return True
-        if is_zero(velocity, self._module.Velocity):
+        if self._core.is_zero(velocity):
             return False
         raise NotAnInterceptorError("it makes a velocity that it has not heard")

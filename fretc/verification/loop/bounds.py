@@ -32,7 +32,7 @@ from compiler.targets.python import monitor as target
 from fretc.verification.engines import sandbox as processes
 from fretc.verification.engines.sandbox import Limits, Stopped
 from fretc.verification.interceptor.file import is_original
-from fretc.verification.interceptor.machine import NotAnInterceptorError, Settings
+from fretc.verification.interceptor.machine import NotAnInterceptorError
 from fretc.verification.loop.abstraction import (
     ARRIVED,
     NONE,
@@ -53,6 +53,7 @@ from fretish.clock import in_words
 from fretish.diagnostics.source import Source
 from fretish.documents import Requirement
 from fretish.printer import canonical
+from monitors.interceptor import Options
 
 _MORE = "as many more, at least one, as `latency` and `braking` fill together"
 ANSWERED = f"every demand is answered within `lost` ticks and {_MORE}"
@@ -123,7 +124,7 @@ def _answered(query: Question | str) -> str:
 
 
 def _enough(rule: Rule) -> str:
-    if not isinstance(rule.sentence.timing, s.Within):
+    if s.deadline(rule.sentence.timing) is None:
         return "some bound is enough"
     return f"the bound of {_ticks(rule.ticks or 0)} is enough"
 
@@ -143,7 +144,7 @@ def question(rule: Rule, setup: Setup) -> Question | str:
     sentence = rule.sentence
     if sentence.scope is not None:
         return "it has a scope; only requirements about the whole run are looked at"
-    if not isinstance(sentence.timing, s.Within | s.Eventually):
+    if not (s.deadline(sentence.timing) or s.is_eventual(sentence.timing)):
         return "its timing is neither `within` nor `eventually`"
     if problem.settings.event_driven:
         return "an interceptor without a timer stops nothing before the next command"
@@ -152,7 +153,7 @@ def question(rule: Rule, setup: Setup) -> Question | str:
     if not _answers(sentence, problem.stands):
         return f"`{problem.stands}` alone does not answer it"
     assert rule.clock is not None
-    bound = rule.ticks if isinstance(sentence.timing, s.Within) else None
+    bound = rule.ticks if s.deadline(sentence.timing) else None
     if not is_same(problem.safety, problem.observer):
         return "the monitor is not the one that fretc writes for it, and only that is looked at"
     return Question(problem, sentence, bound, rule.clock.period or 0)
@@ -225,7 +226,7 @@ def _channel(declared: Channel, cells: int, latency: int, lost: int, braking: in
     )
 
 
-def _short(settings: Settings) -> Settings:
+def _short(settings: Options) -> Options:
     """The same settings with short times: the twin does not depend on them."""
     return replace(
         settings,

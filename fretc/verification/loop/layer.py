@@ -9,7 +9,7 @@ up.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from math import gcd
 
 from compiler.files.text_files import sha256
@@ -21,7 +21,6 @@ from compiler.targets.python import monitor as target
 from fretc.verification.engines import sandbox as processes
 from fretc.verification.engines.sandbox import Limits, Stopped
 from fretc.verification.interceptor.file import otherwise
-from fretc.verification.interceptor.machine import Settings
 from fretc.verification.loop.model import Channel
 from fretc.verification.loop.search import Case, Results, search
 from fretish.bindings.declarations import Assumed, Form, Interception, Planner, Requests
@@ -112,16 +111,10 @@ def case(rule: Rule, setup: Setup) -> Case | str:
         setup.monitor.text,
         target.text(rule),
         setup.interceptor.text,
-        settings(interception),
+        options(interception),
         declared,
         assumed.stands,
     )
-
-
-def settings(interception: Interception) -> Settings:
-    """The options of the interceptor, in ticks of its timer."""
-    core_options = options(interception)
-    return Settings(**{field.name: getattr(core_options, field.name) for field in fields(Settings)})
 
 
 def channel(rule: Rule, interception: Interception, assumed: Assumed) -> Channel | str:

@@ -13,11 +13,12 @@ from typing import assert_never
 from compiler.logic import formula as f
 from compiler.logic.claims import Counterexample, NotChecked, Proved, Result, Trace, Vacuous
 from compiler.logic.kripke import Explored, TooManyStatesError, check, explore
-from fretc.verification.interceptor.machine import Gate, NotAnInterceptorError, Settings
+from fretc.verification.interceptor.machine import Gate, NotAnInterceptorError
 from fretc.verification.loop.model import Channel, Environment, Loop, Node, Tick
 from fretc.verification.loop.replay import Watched, moments, replayed
 from fretc.verification.monitor.machine import Stepped
 from fretc.verification.monitor.text_check import strange
+from monitors.interceptor import Options
 from monitors.loading import load
 
 MOST_ATOMS = 8
@@ -43,7 +44,7 @@ class Case:
     observer: str
     """The text of the monitor that detects violations."""
     interceptor: str
-    settings: Settings
+    settings: Options
     channel: Channel
     stands: str
     limit: int = 10**6

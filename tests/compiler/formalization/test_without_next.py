@@ -9,9 +9,8 @@ import pytest
 import spot
 
 from compiler.formalization.future import future
-from compiler.formalization.obligation import Demand, Kind, Obligation, obligation
+from compiler.formalization.obligation import TRAITS, Demand, Kind, Obligation, Trait, obligation
 from compiler.formalization.without_next import (
-    COUNTING,
     is_next_free,
     is_proved,
     is_weaker,
@@ -93,7 +92,7 @@ def test_the_proof_at_emission_is_asked_of_every_shape() -> None:
     for scope in SCOPES:
         for condition in CONDITIONS:
             for kind in Kind:
-                assert is_proved(scope, condition, kind) is (kind not in COUNTING)
+                assert is_proved(scope, condition, kind) is (Trait.STEPS not in TRAITS[kind])
 
 
 def test_a_wrong_form_is_not_proved(monkeypatch: pytest.MonkeyPatch) -> None:

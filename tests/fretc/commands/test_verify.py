@@ -16,8 +16,8 @@ import pytest
 from compiler.files.templating import template_root
 from compiler.logic.claims import Evidence
 from fretc.verification import verify as layers
+from fretc.verification.engines import crosshair
 from fretc.verification.engines import programs as external
-from fretc.verification.engines import provers
 from fretc.verification.engines import sandbox as confined
 from fretc.verification.engines.programs import Ran
 from tests.command import Fretc, Run, write
@@ -538,9 +538,9 @@ def test_crosshair_is_given_the_core_and_the_limit(
     The contracts of one function are looked at, so that it takes seconds.
     """
     path, made = node
-    every = provers._contracts
+    every = crosshair._contracts
     monkeypatch.setattr(
-        provers, "_contracts", lambda text: [c for c in every(text) if c.function == "halted"]
+        crosshair, "_contracts", lambda text: [c for c in every(text) if c.function == "halted"]
     )
     limits: list[float] = []
     asked = external.run
@@ -549,7 +549,7 @@ def test_crosshair_is_given_the_core_and_the_limit(
         limits.append(seconds)
         return asked(*args, seconds=seconds, memory=memory)
 
-    monkeypatch.setattr(provers, "run", run)
+    monkeypatch.setattr(crosshair, "run", run)
     options = ("--layer", "interceptor", "--with", "crosshair", "--limit", "20")
     found = told(fretc("verify", *options, "--interceptor", made, path, "--format", "json"))[-2:]
     assert limits == [50], "20 s, and half a minute to begin"

@@ -10,8 +10,9 @@ import pytest
 
 from compiler.logic.claims import Counterexample, Layer, NotChecked, Proved, Result
 from compiler.targets.dafny import text
-from fretc.verification.engines import provers
-from fretc.verification.engines.provers import verified, with_crosshair, with_dafny
+from fretc.verification.engines import crosshair
+from fretc.verification.engines.crosshair import with_crosshair
+from fretc.verification.engines.dafny import verified, with_dafny
 from tests.compiler.targets.test_dafny import (
     BINDINGS,
     CONDITIONS,
@@ -320,7 +321,7 @@ def test_without_crosshair_each_contract_is_not_checked(monkeypatch: pytest.Monk
     def absent(name: str) -> str:
         raise PackageNotFoundError(name)
 
-    monkeypatch.setattr(provers, "version", absent)
+    monkeypatch.setattr(crosshair, "version", absent)
     found = with_crosshair(CORE)
     assert [one.claim for one in found] == [
         "`bounded` keeps `0 <= __return__`",
@@ -375,14 +376,14 @@ def test_velocities_that_nobody_looks_into_are_whole_numbers_for_crosshair() -> 
 def test_velocities_that_somebody_looks_into_stay_floats(body: str) -> None:
     looking = KEEPING.replace("return command", body)
     compile(looking, "core.py", "exec")
-    assert provers._with_whole_velocities(looking) is None
-    assert provers._with_whole_velocities(KEEPING) == KEEPING.replace("float = 0.0", "int = 0")
+    assert crosshair._with_whole_velocities(looking) is None
+    assert crosshair._with_whole_velocities(KEEPING) == KEEPING.replace("float = 0.0", "int = 0")
 
 
 @needs_crosshair
 def test_crosshair_confirms_a_step_of_the_interceptor() -> None:
     """The others take their time; all of them are looked at by the command."""
-    core = (Path(provers.__file__).parents[3] / "monitors/interceptor.py").read_text()
+    core = (Path(crosshair.__file__).parents[3] / "monitors/interceptor.py").read_text()
     alone = core.replace("    post:", "    told:").replace(
         "told: __return__ == (0", "post: __return__ == (0"
     )

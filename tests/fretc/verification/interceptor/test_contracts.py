@@ -12,9 +12,10 @@ from compiler.targets.python.interceptor import text
 from fretc.verification.interceptor.contracts import contracts
 from fretc.verification.interceptor.file import Core, Head, core, head
 from fretc.verification.interceptor.heard import COMMAND, RELEASE, RING, SCAN, STOP
-from fretc.verification.interceptor.machine import Gate, NotAnInterceptorError, Settings
+from fretc.verification.interceptor.machine import Gate, NotAnInterceptorError
 from fretish.bindings.declarations import Form, Interception
 from monitors.interceptor import Options
+from tests.loops import interceptor_options
 
 MS = 1_000_000
 NODE = Interception(
@@ -367,7 +368,7 @@ def test_a_core_that_may_not_be_pure_is_not_executed(old: str, new: str, told: s
     assert found.startswith("its core is not as fretc can read it: ")
     assert told in found or not new
     with pytest.raises(NotAnInterceptorError) as refused:
-        Gate(changed, Settings())
+        Gate(changed, interceptor_options())
     assert str(refused.value) == found
 
 
@@ -388,7 +389,7 @@ def test_a_node_that_changes_the_core_is_told(line: str) -> None:
     changed = mutant(("\n\nclass Gate:", f"\n\n{line}\n\nclass Gate:"))
     assert "the node below it" in reason(changed)
     with pytest.raises(NotAnInterceptorError, match="the node below it"):
-        Gate(changed, Settings())
+        Gate(changed, interceptor_options())
 
 
 @pytest.mark.parametrize(

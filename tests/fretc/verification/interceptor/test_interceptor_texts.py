@@ -16,24 +16,24 @@ from hypothesis import strategies as st
 
 from compiler.logic.claims import Proved
 from compiler.targets.python import interceptor
-from fretc.verification.engines.provers import stated
+from fretc.verification.engines.crosshair import stated
 from fretc.verification.interceptor.contracts import contracts
 from fretc.verification.interceptor.file import Head, core, head, otherwise
 from fretc.verification.interceptor.machine import (
     Gate,
     Heard,
     NotAnInterceptorError,
-    Settings,
 )
 from fretish.bindings.declarations import Form, Interception
 from monitors.interceptor import Options
 from tests.each import each
+from tests.loops import interceptor_options
 
 DECLARED = Interception(
     "/gwendolen_control", "/cmd_vel", "/cmd_vel_filtered", None, 50_000_000, 200_000_000
 )
 BASE = interceptor.text(DECLARED, "bindings.toml")
-SETTINGS = Settings(hold=4)
+SETTINGS = interceptor_options(hold=4)
 OPTIONS = Options(4, 0, 0, 0)
 BAD = """
 def step(state, event, options):

@@ -5,23 +5,23 @@ from dataclasses import replace
 import pytest
 
 from compiler.logic.claims import Counterexample, NotChecked, Proved
-from fretc.verification.interceptor.machine import Settings
 from fretc.verification.loop import abstraction as looptwin
 from fretc.verification.loop import bounds
 from fretc.verification.loop.abstraction import Numbers, Plain, Times, covered
 from fretc.verification.loop.bounds import Answer, Question, search
 from fretc.verification.loop.model import Channel, Loop
 from fretc.verification.loop.search import Parts
-from tests.loops import CORE, EVENTUALLY, WITHIN, case, edited
+from monitors.interceptor import Options
+from tests.loops import CORE, EVENTUALLY, WITHIN, case, edited, interceptor_options
 from tests.monitoring import rule
 
 HUNDRED_MS = 10**8
-USUAL = Settings(hold=4, stop_timeout=24)
+USUAL = interceptor_options(hold=4, stop_timeout=24)
 DECLARED = Channel(2, latency=2, lost=1, braking=4)
 
 
 def question(
-    sentence: str, settings: Settings = USUAL, channel: Channel = DECLARED, core: str = CORE
+    sentence: str, settings: Options = USUAL, channel: Channel = DECLARED, core: str = CORE
 ) -> Question:
     parsed = rule(sentence)
     return Question(
@@ -69,7 +69,7 @@ def test_without_a_bound_the_least_is_told() -> None:
     ],
 )
 def test_the_least_bound_is_the_one_that_is_proved(channel: Channel, least: int) -> None:
-    found = search(question(EVENTUALLY, Settings(), channel))
+    found = search(question(EVENTUALLY, interceptor_options(), channel))
     assert isinstance(found.enough, Proved)
     assert found.enough.detail.startswith(f"the least that is kept is {least} tick")
 
@@ -99,19 +99,19 @@ def test_small_times_say_nothing_of_long_ones_where_the_core_is_another() -> Non
     core = CORE
     for old, new in FORGETS:
         core = edited(core, old, new)
-    small = search(question(WITHIN.format(4), Settings(hold=1), core=core))
+    small = search(question(WITHIN.format(4), interceptor_options(hold=1), core=core))
     assert isinstance(small.enough, Proved), "under the declared times it is as good as any"
     assert isinstance(small.answered, NotChecked)
     assert small.answered.reason.startswith("the interceptor's core is not the one that fretc")
     large = Channel(1, latency=2, lost=40, braking=4)
     assert not isinstance(
-        search(question(EVENTUALLY, Settings(hold=1), large, core)).enough, Proved
+        search(question(EVENTUALLY, interceptor_options(hold=1), large, core)).enough, Proved
     )
 
 
 def test_a_twin_that_promises_too_much_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
     """Held against the loop with one lost message less than there is."""
-    loop = Parts.of(case(WITHIN.format(9), Settings(), Channel(1, lost=2))).loop
+    loop = Parts.of(case(WITHIN.format(9), interceptor_options(), Channel(1, lost=2))).loop
     assert covered(loop, 10**5, 9).uncovered is None
     loop.channel = replace(loop.channel, lost=1)
     monkeypatch.setattr(Loop, "_fates", lambda *_: [(True, 0), (False, 2)])
@@ -122,7 +122,7 @@ def test_a_twin_that_promises_too_much_is_found(monkeypatch: pytest.MonkeyPatch)
 
 def test_a_twin_whose_heart_beats_too_fast_is_found() -> None:
     loop = Parts.of(
-        case(WITHIN.format(9), Settings(), Channel(1, lost=1, edge=True, heartbeat=3))
+        case(WITHIN.format(9), interceptor_options(), Channel(1, lost=1, edge=True, heartbeat=3))
     ).loop
     assert covered(loop, 10**5, 9).uncovered is None
     right = looptwin.times_of
@@ -139,7 +139,7 @@ def test_an_invariant_that_is_too_strong_is_not_proved(monkeypatch: pytest.Monke
 
     real = bounds._invariant
     monkeypatch.setattr(bounds, "_invariant", too_strong)
-    found = search(question(EVENTUALLY, Settings(), Channel(1)))
+    found = search(question(EVENTUALLY, interceptor_options(), Channel(1)))
     assert found.answered == NotChecked("of the invariant: a step does not keep it")
 
 

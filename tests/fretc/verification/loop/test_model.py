@@ -5,11 +5,12 @@ from typing import Any, NamedTuple
 
 import pytest
 
-from fretc.verification.interceptor.machine import Heard, Settings
+from fretc.verification.interceptor.machine import Heard
 from fretc.verification.loop.model import Channel, Node, Wheels
 from fretc.verification.loop.search import Case, Parts
+from monitors.interceptor import Options
 from monitors.loading import load
-from tests.loops import LATCH, WITHIN, case
+from tests.loops import LATCH, WITHIN, case, interceptor_options
 
 MOVE, STAND = 2.5, 0.0
 """Metres a second: what the planner of the simulation says."""
@@ -37,7 +38,7 @@ class Simulation:
         self.monitor: Any = load("monitor", known.safety)
         self.core: dict[str, Any] = {}
         exec(compile(known.interceptor, "core", "exec", dont_inherit=True), self.core)
-        settings = {name: getattr(known.settings, name) for name in Settings.__slots__}
+        settings = {name: getattr(known.settings, name) for name in Options.__slots__}
         self.options = self.core["Options"](**settings)
         self.state = self.core["initial"](self.options)
         self.phase = self.choose.randint(1, PERIOD)
@@ -145,16 +146,22 @@ def _same(wheels: Wheels, row: Row) -> bool:
 @pytest.mark.parametrize(
     ("settings", "channel"),
     [
-        (Settings(hold=2, stop_timeout=6), Channel(2, latency=2, lost=1, braking=2)),
-        (Settings(), Channel(1, latency=2, lost=2, braking=1)),
-        (Settings(command_timeout=2), Channel(2, latency=1, braking=3, punctual=True)),
+        (interceptor_options(hold=2, stop_timeout=6), Channel(2, latency=2, lost=1, braking=2)),
+        (interceptor_options(), Channel(1, latency=2, lost=2, braking=1)),
+        (interceptor_options(command_timeout=2), Channel(2, latency=1, braking=3, punctual=True)),
         (LATCH, Channel(1, edge=True)),
-        (Settings(hold=1), Channel(3, latency=0, lost=1, edge=True, braking=1)),
-        (Settings(stop_timeout=5), Channel(1, latency=2, lost=1, edge=True, heartbeat=3)),
-        (Settings(hold=2), Channel(2, latency=3, lost=2, edge=True, braking=1, heartbeat=2)),
+        (interceptor_options(hold=1), Channel(3, latency=0, lost=1, edge=True, braking=1)),
+        (
+            interceptor_options(stop_timeout=5),
+            Channel(1, latency=2, lost=1, edge=True, heartbeat=3),
+        ),
+        (
+            interceptor_options(hold=2),
+            Channel(2, latency=3, lost=2, edge=True, braking=1, heartbeat=2),
+        ),
     ],
 )
-def test_every_simulated_tick_is_a_step_of_the_model(settings: Settings, channel: Channel) -> None:
+def test_every_simulated_tick_is_a_step_of_the_model(settings: Options, channel: Channel) -> None:
     known = case(WITHIN.format(30), settings, channel)
     for seed in range(6):
         simulation = Simulation(known, seed)
@@ -162,7 +169,9 @@ def test_every_simulated_tick_is_a_step_of_the_model(settings: Settings, channel
 
 
 def test_the_simulation_does_something() -> None:
-    known = case(WITHIN.format(30), Settings(hold=2), Channel(2, latency=2, lost=1, braking=2))
+    known = case(
+        WITHIN.format(30), interceptor_options(hold=2), Channel(2, latency=2, lost=1, braking=2)
+    )
     simulation = Simulation(known, 1)
     rows = [simulation.tick() for _ in range(200)]
     for column in ("near", "stopped", "request", "moving"):
@@ -171,7 +180,7 @@ def test_the_simulation_does_something() -> None:
 
 
 def test_a_run_says_what_is_heard_in_its_order() -> None:
-    loop = Parts.of(case(WITHIN.format(2), Settings(hold=1), Channel(1))).loop
+    loop = Parts.of(case(WITHIN.format(2), interceptor_options(hold=1), Channel(1))).loop
     tick, after = next(
         (tick, after)
         for tick, after in loop.steps(loop.initial)

@@ -13,10 +13,20 @@ from compiler.logic.claims import (
     Vacuous,
     status,
 )
-from fretc.verification.interceptor.machine import Settings
 from fretc.verification.loop.model import Channel
 from fretc.verification.loop.search import is_safety, search
-from tests.loops import CORE, EVENTUALLY, LATCH, TIMER, WITHIN, case, edited, with_safety
+from monitors.interceptor import Options
+from tests.loops import (
+    CORE,
+    EVENTUALLY,
+    LATCH,
+    TIMER,
+    WITHIN,
+    case,
+    edited,
+    interceptor_options,
+    with_safety,
+)
 
 EDGE = Channel(1, edge=True)
 
@@ -44,7 +54,7 @@ def trace(result: Result) -> list[str]:
     ids=["the paper's", "with a busy planner", "timer", "lossy", "lossy and on change only"],
 )
 def test_what_each_loop_keeps_within_two_ticks(
-    settings: Settings, channel: Channel, kept: str, released: str
+    settings: Options, channel: Channel, kept: str, released: str
 ) -> None:
     found = search(case(WITHIN.format(2), settings, channel))
     assert (status(found.kept), status(found.released)) == (kept, released)
@@ -80,7 +90,7 @@ def test_a_heartbeat_mends_what_is_lost_on_change_only() -> None:
 def test_a_watchdog_lets_go_where_the_heartbeat_is_faster(timeout: int, released: str) -> None:
     """Two cells to a tick: three ticks of silence, and no more."""
     beating = Channel(2, edge=True, heartbeat=3)
-    found = search(case(WITHIN.format(3), Settings(stop_timeout=timeout), beating))
+    found = search(case(WITHIN.format(3), interceptor_options(stop_timeout=timeout), beating))
     assert (status(found.kept), status(found.released)) == ("proved", released)
 
 
@@ -139,7 +149,7 @@ def test_a_loop_that_loses_two_messages_keeps_a_bound_of_three() -> None:
     ],
 )
 def test_latency_losses_and_braking_add_up(channel: Channel, least: int) -> None:
-    settings = Settings(hold=4, stop_timeout=24)
+    settings = interceptor_options(hold=4, stop_timeout=24)
     kept = status(search(case(WITHIN.format(least), settings, channel)).kept)
     short = "immediately" if least == 1 else f"within {least - 1} ticks"
     sentence = f"whenever near the sw shall {short} satisfy stopped"
@@ -157,7 +167,7 @@ def test_a_robot_may_stand_earlier_than_it_must() -> None:
 
 
 def test_a_watchdog_stops_a_robot_for_good_where_silence_is_normal() -> None:
-    found = search(case(WITHIN.format(2), Settings(stop_timeout=3), EDGE))
+    found = search(case(WITHIN.format(2), interceptor_options(stop_timeout=3), EDGE))
     assert (status(found.kept), status(found.released)) == ("proved", "counterexample")
 
 
@@ -189,7 +199,7 @@ def test_a_safety_function_that_is_a_tick_late_is_refuted() -> None:
         (
             FORWARDS,
             "return after, ZERO if command.vx > 1 else command",
-            "its step looks into a velocity",
+            "it looks into a command: what is shown with one would not hold for all",
         ),
         (
             "return replace(state, scan_age=0), None",
@@ -205,27 +215,27 @@ def test_a_safety_function_that_is_a_tick_late_is_refuted() -> None:
             "return replace(state, scan_age=0), None",
             "after = replace(state, command=ZERO)\n    return (after, ZERO) if after == state "
             "else (state, None)",
-            "its step looks into a velocity",
+            "it looks into a command: what is shown with one would not hold for all",
         ),
         (
             FORWARDS,
             "return (after, None) if after == state else (after, command)",
-            "its step looks into a velocity",
+            "it looks into a command: what is shown with one would not hold for all",
         ),
         (
             "    return replace(state, scan_age=0), None",
             "    return state.command",
-            "its step gives no pair",
+            "a step gives no state and command",
         ),
         (
             "command=command, command_age=0",
             "command=command, stop=command, command_age=0",
-            "its step looks into a velocity",
+            "it looks into a command: what is shown with one would not hold for all",
         ),
         (
             "command=command, command_age=0",
             "command=command, held=command, command_age=0",
-            "its step looks into a velocity",
+            "it looks into a command: what is shown with one would not hold for all",
         ),
         ("def halted(", "def stopped(", "its core has no `halted`"),
         (
@@ -264,7 +274,7 @@ def test_a_demand_that_never_begins_is_vacuous() -> None:
 
 def test_a_robot_that_never_moves_is_vacuous() -> None:
     frozen = edited(CORE, "        stop=False,\n", "        stop=True,\n")
-    found = search(case(WITHIN.format(2), Settings(latching=True), core=frozen))
+    found = search(case(WITHIN.format(2), interceptor_options(latching=True), core=frozen))
     assert isinstance(found.kept, Vacuous)
     assert found.kept.detail.startswith("the robot never moves")
 

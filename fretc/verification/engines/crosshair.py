@@ -1,16 +1,14 @@
-"""Provers that are not ours: Dafny for `--emit dafny`, CrossHair for the interceptor's core.
+"""CrossHair, for the core of the interceptor.
 
-Both run in processes of their own, with limits. A proof is believed only where everything that a
-prover tells says so: a missing line, another exit status, fewer verified parts than the file has,
-and the claim is not checked. That a prover finds no proof refutes nothing.
+It runs in a process of its own, with limits. A proof is believed only where everything that it
+tells says so: a missing line, another exit status, fewer verified parts than the text has, and the
+claim is not checked. That it finds no proof refutes nothing.
 """
 
 from __future__ import annotations
 
 import ast
-import hashlib
 import re
-import shutil
 import sys
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
@@ -18,7 +16,7 @@ from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from compiler.formalization.rule import Rule
+from compiler.files.text_files import sha256
 from compiler.logic.claims import (
     Counterexample,
     Evidence,
@@ -27,157 +25,10 @@ from compiler.logic.claims import (
     Proved,
     Result,
 )
-from compiler.targets import dafny
-from compiler.targets.dafny_claims import claims
-from compiler.targets.target import stem
-from fretc.verification.engines.programs import Ran, run
-from fretish.bindings.declarations import Declarations
-
-_MEMORY = 4 * 2**30
-"""Bytes for each process of a prover."""
-
-
-_STARTED = 30.0
-"""Seconds in which a prover tells its version, or has read its text."""
-
-
-def _sha256(text: str) -> str:
-    return hashlib.sha256(text.encode()).hexdigest()
-
-
-# Dafny ----------------------------------------------------------------------------------------
-
-DAFNY_SECONDS = 300.0
-_ABSENT = (
-    "Dafny is not installed: put `dafny` on the PATH (Debian and Ubuntu: `apt-get install dafny`; "
-    "elsewhere: github.com/dafny-lang/dafny)"
-)
-_OTHER = "the text is not what fretc makes of this requirement: make it anew with `--emit dafny`"
-_FINISHED = re.compile(r"^Dafny program verifier finished with (\d+) verified, (\d+) errors?$")
-_ERROR = re.compile(r"^\S+?\.dfy\((\d+),\d+\): Error\b:?\s*(?:BP\d+: )?(.*)$")
-_MEMBER = re.compile(
-    r"^ *(?:(?:lemma|method|function|predicate)(?: \{[^}]*\})? (\w+)|(constructor))\b"
-)
-_OBLIGATION = re.compile(r"^ *(?:lemma|method|constructor)\b", re.MULTILINE)
-_VERSION = re.compile(r"\b(\d+)\.\d+[\w.+-]*")
-
-
-def with_dafny(
-    rule: Rule,
-    text: str,
-    declarations: Declarations | None,
-    *,
-    seconds: float = DAFNY_SECONDS,
-) -> tuple[Evidence, ...]:
-    """Let Dafny verify the file of a rule: one line for each claim of the file.
-
-    Dafny gives one verdict for a file. So either all claims are proved, or none is.
-
-    Args:
-        rule: one that the target does not refuse.
-        text: what `--emit dafny` made of it; of any other text nothing is claimed.
-        declarations: those that it was made with.
-        seconds: so long Dafny may take.
-    """
-    if text == dafny.text(rule, declarations):
-        result, engine = verified(text, seconds=seconds)
-    else:
-        result, engine = NotChecked(_OTHER), "Dafny"
-    artefacts = {f"{stem(rule)}.dfy": _sha256(text)}
-    return tuple(
-        Evidence(
-            rule.id,
-            claim.layer,
-            claim.sentence,
-            result if claim.unshown is None else NotChecked(claim.unshown),
-            engine,
-            claim.assumptions,
-            artefacts,
-        )
-        for claim in claims(rule, declarations)
-    )
-
-
-def verified(text: str, *, seconds: float = DAFNY_SECONDS) -> tuple[Result, str]:
-    """What Dafny says of a text, and the name and version of Dafny.
-
-    Proved: it verified at least every lemma, method and constructor, and found no error. Else not
-    checked, with the places at which it found no proof.
-    """
-    program = shutil.which("dafny")
-    if program is None:
-        return NotChecked(_ABSENT), "Dafny"
-    with TemporaryDirectory(prefix="fretc-") as name:
-        folder = Path(name)
-        try:
-            known = _version(program, folder)
-            if known is None:
-                return NotChecked("`dafny` tells no version: it is not Dafny"), "Dafny"
-            (folder / "text.dfy").write_text(text, encoding="utf-8")
-            command = [program, *_options(program, known, folder, seconds), "text.dfy"]
-            ran = run(command, folder, seconds=seconds, memory=_MEMORY)
-        except OSError as error:
-            return NotChecked(f"Dafny cannot be started: {error}"), "Dafny"
-    return _verdict(text, ran, seconds), f"Dafny {known}"
-
-
-def _version(program: str, folder: Path) -> str | None:
-    """As 2.x tells it above a complaint, and 4.x alone."""
-    for question in ("--version", "/version"):
-        ran = run([program, question], folder, seconds=_STARTED, memory=_MEMORY)
-        for line in ran.text.splitlines():
-            found = _VERSION.search(line)
-            if found and (line.startswith("Dafny ") or found.start() == 0):
-                return found.group()
-    return None
-
-
-def _options(program: str, known: str, folder: Path, seconds: float) -> list[str]:
-    """4 has commands; from some version on warnings are errors unless they are allowed."""
-    limit = max(int(seconds) - 1, 1)
-    if int(known.partition(".")[0]) < 4:
-        return ["/compile:0", f"/timeLimit:{limit}"]
-    told = run([program, "verify", "--help"], folder, seconds=_STARTED, memory=_MEMORY).text
-    allowed = [option for option in ("--allow-warnings",) if option in told]
-    return ["verify", f"--verification-time-limit={limit}", *allowed]
-
-
-def _verdict(text: str, ran: Ran, seconds: float) -> Result:
-    if ran.status is None:
-        return NotChecked(f"Dafny did not finish within {seconds:g} s")
-    lines = ran.text.splitlines()
-    unproved = [
-        f"`{_member(text, int(found[1]))}` (line {found[1]}): {found[2].strip().rstrip('.')}"
-        for line in lines
-        if (found := _ERROR.match(line))
-    ]
-    if unproved:
-        return NotChecked(f"Dafny finds no proof of {'; '.join(dict.fromkeys(unproved))}")
-    finished = [found for line in lines if (found := _FINISHED.match(line.strip()))]
-    if len(finished) != 1:
-        return NotChecked(f"Dafny ended with exit status {ran.status} and no verdict")
-    count, errors = map(int, finished[0].groups())
-    if ran.status != 0 or errors:
-        return NotChecked(f"Dafny tells of {errors} errors, and its exit status is {ran.status}")
-    least = len(_OBLIGATION.findall(text))
-    if count < least:
-        return NotChecked(f"Dafny verified {count} parts, and the file has at least {least}")
-    return Proved(f"{count} parts verified, among them all {least} lemmas and methods")
-
-
-def _member(text: str, line: int) -> str:
-    """What is declared at a line of the text or above it."""
-    for above in reversed(text.splitlines()[:line]):
-        found = _MEMBER.match(above)
-        if found:
-            return found[1] or found[2]
-    return "the file"
-
-
-# CrossHair ------------------------------------------------------------------------------------
+from fretc.verification.engines.programs import MEMORY, STARTED, Ran, run
 
 CROSSHAIR_SECONDS = 60.0
-_CROSSHAIR_ABSENT = "CrossHair is not installed: pip install 'fretc[crosshair]'"
+_ABSENT = "CrossHair is not installed: pip install 'fretc[crosshair]'"
 _MODULE = "interceptor_core"
 _WHOLE = "the numbers of a velocity are whole; no function names one of them"
 _APART = (ast.Subscript, ast.For, ast.Starred, ast.comprehension, ast.MatchSequence)
@@ -241,7 +92,7 @@ def with_crosshair(
             tell(name)
             found += _explored(whole or text, name, own, seconds)
         else:
-            found += [(_claim(contract), NotChecked(_CROSSHAIR_ABSENT)) for contract in own]
+            found += [(_claim(contract), NotChecked(_ABSENT)) for contract in own]
     return tuple(
         Evidence(
             requirement,
@@ -250,7 +101,7 @@ def with_crosshair(
             result,
             engine or "CrossHair",
             (_WHOLE,) if whole else (),
-            {"interceptor core": _sha256(text)},
+            {"interceptor core": sha256(text)},
         )
         for claim, result in found
     )
@@ -323,7 +174,7 @@ def _explored(
     with TemporaryDirectory(prefix="fretc-") as name:
         folder = Path(name)
         (folder / f"{_MODULE}.py").write_text(text, encoding="utf-8")
-        ran = run(command, folder, seconds=seconds + _STARTED, memory=_MEMORY)
+        ran = run(command, folder, seconds=seconds + STARTED, memory=MEMORY)
     told: dict[int, tuple[str, str]] = {}
     for line in ran.text.splitlines():
         if found := _TOLD.match(line):

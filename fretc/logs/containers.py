@@ -1,0 +1,90 @@
+"""The containers of logs, by the bytes with which a file begins: MCAP, and the bags of ROS."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+
+from fretc.logs import findings
+from fretc.logs.mcap.container import MAGIC
+from fretc.logs.mcap.contents import contents
+from fretc.logs.mcap.damage import Damage
+from fretc.logs.mcap.messages import Sink
+from fretc.logs.signals.integrity import Integrity
+from fretc.logs.signals.samples import Gap
+from fretc.logs.storage import bags, refusals
+from fretc.logs.storage.bags import NOWHERE
+from fretc.logs.storage.inputs import Input
+from fretc.logs.storage.parts import Part
+from fretc.logs.storage.splits import unclosed_backup
+from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.diagnostics.source import Span
+from fretish.reading.limits import grant
+
+
+def part(log: Input, sink: Sink, integrity: Integrity, place: Span) -> Part | Diagnostic:
+    """The messages of one file; or what keeps the whole file from being read.
+
+    Raises:
+        BrokenError: the file is not as its index says.
+    """
+    grant(log.size)
+    found = _read(log, sink, integrity, place)
+    return findings.changed(place) if log.changed() else found
+
+
+def _read(log: Input, sink: Sink, integrity: Integrity, place: Span) -> Part | Diagnostic:
+    log.stream.seek(0)
+    start = log.stream.read(_BEGINNING)
+    if not start:
+        return findings.empty(place)
+    if integrity is not Integrity.INDEX:
+        log.begin()
+    for magic, read in CONTAINERS.items():
+        if start.startswith(magic):
+            return read(log, start, sink, integrity, place)
+    return findings.not_a_log(start, place)
+
+
+def _bag(
+    log: Input, start: bytes, sink: Sink, integrity: Integrity, place: Span
+) -> Part | Diagnostic:
+    if log.file is None or log.same is None:
+        return refusals.bag_of_no_file(place)
+    found = bags.read(log.file, log.same, start, sink, place)
+    if isinstance(found, Diagnostic):
+        return found
+    damages = (*found.damages, *_reindexed(log.file, found.span))
+    return Part(log.sha256(), log.size, found.span, damages, found.notes)
+
+
+def _reindexed(file: str, span: Gap | None) -> Iterator[tuple[Damage, Gap | None]]:
+    """What a bag has lost that was mended by `rosbag reindex`."""
+    backup = unclosed_backup(file)
+    if backup is not None and span is not None:
+        what = (
+            f"it was reindexed, and the chunk that was being written when its recording broke off "
+            f"is not in it (`{backup}` is beside it)"
+        )
+        yield Damage(NOWHERE, what, code=Code.REINDEXED), (span[1], span[1])
+
+
+def _mcap(
+    log: Input, start: bytes, sink: Sink, integrity: Integrity, place: Span
+) -> Part | Diagnostic:
+    held = contents(log.stream, log.size, sink, integrity)
+    if held.span is not None:
+        digest = log.sha256() if held.checked.hashed else held.summary_sha256
+        notes = (refusals.without_crc(place),) if held.unprotected else ()
+        return Part(digest, log.size, held.span, held.damages, notes, held.checked)
+    if held.cut is not None:
+        return findings.truncated(held.cut, place)
+    if held.damages:
+        return findings.nothing_whole(held.damages[0][0], place)
+    return Part(log.sha256(), log.size, None, ())
+
+
+_BEGINNING = 16
+"""Bytes that tell what a file is; enough for each magic, and for saying what else it may be."""
+Container = Callable[[Input, bytes, Sink, Integrity, Span], Part | Diagnostic]
+"""What reads a file of one kind; it gets the first bytes, too."""
+CONTAINERS: Mapping[bytes, Container] = {MAGIC: _mcap, bags.BAG: _bag, bags.DB3: _bag}

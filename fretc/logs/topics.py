@@ -1,0 +1,113 @@
+"""What the topics of a log are, and what is odd about their fields and clocks."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from statistics import median
+
+import numpy as np
+
+from fretc.logs import findings
+from fretc.logs.first_messages import Examples
+from fretc.logs.messages.json_messages import message_paths as stated_fields
+from fretc.logs.signals.samples import Samples, Topic
+from fretc.logs.signals.stamps import JUMP, Stamps, stamps, still
+from fretc.logs.topic_columns import Column, Columns
+from fretish.bindings.declarations import Signal
+from fretish.diagnostics.diagnostic import Diagnostic
+
+
+def never_stated(
+    samples: Mapping[str, Samples], examples: Examples, wanted: Sequence[Signal]
+) -> list[Diagnostic]:
+    """About signals that are unknown in all messages, in JSON that has no such field."""
+    found = []
+    for signal in wanted:
+        values = samples[signal.name].values
+        payloads = examples.of(signal.path.topic)
+        if not payloads or not len(values) or not np.isnan(values).all():
+            continue
+        known = stated_fields(payloads)
+        if ".".join(signal.path.fields) not in {path.removesuffix("[:]") for path in known}:
+            found.append(findings.never_stated(signal, known))
+    return found
+
+
+def clocks(columns: Columns, wanted: Sequence[Signal]) -> list[Diagnostic]:
+    """What is odd about the clocks of the topics that the signals read."""
+    found = list(_unmoved(columns))
+    ahead: dict[str, int] = {}
+    signals = {
+        signal.path.topic: signal for signal in wanted if signal.path.topic in columns.topics
+    }
+    for topic, signal in signals.items():
+        column = columns.topics[topic]
+        clock = _stamps(column)
+        if clock is not None and clock.jumps:
+            found.append(findings.clock_jumps(signal, clock.jumps, clock.largest))
+        if clock is not None and not column.unstamped:
+            ahead[topic] = clock.ahead
+    middle = median(ahead.values()) if ahead else 0
+    true = min(ahead, key=lambda topic: (abs(ahead[topic] - middle), abs(ahead[topic])), default="")
+    for topic, shift in ahead.items():
+        if abs(shift - ahead[true]) > JUMP:
+            found.append(findings.mixed_clocks(signals[topic], true, shift - ahead[true]))
+    return found
+
+
+def _unmoved(columns: Columns) -> Iterator[Diagnostic]:
+    """About clocks that were never set, or that stand still."""
+    for topic, place in columns.readers().items():
+        column, time = columns.topics[topic], columns.clock.time
+        if zero := int(column.unset.sum()):
+            yield findings.zero_stamps(topic, place, zero, column.count, time)
+        if same := still(column.stamps()[~column.unset]):
+            yield findings.still_clock(topic, place, same, column.count, time)
+
+
+def _stamps(column: Column) -> Stamps | None:
+    """Of the messages that the declared clock has a time for."""
+    known = ~column.unset
+    return stamps(np.array(column.logs, np.int64)[known], column.stamps()[known])
+
+
+def topic(column: Column) -> Topic:
+    """What a log holds of a topic, and how its clock goes."""
+    if column.stated:
+        return _counted(column)
+    times = np.sort(column.stamps())
+    steps = np.diff(times)
+    clock = _stamps(column) if column.bound else None  # of another there are only log times
+    return Topic(
+        name=column.name,
+        type=column.type,
+        encoding=column.encoding,
+        count=column.count,
+        first_ns=int(times[0]) if len(times) else None,
+        last_ns=int(times[-1]) if len(times) else None,
+        longest_gap_ns=int(steps.max(initial=0)),
+        out_of_order=column.late(),
+        equal_stamps=int((steps == 0).sum()),
+        median_period_ns=int(np.median(steps)) if len(steps) else None,
+        unstamped=column.unstamped,
+        zero_stamps=int(column.unset.sum()),
+        clock_jumps=clock.jumps if clock is not None else 0,
+    )
+
+
+def _counted(column: Column) -> Topic:
+    """A topic whose messages were only counted."""
+    return Topic(
+        name=column.name,
+        type=column.type,
+        encoding=column.encoding,
+        count=column.count,
+        first_ns=None,
+        last_ns=None,
+        longest_gap_ns=None,
+        out_of_order=None,
+        equal_stamps=None,
+        unstamped=None,
+        zero_stamps=None,
+        clock_jumps=None,
+    )
