@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import click
 
@@ -121,9 +121,9 @@ def report(
     if made.report is None:
         raise SystemExit(BAD)
     wanted = {"html": html, **{name: path for name, path in forms.items() if path is not None}}
-    texts = _texts(made, project, evidence)
+    texts = _texts(made, project)
     read = filter(None, (bindings, hazards, verification, lock, waivers, signers, *said))
-    logs = [str(result["run"]) for result in _audited(evidence, made.report)]
+    logs = [result.run for result in made.results]
     _deliver(wanted, texts, [evidence, *files, *companions(files), *read, *dict.fromkeys(logs)])
     if has_errors([*project.diagnostics, *made.diagnostics]):
         raise SystemExit(BAD)
@@ -144,7 +144,7 @@ def _deliver(
     deliver(paths, read)
 
 
-def _texts(made: Made, project: Project, evidence: str) -> dict[str, Callable[[], str]]:
+def _texts(made: Made, project: Project) -> dict[str, Callable[[], str]]:
     """How each form is made; none before it is wanted."""
     from fretc.report.forms.csv_rows import csv_text
     from fretc.report.forms.gsn import gsn
@@ -160,9 +160,7 @@ def _texts(made: Made, project: Project, evidence: str) -> dict[str, Callable[[]
         "json_": lambda: made.json or "",
         "csv": lambda: csv_text(whole),
         "junit": lambda: junit(whole),
-        "sarif": lambda: sarif(
-            whole, _audited(evidence, whole), project.rules, said, project.without_rule
-        ),
+        "sarif": lambda: sarif(whole, made.results, project.rules, said, project.without_rule),
         "markdown": lambda: markdown(whole),
         "gsn": lambda: gsn(whole),
         "reqif": lambda: _reqif(whole),
@@ -174,19 +172,6 @@ def _reqif(whole: Report) -> str:
     from fretc.report.forms.reqif import reqif
 
     return reqif(whole)
-
-
-def _audited(evidence: str, whole: Report) -> Sequence[Mapping[str, Any]]:
-    """The results as the evidence has them: `make` has read it, so it is in shape."""
-    if not whole.evidence:
-        return ()
-    from fretc.audit.evidence.reader import document
-
-    found = document(evidence)
-    if isinstance(found, Diagnostic):  # it has changed since
-        stop(found)
-    results: Sequence[Mapping[str, Any]] = found["results"]
-    return results
 
 
 def _status(whole: Report) -> int:

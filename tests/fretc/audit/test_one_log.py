@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from compiler.files.records import plain
 from compiler.formalization.formalize import formalize
 from compiler.targets.python.monitor import text
 from fretc.audit.evidence.writer import Evidence, as_record
@@ -163,7 +164,7 @@ def test_a_trigger_after_the_last_whole_tick_leaves_the_run_open() -> None:
 
 
 def test_the_record_is_plain_json_with_times_in_nanoseconds() -> None:
-    record = as_record(audited(WITHIN, recorded([FAR, NEAR, FAR, FAR], [MOVING] * 4)))
+    record = plain(as_record(audited(WITHIN, recorded([FAR, NEAR, FAR, FAR], [MOVING] * 4))))
     (violation,) = record["violations"]
     assert (violation["start_ns"], violation["end_ns"]) == (3 * S, 3 * S)
     assert record["triggers"] == [{"tick": 1, "ns": S, "seconds": 1.0}]
