@@ -119,12 +119,12 @@ def test_the_window_goes_from_a_second_before_the_trigger_to_a_second_after_the_
     assert violation["window"]["end_ns"] == 8 * S
     assert violation["window"]["samples"] == {
         "d": {
-            "times_ns": [4 * S, 5 * S, 6 * S, 7 * S, 8 * S],
-            "values": [1.0, 0.01, 1.0, 1.0, 1.0],
+            "times_ns": (4 * S, 5 * S, 6 * S, 7 * S, 8 * S),
+            "values": (1.0, 0.01, 1.0, 1.0, 1.0),
         },
         "v": {
-            "times_ns": [4 * S, 5 * S, 6 * S, 7 * S, 8 * S],
-            "values": [0.4, 0.4, 0.4, 0.4, None],
+            "times_ns": (4 * S, 5 * S, 6 * S, 7 * S, 8 * S),
+            "values": (0.4, 0.4, 0.4, 0.4, None),
         },
     }
 
@@ -132,7 +132,7 @@ def test_the_window_goes_from_a_second_before_the_trigger_to_a_second_after_the_
 def test_an_infinite_sample_is_told_as_a_text() -> None:
     log = recorded([INF, NEAR, -INF, FAR, FAR], [MOVING] * 5)
     (violation,) = plain(as_record(audited(WITHIN, log)))["violations"]
-    assert violation["window"]["samples"]["d"]["values"] == ["+inf", 0.01, "-inf", 1.0, 1.0]
+    assert violation["window"]["samples"]["d"]["values"] == ("+inf", 0.01, "-inf", 1.0, 1.0)
 
 
 def test_the_sample_in_force_at_the_start_is_told_however_old_it_is() -> None:
