@@ -19,7 +19,7 @@ from compiler.formalization.record import wording
 from compiler.project.folder import Project, load
 from fretc.audit.evidence.basis import BINDINGS as BOUND
 from fretc.audit.evidence.basis import of_all
-from fretc.audit.evidence.writer import SCHEMA
+from fretc.audit.evidence.schema import SCHEMA
 from fretc.audit.plan import bases
 from fretc.report.make import make
 

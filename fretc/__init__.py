@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from fretc.api.streams import End as End
     from fretc.api.streams import Stream as Stream
     from fretc.api.streams import Tick as Tick
-    from fretc.audit.evidence.reader import Result as Result
+    from fretc.audit.evidence.schema import Result as Result
     from fretish.diagnostics.diagnostic import Diagnostic as Diagnostic
 
 _HOMES = {
@@ -41,7 +41,7 @@ _HOMES = {
     "Proof": "fretc.api.proofs",
     "Refusal": "fretc.api.refusal",
     "Report": "fretc.api.reports",
-    "Result": "fretc.audit.evidence.reader",
+    "Result": "fretc.audit.evidence.schema",
     "Rule": "compiler.formalization.rule",
     "Stream": "fretc.api.streams",
     "Tick": "fretc.api.streams",

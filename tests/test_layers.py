@@ -64,7 +64,7 @@ DOORS = {
     "mujoco": {"simulation/world/robot.py"},
     "matplotlib": {"simulation/picture.py"},
     "scipy": {"fretc/audit/measurements/binomial.py"},
-    "fastjsonschema": {"compiler/files/json_schema.py"},
+    "msgspec": {"compiler/files/records.py"},
     "rosbags": {
         "fretc/logs/messages/idl.py",
         "fretc/logs/storage/bags.py",

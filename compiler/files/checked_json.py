@@ -1,21 +1,18 @@
 """A value of a JSON file together with its path: every access to it is checked.
 
-A value of the wrong kind raises `MisshapenError` with the path; `fretc/audit/evidence/reader.py`
-turns that into a diagnostic.
+What is not as it must be raises `MisshapenError` with the path. Files whose types are known are
+read by `compiler/files/records.py`.
 """
 
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Collection, Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from math import isfinite
-from typing import NoReturn, TypeVar
+from typing import NoReturn
 
-T = TypeVar("T")
 _LARGEST = 2**63
-_LONGEST = 10**10
-"""Seconds: some three hundred years, more than 64 bits of nanoseconds hold."""
 _EXCERPT = 40
 
 
@@ -146,21 +143,11 @@ class Shape:
             raise self.wrong("a finite number")
         return self.value
 
-    def seconds(self) -> float:
-        """A number of seconds that a recorded run can last."""
-        if not 0 <= self.number() <= _LONGEST:
-            raise self.wrong("a number of seconds from the start of a run")
-        return self.number()
-
     def only(self, *keys: str) -> None:
         """Nothing else may be in an object."""
         for key in self._object():
             if key not in keys:
                 raise MisshapenError(f"{self.name} may not have `{key[:_EXCERPT]}`")
-
-    def or_none(self, read: Callable[[Shape], T]) -> T | None:
-        """None for null, else the result of `read`."""
-        return None if self.value is None else read(self)
 
     def wrong(self, wanted: str) -> MisshapenError:
         """The error of a value that is not `wanted`."""

@@ -9,12 +9,21 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import StrEnum
-from typing import TYPE_CHECKING, Any, assert_never
+from typing import Annotated, Any, Final, Literal, assert_never
 
-if TYPE_CHECKING:
-    from monitors.kernel.verdicts import Truth
+from compiler.files.records import (
+    UNSET,
+    Count,
+    Name,
+    Record,
+    Sha256,
+    UnsetType,
+    about,
+    json_schema,
+)
+from monitors.kernel.verdicts import Truth
 
-SCHEMA = "fretc-verification-1"
+SCHEMA: Final = "fretc-verification-1"
 
 
 class Layer(StrEnum):
@@ -39,22 +48,32 @@ METHODS = (*ALL, *PROVERS, *map(str, Layer))
 """Methods of `verify = [...]` that `fretc verify` can give a result for."""
 
 
-@dataclass(frozen=True, slots=True)
-class Trace:
+class Trace(Record, frozen=True):
     """A run as a table: a row for each tick."""
 
-    names: tuple[str, ...]
-    """Propositions and whatever else helps to read it, as heads of the columns."""
-    rows: tuple[tuple[Truth, ...], ...]
-    actions: tuple[str, ...] = ()
-    """The event at each row, in words; empty, or as many as rows."""
-    cycle: int | None = None
-    """The row to which the last one leads back for ever; None: the run ends."""
+    names: Annotated[
+        tuple[str, ...], about("propositions and whatever else helps to read it: heads of columns")
+    ]
+    rows: Annotated[
+        tuple[tuple[Truth, ...], ...],
+        about("a row for each tick, with a value for each name; null: unknown, or nothing to tell"),
+    ]
+    actions: Annotated[
+        tuple[str, ...], about("what happened at each row, in words; or nothing")
+    ] = ()
+    cycle: Annotated[
+        Count | None,
+        about("the row to which the last one leads back for ever; null: the run ends"),
+    ] = None
 
     def __post_init__(self) -> None:
-        assert all(len(row) == len(self.names) for row in self.rows)
-        assert len(self.actions) in (0, len(self.rows))
-        assert self.cycle is None or 0 <= self.cycle < len(self.rows)
+        """Raise ValueError where it is no table."""
+        if any(len(row) != len(self.names) for row in self.rows):
+            raise ValueError("Expected a value for each name in each row")
+        if len(self.actions) not in (0, len(self.rows)):
+            raise ValueError("Expected as many actions as rows, or none")
+        if self.cycle is not None and self.cycle >= len(self.rows):
+            raise ValueError("Expected the number of a row as the cycle")
 
 
 @dataclass(frozen=True, slots=True)
@@ -108,13 +127,16 @@ class Evidence:
     """Name of a file → SHA-256 of the text that was examined."""
 
 
-PROVED, COUNTEREXAMPLE, VACUOUS, NOT_CHECKED = "proved", "counterexample", "vacuous", "not checked"
-RESULTS = (PROVED, COUNTEREXAMPLE, VACUOUS, NOT_CHECKED)
-"""The name of each kind of result in every output."""
+PROVED: Final = "proved"
+COUNTEREXAMPLE: Final = "counterexample"
+VACUOUS: Final = "vacuous"
+NOT_CHECKED: Final = "not checked"
+Status = Literal["proved", "counterexample", "vacuous", "not checked"]
+"""What a result is called wherever it is written."""
 
 
-def status(result: Result) -> str:
-    """One of `RESULTS`."""
+def status(result: Result) -> Status:
+    """The name of a result."""
     match result:
         case Proved():
             return PROVED
@@ -128,38 +150,67 @@ def status(result: Result) -> str:
             assert_never(result)
 
 
-def document(fretc: str, evidence: Sequence[Evidence]) -> dict[str, Any]:
-    """The content of `build/verification.json`; equal for equal texts, at any time.
+class Proof(Record, frozen=True):
+    """One claim, and what is known of it, as it is written."""
+
+    requirement: Annotated[
+        Name, about("its id; or interceptor or agent, where the claim is about those")
+    ]
+    layer: Layer
+    claim: Name
+    result: Status
+    detail: Annotated[str, about("how much was looked at, or why nothing is known")]
+    assumptions: Annotated[
+        tuple[str, ...], about("what the result holds under, with where it is declared")
+    ]
+    engine: str
+    artefacts: Annotated[
+        dict[str, Sha256],
+        about("SHA-256 of each text that was looked at, by the name of its file"),
+    ]
+    trace: Trace | UnsetType = UNSET
+
+
+class Document(Record, frozen=True):
+    """What `build/verification.json` holds; the same for the same texts, whenever it is made."""
+
+    schema: Literal["fretc-verification-1"]
+    fretc: Annotated[str, about("version of the tool")]
+    evidence: tuple[Proof, ...]
+
+
+def document(fretc: str, evidence: Sequence[Evidence]) -> Document:
+    """What is written of the claims.
 
     Args:
         fretc: the version of the tool.
         evidence: in its order.
     """
-    return {"schema": SCHEMA, "fretc": fretc, "evidence": [as_record(each) for each in evidence]}
+    return Document(SCHEMA, fretc, tuple(map(proof, evidence)))
 
 
-def as_record(evidence: Evidence) -> dict[str, Any]:
-    """Plain values, in a fixed order of keys."""
+def proof(evidence: Evidence) -> Proof:
+    """What is written of a claim."""
     result = evidence.result
-    detail = result.reason if isinstance(result, NotChecked) else result.detail
     trace = result.trace if isinstance(result, Counterexample) else None
-    return {
-        "requirement": evidence.requirement,
-        "layer": str(evidence.layer),
-        "claim": evidence.claim,
-        "result": status(result),
-        "detail": detail,
-        "assumptions": list(evidence.assumptions),
-        "engine": evidence.engine,
-        "artefacts": dict(evidence.artefacts),
-        **({"trace": _trace(trace)} if trace is not None else {}),
-    }
+    return Proof(
+        requirement=evidence.requirement,
+        layer=evidence.layer,
+        claim=evidence.claim,
+        result=status(result),
+        detail=result.reason if isinstance(result, NotChecked) else result.detail,
+        assumptions=tuple(evidence.assumptions),
+        engine=evidence.engine,
+        artefacts=dict(evidence.artefacts),
+        trace=UNSET if trace is None else trace,
+    )
 
 
-def _trace(trace: Trace) -> dict[str, Any]:
-    return {
-        "names": list(trace.names),
-        "rows": [list(row) for row in trace.rows],
-        "actions": list(trace.actions),
-        "cycle": trace.cycle,
-    }
+def schema() -> dict[str, Any]:
+    """The JSON Schema of the file."""
+    return json_schema(
+        Document,
+        SCHEMA,
+        "What has been proved, refuted or left open, as `fretc verify` writes it",
+        "One object for each claim; nothing in it depends on when or where it was made.",
+    )

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 from compiler.project.folder import Project
 from fretc.api.refusal import Refusal, accepted, bounded
-from fretc.audit.evidence.estimates import Estimated
-from fretc.audit.evidence.reader import Result, parse
+from fretc.audit.evidence.probabilities import Estimated
+from fretc.audit.evidence.schema import Result
 from fretc.audit.log_paths import logs as logs_of
 from fretc.audit.many_logs import Audit as Run
 from fretc.audit.many_logs import audit_logs as audited
@@ -16,7 +16,6 @@ from fretc.audit.many_logs import locally
 from fretc.audit.plan import Plan, planned
 from fretc.logs.signals.integrity import Integrity
 from fretish.diagnostics.diagnostic import Code, Diagnostic
-from fretish.diagnostics.source import Source
 
 Path = str | os.PathLike[str]
 
@@ -75,10 +74,9 @@ def audit_logs(
 
 
 def _audit(plan: Plan, found: Run) -> Audit:
-    evidence = accepted(parse(Source("evidence.json", found.evidence)))
     return Audit(
-        evidence.results,
-        evidence.probabilities,
+        found.results,
+        found.estimates,
         tuple(dict.fromkeys((*plan.refusals, *found.diagnostics))),
         found.violated,
         found.shown,

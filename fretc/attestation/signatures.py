@@ -27,7 +27,7 @@ from fretish.reading.limits import within
 if TYPE_CHECKING:
     from fretc.attestation.keys import Sealed
     from fretc.attestation.signers import Signer, Signers
-    from fretc.audit.evidence.reader import Evidence
+    from fretc.audit.evidence.schema import Evidence
 
 SUFFIX = ".intoto.jsonl"
 SIGNERS = "allowed_signers"

@@ -18,11 +18,12 @@ from typing import Any
 from compiler.files.checked_json import MisshapenError, Shape, plain
 from compiler.files.edition import __version__, edition
 from compiler.files.shell_quoting import is_sha256
+from compiler.logic.claims import Proof
 from fretc.audit.evidence.basis import KINDS
-from fretc.audit.evidence.reader import Evidence, Result
+from fretc.audit.evidence.schema import Evidence, Result
 from fretc.report.traceability.lock import Review
 from fretc.report.traceability.waivers import Waiver
-from fretc.verification.reader import Proof, Proofs
+from fretc.verification.reader import Proofs
 
 TYPE = "https://in-toto.io/Statement/v1"
 EVIDENCE, LOG, PROOFS, REVIEW, WAIVER, REPORT = (
@@ -178,7 +179,7 @@ def _proved(proofs: Sequence[Proof]) -> list[dict[str, Any]]:
     return [
         {
             "requirement": proof.requirement,
-            "layer": proof.layer,
+            "layer": str(proof.layer),
             "claim": proof.claim,
             "result": proof.result,
             "artefacts": dict(proof.artefacts),

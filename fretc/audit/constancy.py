@@ -3,22 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from typing import Any
 
+from fretc.audit.evidence.schema import Result
 from fretc.audit.measurements.tallies import NOTHING, Tally
 from fretish.bindings.declarations import Declarations
 from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
 
 
-def tallies_of(results: Sequence[Mapping[str, Any]]) -> dict[str, list[Tally]]:
+def tallies_of(results: Sequence[Result]) -> dict[str, list[Tally]]:
     """Of each proposition its tally in each run, from the results of an audit.
 
     A proposition of several requirements counts once in each run.
     """
     found: dict[str, dict[str, Tally]] = {}
     for result in results:
-        for name, counts in result["propositions"].items():
-            found.setdefault(name, {})[result["run"]] = Tally(**counts)
+        for name, counts in result.propositions.items():
+            found.setdefault(name, {})[result.run] = counts
     return {name: list(runs.values()) for name, runs in found.items()}
 
 

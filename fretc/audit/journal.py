@@ -19,7 +19,10 @@ from dataclasses import astuple
 from pathlib import Path
 from typing import Any
 
+from compiler.files.checked_json import MisshapenError
+from compiler.files.records import decoded, plain
 from compiler.files.text_files import Stamp, destination, file_sha256, stamp
+from fretc.audit.evidence.schema import Result
 from fretc.audit.many_logs import Audited
 from fretc.audit.plan import Plan
 from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
@@ -70,11 +73,12 @@ class Journal:
             return self._wrong(error)
         wanted = set(logs)
         entries = {entry["log"]: entry for entry in map(json.loads, lines)}
-        return {
+        kept = {
             log: self._audited(entry)
             for log, entry in entries.items()
             if log in wanted and _unchanged(entry)
         }
+        return {log: found for log, found in kept.items() if found is not None}
 
     def keep(self, log: str, audited: Audited) -> bool | Diagnostic:
         """Add a log; one that could not be read, or has changed meanwhile, is to be tried again.
@@ -167,10 +171,15 @@ class Journal:
             help="name another place with `--evidence`, or mend this one",
         )
 
-    def _audited(self, entry: Mapping[str, Any]) -> Audited:
+    def _audited(self, entry: Mapping[str, Any]) -> Audited | None:
+        """None where a number is too large to be read back: a damaged log can have such times."""
         bindings = self._plan.declarations.source
+        try:
+            results = decoded(entry["results"], tuple[Result, ...])
+        except MisshapenError:
+            return None
         return Audited(
-            tuple(entry["results"]),
+            results,
             tuple(_diagnostic(found, bindings) for found in entry["diagnostics"]),
             read=True,
             stamp=Stamp(*entry["stamp"]),
@@ -214,9 +223,9 @@ def _entry(log: str, audited: Audited, plan: Plan) -> dict[str, Any]:
     bindings = plan.declarations.source
     return {
         "log": log,
-        "sha256": audited.results[0]["hashes"].get("log", ""),
+        "sha256": audited.results[0].hashes.get("log", ""),
         "stamp": astuple(audited.stamp),
-        "results": audited.results,
+        "results": plain(audited.results),
         "diagnostics": [_plain(diagnostic, bindings) for diagnostic in audited.diagnostics],
     }
 

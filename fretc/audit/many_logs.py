@@ -7,16 +7,19 @@ from contextlib import closing
 from dataclasses import dataclass, replace
 from functools import partial
 from types import MappingProxyType
-from typing import Any
 
 from compiler.files.edition import __version__
+from compiler.files.records import UNSET, plain
 from compiler.files.templating import to_json
 from compiler.files.text_files import Stamp, file_sha256, stamp
 from fretc.audit.constancy import never_changed, tallies_of
 from fretc.audit.evidence.basis import BINDINGS, SENTENCE, of_all
-from fretc.audit.evidence.estimates import Estimated, estimates, warnings
+from fretc.audit.evidence.estimates import estimates, warnings
+from fretc.audit.evidence.probabilities import Estimated
+from fretc.audit.evidence.schema import SCHEMA, Bindings, Document, Requirement, Result
 from fretc.audit.evidence.verdicts import VERDICTS
-from fretc.audit.evidence.writer import SCHEMA, as_record, unjudged, unread
+from fretc.audit.evidence.writer import as_record, unjudged, unread
+from fretc.audit.evidence.writer import text as written
 from fretc.audit.measurements.confidence_intervals import REFUTED, SUPPORTED
 from fretc.audit.measurements.judgement import Engine as Evaluation
 from fretc.audit.one_log import audit, examined, signals_of
@@ -35,7 +38,7 @@ from monitors import kernel
 class Audit:
     """What an audit has shown: one result for each run and requirement, runs in their order."""
 
-    results: tuple[Mapping[str, Any], ...]
+    results: tuple[Result, ...]
     evidence: str
     """The text of the evidence file."""
     diagnostics: tuple[Diagnostic, ...]
@@ -48,7 +51,7 @@ class Audit:
     def violated(self) -> bool:
         """Whether any requirement is violated in any run, or refuted by all of them."""
         return any(one.answer == REFUTED for one in self.estimates) or any(
-            result["verdict"] == kernel.VIOLATED for result in self.results
+            result.verdict == kernel.VIOLATED for result in self.results
         )
 
     @property
@@ -56,32 +59,32 @@ class Audit:
         """Whether every requirement is satisfied in every run, or supported by all of them."""
         together = {one.requirement for one in self.estimates}
         return all(one.answer == SUPPORTED for one in self.estimates) and all(
-            result["verdict"] == kernel.SATISFIED
+            result.verdict == kernel.SATISFIED
             for result in self.results
-            if result["requirement"] not in together
+            if result.requirement not in together
         )
 
     @property
     def as_json(self) -> str:
         """One JSON array, an object per run and requirement; with probabilities, both by name."""
+        results = plain(self.results)
         if not self.estimates:
-            return f"{to_json(list(self.results))}\n"
-        told = [one.as_record for one in self.estimates]
-        return f"{to_json({'results': list(self.results), 'probabilities': told})}\n"
+            return f"{to_json(results)}\n"
+        return f"{to_json({'results': results, 'probabilities': plain(self.estimates)})}\n"
 
     @property
     def text(self) -> tuple[tuple[str, str | None], ...]:
         """Lines for a person, each with its colour."""
         lines: list[tuple[str, str | None]] = []
-        width = max((len(result["requirement"]) for result in self.results), default=0)
+        width = max((len(result.requirement) for result in self.results), default=0)
         run = None
         for result in self.results:
-            if result["run"] != run:
-                run = result["run"]
-                lines.append((str(run), None))
-            verdict = VERDICTS[result["verdict"]]
-            name = f"{result['requirement']:<{width}}"
-            line = f"  {verdict.sign.glyph} {name}  {verdict.word:<12}  {result['reason']}"
+            if result.run != run:
+                run = result.run
+                lines.append((run, None))
+            verdict = VERDICTS[result.verdict]
+            name = f"{result.requirement:<{width}}"
+            line = f"  {verdict.sign.glyph} {name}  {verdict.word:<12}  {result.reason}"
             lines.append((line, verdict.sign.colour))
         for one in self.estimates:
             lines.extend(_block(one))
@@ -105,7 +108,7 @@ EVALUATIONS: Mapping[str, Evaluation] = {"columns": kernel.evaluate, "online": k
 class Audited:
     """What the audit of one log has shown."""
 
-    results: tuple[Mapping[str, Any], ...]
+    results: tuple[Result, ...]
     """The record of each claim, in their order."""
     diagnostics: tuple[Diagnostic, ...]
     read: bool
@@ -181,7 +184,7 @@ def gathered(plan: Plan, found: Sequence[Audited]) -> Audit:
     constant = never_changed(tallies_of(results), plan.declarations, told)
     return Audit(
         tuple(results),
-        _evidence(plan, results, together),
+        written(_evidence(plan, results, together)),
         (*told, *constant, *warnings(together)),
         sum(shown.read for shown in found),
         together,
@@ -193,7 +196,7 @@ def _told(found: Sequence[Audited]) -> tuple[Diagnostic, ...]:
     runs: dict[Diagnostic, list[str]] = {}
     for shown in found:
         for diagnostic in shown.diagnostics:
-            runs.setdefault(diagnostic, []).append(str(shown.results[0]["run"]))
+            runs.setdefault(diagnostic, []).append(shown.results[0].run)
     return tuple(_of(diagnostic, of, len(found)) for diagnostic, of in runs.items())
 
 
@@ -225,21 +228,21 @@ def audited(plan: Plan, log: str) -> Audited:
     )
 
 
-def _left_out(plan: Plan, beside: Mapping[str, Any]) -> Iterator[Mapping[str, Any]]:
+def _left_out(plan: Plan, beside: Result) -> Iterator[Result]:
     """What is shown of each refused requirement in a run: nothing, and why.
 
     Args:
         plan: which requirements it refuses.
         beside: what is shown of another one in the run, whose log was read.
     """
-    log = {name: sha for name, sha in beside["hashes"].items() if name.startswith("log")}
+    log = {name: sha for name, sha in beside.hashes.items() if name.startswith("log")}
     for refused in plan.refused:
         yield unjudged(
-            beside["run"],
+            beside.run,
             refused.id,
             f"not judged: {'; '.join(f'{d.code.number} {d.message}' for d in refused.why)}",
             {**log, **refused.basis},
-            beside["health"],
+            beside.health,
         )
 
 
@@ -275,23 +278,17 @@ def _hash_of(log: str, before: Stamp | None) -> dict[str, str]:
     return {} if digest is None or changed else {"log": digest}
 
 
-def _evidence(
-    plan: Plan, results: Sequence[Mapping[str, Any]], together: Sequence[Estimated]
-) -> str:
-    """The evidence file: the same inputs give the same bytes."""
-    content: dict[str, Any] = {
-        "schema": SCHEMA,
-        "fretc": __version__,
-        "bindings": {
-            "file": plan.declarations.source.name,
-            "sha256": of_all({each.id: each.basis[BINDINGS] for each in plan.named}),
-        },
-        "requirements": [
-            {"id": each.id, "sentence": each.sentence, "sha256": each.basis[SENTENCE]}
-            for each in plan.named
-        ],
-        "results": list(results),
-    }
-    if together:
-        content["probabilities"] = [one.as_record for one in together]
-    return f"{to_json(content)}\n"
+def _evidence(plan: Plan, results: Sequence[Result], together: Sequence[Estimated]) -> Document:
+    return Document(
+        schema=SCHEMA,
+        fretc=__version__,
+        bindings=Bindings(
+            plan.declarations.source.name,
+            of_all({each.id: each.basis[BINDINGS] for each in plan.named}),
+        ),
+        requirements=tuple(
+            Requirement(each.id, each.sentence, each.basis[SENTENCE]) for each in plan.named
+        ),
+        results=tuple(results),
+        probabilities=tuple(together) or UNSET,
+    )

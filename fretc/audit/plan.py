@@ -17,7 +17,7 @@ from compiler.project.folder import Project
 from compiler.targets.python import monitor as monitors
 from fretc.audit.evidence.basis import Basis, basis
 from fretc.audit.evidence.claim import Claim
-from fretc.audit.evidence.writer import SCHEMA
+from fretc.audit.evidence.schema import SCHEMA
 from fretc.audit.expected_response import demand
 from fretc.audit.measurements import confidence_intervals as odds
 from fretc.audit.measurements.count_trials import chance, trials

@@ -74,7 +74,7 @@ def simulated(scenario: Scenario, seed: int, out: Path) -> Run:
     node = intercepted(scenario.interceptor)
     mission = record(out, scenario, node, seed, decision, versions={"fretc": __version__})
     shown = audited(plan(), str(out))
-    return _run(mission, {str(r["requirement"]): str(r["verdict"]) for r in shown.results})
+    return _run(mission, {r.requirement: r.verdict for r in shown.results})
 
 
 def intercepted(options: Interceptor) -> MakeInterceptor:

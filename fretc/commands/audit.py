@@ -209,7 +209,7 @@ def _marked(result: Audit, project: Project, folder: str | None) -> dict[Path, b
 
 def _printed(result: Audit, project: Project, refused: Sequence[Diagnostic], form: str) -> str:
     from fretc.audit.outputs.junit import github, junit
-    from fretc.audit.outputs.sarif import AllRuns, sarif
+    from fretc.audit.outputs.sarif import AllRuns, OneRun, sarif
 
     signals = project.declarations.signals if project.declarations else {}
     match form:
@@ -223,7 +223,8 @@ def _printed(result: Audit, project: Project, refused: Sequence[Diagnostic], for
             said = (*project.diagnostics, *refused, *result.diagnostics)
             left = project.without_rule
             together = [AllRuns.of(one) for one in result.estimates]
-            return sarif(result.results, project.rules, said, together, left)
+            results = [OneRun.of(one) for one in result.results]
+            return sarif(results, project.rules, said, together, left)
         case _:
             return coloured(result.text)
 

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import click
 
@@ -123,9 +123,9 @@ def report(
     say([*project.diagnostics, *made.diagnostics])
     if made.report is None:
         raise SystemExit(BAD)
-    subject = Subject(made, made.report, project, _audited(evidence, made.report))
+    subject = Subject(made, made.report, project)
     read = filter(None, (bindings, hazards, verification, lock, waivers, signers, *said))
-    logs = [str(result["run"]) for result in subject.results]
+    logs = [result.run for result in made.results]
     _deliver(wanted, subject, [evidence, *files, *companions(files), *read, *dict.fromkeys(logs)])
     if has_errors([*project.diagnostics, *made.diagnostics]):
         raise SystemExit(BAD)
@@ -142,19 +142,6 @@ def _deliver(wanted: Sequence[tuple[Form, str]], subject: Subject, read: Sequenc
             stop(not_written(path, "two outputs would go there"))
         paths[Path(path)] = form.text(subject)
     deliver(paths, read)
-
-
-def _audited(evidence: str, whole: Report) -> Sequence[Mapping[str, Any]]:
-    """The results as the evidence has them: `make` has read it, so it is in shape."""
-    if not whole.evidence:
-        return ()
-    from fretc.audit.evidence.reader import document
-
-    found = document(evidence)
-    if isinstance(found, Diagnostic):  # it has changed since
-        stop(found)
-    results: Sequence[Mapping[str, Any]] = found["results"]
-    return results
 
 
 def _status(whole: Report) -> int:

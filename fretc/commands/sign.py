@@ -21,7 +21,7 @@ from fretish.reading.natural_order import natural
 if TYPE_CHECKING:
     from fretc.attestation.keys import PrivateKey
     from fretc.attestation.statement import Statement, Subject
-    from fretc.audit.evidence.reader import Evidence
+    from fretc.audit.evidence.schema import Evidence
     from fretc.report.traceability.lock import Review
     from fretc.report.traceability.waivers import Waiver
     from fretc.verification.reader import Proofs

@@ -223,11 +223,12 @@ def _tell(
 ) -> None:
     """Print it, and write the evidence and the runs."""
     from compiler.files.edition import __version__
+    from compiler.files.records import plain
     from compiler.files.templating import to_json
     from compiler.logic.claims import document
     from fretc.verification.text_output import lines
 
-    text = f"{to_json(document(__version__, found))}\n"
+    text = f"{to_json(plain(document(__version__, found)))}\n"
     if output != "-" or form == "json":
         click.echo(text if form == "json" else coloured([*lines(found)]), nl=False)
     files: dict[Path, str | bytes] = {}

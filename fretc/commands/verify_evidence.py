@@ -20,10 +20,10 @@ from fretish.diagnostics.diagnostic import (
 from fretish.diagnostics.rendering import visible
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-    from typing import Any
+    from collections.abc import Sequence
 
     from compiler.project.folder import Project
+    from fretc.audit.evidence.schema import Document
     from fretc.audit.plan import Plan
     from fretc.report.traceability.lock import Lock
     from fretc.reproduction.completeness import Scope
@@ -104,13 +104,13 @@ def verify_evidence(
     compared with what is written. Exit status: 0 it stands, 1 something differs or is missing, 3
     something was not checked, 2 bad use or bad input.
     """
-    from fretc.audit.evidence.reader import both
+    from fretc.audit.evidence.reader import required
     from fretc.verification.reader import written
 
-    read = both(file)
-    if isinstance(read, Diagnostic):
-        stop(read)
-    audited, whole = read
+    audited = required(file)
+    if isinstance(audited, Diagnostic):
+        stop(audited)
+    whole = audited.document
     if signed_by is not None:
         demand(audited, signed_by, {"report": report, "proofs": verification})
     project, plan = _plan(requirements, bindings)
@@ -140,8 +140,8 @@ def _status(found: Sequence[Rechecked], same: bool | None, scope: Scope) -> int:
     return NOT_SHOWN if Finding.UNKNOWN in kinds or scope.part else SHOWN
 
 
-def _runs(whole: Mapping[str, Any]) -> list[str]:
-    return list(dict.fromkeys(result["run"] for result in whole["results"]))
+def _runs(whole: Document) -> list[str]:
+    return list(dict.fromkeys(result.run for result in whole.results))
 
 
 def _plan(requirements: str, bindings: str | None) -> tuple[Project, Plan]:
@@ -259,7 +259,7 @@ def _against(scope: Scope, requirements: str, manifest: str | None) -> str:
 
 
 def _rechecked(
-    whole: Mapping[str, Any],
+    whole: Document,
     plan: Plan,
     places: dict[str, str],
     scope: Scope,

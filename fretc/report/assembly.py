@@ -12,8 +12,8 @@ from compiler.logic.claims import Evidence as Line
 from compiler.project.folder import Project
 from fretc.attestation.signatures import NO_SIGNATURES, Book
 from fretc.audit.evidence.declared_units import in_declared_units
-from fretc.audit.evidence.estimates import AVERAGE
-from fretc.audit.evidence.reader import Evidence
+from fretc.audit.evidence.probabilities import AVERAGE
+from fretc.audit.evidence.schema import Evidence
 from fretc.audit.evidence.verdicts import NOT_EXERCISED, RETIRED, WAIVED
 from fretc.audit.measurements.confidence_intervals import CONFIDENCE, SUPPORTED
 from fretc.report.model import phrases

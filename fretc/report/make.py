@@ -11,6 +11,7 @@ from compiler.formalization.rule import Rule
 from compiler.project.folder import Project
 from fretc.attestation.signatures import gathered
 from fretc.audit.evidence.reader import read
+from fretc.audit.evidence.schema import Result
 from fretc.report.assembly import report
 from fretc.report.model.views import Report
 from fretc.report.page.html import html
@@ -30,6 +31,8 @@ class Made:
     diagnostics: tuple[Diagnostic, ...]
     rules: tuple[Rule, ...] = ()
     """Those that the report is about; the page draws what they mean."""
+    results: tuple[Result, ...] = ()
+    """Those of the evidence, in its order."""
 
     @property
     def html(self) -> str | None:
@@ -81,7 +84,8 @@ def make(
     lines, unread = ajpf_evidence(project.rules, ajpf)
     whole, said = report(project, found, evidence, known, waived, proofs, lines, book)
     missing = (audited,) if isinstance(audited, Diagnostic) else ()
-    return Made(whole, (*missing, *told, *unread, *said), project.rules)
+    results = found.results if found else ()
+    return Made(whole, (*missing, *told, *unread, *said), project.rules, results)
 
 
 def _waived(

@@ -5,9 +5,9 @@ All are made of the same values. What makes a form is imported when the form is 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from compiler.project.folder import Project
@@ -23,8 +23,6 @@ class Subject:
     made: Made
     report: Report
     project: Project
-    results: Sequence[Mapping[str, Any]]
-    """Those of the evidence, as it has them."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,7 +64,8 @@ def _sarif(subject: Subject) -> str:
 
     project = subject.project
     messages = [*project.diagnostics, *subject.made.diagnostics]
-    return sarif(subject.report, subject.results, project.rules, messages, project.without_rule)
+    results = subject.made.results
+    return sarif(subject.report, results, project.rules, messages, project.without_rule)
 
 
 def _markdown(subject: Subject) -> str:

@@ -9,8 +9,8 @@ from collections import Counter
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache, partial
-from typing import Any
 
+from fretc.audit.evidence.schema import Document, Result
 from fretc.report.traceability.chain import LOG
 from fretc.report.traceability.lock import Lock, Review
 from fretc.reproduction.outcome import FILE, Rechecked, differs, unknown
@@ -32,7 +32,7 @@ class Scope:
 
 
 def incomplete(
-    whole: Mapping[str, Any], scope: Scope, places: Mapping[str, str], prints: Prints
+    whole: Document, scope: Scope, places: Mapping[str, str], prints: Prints
 ) -> Iterator[Rechecked]:
     """All that is missing, there twice, or not what is known of it.
 
@@ -50,8 +50,8 @@ def incomplete(
         yield from _reviewed(whole, scope, scope.lock, known)
 
 
-def _requirements(whole: Mapping[str, Any], scope: Scope) -> Iterator[Rechecked]:
-    named = Counter(told["id"] for told in whole["requirements"])
+def _requirements(whole: Document, scope: Scope) -> Iterator[Rechecked]:
+    named = Counter(told.id for told in whole.requirements)
     for id in scope.claimed:
         if not named[id]:
             yield differs(FILE, id, f"{id} is claimed and the evidence does not name it")
@@ -60,10 +60,10 @@ def _requirements(whole: Mapping[str, Any], scope: Scope) -> Iterator[Rechecked]
             yield differs(FILE, id, "it is named twice")
 
 
-def _results(whole: Mapping[str, Any], scope: Scope) -> Iterator[Rechecked]:
+def _results(whole: Document, scope: Scope) -> Iterator[Rechecked]:
     """Each run tells of each requirement, once."""
-    found = Counter((result["run"], result["requirement"]) for result in whole["results"])
-    named = {told["id"] for told in whole["requirements"]}
+    found = Counter((result.run, result.requirement) for result in whole.results)
+    named = {told.id for told in whole.requirements}
     for run in dict.fromkeys(run for run, _ in found):
         here = {id for other, id in found if other == run}
         for id in sorted(named | here | {*scope.claimed}, key=natural):
@@ -85,21 +85,19 @@ _Known = Mapping[str, Callable[[], Collection[str]]]
 """Run whose log is there → each SHA-256 that it is known by."""
 
 
-def _reviewed(
-    whole: Mapping[str, Any], scope: Scope, lock: Lock, prints: _Known
-) -> Iterator[Rechecked]:
+def _reviewed(whole: Document, scope: Scope, lock: Lock, prints: _Known) -> Iterator[Rechecked]:
     for id, review in lock.reviews.items():
         if id in scope.claimed:
-            told = [result for result in whole["results"] if result["requirement"] == id]
+            told = [result for result in whole.results if result.requirement == id]
             yield from _runs(review, told, prints)
         elif review.was_in_force and not scope.part:
             yield differs(FILE, id, "it was claimed when it was reviewed, and is not any more")
 
 
-def _runs(review: Review, told: Sequence[Mapping[str, Any]], prints: _Known) -> Iterator[Rechecked]:
+def _runs(review: Review, told: Sequence[Result], prints: _Known) -> Iterator[Rechecked]:
     """The runs of one review; a log may have another name by now."""
     known = {sha for result in told for sha in _hashes(result)}
-    runs = {result["run"] for result in told}
+    runs = {result.run for result in told}
     for node, sha in review.prints.items():
         if node.kind != LOG or (sha and sha in known):
             continue
@@ -114,5 +112,5 @@ def _runs(review: Review, told: Sequence[Mapping[str, Any]], prints: _Known) -> 
             yield differs(node.name, review.requirement, why)
 
 
-def _hashes(result: Mapping[str, Any]) -> tuple[str, ...]:
-    return tuple(sha for name, sha in result["hashes"].items() if name in ("log", "log_summary"))
+def _hashes(result: Result) -> tuple[str, ...]:
+    return tuple(sha for name, sha in result.hashes.items() if name in ("log", "log_summary"))

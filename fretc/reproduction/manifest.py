@@ -9,10 +9,10 @@ import os
 import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from typing import Any
 
 from compiler.files.text_files import file_sha256
 from compiler.files.text_files import read as read_text
+from fretc.audit.evidence.schema import Document
 from fretc.logs.storage.folders import METADATA, Folder, folder, is_folder
 from fretc.logs.storage.inputs import is_url
 from fretc.logs.storage.splits import split
@@ -96,9 +96,7 @@ class Match:
     """Empty where all of its bytes are those of the manifest."""
 
 
-def matches(
-    whole: Mapping[str, Any], manifest: Manifest, places: Mapping[str, str]
-) -> tuple[Match, ...]:
+def matches(whole: Document, manifest: Manifest, places: Mapping[str, str]) -> tuple[Match, ...]:
     """Every run of evidence beside the manifest, then the logs that no run is of.
 
     A log counts by its name. Of those whose name is no run's, one of the same hash counts.
@@ -109,7 +107,7 @@ def matches(
         places: run → where its log is now.
     """
     left = dict(manifest.logs)
-    told = {result["run"]: result["hashes"].get("log") for result in whole["results"]}
+    told = {result.run: result.hashes.get("log") for result in whole.results}
     parts = {run: _parts(run, places.get(run)) for run in told}
     named = {run: {path: left.pop(path) for path in parts[run] if path in left} for run in told}
     for run, listed in named.items():

@@ -7,21 +7,20 @@ has said, which no command here asks again.
 
 from __future__ import annotations
 
-import json
 from collections import Counter
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from dataclasses import replace
-from typing import Any
 
 from compiler.files.edition import __version__
-from compiler.files.templating import to_json
+from compiler.files.records import plain
 from compiler.logic.claims import (
     ALL,
     COUNTEREXAMPLE,
     METHODS,
     NOT_CHECKED,
     Layer,
-    as_record,
+    Proof,
+    proof,
 )
 from compiler.project.folder import Project
 from compiler.targets.python import monitor
@@ -29,14 +28,12 @@ from fretc.reproduction.outcome import PROOFS, Finding, Rechecked, differs, unkn
 from fretc.verification.ajpf_results import evidence as results_of_ajpf
 from fretc.verification.ajpf_results import written
 from fretc.verification.engines.sandbox import Limits
-from fretc.verification.reader import Proof, Proofs
+from fretc.verification.reader import Proofs
 from fretc.verification.verify import CROSSHAIR, DAFNY, Request, Tell, evidence
 from fretish.diagnostics.diagnostic import Diagnostic
 
 AGENT = "agent"
 """What claims about an agent of the user's own are filed under."""
-_KEY = ("requirement", "layer", "claim")
-Record = Mapping[str, Any]
 
 
 def reproved(
@@ -51,7 +48,7 @@ def reproved(
         claimed: the requirements that are asked for.
         tell: is called before each claim that takes its time.
     """
-    records = [one for one in proofs.records if _asked(one, project, claimed)]
+    records = [one for one in proofs.proofs if _asked(one, project, claimed)]
     made = _again(project, records, limits, tell)
     if isinstance(made, Diagnostic):
         return made
@@ -91,40 +88,39 @@ def _prover(engine: str) -> str:
     return name if name in (DAFNY, CROSSHAIR) else ""
 
 
-def _asked(record: Record, project: Project, claimed: Collection[str]) -> bool:
+def _asked(record: Proof, project: Project, claimed: Collection[str]) -> bool:
     """Whether a claim is about what is asked for; one about an unknown requirement always is."""
     known = {requirement.id for requirement in project.requirements}
-    return record["requirement"] in claimed or record["requirement"] not in known
+    return record.requirement in claimed or record.requirement not in known
 
 
 # Again ------------------------------------------------------------------------------------------
 
 
 def _again(
-    project: Project, told: Sequence[Record], limits: Limits, tell: Tell
-) -> Sequence[Record] | Diagnostic:
+    project: Project, told: Sequence[Proof], limits: Limits, tell: Tell
+) -> Sequence[Proof] | Diagnostic:
     """What is found now, of the requirements, in the layers and by the provers that are named."""
-    named = {record["requirement"] for record in told}
-    own = [record for record in told if not _prover(record["engine"])]
-    layers = [layer for layer in Layer if any(record["layer"] == layer for record in own)]
+    named = {record.requirement for record in told}
+    own = [record for record in told if not _prover(record.engine)]
+    layers = [layer for layer in Layer if any(record.layer == layer for record in own)]
     if AGENT in named:
         layers = [layer for layer in layers if layer != Layer.AGENT]
     rules = [rule for rule in project.rules if rule.id in named and monitor.refuse(rule) is None]
     asked = Request(
         layers,
         limits,
-        provers=sorted({_prover(record["engine"]) for record in told} - {""}),
+        provers=sorted({_prover(record.engine) for record in told} - {""}),
         ajpf=results_of_ajpf(rules, written())[0] if Layer.AJPF in layers else (),
     )
     found = evidence(replace(project, rules=tuple(rules)), asked, tell)
     if isinstance(found, Diagnostic):
         return found
-    plain: list[Record] = json.loads(to_json([as_record(one) for one in found]))
-    return plain
+    return [proof(one) for one in found]
 
 
-def _key(record: Record) -> tuple[str, ...]:
-    return (*(record[name] for name in _KEY), _prover(record["engine"]))
+def _key(record: Proof) -> tuple[str, ...]:
+    return record.requirement, record.layer, record.claim, _prover(record.engine)
 
 
 # Compared ---------------------------------------------------------------------------------------
@@ -133,66 +129,66 @@ def _key(record: Record) -> tuple[str, ...]:
 def _beginning(proofs: Proofs) -> Iterator[Rechecked]:
     if proofs.fretc != __version__:
         yield differs(PROOFS, "", f"this is fretc {__version__}")
-    if not proofs.records:
+    if not proofs.proofs:
         yield unknown(PROOFS, "", f"`{proofs.file}` tells of no claim")
 
 
-def _compared(told: Record, made: Sequence[Record]) -> Rechecked:
-    requirement, claim = told["requirement"], f"{told['layer']}: {told['claim']}"
+def _compared(told: Proof, made: Sequence[Proof]) -> Rechecked:
+    requirement, claim = told.requirement, f"{told.layer}: {told.claim}"
     now = next((record for record in made if _key(record) == _key(told)), None)
     if now is None:
         return _gone(told, claim)
-    others = told["artefacts"].keys() - now["artefacts"].keys()
+    others = told.artefacts.keys() - now.artefacts.keys()
     if others:
         why = f"it is about `{min(others)}`, which is not made here"
         return unknown(PROOFS, requirement, why, claim=claim)
-    if now["result"] == NOT_CHECKED:
-        return unknown(PROOFS, requirement, now["detail"], claim=claim)
+    if now.result == NOT_CHECKED:
+        return unknown(PROOFS, requirement, now.detail, claim=claim)
     reasons = tuple(_differences(told, now))
-    if told["result"] == NOT_CHECKED and now["result"] != COUNTEREXAMPLE:
-        why = f"it was not checked, says the file; it is {now['result']} now"
+    if told.result == NOT_CHECKED and now.result != COUNTEREXAMPLE:
+        why = f"it was not checked, says the file; it is {now.result} now"
         return unknown(PROOFS, requirement, why, claim=claim)
     if reasons:
         return differs(PROOFS, requirement, *reasons, claim=claim)
-    if told["layer"] == Layer.AJPF:
+    if told.layer == Layer.AJPF:
         return unknown(PROOFS, requirement, "AJPF itself is not asked again", claim=claim)
     return Rechecked(PROOFS, requirement, Finding.STANDS, (), claim)
 
 
-def _gone(told: Record, claim: str) -> Rechecked:
+def _gone(told: Proof, claim: str) -> Rechecked:
     """A claim that was not made again."""
-    if told["layer"] == Layer.AJPF:
+    if told.layer == Layer.AJPF:
         why = "the file of AJPF's result is not there"
-    elif told["layer"] == Layer.AGENT and told["requirement"] == AGENT:
+    elif told.layer == Layer.AGENT and told.requirement == AGENT:
         why = "it is about an agent that is not made here"
     else:
-        return differs(PROOFS, told["requirement"], "no such claim is made now", claim=claim)
-    return unknown(PROOFS, told["requirement"], why, claim=claim)
+        return differs(PROOFS, told.requirement, "no such claim is made now", claim=claim)
+    return unknown(PROOFS, told.requirement, why, claim=claim)
 
 
-def _differences(told: Record, now: Record) -> Iterator[str]:
-    if told["result"] != now["result"]:
-        yield f"it is {now['result']}, and was {told['result']}"
-    if told["artefacts"] != now["artefacts"]:
+def _differences(told: Proof, now: Proof) -> Iterator[str]:
+    if told.result != now.result:
+        yield f"it is {now.result}, and was {told.result}"
+    if told.artefacts != now.artefacts:
         yield "it is about other texts than those that are made now"
-    others = [
-        name
-        for name in sorted({*told, *now} - {"result", "artefacts"})
-        if json.dumps(told.get(name), sort_keys=True) != json.dumps(now.get(name), sort_keys=True)
-    ]
+    names = [name for name in sorted(plain(told) | plain(now)) if name not in _COMPARED]
+    others = [name for name in names if getattr(told, name) != getattr(now, name)]
     if others:
         yield f"it differs in {', '.join(others)}"
 
 
-def _twice(told: Sequence[Record]) -> Iterator[Rechecked]:
+_COMPARED = ("result", "artefacts")
+
+
+def _twice(told: Sequence[Proof]) -> Iterator[Rechecked]:
     for (requirement, layer, claim, _), count in Counter(map(_key, told)).items():
         if count > 1:
             yield differs(PROOFS, requirement, "it is told twice", claim=f"{layer}: {claim}")
 
 
-def _left_out(told: Sequence[Record], made: Sequence[Record]) -> Iterator[Rechecked]:
+def _left_out(told: Sequence[Proof], made: Sequence[Proof]) -> Iterator[Rechecked]:
     known = {_key(record) for record in told}
     for record in made:
         if _key(record) not in known:
-            claim = f"{record['layer']}: {record['claim']}"
-            yield differs(PROOFS, record["requirement"], "it is left out", claim=claim)
+            claim = f"{record.layer}: {record.claim}"
+            yield differs(PROOFS, record.requirement, "it is left out", claim=claim)

@@ -10,17 +10,20 @@ from __future__ import annotations
 import json
 from collections import Counter
 from collections.abc import Collection, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
+from dataclasses import replace as changed
 from functools import partial
 from pathlib import Path
-from typing import Any
 
 from compiler.files.edition import __version__
-from compiler.files.templating import to_json
+from compiler.files.records import plain, replace
 from compiler.files.text_files import file_sha256, sha256
 from fretc.audit.evidence.basis import BINDINGS, KINDS, SENTENCE, of_all, outdated, why
 from fretc.audit.evidence.claim import Claim
 from fretc.audit.evidence.estimates import estimates
+from fretc.audit.evidence.probabilities import Estimated
+from fretc.audit.evidence.schema import Document, Result
+from fretc.audit.evidence.schema import Finding as OfLog
 from fretc.audit.many_logs import Engine, audit_logs
 from fretc.audit.plan import Plan
 from fretc.logs.reader import read
@@ -34,7 +37,7 @@ from fretish.diagnostics.source import Source
 from fretish.parser import parse
 from fretish.printer import canonical
 
-Results = Mapping[tuple[str, str], Mapping[str, Any]]
+Results = Mapping[tuple[str, str], Result]
 """Run and requirement → result."""
 
 
@@ -65,7 +68,7 @@ def _alike(path: Path, run: Path) -> int:
 
 
 def rechecked(
-    whole: Mapping[str, Any],
+    whole: Document,
     plan: Plan,
     places: Mapping[str, str],
     engine: Engine,
@@ -75,7 +78,7 @@ def rechecked(
     """Make every result of evidence again.
 
     Args:
-        whole: the evidence, in its right shape.
+        whole: the evidence.
         plan: what logs are judged by now.
         places: run → where its log is now.
         engine: where logs are audited.
@@ -87,15 +90,15 @@ def rechecked(
         itself and what all runs together say; or why the engine gave up.
     """
     whole = _part(whole, scope) if scope.part else whole
-    made = _again(whole["results"], plan, places, engine)
+    made = _again(whole.results, plan, places, engine)
     if isinstance(made, Diagnostic):
         return made
     listed = matches(whole, manifest, places) if manifest is not None else ()
     hashed = frozenset(match.run for match in listed if not match.wrong)
-    now = _Now(plan, places, made, whole["bindings"]["file"], hashed)
+    now = _Now(plan, places, made, whole.bindings.file, hashed)
     return (
         *_beginning(whole, plan, part=scope.part),
-        *(_result(result, now) for result in whole["results"]),
+        *(_result(result, now) for result in whole.results),
         *incomplete(whole, scope, places, partial(_prints, plan)),
         *(one for match in listed for one in match.wrong),
         *_found(whole, now),
@@ -103,34 +106,36 @@ def rechecked(
     )
 
 
-def _part(whole: Mapping[str, Any], scope: Scope) -> Mapping[str, Any]:
+def _part(whole: Document, scope: Scope) -> Document:
     """What evidence says of the requirements that are asked for."""
     asked = {*scope.claimed}
-    return {
-        **whole,
-        "requirements": [told for told in whole["requirements"] if told["id"] in asked],
-        "results": [told for told in whole["results"] if told["requirement"] in asked],
-        "probabilities": [
-            told for told in whole.get("probabilities", ()) if told["requirement"] in asked
-        ],
-    }
+    return replace(
+        whole,
+        requirements=tuple(each for each in whole.requirements if each.id in asked),
+        results=tuple(each for each in whole.results if each.requirement in asked),
+        probabilities=tuple(each for each in _probabilities(whole) if each.requirement in asked),
+    )
+
+
+def _probabilities(whole: Document) -> tuple[Estimated, ...]:
+    return whole.probabilities or ()
 
 
 def _again(
-    told: Sequence[Mapping[str, Any]], plan: Plan, places: Mapping[str, str], engine: Engine
+    told: Sequence[Result], plan: Plan, places: Mapping[str, str], engine: Engine
 ) -> Results | Diagnostic:
     """The results of each run whose log is found, looked at as closely as the evidence claims."""
-    claimed = {result["run"]: _integrity(result) for result in reversed(told)}
-    found: dict[tuple[str, str], Mapping[str, Any]] = {}
+    claimed = {result.run: _integrity(result) for result in reversed(told)}
+    found: dict[tuple[str, str], Result] = {}
     for integrity in Integrity:
         runs = [run for run, one in claimed.items() if one is integrity and run in places]
         if not runs:
             continue
         logs = list(dict.fromkeys(places[run] for run in runs))
-        audit = audit_logs(replace(plan, integrity=integrity), logs, engine)
+        audit = audit_logs(changed(plan, integrity=integrity), logs, engine)
         if isinstance(audit, Diagnostic):
             return audit
-        made = {(one["run"], one["requirement"]): one for one in _plain(audit.results)}
+        made = {(one.run, one.requirement): one for one in audit.results}
         found |= {
             (run, claim.id): made[called(places[run]), claim.id]
             for run in runs
@@ -139,18 +144,12 @@ def _again(
     return found
 
 
-def _plain(results: Sequence[Mapping[str, Any]]) -> list[Mapping[str, Any]]:
-    """As they are read from a file."""
-    plain: list[Mapping[str, Any]] = json.loads(to_json(list(results)))
-    return plain
-
-
-def _integrity(result: Mapping[str, Any]) -> Integrity:
+def _integrity(result: Result) -> Integrity:
     """How closely its log was looked at, as a result claims."""
-    checked = result["health"]["checked"]
-    if "log" not in result["hashes"] and "log_summary" in result["hashes"]:
+    checked, hashes = result.health.checked, result.hashes
+    if "log" not in hashes and "log_summary" in hashes:
         return Integrity.INDEX
-    return Integrity.FULL if checked is not None and not checked["by_index"] else Integrity.HASH
+    return Integrity.FULL if checked is not None and not checked.by_index else Integrity.HASH
 
 
 def _prints(plan: Plan, place: str) -> frozenset[str]:
@@ -168,23 +167,23 @@ _DOUBT = (0.5, 0.999)
 """Confidences that an audit takes."""
 
 
-def _beginning(whole: Mapping[str, Any], plan: Plan, *, part: bool) -> Iterator[Rechecked]:
+def _beginning(whole: Document, plan: Plan, *, part: bool) -> Iterator[Rechecked]:
     """What is said before the results, where it is not as it is now; and whether there are any."""
     claims = {claim.id: claim for claim in plan.claims}
-    named = [told["id"] for told in whole["requirements"]]
+    named = [told.id for told in whole.requirements]
     bound = of_all({id: claims[id].basis[BINDINGS] for id in named if id in claims})
-    if not whole["results"]:
+    if not whole.results:
         yield unknown(FILE, "", "it tells of no run")
-    if whole["fretc"] != __version__:
+    if whole.fretc != __version__:
         yield differs(FILE, "", f"this is fretc {__version__}")
-    if whole["bindings"]["sha256"] != bound and not part:
+    if whole.bindings.sha256 != bound and not part:
         yield differs(FILE, "", "what the bindings say has changed")
-    for told in whole["requirements"]:
-        claim = claims.get(told["id"])
+    for told in whole.requirements:
+        claim = claims.get(told.id)
         if claim is None:
-            yield differs(FILE, told["id"], "it is not claimed any more")
-        elif {told["sha256"], _meant(told["sentence"])} != {claim.basis[SENTENCE]}:
-            yield differs(FILE, told["id"], "the sentence has changed")
+            yield differs(FILE, told.id, "it is not claimed any more")
+        elif {told.sha256, _meant(told.sentence)} != {claim.basis[SENTENCE]}:
+            yield differs(FILE, told.id, "the sentence has changed")
 
 
 def _meant(sentence: str) -> str:
@@ -193,12 +192,12 @@ def _meant(sentence: str) -> str:
     return "" if isinstance(tree, Diagnostic) else sha256(canonical(tree))
 
 
-def _together(whole: Mapping[str, Any], now: _Now, asked: Collection[str]) -> Iterator[Rechecked]:
+def _together(whole: Document, now: _Now, asked: Collection[str]) -> Iterator[Rechecked]:
     """What all runs say of each requirement with a probability, made again of the same runs."""
-    told = {one["requirement"]: one for one in whole.get("probabilities", ())}
-    count = Counter(one["requirement"] for one in whole.get("probabilities", ()))
-    named = {*asked, *(one["id"] for one in whole["requirements"])}
-    runs = dict.fromkeys(result["run"] for result in whole["results"])
+    told = {one.requirement: one for one in _probabilities(whole)}
+    count = Counter(one.requirement for one in _probabilities(whole))
+    named = {*asked, *(one.id for one in whole.requirements)}
+    runs = dict.fromkeys(result.run for result in whole.results)
     for claim in now.plan.claims:
         if claim.chance is None or claim.id not in {*told, *named}:
             continue
@@ -218,18 +217,15 @@ def _together(whole: Mapping[str, Any], now: _Now, asked: Collection[str]) -> It
         yield differs(ALL_RUNS, id, "no probability is claimed of it any more")
 
 
-def _estimated_otherwise(
-    told: Mapping[str, Any], claim: Claim, results: Sequence[Mapping[str, Any]]
-) -> str:
+def _estimated_otherwise(told: Estimated, claim: Claim, results: Sequence[Result]) -> str:
     """How it differs from what is made now; empty where it does not."""
     least, most = _DOUBT
-    if not least < told["confidence"] <= most:
+    if not least < told.confidence <= most:
         return f"its confidence is none above {least} and up to {most}"
-    (made,) = estimates([claim], results, told["confidence"])
-    (now,) = _plain([made.as_record])
-    if told["answer"] != now["answer"]:
-        return f"the answer is {now['answer']}, and was {told['answer']}"
-    others = _unlike(told, now)
+    (now,) = estimates([claim], results, told.confidence)
+    if told.answer != now.answer:
+        return f"the answer is {now.answer}, and was {told.answer}"
+    others = _unlike(plain(told), plain(now))
     return f"it differs in {', '.join(others)}" if others else ""
 
 
@@ -250,8 +246,8 @@ class _Now:
     """Runs that all of a manifest is held against."""
 
 
-def _result(told: Mapping[str, Any], now: _Now) -> Rechecked:
-    run, requirement = told["run"], told["requirement"]
+def _result(told: Result, now: _Now) -> Rechecked:
+    run, requirement = told.run, told.requirement
     if run not in now.places:
         return unknown(run, requirement, "its log is not found")
     found = now.results.get((run, requirement))
@@ -260,22 +256,23 @@ def _result(told: Mapping[str, Any], now: _Now) -> Rechecked:
     reasons = tuple(_differences(told, found, now.plan))
     if reasons:
         return differs(run, requirement, *reasons)
-    if "log" in told["hashes"] or run in now.hashed:
+    if "log" in told.hashes or run in now.hashed:
         return Rechecked(run, requirement, Finding.STANDS, ())
-    if "log_summary" in told["hashes"]:
+    if "log_summary" in told.hashes:
         return unknown(run, requirement, "its log was read by its index, and never hashed")
     return unknown(run, requirement, "nothing tells its log from another one: it has no hash")
 
 
-def _differences(told: Mapping[str, Any], now: Mapping[str, Any], plan: Plan) -> Iterator[str]:
-    if any(told["hashes"].get(name) != now["hashes"].get(name) for name in _OF_LOG):
+def _differences(told: Result, now: Result, plan: Plan) -> Iterator[str]:
+    if any(told.hashes.get(name) != now.hashes.get(name) for name in _OF_LOG):
         yield "the log has changed"
-    yield from map(why, outdated(told["hashes"], {kind: now["hashes"][kind] for kind in KINDS}))
-    if told["verdict"] != now["verdict"]:
-        yield f"the verdict is {now['verdict']}, and was {told['verdict']}"
-    others = [name for name in _unlike(told, now) if name not in _APART]
-    others.extend(f"health.{name}" for name in _unlike(told["health"], now["health"], _FOUND))
-    others.extend(f"hashes.{name}" for name in _unlike(told["hashes"], now["hashes"], _REASONS))
+    yield from map(why, outdated(told.hashes, {kind: now.hashes[kind] for kind in KINDS}))
+    if told.verdict != now.verdict:
+        yield f"the verdict is {now.verdict}, and was {told.verdict}"
+    others = _unlike(plain(told), plain(now), _APART)
+    healths = plain(told.health), plain(now.health)
+    others.extend(f"health.{name}" for name in _unlike(*healths, _FOUND))
+    others.extend(f"hashes.{name}" for name in _unlike(told.hashes, now.hashes, _REASONS))
     if _assumed(told, plan) != _assumed(now, plan):
         others.append("assumptions")
     if others:
@@ -292,33 +289,33 @@ _APART = {"run", "requirement", "verdict", "hashes", "health", "assumptions"}
 
 
 def _unlike(
-    told: Mapping[str, Any], now: Mapping[str, Any], apart: Collection[str] = ()
+    told: Mapping[str, object], now: Mapping[str, object], apart: Collection[str] = ()
 ) -> list[str]:
     """The keys whose values differ, to the letter: `1` is neither `1.0` nor `true`."""
     keys = sorted({*told, *now} - {*apart})
     return [key for key in keys if _letters(told, key) != _letters(now, key)]
 
 
-def _letters(value: Mapping[str, Any], key: str) -> str:
+def _letters(value: Mapping[str, object], key: str) -> str:
     """Empty where it is not there, which is not the same as null."""
     return json.dumps(value[key], sort_keys=True) if key in value else ""
 
 
-def _assumed(result: Mapping[str, Any], plan: Plan) -> list[str]:
+def _assumed(result: Result, plan: Plan) -> list[str]:
     """Without the defaults: whether one is taken or written out is no difference."""
     defaults = {default.text for default in plan.declarations.defaults}
-    told = Counter(result["assumptions"])
+    told = Counter(result.assumptions)
     return sorted(text for text in told.elements() if text not in defaults or told[text] > 1)
 
 
 # What is found of a log -------------------------------------------------------------------------
 
 
-def _found(whole: Mapping[str, Any], now: _Now) -> Iterator[Rechecked]:
+def _found(whole: Document, now: _Now) -> Iterator[Rechecked]:
     """What was found of each run, whichever requirement it is about."""
-    told: dict[str, list[Mapping[str, Any]]] = {}
-    for result in whole["results"]:
-        told.setdefault(result["run"], []).append(result)
+    told: dict[str, list[Result]] = {}
+    for result in whole.results:
+        told.setdefault(result.run, []).append(result)
     of_now = {run: result for (run, _), result in now.results.items()}
     for run, results in told.items():
         if run not in of_now:
@@ -329,16 +326,15 @@ def _found(whole: Mapping[str, Any], now: _Now) -> Iterator[Rechecked]:
             yield differs(run, "", "what is found of its log differs")
 
 
-def _findings(result: Mapping[str, Any], log: str, bindings: str) -> list[str]:
+def _findings(result: Result, log: str, bindings: str) -> list[OfLog | tuple[str, OfLog]]:
     """But for where log and bindings are, and for lines: a comment above moves those."""
 
-    def same_place(finding: Mapping[str, Any]) -> Mapping[str, Any]:
-        if finding["file"] == bindings:
-            return {**finding, "file": "the bindings", "line": None, "column": None}
-        if (finding["file"] or "").startswith(log):
-            return {**finding, "file": finding["file"].removeprefix(log), "log": True}
+    def same_place(finding: OfLog) -> OfLog | tuple[str, OfLog]:
+        place = finding.file
+        if place == bindings:
+            return "the bindings", replace(finding, file=None, line=None, column=None)
+        if place is not None and place.startswith(log):
+            return "the log", replace(finding, file=place.removeprefix(log))
         return finding
 
-    return [
-        json.dumps(same_place(finding), sort_keys=True) for finding in result["health"]["findings"]
-    ]
+    return [same_place(finding) for finding in result.health.findings]

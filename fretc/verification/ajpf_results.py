@@ -23,17 +23,17 @@ from compiler.logic.claims import (
     Evidence,
     Layer,
     NotChecked,
+    Proof,
     Proved,
     Result,
     Trace,
     Vacuous,
-    as_record,
+    proof,
 )
 from compiler.targets.ajpf import bundle
 from compiler.targets.ajpf import properties as ajpf
 from compiler.targets.ajpf.runner import ERROR, HOLDS, SCHEMA, VIOLATED, verdict
 from compiler.targets.target import DEFAULT, Options
-from fretc.verification.reader import Proof
 from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
 from fretish.diagnostics.source import Source
 from fretish.reading.recursion import deep
@@ -128,41 +128,27 @@ def merged(proofs: Sequence[Proof], lines: Sequence[Evidence]) -> tuple[Proof, .
     """
     fresh = {line.requirement for line in lines}
     old = [
-        _unheld(proof) if proof.layer == Layer.AJPF else proof
-        for proof in proofs
-        if proof.layer != Layer.AJPF or proof.requirement not in fresh
+        _unheld(one) if one.layer == Layer.AJPF else one
+        for one in proofs
+        if one.layer != Layer.AJPF or one.requirement not in fresh
     ]
-    return (*old, *map(_proof, lines))
+    return (*old, *map(proof, lines))
 
 
-def _unheld(proof: Proof) -> Proof:
-    if proof.result == COUNTEREXAMPLE:
-        return proof
+def _unheld(one: Proof) -> Proof:
+    if one.result == COUNTEREXAMPLE:
+        return one
     reason = "the file of AJPF's result is not there, to be held against what is made now"
-    return _proof(
+    return proof(
         Evidence(
-            proof.requirement,
+            one.requirement,
             Layer.AJPF,
-            proof.claim,
-            NotChecked(f"it was {proof.result}; {reason}"),
-            proof.engine,
-            proof.assumptions,
-            proof.artefacts,
+            one.claim,
+            NotChecked(f"it was {one.result}; {reason}"),
+            one.engine,
+            one.assumptions,
+            one.artefacts,
         )
-    )
-
-
-def _proof(line: Evidence) -> Proof:
-    record = as_record(line)
-    return Proof(
-        line.requirement,
-        str(line.layer),
-        line.claim,
-        record["result"],
-        record["detail"],
-        line.assumptions,
-        line.engine,
-        line.artefacts,
     )
 
 

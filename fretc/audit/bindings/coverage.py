@@ -5,11 +5,13 @@ from __future__ import annotations
 import json
 import tomllib
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import asdict, dataclass, field
+from dataclasses import dataclass, field
 from functools import partial
 from typing import Any
 
+from compiler.files.records import plain
 from fretc.audit.constancy import never_changed
+from fretc.audit.evidence.writer import phase_verdicts
 from fretc.audit.measurements.tallies import NOTHING, Tally, tally
 from fretc.audit.one_log import examined, signals_of
 from fretc.audit.phases.advice import Runs, proposal
@@ -132,7 +134,9 @@ class Coverage:
                     "read": log.tallies is not None,
                     "ticks": log.ticks,
                     "findings": [as_json(finding) for finding in log.findings],
-                    "phases": {id: phases.as_record for id, phases in log.phases.items()},
+                    "phases": {
+                        id: plain(phase_verdicts(found)) for id, found in log.phases.items()
+                    },
                 }
                 for log in self.logs
             ],
@@ -150,8 +154,8 @@ class Coverage:
                 for signal in self.declarations.propositions[name].signals
             },
             "took_both_values": self._took_both(name),
-            "all": asdict(sum(self._tallies[name], NOTHING)),
-            "logs": {log.run: asdict(log.tallies[name]) for log in self.logs if log.tallies},
+            "all": plain(sum(self._tallies[name], NOTHING)),
+            "logs": {log.run: plain(log.tallies[name]) for log in self.logs if log.tallies},
         }
 
 

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
 from fractions import Fraction
 from math import isinf
 
-from fretc.audit.evidence.reader import Evidence, Result, Threshold, Violation
-from fretc.audit.evidence.samples import Samples
+from compiler.files.records import replace
+from fretc.audit.evidence.samples import Series
+from fretc.audit.evidence.schema import Evidence, Result, Threshold, Violation
 from fretish.bindings.amounts import declared_unit, scaled, shared_unit
 from fretish.bindings.declarations import Declarations, Signal
 
@@ -21,8 +21,7 @@ def in_declared_units(evidence: Evidence, declared: Declarations | None) -> Evid
     """
     if declared is None:
         return evidence
-    results = tuple(_result(result, declared.signals) for result in evidence.results)
-    return replace(evidence, results=results)
+    return evidence.with_results([_result(each, declared.signals) for each in evidence.results])
 
 
 def _result(result: Result, declared: Mapping[str, Signal]) -> Result:
@@ -43,21 +42,21 @@ def _violation(violation: Violation, units: _Units) -> Violation:
     def own(name: str) -> Fraction:
         return units.get(name, _ONE)[1]
 
-    window = violation.window
+    known = violation.surroundings
     return replace(
         violation,
         values={name: scaled(number, own(name)) for name, number in violation.values.items()},
-        window=window
+        surroundings=known
         and replace(
-            window, samples={name: _samples(s, own(name)) for name, s in window.samples.items()}
+            known, samples={name: _series(each, own(name)) for name, each in known.samples.items()}
         ),
     )
 
 
-def _samples(samples: Samples, factor: Fraction) -> Samples:
+def _series(series: Series, factor: Fraction) -> Series:
     if factor == 1:
-        return samples
-    return replace(samples, values=tuple(scaled(number, factor) for number in samples.values))
+        return series
+    return replace(series, values=tuple(scaled(value, factor) for value in series.values))
 
 
 def _threshold(threshold: Threshold, declared: Mapping[str, Signal]) -> Threshold:

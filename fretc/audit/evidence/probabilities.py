@@ -2,62 +2,129 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from fractions import Fraction
-from typing import get_args
+from math import ceil, floor
+from typing import Annotated, Literal
 
-from compiler.files.checked_json import Shape
-from fretc.audit.evidence.estimates import Estimated
-from fretc.audit.measurements.confidence_intervals import ANSWERS, Bounds
-from fretc.audit.measurements.trials import Trials
+from compiler.files.records import Count, Meta, Name, Ordinal, Record, Share, about
+from fretc.audit.measurements import confidence_intervals as odds
+from fretc.audit.measurements.confidence_intervals import Bounds
 from fretish.expressions import ComparisonOperator
 from fretish.units import number
 
-
-def probability(at: Shape) -> Estimated:
-    """One of the evidence's `probabilities`; a wrong shape raises `MisshapenError`."""
-    operators: dict[str, ComparisonOperator] = {op: op for op in get_args(ComparisonOperator)}
-    logs, triggers = at.field("logs"), trials(at.field("triggers"))
-    return Estimated(
-        requirement=at.field("requirement").text(),
-        operator=operators[at.field("operator").one_of(list(operators))],
-        bound=_bound(at.field("bound")),
-        answer=at.field("answer").one_of(ANSWERS),
-        reason=at.field("reason").text(),
-        confidence=_share(at.field("confidence")),
-        answered=triggers.answered,
-        failed=triggers.failed,
-        open=triggers.open,
-        logs=logs.field("counted").count(),
-        silent=logs.field("silent").count(),
-        damaged=logs.field("damaged").count(),
-        copies=logs.field("copies").count(),
-        estimate=at.field("estimate").or_none(_share),
-        bounds=_bounds(at.field("bounds")),
-        needed=at.field("needed").or_none(Shape.count),
-    )
+AnswerWord = Literal["supported", "refuted", "inconclusive"]
+AVERAGE = (
+    "this is the average over the triggers seen; PCTL demands it of every reachable state with a "
+    "trigger, which is more"
+)
+"""Said with every answer."""
 
 
-def trials(at: Shape) -> Trials:
+class Outcomes(Record, frozen=True):
     """What triggers came to."""
-    return Trials(*(at.field(name).count() for name in ("answered", "failed", "open")))
+
+    answered: Annotated[Count, about("triggers whose demand was met")]
+    failed: Annotated[Count, about("triggers whose demand was broken")]
+    open: Annotated[
+        Count,
+        about("triggers of which the log does not tell, and ticks that may be triggers"),
+    ]
 
 
-def _bounds(at: Shape) -> Bounds:
-    return Bounds(_share(at.field("low")), _share(at.field("high")))
+class Logs(Record, frozen=True):
+    """How many logs there are."""
+
+    counted: Annotated[Count, about("with a trigger")]
+    silent: Annotated[Count, about("intact, and without a trigger")]
+    damaged: Annotated[Count, about("damaged or not readable; what could be read of them counts")]
+    copies: Annotated[Count, about("of the same content as another one: not counted")]
 
 
-def _bound(at: Shape) -> str:
-    """A probability as it is written."""
-    try:
-        stated = number(at.text())
-    except (ValueError, ZeroDivisionError):
-        stated = Fraction(-1)
-    if not 0 <= stated <= 1:
-        raise at.wrong("a number from 0 to 1, as text")
-    return at.text()
+class Estimated(Record, frozen=True):
+    """What all runs say of one requirement."""
+
+    requirement: Name
+    operator: ComparisonOperator
+    bound: Annotated[str, about("the probability, as it is written")]
+    answer: AnswerWord
+    reason: str
+    confidence: Annotated[float, Meta(gt=0.5, lt=1)]
+    triggers: Annotated[Outcomes, about("of all logs that count")]
+    logs: Logs
+    estimate: Annotated[Share | None, about("answered ones of the decided; null: none is")]
+    bounds: Annotated[
+        Bounds, about("by whole logs, one-sided each; open triggers count against either bound")
+    ]
+    needed: Annotated[
+        Ordinal | None,
+        about("further logs, all of whose triggers are as they should be, that would support it"),
+    ]
+    meaning: Annotated[str, about("what the answer is about, and what PCTL would be")]
+
+    def __post_init__(self) -> None:
+        """Raise ValueError where the bound is no probability."""
+        try:
+            stated = number(self.bound)
+        except (ValueError, ZeroDivisionError):
+            stated = Fraction(-1)
+        if not 0 <= stated <= 1:
+            raise ValueError("Expected a `bound` from 0 to 1, as text")
+
+    @property
+    def text(self) -> str:
+        """`with probability >= 0.99`."""
+        return f"with probability {self.operator} {self.bound}"
+
+    @property
+    def lines(self) -> tuple[str, ...]:
+        """For a person, the answer first."""
+        return tuple(self._lines())
+
+    def _lines(self) -> Iterator[str]:
+        known, logs = self.triggers, self.logs
+        count = known.answered + known.failed + known.open
+        yield f"{self.answer:<12}  {self.reason}"
+        told = f"{known.answered} of {count} triggers answered, {known.failed} failed"
+        yield f"{told}, {known.open} open, in {times(logs.counted, 'log')}{_others(logs)}"
+        share = "not known" if self.estimate is None else f"{self.estimate:.4f}"
+        each = odds.both_sides(self.operator, self.confidence)
+        stretch = f"bounds, by whole logs, at {_percent(each)} each: {shown(self.bounds)}"
+        yield f"estimate {share}; {stretch}"
+        if self.needed is not None:
+            how = "no trigger" if self.operator in ("<", "<=") else "all triggers"
+            yield f"at least {times(self.needed, 'more log')}, {how} answered, would be needed"
+        yield AVERAGE
 
 
-def _share(at: Shape) -> float:
-    if not 0 <= at.number() <= 1:
-        raise at.wrong("a number from 0 to 1")
-    return at.number()
+def _others(logs: Logs) -> str:
+    found = (
+        (logs.silent, "without a trigger"),
+        (logs.damaged, "damaged or not readable"),
+        (logs.copies, "not counted: of the same content as another"),
+    )
+    return "".join(f", {count} {what}" for count, what in found if count)
+
+
+def shown(bounds: Bounds) -> str:
+    """`0.9900 to 1.0000`, rounded outwards."""
+    return f"{low(bounds.low)} to {high(bounds.high)}"
+
+
+def low(bound: float) -> str:
+    """Rounded down: never more than is known."""
+    return f"{floor(bound * 10**4) / 10**4:.4f}"
+
+
+def high(bound: float) -> str:
+    """Rounded up."""
+    return f"{ceil(bound * 10**4) / 10**4:.4f}"
+
+
+def _percent(share: float) -> str:
+    return f"{share * 100:.4g} %"
+
+
+def times(count: int, thing: str) -> str:
+    """`2 logs`."""
+    return f"{count} {thing}{'' if count == 1 else 's'}"

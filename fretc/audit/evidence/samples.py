@@ -1,20 +1,52 @@
-"""The samples around a violation, as an evidence file has them, in checked shapes.
-
-Source: `templates/json/evidence.schema.json`, `window`.
-"""
+"""The samples around a violation: as an evidence file has them, and in seconds of the run."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
 from itertools import pairwise
-from math import inf, isfinite
-from typing import cast
+from math import inf
+from typing import Annotated, Literal
 
-from compiler.files.checked_json import Shape
+from compiler.files.records import Meta, Number, Record, Whole, about
 
 _INFINITE = {"+inf": inf, "-inf": -inf}
-_LARGEST = 2**63
+_FEW = Meta(max_length=50)
+
+Reading = Annotated[
+    Number | Literal["+inf", "-inf"] | None,
+    about("in base units; +inf: nothing in range, -inf: too near to measure, null: unknown"),
+]
+
+
+class Series(Record, frozen=True):
+    """The sample of a signal in force at the start of a window, and those after it.
+
+    Of more than 50 some, with the least, the greatest and the last one at the first violated tick.
+    """
+
+    times_ns: Annotated[tuple[Whole, ...], _FEW]
+    values: Annotated[tuple[Reading, ...], _FEW]
+
+    def __post_init__(self) -> None:
+        """Raise ValueError where it is no series."""
+        if len(self.times_ns) != len(self.values):
+            raise ValueError("Expected as many times as values")
+        if any(late < early for early, late in pairwise(self.times_ns)):
+            raise ValueError("Expected times in their order")
+
+
+class Surroundings(Record, frozen=True):
+    """The signals from 1 s before the trigger to 1 s after the deadline, or around tick `first`."""
+
+    start_ns: Whole
+    end_ns: Whole
+    samples: dict[str, Series]
+
+    def __post_init__(self) -> None:
+        """Raise ValueError where it ends before its start."""
+        if self.end_ns < self.start_ns:
+            raise ValueError("Expected a stretch of time that ends after its start")
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,7 +56,7 @@ class Samples:
     times: tuple[float, ...]
     """Seconds from the first tick, not decreasing; before it negative."""
     values: tuple[float | None, ...]
-    """In base units, of the same number; they may be infinite."""
+    """Of the same number; they may be infinite."""
 
     def at(self, seconds: float) -> float | None:
         """The value in force; None where it is unknown or there is none yet."""
@@ -41,50 +73,25 @@ class Window:
     samples: Mapping[str, Samples]
 
 
-def window(at: Shape, first_ns: int) -> Window:
-    """A window as it is written.
+def window(surroundings: Surroundings, first_ns: int) -> Window:
+    """The same in seconds, signals by their names.
 
     Args:
-        at: its object.
+        surroundings: of a violation.
         first_ns: when the first tick of the run is, by the clock of the log.
-
-    Raises:
-        MisshapenError: it is none.
     """
-    start, end = at.field("start_ns").whole(), at.field("end_ns").whole()
-    if end < start:
-        raise at.wrong("a stretch of time that ends after its start")
-    samples = at.field("samples").fields()
     return Window(
-        (start - first_ns) / 1e9,
-        (end - first_ns) / 1e9,
-        {name: _samples(each, first_ns) for name, each in samples.items()},
+        (surroundings.start_ns - first_ns) / 1e9,
+        (surroundings.end_ns - first_ns) / 1e9,
+        {name: _samples(each, first_ns) for name, each in sorted(surroundings.samples.items())},
     )
 
 
-def _samples(at: Shape, first_ns: int) -> Samples:
-    times, values = _times(at.field("times_ns")), _values(at.field("values"))
-    if len(times) != len(values):
-        raise at.wrong("as many times as values")
-    if any(late < early for early, late in pairwise(times)):
-        raise at.field("times_ns").wrong("times in their order")
-    return Samples(tuple([(ns - first_ns) / 1e9 for ns in times]), values)
+def _samples(series: Series, first_ns: int) -> Samples:
+    times = tuple([(ns - first_ns) / 1e9 for ns in series.times_ns])
+    return Samples(times, tuple(map(number, series.values)))
 
 
-def _times(at: Shape) -> list[int]:
-    """All at once where they are right; one by one only to say which is not."""
-    found = at.value
-    if isinstance(found, list) and all(type(t) is int and abs(t) < _LARGEST for t in found):
-        return found
-    return [each.whole() for each in at.items()]
-
-
-def _values(at: Shape) -> tuple[float | None, ...]:
-    found = at.value
-    if isinstance(found, list) and all(type(v) is float and isfinite(v) for v in found):
-        return tuple(cast("list[float]", found))
-    return tuple(each.or_none(_value) for each in at.items())
-
-
-def _value(at: Shape) -> float:
-    return _INFINITE[at.one_of(tuple(_INFINITE))] if isinstance(at.value, str) else at.number()
+def number(reading: float | str | None) -> float | None:
+    """A reading as a number, which may be infinite."""
+    return _INFINITE[reading] if isinstance(reading, str) else reading

@@ -1,28 +1,51 @@
-"""What one audit of one run against one requirement has shown, as plain values.
-
-The JSON form is versioned; its schema is `templates/json/evidence.schema.json`.
-"""
+"""What one audit of one run against one requirement has shown, as its evidence file has it."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import asdict, dataclass
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from math import isinf, isnan
 from statistics import median
-from typing import Any
+from typing import TypeVar, cast
 
+from compiler.files.records import UNSET, UnsetType, decoded, plain
+from compiler.files.templating import to_json
+from fretc.audit.evidence.probabilities import Outcomes
+from fretc.audit.evidence.samples import Reading, Series, Surroundings
+from fretc.audit.evidence.schema import (
+    Answer,
+    Checked,
+    Comparison,
+    Document,
+    Finding,
+    Gap,
+    Hashes,
+    Health,
+    Instant,
+    PhaseStretch,
+    PhaseVerdicts,
+    Result,
+    State,
+    StateWord,
+    Threshold,
+    Topic,
+    Verdict,
+    Violation,
+)
 from fretc.audit.measurements.margins import CROSSED, Margin
 from fretc.audit.measurements.tallies import Tally
 from fretc.audit.measurements.trials import Trials
-from fretc.audit.measurements.violations import Moment, Violation, Window
-from fretc.audit.phases.by_shift import Phases
-from fretc.logs.signals.integrity import Checked
+from fretc.audit.measurements.violations import Moment, Window
+from fretc.audit.measurements.violations import Violation as Broken
+from fretc.audit.phases.by_shift import Phases, Stretch
 from fretc.logs.signals.samples import Recording, Samples
+from fretc.logs.signals.samples import Topic as Read
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.diagnostics.rendering import as_json
-from monitors.kernel import NO_DATA, Outcome
+from monitors.kernel import Outcome
 
-SCHEMA = "fretc-evidence-1"
+T = TypeVar("T")
+U = TypeVar("U")
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,7 +67,7 @@ class Evidence:
     states: tuple[tuple[Moment, str], ...]
     """When the state changed, and to what (`fretc.audit.measurements.states`)."""
     triggers: tuple[Moment, ...]
-    violations: tuple[Violation, ...]
+    violations: tuple[Broken, ...]
     open: tuple[Moment, ...]
     """Triggers whose demand is open at the end of the log."""
     latencies: tuple[float, ...]
@@ -57,7 +80,7 @@ class Evidence:
     """The base unit of each signal."""
     hashes: Mapping[str, str]
     """SHA-256 of the log, the sentence, the bindings and the monitor."""
-    health: Mapping[str, Any]
+    health: Health
     assumptions: tuple[str, ...]
     trials: Trials | None = None
     """Of a requirement with a probability: what its triggers came to."""
@@ -66,203 +89,209 @@ class Evidence:
     where the clock ticks by message."""
 
 
-def health(recording: Recording) -> dict[str, Any]:
+def health(recording: Recording) -> Health:
     """Whether the data of the run can be trusted, and why not."""
-    return {
-        "intact": recording.intact,
-        "size": recording.size,
-        "checked": _checked(recording.checked),
-        "gaps": [{"start_ns": start, "end_ns": end} for start, end in recording.gaps],
-        "findings": [as_json(finding) for finding in recording.findings],
-        "topics": {
-            name: {
-                "type": topic.type,
-                "count": topic.count,
-                "first_ns": topic.first_ns,
-                "last_ns": topic.last_ns,
-                "longest_gap_ns": topic.longest_gap_ns,
-                "median_period_ns": topic.median_period_ns,
-                "out_of_order": topic.out_of_order,
-                "equal_stamps": topic.equal_stamps,
-                "unstamped": topic.unstamped,
-                "zero_stamps": topic.zero_stamps,
-                "clock_jumps": topic.clock_jumps,
-            }
-            for name, topic in sorted(recording.topics.items())
-        },
-    }
+    checked = recording.checked
+    return Health(
+        intact=recording.intact,
+        size=recording.size,
+        checked=Checked(
+            checked.by_index,
+            checked.chunks,
+            checked.crc_checked,
+            checked.crc_unchecked,
+            checked.without_crc,
+            checked.skipped,
+        ),
+        gaps=tuple(Gap(start, end) for start, end in recording.gaps),
+        findings=tuple(map(_finding, recording.findings)),
+        topics={name: _topic(topic) for name, topic in sorted(recording.topics.items())},
+    )
 
 
-def _checked(checked: Checked) -> dict[str, Any]:
-    return {
-        "by_index": checked.by_index,
-        "chunks": checked.chunks,
-        "crc_checked": checked.crc_checked,
-        "crc_unchecked": checked.crc_unchecked,
-        "without_crc": checked.without_crc,
-        "skipped": checked.skipped,
-    }
+def _finding(diagnostic: Diagnostic) -> Finding:
+    return decoded(as_json(diagnostic), Finding)
 
 
-def as_record(evidence: Evidence) -> dict[str, Any]:
-    """The JSON object of one run and requirement."""
-    return {
-        "run": evidence.run,
-        "requirement": evidence.requirement,
-        "verdict": evidence.verdict,
-        "finite": evidence.outcome.finite,
-        "reason": evidence.reason,
-        "clock": evidence.clock,
-        "ticks": evidence.outcome.ticks,
-        "start_ns": evidence.start_ns,
-        "end_ns": evidence.end_ns,
-        "states": [{**_moment(moment), "state": state} for moment, state in evidence.states],
-        "answers": [{**_moment(k), "trigger": t.tick} for t, k in evidence.answers],
-        "triggers": [_moment(moment) for moment in evidence.triggers],
-        "violations": [_violation(violation) for violation in evidence.violations],
-        "unknown": [list(run) for run in evidence.outcome.unknown],
-        "open": [_moment(moment) for moment in evidence.open],
-        "uncertain": list(evidence.outcome.uncertain),
-        "latencies_s": list(evidence.latencies),
-        **_exercise(evidence),
-        "propositions": {name: asdict(tally) for name, tally in evidence.propositions.items()},
-        "thresholds": [_threshold(margin, evidence) for margin in evidence.margins],
-        "units": dict(evidence.units),
-        "hashes": dict(evidence.hashes),
-        "health": dict(evidence.health),
-        "assumptions": list(evidence.assumptions),
-        **_trials(evidence.trials),
-        **({} if evidence.phases is None else {"phases": evidence.phases.as_record}),
-    }
+def _topic(topic: Read) -> Topic:
+    return Topic(
+        topic.type,
+        topic.count,
+        topic.first_ns,
+        topic.last_ns,
+        topic.longest_gap_ns,
+        topic.median_period_ns,
+        topic.out_of_order,
+        topic.equal_stamps,
+        topic.unstamped,
+        topic.zero_stamps,
+        topic.clock_jumps,
+    )
 
 
-def _trials(trials: Trials | None) -> dict[str, Any]:
-    if trials is None:
-        return {}
-    counts = {"answered": trials.answered, "failed": trials.failed, "open": trials.open}
-    return {"trials": counts}
+def text(document: Document) -> str:
+    """The evidence file: the same values give the same bytes."""
+    return f"{to_json(plain(document))}\n"
 
 
-def unread(
-    run: str, requirement: str, diagnostic: Diagnostic, hashes: Mapping[str, str]
-) -> dict[str, Any]:
-    """The JSON object of a run whose log could not be read: nothing is shown."""
-    health: dict[str, Any] = {
-        "intact": False,
-        "size": None,
-        "checked": None,
-        "gaps": [],
-        "findings": [as_json(diagnostic)],
-        "topics": {},
-    }
-    return unjudged(run, requirement, diagnostic.message, hashes, health)
+def as_record(evidence: Evidence) -> Result:
+    """The result of one run and requirement."""
+    outcome, latencies = evidence.outcome, evidence.latencies
+    return Result(
+        run=evidence.run,
+        requirement=evidence.requirement,
+        verdict=cast("Verdict", evidence.verdict),
+        finite=outcome.finite,
+        reason=evidence.reason,
+        clock=evidence.clock,
+        ticks=outcome.ticks,
+        start_ns=evidence.start_ns,
+        end_ns=evidence.end_ns,
+        states=tuple(_state(*each) for each in evidence.states),
+        answers=tuple(Answer(m.tick, m.ns, m.seconds, t.tick) for t, m in evidence.answers),
+        triggers=evidence.triggers,
+        violations=tuple(map(_violation, evidence.violations)),
+        unknown=tuple(outcome.unknown),
+        open=evidence.open,
+        uncertain_ticks=tuple(outcome.uncertain),
+        latencies=latencies,
+        exercised=len(evidence.triggers),
+        latency_median_s=round(median(latencies), 9) if latencies else None,
+        latency_max_s=max(latencies, default=None),
+        propositions=dict(evidence.propositions),
+        thresholds=tuple(_threshold(margin, evidence.first_ns) for margin in evidence.margins),
+        units=dict(evidence.units),
+        fingerprints=Hashes(**evidence.hashes),
+        health=evidence.health,
+        assumptions=evidence.assumptions,
+        outcomes=_known(evidence.trials, _outcomes),
+        phases=_known(evidence.phases, phase_verdicts),
+    )
+
+
+def unread(run: str, requirement: str, diagnostic: Diagnostic, hashes: Mapping[str, str]) -> Result:
+    """The result of a run whose log could not be read: nothing is shown."""
+    found = Health(False, None, None, (), (_finding(diagnostic),), {})
+    return unjudged(run, requirement, diagnostic.message, hashes, found)
 
 
 def unjudged(
-    run: str,
-    requirement: str,
-    reason: str,
-    hashes: Mapping[str, str],
-    health: Mapping[str, Any],
-) -> dict[str, Any]:
-    """The JSON object of a run and a requirement that could not be held against it."""
-    return {
-        "run": run,
-        "requirement": requirement,
-        "verdict": NO_DATA,
-        "finite": None,
-        "reason": reason,
-        "clock": "",
-        "ticks": 0,
-        "start_ns": None,
-        "end_ns": None,
-        "states": [],
-        "answers": [],
-        "triggers": [],
-        "violations": [],
-        "unknown": [],
-        "open": [],
-        "uncertain": [],
-        "latencies_s": [],
-        "exercised": 0,
-        "latency_median_s": None,
-        "latency_max_s": None,
-        "propositions": {},
-        "thresholds": [],
-        "units": {},
-        "hashes": dict(hashes),
-        "health": dict(health),
-        "assumptions": [],
-    }
+    run: str, requirement: str, reason: str, hashes: Mapping[str, str], health: Health
+) -> Result:
+    """The result of a run and a requirement that could not be held against it."""
+    return Result(
+        run=run,
+        requirement=requirement,
+        verdict="no data",
+        finite=None,
+        reason=reason,
+        clock="",
+        ticks=0,
+        start_ns=None,
+        end_ns=None,
+        states=(),
+        answers=(),
+        triggers=(),
+        violations=(),
+        unknown=(),
+        open=(),
+        uncertain_ticks=(),
+        latencies=(),
+        exercised=0,
+        latency_median_s=None,
+        latency_max_s=None,
+        propositions={},
+        thresholds=(),
+        units={},
+        fingerprints=Hashes(**hashes),
+        health=health,
+        assumptions=(),
+    )
 
 
-def _moment(moment: Moment) -> dict[str, Any]:
-    return {"tick": moment.tick, "ns": moment.ns, "seconds": moment.seconds}
+def _state(at: Moment, word: str) -> State:
+    return State(at.tick, at.ns, at.seconds, cast("StateWord", word))
 
 
-def _exercise(evidence: Evidence) -> dict[str, Any]:
-    latencies = evidence.latencies
-    return {
-        "exercised": len(evidence.triggers),
-        "latency_median_s": round(median(latencies), 9) if latencies else None,
-        "latency_max_s": max(latencies, default=None),
-    }
+def _known(value: T | None, write: Callable[[T], U]) -> U | UnsetType:
+    return UNSET if value is None else write(value)
 
 
-def _threshold(margin: Margin, evidence: Evidence) -> dict[str, Any]:
-    threshold, kept = margin.threshold, margin.comparison
-    return {
-        "proposition": threshold.proposition,
-        "signal": threshold.text,
-        "operator": threshold.operator,
-        "bound": threshold.bound,
-        "unit": threshold.unit,
-        "least": _reading(margin.least),
-        "greatest": _reading(margin.greatest),
-        "comparison": kept if kept is None or kept == CROSSED else str(kept).lower(),
-        "margin": margin.distance,
-        "nearest": _instant(margin.nearest_ns, evidence),
-    }
+def _outcomes(trials: Trials) -> Outcomes:
+    return Outcomes(trials.answered, trials.failed, trials.open)
 
 
-def _instant(ns: int | None, evidence: Evidence) -> dict[str, Any] | None:
-    """A time of the log that need not be one of a tick; before the first tick it is negative."""
-    if ns is None:
-        return None
-    return {"ns": ns, "seconds": round((ns - evidence.first_ns) / 1e9, 9)}
+def phase_verdicts(phases: Phases) -> PhaseVerdicts:
+    """The verdict at each phase."""
+    return PhaseVerdicts(
+        phases.period,
+        phases.declared,
+        phases.exact,
+        phases.nearest,
+        tuple(
+            PhaseStretch(s.first, s.last, cast("Verdict | None", s.verdict))
+            for s in phases.stretches
+        ),
+    )
 
 
-def _reading(value: float | None) -> float | str | None:
+def _stretch(each: Stretch) -> PhaseStretch:
+    return PhaseStretch(each.first, each.last, cast("Verdict | None", each.verdict))
+
+
+def _threshold(margin: Margin, first_ns: int) -> Threshold:
+    threshold, near = margin.threshold, margin.nearest_ns
+    return Threshold(
+        proposition=threshold.proposition,
+        signal=threshold.text,
+        operator=threshold.operator,
+        bound=threshold.bound,
+        unit=threshold.unit,
+        least=_reading(margin.least),
+        greatest=_reading(margin.greatest),
+        comparison=_comparison(margin.comparison),
+        margin=margin.distance,
+        nearest=None if near is None else Instant(near, round((near - first_ns) / 1e9, 9)),
+    )
+
+
+def _comparison(kept: bool | str | None) -> Comparison | None:
+    if isinstance(kept, str):
+        assert kept == CROSSED
+        return "crossed"
+    return None if kept is None else "true" if kept else "false"
+
+
+def _reading(value: float | None) -> Reading:
     """A number that may be unknown (null) or infinite, for which JSON has no number."""
     if value is None or isnan(value):
         return None
-    return ("+inf" if value > 0 else "-inf") if isinf(value) else value
+    if isinf(value):
+        return "+inf" if value > 0 else "-inf"
+    return value
 
 
-def _violation(violation: Violation) -> dict[str, Any]:
-    return {
-        "first_tick": violation.first.tick,
-        "last_tick": violation.last.tick,
-        "start_ns": violation.first.ns,
-        "end_ns": violation.last.ns,
-        "start_s": violation.first.seconds,
-        "end_s": violation.last.seconds,
-        "trigger": _moment(violation.trigger) if violation.trigger else None,
-        "deadline": _moment(violation.deadline) if violation.deadline else None,
-        "missing": violation.missing,
-        "values": dict(violation.values),
-        "window": _window(violation.window) if violation.window else None,
-    }
+def _violation(broken: Broken) -> Violation:
+    first, last = broken.first, broken.last
+    return Violation(
+        first_tick=first.tick,
+        last_tick=last.tick,
+        start_ns=first.ns,
+        end_ns=last.ns,
+        start_s=first.seconds,
+        end_s=last.seconds,
+        trigger=broken.trigger,
+        deadline=broken.deadline,
+        missing=broken.missing,
+        values=dict(broken.values),
+        surroundings=_surroundings(broken.window) if broken.window else None,
+    )
 
 
-def _window(window: Window) -> dict[str, Any]:
-    return {
-        "start_ns": window.start_ns,
-        "end_ns": window.end_ns,
-        "samples": {name: _samples(samples) for name, samples in window.samples.items()},
-    }
+def _surroundings(window: Window) -> Surroundings:
+    samples = {name: _series(samples) for name, samples in window.samples.items()}
+    return Surroundings(window.start_ns, window.end_ns, samples)
 
 
-def _samples(samples: Samples) -> dict[str, Any]:
-    values = [_reading(value) for value in samples.base.tolist()]
-    return {"times_ns": samples.times.tolist(), "values": values}
+def _series(samples: Samples) -> Series:
+    return Series(tuple(samples.times.tolist()), tuple(map(_reading, samples.base.tolist())))

@@ -30,6 +30,7 @@ from math import ceil, log
 import numpy as np
 from numpy.typing import NDArray
 
+from compiler.files.records import Record, Share
 from fretc.audit.measurements.trials import Trials
 from fretish.expressions import ComparisonOperator
 
@@ -48,12 +49,11 @@ _SLACK = 1e-9
 """Of a logarithm: more than what rounding adds to it."""
 
 
-@dataclass(frozen=True, slots=True)
-class Bounds:
+class Bounds(Record, frozen=True):
     """With the stated confidence it is not below `low`; with the same, not above `high`."""
 
-    low: float
-    high: float
+    low: Share
+    high: Share
 
 
 NOTHING_KNOWN = Bounds(0.0, 1.0)

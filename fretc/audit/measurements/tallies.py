@@ -2,21 +2,20 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from itertools import pairwise
+from typing import Annotated
 
+from compiler.files.records import Count, Record, about
 from monitors.kernel import Column
 
 
-@dataclass(frozen=True, slots=True)
-class Tally:
+class Tally(Record, frozen=True):
     """The ticks of one proposition; what is unknown in between changes nothing."""
 
-    true: int
-    false: int
-    unknown: int
-    changes: int
-    """How often a known value followed another one."""
+    true: Annotated[Count, about("at how many ticks")]
+    false: Count
+    unknown: Count
+    changes: Annotated[Count, about("how often a known value followed another one")]
 
     def __add__(self, other: Tally) -> Tally:
         """Over two runs: from one to the next nothing changes."""

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from compiler.files.records import Count, Record, Seconds, Whole
 from fretc.logs.signals.samples import Recording, Samples, Values, scaled
 from monitors.kernel import Outcome
 
@@ -25,13 +26,12 @@ MOST_WINDOWS = 100
 """Violations of one run and requirement that are told with their samples."""
 
 
-@dataclass(frozen=True, slots=True)
-class Moment:
+class Moment(Record, frozen=True):
     """A tick with its time; `ns` is the log's clock, `seconds` counts from the first tick."""
 
-    tick: int
-    ns: int
-    seconds: float
+    tick: Count
+    ns: Whole
+    seconds: Seconds
 
 
 @dataclass(frozen=True, slots=True)

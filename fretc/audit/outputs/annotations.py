@@ -26,12 +26,13 @@ from compiler.files.edition import __version__
 from compiler.formalization.record import wording
 from compiler.formalization.rule import Rule
 from fretc.audit.evidence.basis import BINDINGS, CLOCK, MONITOR, PARAMS, SENTENCE, TOPICS
+from fretc.audit.evidence.schema import Result
 from fretc.audit.log_paths import ANNOTATIONS
 from monitors import kernel
 
 VERDICTS = "/fretc/verdicts"
 _INFO, _WARNING, _ERROR = 2, 3, 4
-_LEVELS = {kernel.SATISFIED: _INFO, kernel.VIOLATED: _ERROR}
+_LEVELS: Mapping[str, int] = {kernel.SATISFIED: _INFO, kernel.VIOLATED: _ERROR}
 """Of the verdicts; a warning for what is not shown."""
 _SECOND = 10**9
 _LOGS = (".mcap", ".bag", ".db3")
@@ -65,9 +66,7 @@ class _Event:
     content: Mapping[str, Any]
 
 
-def sidecars(
-    results: Sequence[Mapping[str, Any]], rules: Sequence[Rule], folder: Path
-) -> dict[Path, bytes]:
+def sidecars(results: Sequence[Result], rules: Sequence[Rule], folder: Path) -> dict[Path, bytes]:
     """A file for each run that could be read; the same results give the same bytes.
 
     Args:
@@ -75,15 +74,15 @@ def sidecars(
         rules: all requirements of the results.
         folder: where the files go.
     """
-    runs: dict[str, list[Mapping[str, Any]]] = {}
+    runs: dict[str, list[Result]] = {}
     for result in results:
-        if result["start_ns"] is not None:
-            runs.setdefault(result["run"], []).append(result)
+        if result.start_ns is not None:
+            runs.setdefault(result.run, []).append(result)
     names = _names(list(runs))
     return {folder / names[run]: sidecar(found, rules) for run, found in runs.items()}
 
 
-def sidecar(results: Sequence[Mapping[str, Any]], rules: Sequence[Rule]) -> bytes:
+def sidecar(results: Sequence[Result], rules: Sequence[Rule]) -> bytes:
     """The log of one run: what happened, in order of time.
 
     Args:
@@ -98,7 +97,7 @@ def sidecar(results: Sequence[Mapping[str, Any]], rules: Sequence[Rule]) -> byte
     state = writer.register_schema("fretc.State", SchemaEncoding.JSONSchema, _STATE.encode())
     channels = {VERDICTS: writer.register_channel(VERDICTS, MessageEncoding.JSON, log)}
     for result in results:
-        topic, rule = state_topic(result["requirement"]), by_id[result["requirement"]]
+        topic, rule = state_topic(result.requirement), by_id[result.requirement]
         about = {"sentence": wording(rule.requirement)}
         channels[topic] = writer.register_channel(topic, MessageEncoding.JSON, state, about)
     events = [event for result in results for event in _events(result, by_id)]
@@ -118,42 +117,43 @@ def state_topic(id: str) -> str:
     return f"{topic}/state" if topic == VERDICTS else topic
 
 
-def _events(result: Mapping[str, Any], rules: Mapping[str, Rule]) -> Iterator[_Event]:
+def _events(result: Result, rules: Mapping[str, Rule]) -> Iterator[_Event]:
     """Of one requirement; of those at the same time, what comes first is told first."""
-    id = result["requirement"]
+    id = result.requirement
     place = rules[id].requirement.wording
 
     def told(ns: int, level: int, message: str) -> _Event:
         where = {"name": id, "file": place.source.name, "line": place.line}
         return _Event(max(0, ns), VERDICTS, {"level": level, "message": message, **where})
 
-    for state in result.get("states", ()):
-        content = {"requirement": id, "state": state["state"]}
-        yield _Event(max(0, state["ns"]), state_topic(id), content)
-    triggers = {moment["tick"]: moment for moment in result["triggers"]}
+    for state in result.states:
+        content = {"requirement": id, "state": state.state}
+        yield _Event(max(0, state.ns), state_topic(id), content)
+    triggers = {moment.tick: moment for moment in result.triggers}
     for trigger in triggers.values():
-        yield told(trigger["ns"], _INFO, f"{id}: triggered")
-    for answer in result.get("answers", ()):
-        waited = _seconds(answer["ns"] - triggers[answer["trigger"]]["ns"])
-        yield told(answer["ns"], _INFO, f"{id}: answered after {waited}")
-    for violation in result["violations"]:
-        trigger = violation["trigger"]
-        since = f", triggered at {trigger['seconds']:.3f} s" if trigger else ""
-        yield told(violation["start_ns"], _ERROR, f"{id}: violated from here on{since}")
-        yield told(violation["end_ns"], _ERROR, f"{id}: violated up to here")
-    verdict = f"{id}: {result['verdict']}: {result['reason']}"
-    yield told(result["end_ns"], _LEVELS.get(result["verdict"], _WARNING), verdict)
+        yield told(trigger.ns, _INFO, f"{id}: triggered")
+    for answer in result.answers:
+        waited = _seconds(answer.ns - triggers[answer.trigger].ns)
+        yield told(answer.ns, _INFO, f"{id}: answered after {waited}")
+    for violation in result.violations:
+        cause = violation.trigger
+        since = f", triggered at {cause.seconds:.3f} s" if cause else ""
+        yield told(violation.start_ns, _ERROR, f"{id}: violated from here on{since}")
+        yield told(violation.end_ns, _ERROR, f"{id}: violated up to here")
+    verdict = f"{id}: {result.verdict}: {result.reason}"
+    assert result.end_ns is not None, "there is a sidecar of what could be read only"
+    yield told(result.end_ns, _LEVELS.get(result.verdict, _WARNING), verdict)
 
 
-def _metadata(results: Sequence[Mapping[str, Any]]) -> dict[str, str]:
+def _metadata(results: Sequence[Result]) -> dict[str, str]:
     """What was judged, by what, and how it came out."""
     first = results[0]
-    found = {"fretc": __version__, "run": first["run"], "clock": first["clock"]}
+    found = {"fretc": __version__, "run": first.run, "clock": first.clock}
     names = ("log", "log_summary", CLOCK, TOPICS)
-    found |= {f"sha256.{n}": first["hashes"][n] for n in names if n in first["hashes"]}
+    found |= {f"sha256.{n}": first.hashes[n] for n in names if n in first.hashes}
     for result in results:
-        id, hashes = result["requirement"], result["hashes"]
-        found |= {f"{id}.verdict": result["verdict"], f"{id}.reason": result["reason"]}
+        id, hashes = result.requirement, result.hashes
+        found |= {f"{id}.verdict": result.verdict, f"{id}.reason": result.reason}
         parts = [name for name in (SENTENCE, PARAMS, BINDINGS, MONITOR) if name in hashes]
         found |= {f"{id}.sha256.{name}": hashes[name] for name in parts}
     return found

@@ -11,11 +11,11 @@ from collections.abc import Iterator, Mapping, Sequence
 from fractions import Fraction
 from itertools import groupby
 from types import MappingProxyType
-from typing import Any
 from xml.etree import ElementTree
 
 from fretc.audit.evidence import verdicts
-from fretc.audit.evidence.estimates import AVERAGE, Estimated
+from fretc.audit.evidence.probabilities import AVERAGE, Estimated
+from fretc.audit.evidence.schema import Result
 from fretc.audit.evidence.verdicts import Level
 from fretish.bindings.amounts import declared_unit, scaled, value
 from fretish.bindings.declarations import Signal
@@ -28,7 +28,7 @@ _GITHUB = {Level.ERROR: "error", Level.WARNING: "warning", Level.NONE: "notice"}
 
 
 def junit(
-    results: Sequence[Mapping[str, Any]],
+    results: Sequence[Result],
     together: Sequence[Estimated] = (),
     signals: Mapping[str, Signal] = MappingProxyType({}),
 ) -> str:
@@ -40,9 +40,9 @@ def junit(
         signals: those of the bindings, in whose units numbers are shown.
     """
     root = ElementTree.Element("testsuites", name="fretc audit")
-    for run, found in groupby(results, key=lambda result: str(result["run"])):
+    for run, found in groupby(results, key=lambda result: result.run):
         cases = list(found)
-        counts = counted([verdicts.junit(case["verdict"]) for case in cases])
+        counts = counted([verdicts.junit(case.verdict) for case in cases])
         suite = ElementTree.SubElement(root, "testsuite", {"name": valid(run), **counts})
         for case in cases:
             _case(suite, run, case, signals)
@@ -78,40 +78,40 @@ def _suite_of_all(root: ElementTree.Element, together: Sequence[Estimated]) -> N
 
 
 def _case(
-    suite: ElementTree.Element, run: str, case: Mapping[str, Any], signals: Mapping[str, Signal]
+    suite: ElementTree.Element, run: str, case: Result, signals: Mapping[str, Signal]
 ) -> None:
-    length = (case["end_ns"] or 0) - (case["start_ns"] or 0)
+    length = (case.end_ns or 0) - (case.start_ns or 0)
     node = ElementTree.SubElement(
         suite,
         "testcase",
-        name=valid(case["requirement"]),
+        name=valid(case.requirement),
         classname=valid(run),
         time=f"{length / 1e9:.3f}",
     )
-    kind = verdicts.junit(case["verdict"])
+    kind = verdicts.junit(case.verdict)
     if kind:
-        message = valid(f"{case['verdict']}: {case['reason']}")
+        message = valid(f"{case.verdict}: {case.reason}")
         told = ElementTree.SubElement(node, kind, message=message)
         told.text = valid("\n".join(_lines(case, signals)))
 
 
-def _lines(case: Mapping[str, Any], signals: Mapping[str, Signal]) -> Iterator[str]:
+def _lines(case: Result, signals: Mapping[str, Signal]) -> Iterator[str]:
     """Each stretch at which the requirement was violated, with what the signals said."""
-    units = {n: declared_unit(n, base, signals) for n, base in case["units"].items()}
+    units = {n: declared_unit(n, base, signals) for n, base in case.units.items()}
     bounds = {name: _bounds(case, name, factor) for name, (_, factor) in units.items()}
-    for broken in case["violations"]:
+    for broken in case.violations:
         values = ", ".join(
             f"{name} = {value(scaled(number, units[name][1]), units[name][0], bounds[name])}"
-            for name, number in broken["values"].items()
+            for name, number in broken.values.items()
         )
-        stretch = f"{broken['start_s']:.3f} s to {broken['end_s']:.3f} s"
+        stretch = f"{broken.start_s:.3f} s to {broken.end_s:.3f} s"
         yield f"{stretch}: {values}" if values else stretch
 
 
-def _bounds(case: Mapping[str, Any], signal: str, factor: Fraction) -> list[float]:
+def _bounds(case: Result, signal: str, factor: Fraction) -> list[float]:
     """What a signal, or its absolute value, is compared with."""
-    found = (t for t in case["thresholds"] if t["signal"] in (signal, f"abs({signal})"))
-    return [sign * scaled(each["bound"], factor) for each in found for sign in (1, -1)]
+    found = (t for t in case.thresholds if t.signal in (signal, f"abs({signal})"))
+    return [sign * scaled(each.bound, factor) for each in found for sign in (1, -1)]
 
 
 def valid(text: str) -> str:
@@ -120,7 +120,7 @@ def valid(text: str) -> str:
 
 
 def github(
-    results: Sequence[Mapping[str, Any]],
+    results: Sequence[Result],
     requirements: Sequence[Requirement],
     together: Sequence[Estimated] = (),
 ) -> str:
@@ -131,10 +131,10 @@ def github(
     places = {requirement.id: requirement.wording for requirement in requirements}
     lines = []
     for result in results:
-        level = "notice" if "trials" in result else _GITHUB[verdicts.level(result["verdict"])]
-        title = f"{result['requirement']} {result['verdict']}"
-        said = f"{result['run']}: {result['reason']}"
-        lines.append(_annotation(level, places[result["requirement"]], title, said))
+        level = "notice" if result.trials is not None else _GITHUB[verdicts.level(result.verdict)]
+        title = f"{result.requirement} {result.verdict}"
+        said = f"{result.run}: {result.reason}"
+        lines.append(_annotation(level, places[result.requirement], title, said))
     for one in together:
         level, title = _GITHUB[verdicts.level(one.answer)], f"{one.requirement} {one.answer}"
         said = f"all runs: {one.reason}; {one.lines[1]}; {AVERAGE}"

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from datetime import UTC, datetime
 from typing import Any
 
+from compiler.files.records import plain
 from fretc.audit.evidence.writer import health
 from fretc.logs.reader import Overview
 from fretc.logs.signals.samples import Recording, Topic
@@ -20,7 +21,7 @@ _WIDEST = 60
 def as_record(overview: Overview) -> dict[str, Any]:
     """Plain values, in a fixed order of keys."""
     recording = overview.recording
-    told = health(recording)
+    told = plain(health(recording))
     for name, topic in told["topics"].items():
         numbers = overview.numbers.get(name)
         topic["rate_hz"] = _rate(recording.topics[name])

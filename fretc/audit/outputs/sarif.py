@@ -20,7 +20,8 @@ from compiler.files.templating import to_json
 from compiler.formalization.record import wording
 from compiler.formalization.rule import Rule
 from fretc.audit.evidence import verdicts
-from fretc.audit.evidence.estimates import Estimated
+from fretc.audit.evidence.probabilities import Estimated
+from fretc.audit.evidence.schema import Result
 from fretc.audit.evidence.verdicts import CURRENT, SUSPECT, Level
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.diagnostics.source import Span
@@ -45,6 +46,20 @@ _COUNTED = {"kind": "informational", "level": "none"}
 
 
 @dataclass(frozen=True, slots=True)
+class OneRun:
+    """A result with the verdict that is shown of it, and why that does not count, if so."""
+
+    result: Result
+    verdict: str
+    suspicions: tuple[str, ...] = ()
+
+    @staticmethod
+    def of(result: Result) -> OneRun:
+        """What an audit has just found."""
+        return OneRun(result, result.verdict)
+
+
+@dataclass(frozen=True, slots=True)
 class AllRuns:
     """What all runs together say of a requirement, and why that does not count, if it does not."""
 
@@ -60,7 +75,7 @@ class AllRuns:
 
 
 def sarif(
-    results: Sequence[Mapping[str, Any]],
+    results: Sequence[OneRun],
     rules: Sequence[Rule],
     diagnostics: Sequence[Diagnostic] = (),
     together: Sequence[AllRuns] = (),
@@ -69,14 +84,13 @@ def sarif(
     """One SARIF run; the same inputs give the same bytes.
 
     Args:
-        results: each of a run and a requirement, as in the evidence; with `suspicions` where it is
-            known to be about something else than what is there now.
+        results: each of a run and a requirement, in the order of the evidence.
         rules: all requirements of the results; others are left out.
         diagnostics: what there is to say of the logs.
         together: requirements that are judged over all runs: each gives one more result.
         failed: requirements without a rule.
     """
-    meant = dict.fromkeys(result["requirement"] for result in results)
+    meant = dict.fromkeys(one.result.requirement for one in results)
     named = {r.id: r for r in (*(rule.requirement for rule in rules), *failed)}
     used = [requirement for id, requirement in named.items() if id in meant]
     by_id = {rule.id: rule for rule in rules}
@@ -87,7 +101,7 @@ def sarif(
         "artifacts": list(files.values()),
         "columnKind": "unicodeCodePoints",
         "results": [
-            *(_result(result, used, list(files)) for result in results),
+            *(_result(one, used, list(files)) for one in results),
             *(_result_of_all(one, used, list(files)) for one in together),
         ],
     }
@@ -127,16 +141,13 @@ def _rule(requirement: Requirement, rule: Rule | None) -> dict[str, Any]:
     }
 
 
-def _files(
-    results: Sequence[Mapping[str, Any]], used: Sequence[Requirement]
-) -> dict[str, dict[str, Any]]:
+def _files(results: Sequence[OneRun], used: Sequence[Requirement]) -> dict[str, dict[str, Any]]:
     """Each file by its name: the logs, and where the sentences are."""
     files: dict[str, dict[str, Any]] = {}
-    for result in results:
-        artifact = files.setdefault(
-            result["run"], {"location": _place(result["run"]), "roles": ["analysisTarget"]}
-        )
-        size, sha256 = result["health"].get("size"), result["hashes"].get("log")
+    for one in results:
+        run = one.result.run
+        artifact = files.setdefault(run, {"location": _place(run), "roles": ["analysisTarget"]})
+        size, sha256 = one.result.health.size, one.result.hashes.get("log")
         artifact |= {"length": size} if size is not None else {}
         artifact |= {"hashes": {"sha-256": sha256}} if sha256 else {}
     for requirement in used:
@@ -145,21 +156,18 @@ def _files(
     return files
 
 
-def _result(
-    result: Mapping[str, Any], used: Sequence[Requirement], files: Sequence[str]
-) -> dict[str, Any]:
-    run = result["run"]
-    suspicions = result.get("suspicions", ())
-    level = _LEVELS[verdicts.level(result["verdict"], suspect=bool(suspicions))]
-    said = f"{run}: {result['verdict']}: {result['reason']}{_because(suspicions)}"
-    return _at_sentence(result["requirement"], run, used, files) | {
-        **(_COUNTED if "trials" in result else level),
+def _result(one: OneRun, used: Sequence[Requirement], files: Sequence[str]) -> dict[str, Any]:
+    result, suspicions = one.result, one.suspicions
+    level = _LEVELS[verdicts.level(one.verdict, suspect=bool(suspicions))]
+    said = f"{result.run}: {one.verdict}: {result.reason}{_because(suspicions)}"
+    return _at_sentence(result.requirement, result.run, used, files) | {
+        **(level if result.trials is None else _COUNTED),
         "message": {"text": said},
-        "analysisTarget": _place(run) | {"index": files.index(run)},
+        "analysisTarget": _place(result.run) | {"index": files.index(result.run)},
         "properties": {
-            "verdict": result["verdict"],
+            "verdict": one.verdict,
             "currency": _currency(suspicions),
-            "sha256": dict(result["hashes"]),
+            "sha256": dict(result.hashes),
         },
     }
 

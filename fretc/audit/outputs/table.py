@@ -11,7 +11,8 @@ from statistics import median
 from typing import TYPE_CHECKING, Any
 
 from compiler.files.text_files import regular, unreadable
-from fretc.audit.evidence.reader import document
+from fretc.audit.evidence.reader import required
+from fretc.audit.evidence.schema import Result
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.source import Source
 
@@ -68,7 +69,7 @@ def missing() -> Diagnostic | None:
     )
 
 
-def parquet(results: Iterable[Mapping[str, Any]], fretc: str) -> bytes:
+def parquet(results: Iterable[Result], fretc: str) -> bytes:
     """The content of a Parquet file: the same results give the same bytes.
 
     Args:
@@ -114,10 +115,10 @@ def _read(path: str) -> Table | Diagnostic:
 
 
 def _read_evidence(path: str) -> Table | Diagnostic:
-    content = document(path)
-    if isinstance(content, Diagnostic):
-        return content
-    return _table([_row(result, content["fretc"]) for result in content["results"]])
+    found = required(path)
+    if isinstance(found, Diagnostic):
+        return found
+    return _table([_row(result, found.fretc) for result in found.results])
 
 
 def _read_parquet(path: str) -> Table | Diagnostic:
@@ -170,31 +171,35 @@ def _table(rows: Sequence[Mapping[str, Any]]) -> Table:
     return pyarrow.Table.from_pylist(list(rows), schema=_schema())
 
 
-def _row(result: Mapping[str, Any], fretc: str) -> dict[str, Any]:
+def _row(result: Result, fretc: str) -> dict[str, Any]:
     """One row; what the record has more than that stays in the evidence."""
-    violations, latencies = result["violations"], result["latencies_s"]
-    health, hashes = result["health"], result["hashes"]
-    first = violations[0] if violations else {"start_ns": None, "start_s": None}
+    violations, latencies = result.violations, result.latencies
+    health, hashes = result.health, result.hashes
+    first = violations[0] if violations else None
     return {
-        **{name: result[name] for name in ("run", "requirement", "verdict", "finite", "reason")},
-        "clock": result["clock"],
-        "ticks": result["ticks"],
-        "start_ns": _ns(result["start_ns"]),
-        "end_ns": _ns(result["end_ns"]),
-        "triggers": len(result["triggers"]),
+        "run": result.run,
+        "requirement": result.requirement,
+        "verdict": result.verdict,
+        "finite": result.finite,
+        "reason": result.reason,
+        "clock": result.clock,
+        "ticks": result.ticks,
+        "start_ns": _ns(result.start_ns),
+        "end_ns": _ns(result.end_ns),
+        "triggers": len(result.triggers),
         "violations": len(violations),
-        "violated_ticks": sum(v["last_tick"] - v["first_tick"] + 1 for v in violations),
-        "first_violation_ns": _ns(first["start_ns"]),
-        "first_violation_s": first["start_s"],
-        "unknown_ticks": sum(last - first + 1 for first, last in result["unknown"]),
-        "open": len(result["open"]),
+        "violated_ticks": sum(v.last_tick - v.first_tick + 1 for v in violations),
+        "first_violation_ns": _ns(first.start_ns) if first else None,
+        "first_violation_s": first.start_s if first else None,
+        "unknown_ticks": sum(last - first + 1 for first, last in result.unknown),
+        "open": len(result.open),
         "answers": len(latencies),
         "latency_median_s": median(latencies) if latencies else None,
         "latency_max_s": max(latencies, default=None),
-        "intact": health["intact"],
-        "size": health["size"],
-        "gaps": len(health["gaps"]),
-        "findings": len(health["findings"]),
+        "intact": health.intact,
+        "size": health.size,
+        "gaps": len(health.gaps),
+        "findings": len(health.findings),
         "log_sha256": hashes.get("log"),
         "sentence_sha256": hashes["sentence"],
         "bindings_sha256": hashes["bindings"],

@@ -16,7 +16,6 @@ from dataclasses import dataclass
 from fractions import Fraction
 from heapq import heappop, heappush
 from itertools import pairwise
-from typing import Any
 
 from fretc.audit.measurements.judgement import Judgement, judged
 from fretc.audit.phases.sliding import Slide, Sliding, sliding
@@ -108,20 +107,6 @@ class Phases:
         far = in_words(self.nearest)
         near = f"the nearest change is {far} away" if self.exact else f"no change within {far}"
         return f"by phase of the ticks {', '.join(shares)}, {near}"
-
-    @property
-    def as_record(self) -> dict[str, Any]:
-        """The JSON object."""
-        return {
-            "period_ns": self.period,
-            "declared_ns": self.declared,
-            "exact": self.exact,
-            "nearest_ns": self.nearest,
-            "stretches": [
-                {"first_ns": s.first, "last_ns": s.last, "verdict": s.verdict}
-                for s in self.stretches
-            ],
-        }
 
 
 def _apart(one: int, other: int, period: int) -> int:

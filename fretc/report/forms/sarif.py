@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
-from typing import Any
+from collections.abc import Iterator, Sequence
 
 from compiler.formalization.rule import Rule
+from fretc.audit.evidence.schema import Result
 from fretc.audit.outputs import sarif as results
 from fretc.report.model.views import Report
 from fretish.diagnostics.diagnostic import Diagnostic
@@ -14,7 +14,7 @@ from fretish.documents import Requirement
 
 def sarif(
     report: Report,
-    audited: Sequence[Mapping[str, Any]],
+    audited: Sequence[Result],
     rules: Sequence[Rule],
     diagnostics: Sequence[Diagnostic],
     failed: Sequence[Requirement] = (),
@@ -32,14 +32,14 @@ def sarif(
     return results.sarif(list(_judged(report, audited)), rules, diagnostics, together, failed)
 
 
-def _judged(report: Report, audited: Sequence[Mapping[str, Any]]) -> Iterator[Mapping[str, Any]]:
+def _judged(report: Report, audited: Sequence[Result]) -> Iterator[results.OneRun]:
     """With verdict and currency as the report has them."""
     views = {view.id: iter(view.results) for view in report.requirements}
     for result in audited:
-        view = next(views.get(result["requirement"], iter(())), None)
+        view = next(views.get(result.requirement, iter(())), None)
         if view is None:
             continue  # evidence of what is not among the requirements is a diagnostic
-        yield {**result, "verdict": view.mark.word, "suspicions": view.suspicions}
+        yield results.OneRun(result, view.mark.word, view.suspicions)
 
 
 def _together(report: Report) -> Iterator[results.AllRuns]:

@@ -7,11 +7,13 @@ from dataclasses import dataclass, replace
 from types import MappingProxyType
 
 from compiler.formalization.rule import Rule, plain
+from compiler.logic.claims import Proof
 from compiler.project.folder import Project
 from compiler.targets.python import monitor
 from fretc.audit.evidence.basis import Basis, why
-from fretc.audit.evidence.estimates import Estimated
-from fretc.audit.evidence.reader import Evidence, Result, by_requirement
+from fretc.audit.evidence.probabilities import Estimated
+from fretc.audit.evidence.reader import by_requirement
+from fretc.audit.evidence.schema import Evidence, Result
 from fretc.audit.evidence.verdicts import (
     BROKEN,
     NOT_EXERCISED,
@@ -31,7 +33,6 @@ from fretc.report.traceability.artefacts import Product, products
 from fretc.report.traceability.chain import Node, chains, outdated
 from fretc.report.traceability.lock import Lock, Standing, standings
 from fretc.report.traceability.waivers import Waiver, idle
-from fretc.verification.reader import Proof
 from fretish.bindings.declarations import Declarations
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.documents import Requirement

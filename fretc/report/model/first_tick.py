@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from math import isinf
 
-from fretc.audit.evidence.reader import Result, Violation
+from fretc.audit.evidence.schema import Result, Violation
 from fretc.report.model import phrases
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from fretc.audit.evidence.estimates import Estimated, shown
+from fretc.audit.evidence.probabilities import Estimated, shown
 from fretc.audit.measurements.confidence_intervals import SUPPORTED
 from fretc.audit.measurements.trials import Trials
 from fretc.report.model.views import BoundsView, ProbabilityView, verdict_mark
@@ -28,7 +28,8 @@ def contradictions(
         sum(getattr(counted, name) for _, counted in once)
         for name in ("answered", "failed", "open")
     )
-    if sums != (told.answered, told.failed, told.open):
+    triggers = told.triggers
+    if sums != (triggers.answered, triggers.failed, triggers.open):
         yield "the evidence contradicts itself: its runs do not add up to what it says of all"
     elif told.answer == SUPPORTED and not all(intact for intact, _ in once):
         yield "a log is damaged, and no damaged log supports a probability"

@@ -8,7 +8,7 @@ from math import ceil, floor
 from statistics import median
 
 from compiler.formalization.rule import Rule
-from fretc.audit.evidence.reader import Result, Threshold
+from fretc.audit.evidence.schema import Result, Threshold
 from fretc.report.model import phrases
 from fretc.report.model.claims import Claim
 from fretc.report.model.pictures import Bin, Histogram

@@ -7,8 +7,8 @@ from itertools import pairwise
 from math import inf, isinf
 from statistics import median
 
-from fretc.audit.evidence.reader import Result, Threshold, Violation
 from fretc.audit.evidence.samples import Samples
+from fretc.audit.evidence.schema import Result, Threshold, Violation
 from fretc.audit.measurements.violations import EVEN_SAMPLES
 from fretc.report.model.pictures import Level, Panel, Piece, SpanMark
 from fretish.bindings.amounts import exact

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from math import floor, log10
 from types import MappingProxyType
 
-from fretc.audit.evidence.reader import Moment, Result, Violation
+from fretc.audit.evidence.schema import Moment, Result, Violation
 from fretc.report.model.first_tick import reading
 from fretc.report.model.phrases import joined, seconds, times, value
 from fretc.report.model.pictures import Flag, Lane, Panel, SpanMark, Timeline
@@ -91,7 +91,9 @@ def cause(violation: Violation, result: Result, ages: Mapping[str, float]) -> st
         what = f"`{missing}` did not hold {when}"
     if violation.trigger is not None:
         what += f", triggered at {seconds(violation.trigger.seconds)}"
-    values = [f"{name} was {reading(name, violation, result, ages)}" for name in violation.values]
+    values = [
+        f"{name} was {reading(name, violation, result, ages)}" for name in sorted(violation.values)
+    ]
     return f"{what}; at {seconds(start)} {joined(values)}." if values else f"{what}."
 
 

@@ -6,7 +6,7 @@ from collections import Counter
 from collections.abc import Iterable, Sequence
 
 from compiler.project.folder import Project
-from fretc.audit.evidence.reader import Evidence
+from fretc.audit.evidence.schema import Evidence
 from fretc.audit.evidence.verdicts import RETIRED
 from fretc.report.model import phrases
 from fretc.report.model.claims import Claim

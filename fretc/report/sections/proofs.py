@@ -13,12 +13,12 @@ from compiler.logic.claims import (
     PROVERS,
     VACUOUS,
     Layer,
+    Proof,
 )
 from compiler.project.interceptor_options import ASSUMED
 from fretc.report.model import phrases
 from fretc.report.model.views import Mark, ProofView, RequirementView, sign_mark
 from fretc.report.traceability.artefacts import Product
-from fretc.verification.reader import Proof
 from fretish.diagnostics import signs
 
 _MARKS: Mapping[str, Mark] = {
@@ -49,7 +49,7 @@ def _view(proof: Proof, now: Mapping[str, str]) -> ProofView:
     suspicions = tuple(_suspicions(proof, now))
     return ProofView(
         requirement=proof.requirement,
-        layer=proof.layer,
+        layer=str(proof.layer),
         claim=proof.claim,
         mark=replace(_MARKS[proof.result], suspect=bool(suspicions)),
         detail=proof.detail,

@@ -18,7 +18,7 @@ from compiler.files.shell_quoting import (
 )
 from compiler.project.folder import Project
 from fretc.audit.evidence.basis import BINDINGS, of_all
-from fretc.audit.evidence.reader import Evidence
+from fretc.audit.evidence.schema import Evidence
 from fretc.audit.measurements.confidence_intervals import CONFIDENCE
 from fretc.audit.plan import bases
 from fretc.report.model import phrases

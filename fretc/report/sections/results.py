@@ -7,7 +7,7 @@ from itertools import groupby
 from statistics import median
 
 from compiler.formalization.rule import Rule
-from fretc.audit.evidence.reader import Moment, Result, Threshold, Violation
+from fretc.audit.evidence.schema import Moment, Result, Threshold, Violation
 from fretc.audit.evidence.verdicts import (
     NOT_EXERCISED,
     RETIRED,
@@ -187,7 +187,9 @@ def _violation(violation: Violation, result: Result, ages: Mapping[str, float]) 
         trigger=_at(trigger) if trigger else "none",
         deadline=_at(violation.deadline) if violation.deadline else "none",
         missing=violation.missing,
-        values=tuple((name, reading(name, violation, result, ages)) for name in violation.values),
+        values=tuple(
+            (name, reading(name, violation, result, ages)) for name in sorted(violation.values)
+        ),
     )
 
 
@@ -210,7 +212,7 @@ def _threshold(threshold: Threshold) -> ThresholdView:
         comparison=f"{threshold.signal} {threshold.operator} {exact(bound, unit)}",
         values="unknown" if threshold.least is None else f"{least} to {greatest}",
         margin=margin,
-        nearest="" if threshold.nearest is None else phrases.seconds(threshold.nearest),
+        nearest="" if threshold.nearest is None else phrases.seconds(threshold.nearest.seconds),
     )
 
 

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 from compiler.project.folder import Project
-from fretc.audit.evidence.reader import Checked, Evidence, Finding, Result, Topic
+from fretc.audit.evidence.schema import Checked, Evidence, Finding, Result, Topic
 from fretc.report.model import phrases
 from fretc.report.model.views import Remark, RunView, TopicView, sign_mark
 from fretish.diagnostics import signs
@@ -65,7 +65,7 @@ def _severity(run: Run) -> tuple[bool, bool, bool, bool]:
 
 def _errors(run: Run) -> list[str]:
     """The codes of its errors, each once."""
-    found = (f.code for f in run.result.health.findings if f.severity == Severity.ERROR)
+    found = (f.code for f in run.result.health.findings if f.severity == Severity.ERROR.value)
     return list(dict.fromkeys(found))
 
 
@@ -87,7 +87,7 @@ def _view(run: Run, project: Project) -> RunView:
         checked=_checked(health.checked, hashed="log_summary" not in result.hashes),
         gaps=_gaps(result),
         findings=tuple(map(_finding, sorted(health.findings, key=_badness))),
-        topics=tuple(_topic(topic, project) for topic in health.topics),
+        topics=tuple(_topic(name, topic, project) for name, topic in sorted(health.topics.items())),
     )
 
 
@@ -123,8 +123,9 @@ def _checked(checked: Checked | None, *, hashed: bool) -> str:
 def _gaps(result: Result) -> tuple[str, ...]:
     start = result.start_ns or 0
     return tuple(
-        f"{phrases.seconds((first - start) / 1e9)} to {phrases.seconds((last - start) / 1e9)}"
-        for first, last in result.health.gaps
+        f"{phrases.seconds((gap.start_ns - start) / 1e9)} to "
+        f"{phrases.seconds((gap.end_ns - start) / 1e9)}"
+        for gap in result.health.gaps
     )
 
 
@@ -134,19 +135,19 @@ def _badness(finding: Finding) -> int:
 
 
 def _finding(finding: Finding) -> Remark:
-    return Remark(finding.code, finding.severity, finding.message, help=finding.help)
+    return Remark(finding.code, finding.severity, finding.message, help=finding.help or "")
 
 
-def _topic(topic: Topic, project: Project) -> TopicView:
+def _topic(name: str, topic: Topic, project: Project) -> TopicView:
     signals = project.declarations.signals.values() if project.declarations else ()
     return TopicView(
-        name=topic.name,
+        name=name,
         type=topic.type,
         count=phrases.whole(topic.count),
         rate=_rate(topic),
         longest_gap=_longest_gap(topic),
         out_of_order=_NONE if topic.out_of_order is None else phrases.whole(topic.out_of_order),
-        read_for=tuple(signal.name for signal in signals if signal.path.topic == topic.name),
+        read_for=tuple(signal.name for signal in signals if signal.path.topic == name),
     )
 
 

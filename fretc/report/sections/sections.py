@@ -11,6 +11,7 @@ from compiler.explanation.violability import limit
 from compiler.formalization.record import wording
 from compiler.formalization.rule import Rule
 from compiler.logic import printing
+from compiler.logic.claims import Proof
 from compiler.project.folder import Project
 from fretc.attestation.signatures import NO_SIGNATURES, Book
 from fretc.report.model import phrases
@@ -32,7 +33,6 @@ from fretc.report.sections.results import reasons, result_views
 from fretc.report.sections.reviews import review, waiver
 from fretc.report.sections.runs import Key, Run
 from fretc.report.traceability.artefacts import Product
-from fretc.verification.reader import Proof
 from fretish.bindings.declarations import Declarations, Proposition, Signal
 from fretish.clock import Clock
 from fretish.diagnostics.diagnostic import Diagnostic

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from fretc.attestation import statement as attestation
 from fretc.attestation.signatures import Book, Signing, State
 from fretc.attestation.statement import Subject
-from fretc.audit.evidence.reader import Evidence
+from fretc.audit.evidence.schema import Evidence
 from fretc.report.model import phrases
 from fretc.report.model.claims import Claim
 from fretc.report.model.views import Signatures, SignatureView, Signed, sign_mark

@@ -16,14 +16,15 @@ from typing import Any
 from compiler.files.edition import __version__
 from compiler.formalization.rule import Rule
 from compiler.logic import printing
+from compiler.logic.claims import Proof
 from compiler.project.folder import Project
 from fretc.audit.evidence import basis
 from fretc.audit.evidence.basis import Basis
-from fretc.audit.evidence.reader import Evidence, Result, by_requirement
+from fretc.audit.evidence.reader import by_requirement
+from fretc.audit.evidence.schema import Evidence, Result
 from fretc.audit.plan import bases
 from fretc.report.traceability.artefacts import Product, shared_products
 from fretc.report.traceability.artefacts import products as _made
-from fretc.verification.reader import Proof
 from fretish.bindings.canonical import described, digest
 from fretish.documents import Requirement
 

@@ -12,7 +12,7 @@ from compiler.logic.claims import (
     NotChecked,
     Proved,
     Vacuous,
-    as_record,
+    proof,
     status,
 )
 from compiler.targets.ajpf import properties as ajpf
@@ -136,7 +136,7 @@ def test_a_counterexample_is_a_table_of_stages() -> None:
     )
     assert trace.rows[:3] == ((False, False), (False, False), (True, False))
     assert trace.cycle is not None
-    assert as_record(main)["result"] == "counterexample"
+    assert proof(main).result == "counterexample"
 
 
 def test_an_agent_that_does_nothing_keeps_no_response() -> None:

@@ -2,6 +2,7 @@ from fretc.audit.constancy import never_changed, tallies_of
 from fretc.audit.measurements.tallies import Tally
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.source import Source
+from tests.fretc.audit.results import result
 from tests.fretc.logs.logs import X
 
 
@@ -29,9 +30,9 @@ def test_nothing_is_told_of_logs_without_a_tick() -> None:
 def test_a_proposition_of_two_requirements_counts_once_in_each_run() -> None:
     low = {"low": {"true": 1, "false": 2, "unknown": 3, "changes": 0}}
     results = [
-        {"run": "a", "requirement": "R1", "propositions": low},
-        {"run": "a", "requirement": "R2", "propositions": low},
-        {"run": "b", "requirement": "R1", "propositions": {}},
+        result(run="a", requirement="R1", propositions=low),
+        result(run="a", requirement="R2", propositions=low),
+        result(run="b", requirement="R1", propositions={}),
     ]
     assert tallies_of(results) == {"low": [Tally(1, 2, 3, 0)]}
 

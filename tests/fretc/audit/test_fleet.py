@@ -123,14 +123,14 @@ def test_a_log_that_kills_its_workers_is_told_and_the_others_are_audited(
     there = audit_logs(plan(), LOGS[:5], engine(cluster))
     assert isinstance(here, Audit)
     assert isinstance(there, Audit)
-    assert [r for r in there.results if r["run"] != LOGS[3]] == [
-        r for r in here.results if r["run"] != LOGS[3]
+    assert [r for r in there.results if r.run != LOGS[3]] == [
+        r for r in here.results if r.run != LOGS[3]
     ]
-    (lost,) = [r for r in there.results if r["run"] == LOGS[3]]
-    assert lost["verdict"] == "no data"
-    assert lost["hashes"] == here.results[3]["hashes"]
-    (finding,) = lost["health"]["findings"]
-    assert (finding["code"], finding["message"]) == (
+    (lost,) = [r for r in there.results if r.run == LOGS[3]]
+    assert lost.verdict == "no data"
+    assert lost.hashes == here.results[3].hashes
+    (finding,) = lost.health.findings
+    assert (finding.code, finding.message) == (
         "F419",
         f"the process that audited `{LOGS[3]}` was killed, and again when it ran alone: "
         "all workers of Dask that tried it died",

@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from compiler.files.records import plain
 from compiler.formalization.formalize import formalize
 from compiler.targets.python.monitor import text
 from fretc.audit.evidence.writer import Evidence, as_record
@@ -16,6 +17,7 @@ from fretish.bindings.reader import read_bindings
 from fretish.diagnostics.source import Source
 from fretish.documents import requirements
 from monitors.loading import load
+from tests.fretc.audit.results import HASHES
 
 S = 10**9
 BINDINGS = """
@@ -66,7 +68,7 @@ def audited(
     ((requirement,), _) = requirements(Source("R1.fret", sentence))
     rule, said = formalize(requirement, known)
     assert rule is not None, said
-    watched = Watched(load("monitor", text(rule)), {"sentence": rule.fingerprint})
+    watched = Watched(load("monitor", text(rule)), HASHES | {"sentence": rule.fingerprint})
     (evidence,) = audit(recording, known, [watched])
     return evidence
 
@@ -163,10 +165,10 @@ def test_a_trigger_after_the_last_whole_tick_leaves_the_run_open() -> None:
 
 
 def test_the_record_is_plain_json_with_times_in_nanoseconds() -> None:
-    record = as_record(audited(WITHIN, recorded([FAR, NEAR, FAR, FAR], [MOVING] * 4)))
+    record = plain(as_record(audited(WITHIN, recorded([FAR, NEAR, FAR, FAR], [MOVING] * 4))))
     (violation,) = record["violations"]
     assert (violation["start_ns"], violation["end_ns"]) == (3 * S, 3 * S)
-    assert record["triggers"] == [{"tick": 1, "ns": S, "seconds": 1.0}]
+    assert record["triggers"] == ({"tick": 1, "ns": S, "seconds": 1.0},)
     assert record["hashes"]["log"] == "ab"
 
 

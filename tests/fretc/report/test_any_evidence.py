@@ -189,7 +189,7 @@ def forms(made: Made, results: Sequence[dict[str, Any]], known: Project) -> dict
     assert made.report is not None, made.diagnostics[0].message
     whole = made.report
     suite = ElementTree.fromstring(junit(whole))[0]
-    log = json.loads(sarif(whole, results, known.rules, []))["runs"][0]["results"]
+    log = json.loads(sarif(whole, made.results, known.rules, []))["runs"][0]["results"]
     return {
         "marks": {v.id: (v.mark.word, v.mark.suspect) for v in whole.requirements},
         "status": _status(whole),

@@ -5,8 +5,10 @@ from pathlib import Path
 
 import pytest
 
+from fretc.audit.evidence.schema import SCHEMA, Bindings, Document
 from fretc.logs.storage.folders import of_all
 from fretc.reproduction.manifest import Manifest, matches, read
+from tests.fretc.audit.results import result
 from tests.fretc.logs.storage.test_folders import run
 
 
@@ -19,9 +21,8 @@ def listed(folder: Path) -> dict[str, str]:
 
 def wrong(folder: Path, logs: dict[str, str]) -> list[str]:
     hashes = {path.name: listed(folder)[f"logs/run/{path.name}"] for path in folder.glob("*.mcap")}
-    whole = {
-        "results": [{"run": "logs/run", "hashes": {"log": of_all(dict(sorted(hashes.items())))}}]
-    }
+    one = result(run="logs/run", hashes={"log": of_all(dict(sorted(hashes.items())))})
+    whole = Document(SCHEMA, "", Bindings("", ""), (), (one,))
     file = folder.parent / "manifest"
     file.write_text("".join(f"{sha}  {path}\n" for path, sha in logs.items()))
     manifest = read(str(file))

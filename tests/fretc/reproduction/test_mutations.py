@@ -7,22 +7,23 @@ import json
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import closing
 from pathlib import Path
-from typing import Any
+from typing import Any, get_args
 
 import pytest
 
+from compiler.files.records import plain
 from compiler.logic.claims import (
-    RESULTS,
     Counterexample,
     Evidence,
     Layer,
     Proved,
+    Status,
     Trace,
     Vacuous,
 )
 from compiler.logic.claims import document as proofs_document
 from compiler.project.folder import Project, whole
-from fretc.audit.evidence.reader import document, read
+from fretc.audit.evidence.reader import read, required
 from fretc.audit.many_logs import IN_TURN, Audited, Found, audit_logs
 from fretc.audit.plan import Plan, planned
 from fretc.report.traceability.chain import chains
@@ -163,13 +164,13 @@ class Case:
         self._known: dict[tuple[str, str], Audited] = {}
 
     def judged(self, text: str) -> Sequence[Rechecked] | Diagnostic:
-        found = document(write("build/changed.json", text))
+        found = required(write("build/changed.json", text))
         if isinstance(found, Diagnostic):
             return found
-        runs = dict.fromkeys(result["run"] for result in found["results"])
+        runs = dict.fromkeys(result.run for result in found.results)
         there = {run: run for run in runs if run and Path(run).is_file()}
         scope = Scope(tuple(claim.id for claim in self._plan.claims), self._lock)
-        again = rechecked(found, self._plan, there, self._engine, scope, self._manifest)
+        again = rechecked(found.document, self._plan, there, self._engine, scope, self._manifest)
         assert not isinstance(again, Diagnostic)
         return again
 
@@ -269,7 +270,7 @@ FOUND = (
 
 def test_no_change_to_proofs_is_certified(case: Case, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(reproving, "evidence", lambda *asked: FOUND)
-    content = json.loads(json.dumps(proofs_document("0.1.0", FOUND)))
+    content = json.loads(json.dumps(plain(proofs_document("0.1.0", FOUND))))
 
     def judged(text: str) -> Sequence[Rechecked] | Diagnostic:
         found = proven.read(write("build/changed.json", text))
@@ -284,7 +285,7 @@ def test_no_change_to_proofs_is_certified(case: Case, monkeypatch: pytest.Monkey
     assert stands(judged(json.dumps(content)))
     texts = [(what, at, text) for what, at, text in changes(content)]
     for i, record in enumerate(content["evidence"]):
-        for result in {*RESULTS} - {record["result"]}:
+        for result in {*get_args(Status)} - {record["result"]}:
             at = ("evidence", i, "result")
             texts.append((result, at, put(content, at, result)))
         for layer in {*map(str, Layer)} - {record["layer"]}:

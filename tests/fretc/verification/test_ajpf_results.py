@@ -14,13 +14,13 @@ from compiler.logic.claims import (
     Evidence,
     Layer,
     NotChecked,
+    Proof,
     Proved,
     Vacuous,
 )
 from compiler.targets.ajpf.bundle import emit
 from compiler.targets.target import Options
 from fretc.verification.ajpf_results import evidence, merged, read
-from fretc.verification.reader import Proof
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from tests.command import Fretc
 from tests.compiler.targets.ajpf.test_bundle import R1, rule
@@ -234,16 +234,16 @@ def test_a_result_about_another_requirement_is_told_and_does_not_count(ran: Mcap
 def test_what_a_file_of_proofs_says_of_ajpf_gives_way_to_the_result_itself(ran: Mcapl) -> None:
     line = only(ran)
     hashes = dict(line.artefacts)
-    old = Proof("R1", "ajpf", line.claim, "vacuous", "before", (), line.engine, hashes)
-    other = Proof("R1", "monitor", "c", "proved", "d", (), "e", {})
+    old = Proof("R1", Layer.AJPF, line.claim, "vacuous", "before", (), line.engine, hashes)
+    other = Proof("R1", Layer.MONITOR, "c", "proved", "d", (), "e", {})
     assert [(p.layer, p.result) for p in merged([old, other], [line])] == [
         ("monitor", "proved"),
         ("ajpf", "proved"),
     ]
-    shown = Proof("R1", "ajpf", line.claim, "proved", "before", (), line.engine, hashes)
+    shown = Proof("R1", Layer.AJPF, line.claim, "proved", "before", (), line.engine, hashes)
     (left,) = merged([shown], [])
     assert (left.result, left.detail[:11]) == ("not checked", "it was prov")
-    red = Proof("R1", "ajpf", line.claim, "counterexample", "before", (), line.engine, hashes)
+    red = Proof("R1", Layer.AJPF, line.claim, "counterexample", "before", (), line.engine, hashes)
     assert merged([red], []) == (red,)
 
 

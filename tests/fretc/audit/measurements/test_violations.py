@@ -5,6 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 import pytest
 
+from compiler.files.records import plain
 from fretc.audit.evidence.writer import as_record
 from fretc.audit.expected_response import demand
 from fretc.audit.measurements.violations import (
@@ -113,25 +114,25 @@ def test_an_only_scope_demands_that_it_is_not_so() -> None:
 
 def test_the_window_goes_from_a_second_before_the_trigger_to_a_second_after_the_deadline() -> None:
     log = recorded([FAR] * 5 + [NEAR] + [FAR] * 9, [MOVING] * 8 + [NAN, INF] + [MOVING] * 5)
-    (violation,) = as_record(audited(WITHIN, log))["violations"]
+    (violation,) = plain(as_record(audited(WITHIN, log)))["violations"]
     assert violation["window"]["start_ns"] == 4 * S
     assert violation["window"]["end_ns"] == 8 * S
     assert violation["window"]["samples"] == {
         "d": {
-            "times_ns": [4 * S, 5 * S, 6 * S, 7 * S, 8 * S],
-            "values": [1.0, 0.01, 1.0, 1.0, 1.0],
+            "times_ns": (4 * S, 5 * S, 6 * S, 7 * S, 8 * S),
+            "values": (1.0, 0.01, 1.0, 1.0, 1.0),
         },
         "v": {
-            "times_ns": [4 * S, 5 * S, 6 * S, 7 * S, 8 * S],
-            "values": [0.4, 0.4, 0.4, 0.4, None],
+            "times_ns": (4 * S, 5 * S, 6 * S, 7 * S, 8 * S),
+            "values": (0.4, 0.4, 0.4, 0.4, None),
         },
     }
 
 
 def test_an_infinite_sample_is_told_as_a_text() -> None:
     log = recorded([INF, NEAR, -INF, FAR, FAR], [MOVING] * 5)
-    (violation,) = as_record(audited(WITHIN, log))["violations"]
-    assert violation["window"]["samples"]["d"]["values"] == ["+inf", 0.01, "-inf", 1.0, 1.0]
+    (violation,) = plain(as_record(audited(WITHIN, log)))["violations"]
+    assert violation["window"]["samples"]["d"]["values"] == ("+inf", 0.01, "-inf", 1.0, 1.0)
 
 
 def test_the_sample_in_force_at_the_start_is_told_however_old_it_is() -> None:
@@ -199,15 +200,15 @@ def test_a_satisfied_requirement_names_its_least_margin() -> None:
     always = "the rover shall always satisfy !near"
     evidence = audited(always, recorded([FAR, 0.08, FAR], [STILL] * 3))
     assert evidence.reason.endswith(", least margin 0.03 m (d < 5 cm)")
-    record = as_record(evidence)
+    record = plain(as_record(evidence))
     assert record["thresholds"][0]["nearest"] == {"ns": S, "seconds": 1.0}
     assert record["propositions"] == {"near": {"true": 0, "false": 3, "unknown": 0, "changes": 0}}
 
 
 def test_the_exercise_is_counted() -> None:
     log = recorded([FAR, NEAR, FAR, NEAR, FAR], [MOVING, MOVING, STILL, STILL, STILL])
-    record = as_record(audited(WITHIN, log))
+    record = plain(as_record(audited(WITHIN, log)))
     assert record["exercised"] == 2
     assert (record["latency_median_s"], record["latency_max_s"]) == (0.5, 1.0)
-    idle = as_record(audited(WITHIN, recorded([FAR] * 3, [MOVING] * 3)))
+    idle = plain(as_record(audited(WITHIN, recorded([FAR] * 3, [MOVING] * 3))))
     assert (idle["exercised"], idle["latency_median_s"], idle["latency_max_s"]) == (0, None, None)

@@ -12,8 +12,10 @@ import pytest
 from mcap.reader import make_reader
 from mcap.stream_reader import StreamReader
 
+from fretc.audit.evidence.schema import Result
 from fretc.audit.outputs.annotations import VERDICTS, sidecar, sidecars, state_topic
 from tests.command import Fretc, write
+from tests.fretc.audit import results
 from tests.fretc.logs.broken import sound
 from tests.fretc.logs.logs import X_TEXT
 from tests.monitoring import rule
@@ -27,8 +29,8 @@ def moment(tick: int, **more: Any) -> dict[str, Any]:
     return {"tick": tick, "ns": 100 * S + tick * S, "seconds": float(tick), **more}
 
 
-def result(run: str = "a.mcap", id: str = "R1", **more: Any) -> dict[str, Any]:
-    return {
+def result(run: str = "a.mcap", id: str = "R1", **more: Any) -> Result:
+    found = {
         "run": run,
         "requirement": id,
         "verdict": "violated",
@@ -48,6 +50,7 @@ def result(run: str = "a.mcap", id: str = "R1", **more: Any) -> dict[str, Any]:
         "hashes": {"log": "aa", "bindings": "bb", "sentence": "cc", "monitor": "dd"},
         **more,
     }
+    return results.result(**found)
 
 
 def read(data: bytes) -> tuple[dict[str, list[tuple[int, Any]]], dict[str, str]]:

@@ -8,25 +8,19 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from fretc.audit.evidence.schema import Result
 from fretc.audit.outputs.junit import github, junit
+from tests.fretc.audit import results
 from tests.fretc.logs.logs import declare
 from tests.fretc.report.junit_schema import MAY, complaints
 from tests.monitoring import rule
 
 
-def result(verdict: str, run: str = "a.mcap", id: str = "R1", **more: Any) -> dict[str, Any]:
-    return {
-        "run": run,
-        "requirement": id,
-        "verdict": verdict,
-        "reason": "why",
-        "start_ns": 10**9,
-        "end_ns": 3 * 10**9,
-        "violations": [],
-        "units": {"x": "m/s", "y": ""},
-        "thresholds": [],
-        **more,
-    }
+def result(verdict: str, run: str = "a.mcap", id: str = "R1", **more: Any) -> Result:
+    times = {"start_ns": 10**9, "end_ns": 3 * 10**9, **more}
+    return results.result(
+        run=run, requirement=id, verdict=verdict, units={"x": "m/s", "y": ""}, **times
+    )
 
 
 ALL = [

@@ -2,7 +2,7 @@
 
 import json
 import shutil
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -12,10 +12,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from compiler.formalization.rule import Rule
-from fretc.audit.outputs.sarif import sarif
+from fretc.audit.outputs.sarif import OneRun, sarif
 from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
 from fretish.diagnostics.source import Source
 from tests.command import Fretc
+from tests.fretc.audit import results as results_of
 from tests.fretc.report.sarif_schema import SARIF
 from tests.monitoring import rule
 
@@ -23,16 +24,10 @@ ROOT = Path(__file__).parents[4]
 RULES = [rule(f"the sw shall\n always satisfy q{i}", f"R{i}") for i in range(1, 6)]
 
 
-def result(verdict: str, id: str = "R1", run: str = "a.mcap", **more: Any) -> dict[str, Any]:
-    return {
-        "run": run,
-        "requirement": id,
-        "verdict": verdict,
-        "reason": "why",
-        "hashes": {"log": "ab" * 32, "sentence": "cd" * 32},
-        "health": {"size": 1000},
-        **more,
-    }
+def result(verdict: str, id: str = "R1", run: str = "a.mcap", **more: Any) -> OneRun:
+    hashes = {"log": "ab" * 32, "sentence": "cd" * 32}
+    known = {"hashes": hashes, **more}
+    return OneRun.of(results_of.result(run=run, requirement=id, verdict=verdict, **known))
 
 
 ALL = [
@@ -46,7 +41,7 @@ ALL = [
 
 
 def read(
-    results: Sequence[Mapping[str, Any]],
+    results: Sequence[OneRun],
     rules: Sequence[Rule] = RULES,
     diagnostics: Sequence[Diagnostic] = (),
 ) -> Any:
@@ -155,7 +150,7 @@ def test_a_requirement_is_a_rule_with_its_sentence_and_its_fingerprint() -> None
 
 
 def test_a_fingerprint_depends_on_the_requirement_and_the_run_and_on_nothing_else() -> None:
-    def prints(*results: dict[str, Any]) -> list[Any]:
+    def prints(*results: OneRun) -> list[Any]:
         return [one["partialFingerprints"] for one in read(results)["results"]]
 
     later = result("satisfied", reason="other", hashes={"log": "00" * 32})

@@ -8,9 +8,14 @@ import pytest
 
 from fretc.audit.outputs.table import parquet
 from tests.command import Fretc, Run
+from tests.fretc.audit.results import result as record
 from tests.fretc.report.cases import evidence, project, requirement, result, violation
 
 R2 = requirement("R2", "whenever near the robot shall within 3 ticks satisfy stopped")
+
+
+def table(results: list[dict[str, Any]], fretc: str) -> bytes:
+    return parquet([record(**one) for one in results], fretc)
 
 
 @pytest.fixture
@@ -31,7 +36,7 @@ def results(fretc: Fretc) -> list[dict[str, Any]]:
         one["hashes"] = one["hashes"] | {"log": f"{number // 2:064x}"}
         one |= {"start_ns": 0, "end_ns": 3600 * 10**9}
         one["latencies_s"] = one["latencies_s"] if number in (0, 2) else []
-    Path("runs.parquet").write_bytes(parquet(made, "1"))
+    Path("runs.parquet").write_bytes(table(made, "1"))
     Path("evidence.json").write_text(json.dumps(evidence(known, *made) | {"fretc": "1"}), "utf-8")
     return made
 
@@ -78,7 +83,7 @@ def renamed(results: list[dict[str, Any]], **hashes: str) -> list[dict[str, Any]
 def test_a_log_counts_once_whatever_its_name_in_the_head_and_in_the_rows(
     fretc: Fretc, results: list[dict[str, Any]]
 ) -> None:
-    Path("copies.parquet").write_bytes(parquet(renamed(results), "1"))
+    Path("copies.parquet").write_bytes(table(renamed(results), "1"))
     for tables in (("runs.parquet", "copies.parquet"), ("copies.parquet", "evidence.json")):
         assert fretc("audit", "--summary", *tables) == Run(1, SUMMARY, "")
 
@@ -90,7 +95,7 @@ def test_other_logs_under_the_same_names_count_as_others(
         {**one, "hashes": one["hashes"] | {"log": f"{number // 2 + 100:064x}"}}
         for number, one in enumerate(results)
     ]
-    Path("others.parquet").write_bytes(parquet(others, "1"))
+    Path("others.parquet").write_bytes(table(others, "1"))
     run = fretc("audit", "--summary", "runs.parquet", "others.parquet", "--format", "json")
     told = json.loads(run.out)
     assert (told["runs"], told["seconds"], told["damaged"]) == (6, 21600.0, 2)
@@ -106,8 +111,8 @@ def test_a_log_that_was_not_hashed_is_told_by_its_summary_and_an_unread_one_by_i
     other = {**results[2], "hashes": {**kept, "log_summary": "2" * 64}}
     unread = {**results[2], "hashes": kept, "run": "unread.mcap"}
     copies = [{**one, "run": name} for name in ("x.mcap", "y.mcap")]
-    Path("a.parquet").write_bytes(parquet([one, unread], "1"))
-    Path("b.parquet").write_bytes(parquet([*copies, other, unread], "2"))
+    Path("a.parquet").write_bytes(table([one, unread], "1"))
+    Path("b.parquet").write_bytes(table([*copies, other, unread], "2"))
     run = fretc("audit", "--summary", "a.parquet", "b.parquet", "--format", "json")
     told = json.loads(run.out)
     assert told["runs"] == told["by_requirement"][0]["runs"] == 3
@@ -121,8 +126,8 @@ def test_the_worst_of_several_verdicts_of_a_log_counts_and_that_is_said(
     for place, worse in enumerate(order):
         for better in order[place + 1 :]:
             for first, second in ((worse, better), (better, worse)):
-                Path("1.parquet").write_bytes(parquet([{**results[0], "verdict": first}], "1"))
-                Path("2.parquet").write_bytes(parquet([{**results[0], "verdict": second}], "1"))
+                Path("1.parquet").write_bytes(table([{**results[0], "verdict": first}], "1"))
+                Path("2.parquet").write_bytes(table([{**results[0], "verdict": second}], "1"))
                 run = fretc("audit", "--summary", "1.parquet", "2.parquet", "--format", "json")
                 (row,) = json.loads(run.out)["by_requirement"]
                 assert (row["runs"], row[worse.replace(" ", "_")]) == (1, 1)
@@ -154,7 +159,7 @@ def test_a_summary_as_json(fretc: Fretc, results: list[dict[str, Any]]) -> None:
 
 def test_the_exit_status_is_that_of_the_audit(fretc: Fretc, results: list[dict[str, Any]]) -> None:
     for name, kept, status in [("all", results[2:4], 0), ("part", results[:4], 3)]:
-        Path(f"{name}.parquet").write_bytes(parquet(kept, "1"))
+        Path(f"{name}.parquet").write_bytes(table(kept, "1"))
         assert fretc("audit", "--summary", f"{name}.parquet").status == status
 
 
@@ -165,7 +170,7 @@ def test_only_the_worst_of_many_runs_are_listed(
         {**results[4], "run": f"{n:02}.mcap", "hashes": results[4]["hashes"] | {"log": f"{n:064x}"}}
         for n in range(25)
     ]
-    Path("many.parquet").write_bytes(parquet(many, "1"))
+    Path("many.parquet").write_bytes(table(many, "1"))
     run = fretc("audit", "--summary", "many.parquet")
     assert "worst runs (10 of 25)\n" in run.out
     assert "09.mcap" in run.out
@@ -176,7 +181,7 @@ def test_two_versions_of_a_requirement_are_not_counted_as_one_in_silence(
     fretc: Fretc, results: list[dict[str, Any]]
 ) -> None:
     other = {**results[0], "run": "d.mcap", "hashes": {**results[0]["hashes"], "bindings": "x"}}
-    Path("two.parquet").write_bytes(parquet([*results, other], "1"))
+    Path("two.parquet").write_bytes(table([*results, other], "1"))
     run = fretc("audit", "--summary", "two.parquet")
     assert run.err.startswith("F504 warning: R1 was audited as 2 different requirements: ")
 
@@ -245,7 +250,7 @@ def test_a_summary_has_two_forms(fretc: Fretc, results: list[dict[str, Any]]) ->
 
 
 def test_a_run_cannot_write_to_the_terminal(fretc: Fretc, results: list[dict[str, Any]]) -> None:
-    Path("odd.parquet").write_bytes(parquet([{**results[4], "run": "\x1b[2J\n.mcap"}], "1"))
+    Path("odd.parquet").write_bytes(table([{**results[4], "run": "\x1b[2J\n.mcap"}], "1"))
     run = fretc("audit", "--summary", "odd.parquet")
     assert "\x1b" not in run.out
     assert run.out.count(".mcap") == 1

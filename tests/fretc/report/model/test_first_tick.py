@@ -1,16 +1,17 @@
 """Values at a violation, as the monitor saw them."""
 
-from dataclasses import replace
 from math import inf
 
 import pytest
 
-from fretc.audit.evidence.reader import Moment, Violation
+from compiler.files.records import replace
 from fretc.audit.evidence.samples import Samples, Window
+from fretc.audit.evidence.schema import Violation
 from fretc.report.model.first_tick import reading
 from fretc.report.model.pictures import SpanMark
 from fretc.report.pictures.signals import panels
 from fretc.report.pictures.timeline import cause
+from tests.fretc.audit.results import moment, violation
 from tests.fretc.report.pictures.test_timeline import EMPTY
 
 RESULT = replace(EMPTY, units={"x": "m"})
@@ -18,9 +19,9 @@ RESULT = replace(EMPTY, units={"x": "m"})
 
 def broken(value: float | None, *times: float, values: tuple[float, ...] = ()) -> Violation:
     """Broken at 12.3 s, with samples of `x` at these times."""
-    at = Moment(123, 12.3)
+    at = moment(123, 12.3)
     samples = Samples(times, values or (value,) * len(times))
-    return Violation(at, at, None, None, "q", {"x": value}, Window(10.0, 13.3, {"x": samples}))
+    return violation(at, at, None, None, "q", {"x": value}, Window(10.0, 13.3, {"x": samples}))
 
 
 @pytest.mark.parametrize(
@@ -40,20 +41,20 @@ def test_a_value_counts_up_to_its_age(last: float, age: float | None, words: str
 
 
 def test_the_last_sample_at_the_tick_is_the_one_that_counts() -> None:
-    violation = broken(2.0, 10.0, 12.2, 12.4)
-    assert reading("x", violation, RESULT, {"x": 0.3}) == "2 m"
+    one = broken(2.0, 10.0, 12.2, 12.4)
+    assert reading("x", one, RESULT, {"x": 0.3}) == "2 m"
 
 
 def test_what_is_not_known_has_no_age() -> None:
     assert reading("x", broken(None, 10.0), RESULT, {"x": 0.3}) == "unknown"
     assert reading("x", broken(2.0), RESULT, {"x": 0.3}) == "2 m"
-    assert reading("x", replace(broken(2.0), window=None), RESULT, {"x": 0.3}) == "2 m"
+    assert reading("x", replace(broken(2.0), surroundings=None), RESULT, {"x": 0.3}) == "2 m"
 
 
 def test_an_infinite_value_grows_too_old_as_well() -> None:
-    violation = replace(broken(None, 12.2, values=(inf,)))
-    assert reading("x", violation, RESULT, {"x": 0.3}) == "+inf"
-    assert reading("x", violation, RESULT, {"x": 0.05}) == (
+    one = replace(broken(None, 12.2, values=(inf,)))
+    assert reading("x", one, RESULT, {"x": 0.3}) == "+inf"
+    assert reading("x", one, RESULT, {"x": 0.05}) == (
         "unknown: +inf is 0.1 s old, and counts for 0.05 s"
     )
 

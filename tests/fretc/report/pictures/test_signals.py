@@ -1,24 +1,26 @@
-from dataclasses import replace
 from math import inf
 
-from fretc.audit.evidence.reader import Moment, Threshold, Violation
+from compiler.files.records import replace
 from fretc.audit.evidence.samples import Samples, Window
+from fretc.audit.evidence.schema import Instant, Threshold, Violation
 from fretc.report.model.pictures import Level, Piece, SpanMark
 from fretc.report.pictures.signals import left_out, panels
 from fretc.report.pictures.timeline import cause, timelines
+from tests.fretc.audit.results import moment
+from tests.fretc.audit.results import violation as made
 from tests.fretc.report.pictures.test_timeline import EMPTY, at
 
-NEAR = Threshold("near", "clearance", "<", 0.05, "m", 0.01, 2.0, "crossed", None, 0.0)
-SLOW = Threshold("slow", "abs(vx)", "<=", 0.15, "m/s", 0.0, 0.4, "crossed", None, 0.0)
+NEAR = Threshold("near", "clearance", "<", 0.05, "m", 0.01, 2.0, "crossed", None, Instant(0, 0.0))
+SLOW = Threshold("slow", "abs(vx)", "<=", 0.15, "m/s", 0.0, 0.4, "crossed", None, Instant(0, 0.0))
 RESULT = replace(EMPTY, thresholds=(NEAR, SLOW), units={"clearance": "m", "vx": "m/s"})
 
 
 def broken(**samples: Samples) -> Violation:
-    return Violation(
-        Moment(123, 12.3),
-        Moment(125, 12.5),
-        Moment(110, 11.0),
-        Moment(123, 12.3),
+    return made(
+        moment(123, 12.3),
+        moment(125, 12.5),
+        moment(110, 11.0),
+        moment(123, 12.3),
         "stopped",
         {"clearance": 0.032},
         Window(10.0, 13.3, samples),
@@ -90,7 +92,7 @@ def test_four_signals_are_drawn_those_with_a_threshold_first_and_the_others_name
 
 
 def test_a_violation_without_samples_has_no_panel() -> None:
-    assert panels(replace(broken(), window=None), RESULT, {}, 10.0, 12.0) == ()
+    assert panels(replace(broken(), surroundings=None), RESULT, {}, 10.0, 12.0) == ()
 
 
 def test_the_picture_marks_trigger_deadline_and_the_broken_stretch() -> None:

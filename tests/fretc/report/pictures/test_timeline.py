@@ -1,9 +1,10 @@
 import re
-from dataclasses import replace
 
-from fretc.audit.evidence.reader import Health, Moment, Result, Violation
+from compiler.files.records import replace
+from fretc.audit.evidence.schema import Hashes, Health, Moment, Result
 from fretc.report.model.pictures import SpanMark
 from fretc.report.pictures.timeline import DETAIL, answered, timelines
+from tests.fretc.audit.results import moment, violation
 
 EMPTY = Result(
     run="a.mcap",
@@ -15,21 +16,27 @@ EMPTY = Result(
     ticks=100,
     start_ns=0,
     end_ns=10**10,
+    states=(),
+    answers=(),
     triggers=(),
     violations=(),
     unknown=(),
     open=(),
     latencies=(),
+    exercised=0,
+    latency_median_s=None,
+    latency_max_s=None,
+    propositions={},
     thresholds=(),
     units={},
-    hashes={},
-    health=Health(True, 1, None, (), (), ()),
+    fingerprints=Hashes(sentence="", bindings="", monitor=""),
+    health=Health(True, 1, None, (), (), {}),
     assumptions=(),
 )
 
 
 def at(*ticks: int) -> tuple[Moment, ...]:
-    return tuple(Moment(tick, tick / 10) for tick in ticks)
+    return tuple(moment(tick, tick / 10) for tick in ticks)
 
 
 def test_a_run_without_violation_is_one_picture() -> None:
@@ -49,7 +56,7 @@ def test_a_run_without_violation_is_one_picture() -> None:
 
 
 def test_a_violation_is_shown_with_its_trigger_and_some_ticks_around() -> None:
-    broken = Violation(Moment(50, 5.0), Moment(59, 5.9), Moment(40, 4.0), None, "stopped", {})
+    broken = violation(moment(50, 5.0), moment(59, 5.9), moment(40, 4.0))
     result = replace(EMPTY, verdict="violated", triggers=at(5, 40), violations=(broken,))
     (picture,) = timelines(result, 0.1)
     assert (picture.title, picture.start, picture.end) == ("Violation 1", 3.0, 7.0)
@@ -91,9 +98,7 @@ def test_marks_that_stand_apart_stay_apart() -> None:
 
 
 def test_only_the_first_violations_get_a_picture() -> None:
-    broken = tuple(
-        Violation(moment, moment, None, None, "stopped", {}) for moment in at(*range(90))
-    )
+    broken = tuple(violation(at_once, at_once) for at_once in at(*range(90)))
     pictures = timelines(replace(EMPTY, violations=broken), 0.1)
     assert [re.sub(r"\D", "", picture.title) for picture in pictures] == [
         str(number) for number in range(1, 7)
@@ -102,7 +107,7 @@ def test_only_the_first_violations_get_a_picture() -> None:
 
 def test_latencies_belong_to_the_triggers_that_are_not_open() -> None:
     result = replace(EMPTY, triggers=at(1, 2, 3), open=at(2), latencies=(0.5, 0.1))
-    assert answered(result) == [(Moment(1, 0.1), 0.5), (Moment(3, 0.3), 0.1)]
+    assert answered(result) == [(moment(1, 0.1), 0.5), (moment(3, 0.3), 0.1)]
 
 
 def test_latencies_that_fit_no_triggers_belong_to_none() -> None:

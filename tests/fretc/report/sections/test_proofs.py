@@ -172,10 +172,10 @@ def test_the_command_takes_the_file_at_its_usual_place_and_exits_as_it_says(
     ("text", "message"),
     [
         ("{", "is not JSON: expecting property name enclosed in double quotes"),
-        ('{"schema": "x"}', "`schema` must be `fretc-verification-1`, and is `x`"),
+        ('{"schema": "x"}', "`$.schema`: invalid enum value 'x'"),
         (
             '{"schema": "fretc-verification-1", "fretc": "0", "evidence": [{"artefacts": []}]}',
-            "`evidence[0].artefacts` must be an object, and is an array",
+            "`$.evidence[0].artefacts`: expected `object`, got `array`",
         ),
     ],
 )

@@ -1,0 +1,460 @@
+"""An evidence file as values: what audits have shown of runs and requirements.
+
+The types are the schema: they are written and read as they stand here, a key whose value is
+`UNSET` is left out, and what they do not have is refused. `templates/json/evidence.schema.json` is
+made of them. Seconds count from the first tick of the run, `_ns` are nanoseconds of the log, and
+intervals include both ends.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Annotated, Any, Final, Literal
+
+from compiler.files.records import (
+    UNSET,
+    Count,
+    Distance,
+    Meta,
+    Name,
+    Number,
+    Ordinal,
+    Record,
+    Seconds,
+    Sha256,
+    UnsetType,
+    Whole,
+    about,
+    field,
+    json_schema,
+    plain,
+    replace,
+)
+from fretc.audit.evidence.probabilities import Estimated, Outcomes
+from fretc.audit.evidence.samples import Reading, Surroundings, Window, window
+from fretc.audit.measurements.tallies import Tally
+from fretc.audit.measurements.trials import Trials
+from fretc.audit.measurements.violations import Moment as Moment
+
+SCHEMA: Final = "fretc-evidence-1"
+Verdict = Literal["satisfied", "violated", "inconclusive", "vacuous", "no data"]
+StateWord = Literal["idle", "open", "violated", "unknown"]
+Comparison = Literal["true", "false", "crossed"]
+Part = Annotated[
+    str,
+    Meta(
+        pattern=r"^([0-9a-f]{64})?(?![\s\S])",
+        description="SHA-256; empty where nothing could be read of it, of a requirement that is "
+        "not judged",
+    ),
+]
+
+
+# Violations ------------------------------------------------------------------------------------
+
+
+class Violation(Record, frozen=True):
+    """Ticks at which a demand was broken."""
+
+    first_tick: Count
+    last_tick: Count
+    start_ns: Whole
+    end_ns: Whole
+    start_s: Seconds
+    end_s: Seconds
+    trigger: Annotated[Moment | None, about("the oldest trigger whose demand was broken")]
+    deadline: Annotated[
+        Moment | None,
+        about(
+            "by when the response had to come; null: there is none, or it is after the last tick"
+        ),
+    ]
+    missing: Annotated[str, about("the response that did not come, as the sentence writes it")]
+    values: Annotated[
+        dict[str, Number | None],
+        about("each signal at the first tick, in its base unit; null: unknown"),
+    ]
+    surroundings: Annotated[Surroundings | None, about("null after the first 100 violations")] = (
+        field(name="window")
+    )
+
+    @property
+    def first(self) -> Moment:
+        """The first tick."""
+        return Moment(self.first_tick, self.start_ns, self.start_s)
+
+    @property
+    def last(self) -> Moment:
+        """The last tick."""
+        return Moment(self.last_tick, self.end_ns, self.end_s)
+
+    @property
+    def window(self) -> Window | None:
+        """The signals around it, in seconds from the first tick; None where none were kept."""
+        if self.surroundings is None:
+            return None
+        return window(self.surroundings, self.start_ns - round(self.start_s * 1e9))
+
+
+class Instant(Record, frozen=True):
+    """A time of the log, which need not be that of a tick; before the first tick it is negative."""
+
+    ns: Whole
+    seconds: Number
+
+
+class Threshold(Record, frozen=True):
+    """A comparison of a signal with a constant, over the audited time; known samples count."""
+
+    proposition: str
+    signal: Annotated[str, about("or what is computed of some: abs(vx)")]
+    operator: Literal["<", "<=", ">", ">="]
+    bound: Annotated[Number, about("in the unit")]
+    unit: Annotated[str, about("the base unit; empty for a plain number")]
+    least: Reading
+    greatest: Reading
+    comparison: Annotated[
+        Comparison | None,
+        about("the truth value that it kept over the whole run; null: it was never known"),
+    ]
+    margin: Annotated[
+        Distance | None,
+        about(
+            "the least distance to the bound; null where the comparison was crossed, or never "
+            "finite"
+        ),
+    ]
+    nearest: Annotated[
+        Instant | None,
+        about(
+            "when it came nearest to the bound first; of one that was crossed, when it changed "
+            "first"
+        ),
+    ]
+
+
+# The log ---------------------------------------------------------------------------------------
+
+
+class Finding(Record, frozen=True):
+    """A diagnostic about the log."""
+
+    code: Annotated[str, Meta(pattern="^F[0-9]{3}$", max_length=4)]
+    severity: Literal["error", "warning", "note"]
+    message: str
+    file: str | None
+    line: Ordinal | None
+    column: Ordinal | None
+    help: str | None
+
+
+class Topic(Record, frozen=True):
+    """How one topic of a log is; null where its messages were only counted."""
+
+    type: str
+    count: Count
+    first_ns: Annotated[Whole | None, about("null: the topic has no message")]
+    last_ns: Whole | None
+    longest_gap_ns: Count | None
+    median_period_ns: Annotated[
+        Count | None, about("from a message to the next; null: there are less than two")
+    ]
+    out_of_order: Annotated[Count | None, about("messages that are earlier than one before them")]
+    equal_stamps: Annotated[Count | None, about("messages with the time of another")]
+    unstamped: Annotated[
+        Count | None,
+        about("messages without the stamp that the clock goes by: their log time counts"),
+    ]
+    zero_stamps: Annotated[
+        Count | None, about("messages with a zero for a time: their samples are unknown")
+    ]
+    clock_jumps: Annotated[
+        Count | None,
+        about("changes of the clock against log times by more than 1 s, between two messages"),
+    ]
+
+
+class Checked(Record, frozen=True):
+    """What was looked at of the chunks of an MCAP file."""
+
+    by_index: Annotated[
+        bool, about("only the messages in question were read; false: every record was")
+    ]
+    chunks: Count
+    crc_checked: Annotated[Count, about("they have the CRC that they state")]
+    crc_unchecked: Annotated[
+        Count, about("they state a CRC, and only their beginning was unpacked")
+    ]
+    without_crc: Annotated[Count, about("they were unpacked, and state no CRC")]
+    skipped: Annotated[Count, about("they hold none of the messages in question")]
+
+
+class Gap(Record, frozen=True):
+    """A stretch of time of which the log has nothing."""
+
+    start_ns: Whole
+    end_ns: Whole
+
+
+class Health(Record, frozen=True):
+    """Whether the data of a run can be trusted, and why not."""
+
+    intact: Annotated[bool, about("false: messages could have been lost")]
+    size: Annotated[Count | None, about("bytes; null: the log could not be read")]
+    checked: Annotated[Checked | None, about("null: the log could not be read")]
+    gaps: tuple[Gap, ...]
+    findings: tuple[Finding, ...]
+    topics: dict[str, Topic]
+
+
+class Hashes(Record, frozen=True, kw_only=True):
+    """SHA-256 of the log, and of what the verdict rests on beside it.
+
+    Of its meaning, so that `50 cm` and `0.5 m` are one. A result without one of them is older than
+    it, and suspect.
+    """
+
+    log: Annotated[
+        Sha256 | UnsetType,
+        about("absent where the log could not be read, or was not read whole"),
+    ] = UNSET
+    log_summary: Annotated[
+        Sha256 | UnsetType,
+        about(
+            "of what follows the data and of the CRCs of its chunks, where the log was not read "
+            "whole (--integrity index)"
+        ),
+    ] = UNSET
+    sentence: Annotated[Sha256, about("of the canonical wording")]
+    params: Annotated[Sha256 | UnsetType, about("of the numbers that the requirement states")] = (
+        UNSET
+    )
+    clock: Annotated[Part | UnsetType, about("of what a tick is")] = UNSET
+    topics: Annotated[
+        Part | UnsetType,
+        about(
+            "of the names of the topics that the audit reads: the ticks begin with their messages"
+        ),
+    ] = UNSET
+    bindings: Annotated[
+        Part, about("of the propositions of the sentence, and of the signals that they read")
+    ]
+    monitor: Sha256
+    messages: Annotated[
+        Sha256 | UnsetType,
+        about(
+            "of times and values of all signals that were read, where a probability is asked for: "
+            "logs that share it are copies of one run"
+        ),
+    ] = UNSET
+
+
+# Results ---------------------------------------------------------------------------------------
+
+
+class State(Record, frozen=True):
+    """A tick at which the state changed, with the new one; open: an answer is awaited."""
+
+    tick: Count
+    ns: Whole
+    seconds: Seconds
+    state: StateWord
+
+
+class Answer(Record, frozen=True):
+    """The first answer to a trigger that waits for one, with the tick of that trigger."""
+
+    tick: Count
+    ns: Whole
+    seconds: Seconds
+    trigger: Count
+
+
+class PhaseStretch(Record, frozen=True):
+    """Phases that have one verdict."""
+
+    first_ns: Count
+    last_ns: Count
+    verdict: Annotated[Verdict | None, about("null: not judged")]
+
+
+class PhaseVerdicts(Record, frozen=True):
+    """The verdict for each beginning of the grid of ticks.
+
+    Of a requirement with a probability that of the run alone.
+    """
+
+    period_ns: Annotated[Ordinal, about("of a tick")]
+    declared_ns: Annotated[Count, about("the phase that is audited")]
+    exact: Annotated[bool, about("whether every phase was judged")]
+    nearest_ns: Annotated[
+        Ordinal | None,
+        about(
+            "from the declared phase to the nearest one with another verdict, or that was not "
+            "judged; phases go round; null: there is none"
+        ),
+    ]
+    stretches: Annotated[
+        tuple[PhaseStretch, ...],
+        Meta(min_length=1, description="all phases from 0 to the whole tick, in their order"),
+    ]
+
+
+class Result(Record, frozen=True, kw_only=True):
+    """What the audit of one run says of one requirement."""
+
+    run: Annotated[str, about("the log, as the user named it")]
+    requirement: Name
+    verdict: Verdict
+    finite: Annotated[bool | None, about("FRET's verdict of the whole finite trace; null: unknown")]
+    reason: str
+    clock: Annotated[str, about("empty: the log could not be read")]
+    ticks: Count
+    start_ns: Whole | None
+    end_ns: Whole | None
+    states: tuple[State, ...]
+    answers: tuple[Answer, ...]
+    triggers: tuple[Moment, ...]
+    violations: tuple[Violation, ...]
+    unknown: Annotated[
+        tuple[tuple[Count, Count], ...],
+        about("stretches of ticks at which it cannot be known whether a demand was broken"),
+    ]
+    open: Annotated[
+        tuple[Moment, ...], about("triggers whose demand is open at the end of the log")
+    ]
+    uncertain_ticks: Annotated[
+        tuple[Count, ...] | UnsetType,
+        about(
+            "triggers of `answers` and `open` of which that may be otherwise where propositions "
+            "are unknown; all others are certain. Absent in evidence of earlier versions: it was "
+            "not known"
+        ),
+    ] = field(name="uncertain", default=UNSET)
+    latencies: Annotated[
+        tuple[Seconds, ...],
+        about("from each answered trigger to its answer, in the order of the triggers"),
+    ] = field(name="latencies_s")
+    exercised: Annotated[Count, about("at how many ticks it was triggered")]
+    latency_median_s: Seconds | None
+    latency_max_s: Seconds | None
+    propositions: dict[str, Tally]
+    thresholds: tuple[Threshold, ...]
+    units: Annotated[dict[str, str], about("the base unit of each signal")]
+    fingerprints: Hashes = field(name="hashes")
+    health: Health
+    assumptions: tuple[str, ...]
+    outcomes: Annotated[
+        Outcomes | UnsetType,
+        about(
+            "of a requirement with a probability: what its triggers came to in this run, which "
+            "alone decides nothing"
+        ),
+    ] = field(name="trials", default=UNSET)
+    phases: Annotated[
+        PhaseVerdicts | UnsetType,
+        about("absent: the clock ticks by message, or the log could not be read"),
+    ] = UNSET
+
+    @property
+    def hashes(self) -> Mapping[str, str]:
+        """Those that are known, by their names."""
+        found: Mapping[str, str] = plain(self.fingerprints)
+        return found
+
+    @property
+    def uncertain(self) -> frozenset[int]:
+        """Ticks of triggers whose answer, or whose open demand, depends on unknown values."""
+        return frozenset(self.uncertain_ticks or ())
+
+    @property
+    def trials(self) -> Trials | None:
+        """Of a requirement with a probability, where the log could be read."""
+        known = self.outcomes
+        return Trials(known.answered, known.failed, known.open) if known else None
+
+    @property
+    def content(self) -> str:
+        """What tells its log from another one: copies have the same."""
+        return self.fingerprints.log or self.fingerprints.log_summary or self.run
+
+
+# The file --------------------------------------------------------------------------------------
+
+
+class Bindings(Record, frozen=True):
+    """The bindings that the logs were read by."""
+
+    file: str
+    sha256: Annotated[
+        Sha256,
+        about(
+            "of what the requirements read of the bindings; comments, order and spelling do not "
+            "count"
+        ),
+    ]
+
+
+class Requirement(Record, frozen=True):
+    """A requirement of the audit."""
+
+    id: Name
+    sentence: str
+    sha256: Annotated[Sha256, about("of the canonical wording")]
+
+
+class Document(Record, frozen=True):
+    """A whole file."""
+
+    schema: Literal["fretc-evidence-1"]
+    fretc: Annotated[str, about("version of the tool")]
+    bindings: Bindings
+    requirements: tuple[Requirement, ...]
+    results: tuple[Result, ...]
+    probabilities: Annotated[
+        Annotated[tuple[Estimated, ...], Meta(min_length=1)] | UnsetType,
+        about(
+            "what all runs together say of each requirement with a probability; absent: there is "
+            "none"
+        ),
+    ] = UNSET
+
+
+@dataclass(frozen=True, slots=True)
+class Evidence:
+    """A file of evidence, with its name and its SHA-256."""
+
+    file: str
+    sha256: str
+    document: Document
+
+    @property
+    def fretc(self) -> str:
+        """Version of the tool that audited."""
+        return self.document.fretc
+
+    @property
+    def results(self) -> tuple[Result, ...]:
+        """Each of a run and a requirement."""
+        return self.document.results
+
+    @property
+    def probabilities(self) -> tuple[Estimated, ...]:
+        """What all runs say of each requirement with a probability."""
+        return self.document.probabilities or ()
+
+    def with_results(self, results: Sequence[Result]) -> Evidence:
+        """The same with other results."""
+        return Evidence(self.file, self.sha256, replace(self.document, results=tuple(results)))
+
+
+def schema() -> dict[str, Any]:
+    """The JSON Schema of evidence files."""
+    return json_schema(
+        Document,
+        SCHEMA,
+        "What audits have shown, as `fretc audit --evidence` writes it",
+        "Seconds count from the first tick of the run, ticks from 0, intervals include both ends; "
+        "`_ns` are nanoseconds of the log.",
+    )

@@ -1,0 +1,25 @@
+"""The JSON Schemas that are shipped are those of the types."""
+
+import json
+from typing import Any
+
+import jsonschema  # type: ignore[import-untyped]
+import pytest
+
+from compiler.files.templating import template_root, to_json
+from compiler.logic import claims
+from fretc.audit.evidence import schema
+
+SCHEMAS = {"evidence": schema.schema(), "verification": claims.schema()}
+
+
+@pytest.mark.parametrize(("name", "made"), SCHEMAS.items())
+def test_a_schema_is_that_of_its_types(
+    name: str, made: dict[str, Any], request: pytest.FixtureRequest
+) -> None:
+    text = f"{to_json(made)}\n"
+    file = template_root() / "json" / f"{name}.schema.json"
+    if request.config.getoption("--update-golden"):
+        file.write_text(text, encoding="utf-8")
+    assert file.read_text("utf-8") == text, "pytest --update-golden writes it anew"
+    jsonschema.Draft202012Validator.check_schema(json.loads(text))
