@@ -126,12 +126,12 @@ HELD = "held=options.hold if requested else state.held"
 WATCH_STOP = "        or expired(state.stop_age, options.stop_timeout)\n"
 WATCH_SCAN = "        or expired(state.scan_age, options.scan_timeout)\n"
 WATCH_COMMAND = "        or expired(state.command_age, options.command_timeout)\n"
-RUNG = "said = ZERO if halted(older, options) else state.command"
+RUNG = "output = ZERO if halted(older, options) else state.command"
 ASKED = "return after, ZERO if requested and not options.event_driven else None"
 HANDED = "            return hear_command(state, command, options)"
 PAID = (
     "less = replace(older, held=max(state.held - 1, 0))\n"
-    "    said = ZERO if halted(less, options) else state.command"
+    "    output = ZERO if halted(less, options) else state.command"
 )
 
 
@@ -184,7 +184,7 @@ MUTANTS = {
         {NOTHING_ELSE},
     ),
     "says nothing when halted": (
-        ((RUNG, "said = None if halted(older, options) else state.command"),),
+        ((RUNG, "output = None if halted(older, options) else state.command"),),
         {HOLD, SPEAKS},
     ),
     "always stands": (
