@@ -20,7 +20,7 @@ from benchmarks.peers import PEERS, WORKLOADS, Columns, Evaluation, Peer, rate, 
 from benchmarks.timing import seconds
 from compiler.formalization.formalize import formalize
 from compiler.formalization.past import Watch
-from compiler.formalization.rule import Rule
+from compiler.formalization.rule import Formalized
 from compiler.logic import formula as f
 from compiler.targets.python.monitor import text
 from fretc.logs.signals.traces import bits
@@ -36,13 +36,13 @@ STEPS = 200_000
 # What is monitored ----------------------------------------------------------------------------
 
 
-def rule(sentence: str, id: str = "R1") -> Rule:
+def rule(sentence: str, id: str = "R1") -> Formalized:
     made, said = formalize(Requirement(id, Source("b.fret", sentence).span()), None)
     assert made is not None, said
     return made
 
 
-def always(trigger: f.Formula, demanded: f.Formula) -> Rule:
+def always(trigger: f.Formula, demanded: f.Formula) -> Formalized:
     """`H(trigger -> demanded)` as a monitor: FRETish has no `since` of its own."""
     breach = f.and_(trigger, f.not_(demanded))
     watch = Watch(trigger, breach, f.FALSE, f.FALSE, f.FALSE, f.FALSE, None, 0, renewed=False)
@@ -52,7 +52,7 @@ def always(trigger: f.Formula, demanded: f.Formula) -> Rule:
 A, B, C = f.Atom("a"), f.Atom("b"), f.Atom("c")
 
 
-def workload_rules() -> Mapping[str, Rule]:
+def workload_rules() -> Mapping[str, Formalized]:
     return {
         "W1": rule("whenever a sw shall eventually satisfy b"),
         "W2": rule("whenever a sw shall within 10 ticks satisfy b"),
@@ -61,7 +61,7 @@ def workload_rules() -> Mapping[str, Rule]:
     }
 
 
-def mixed(count: int, names: int = 12) -> list[Rule]:
+def mixed(count: int, names: int = 12) -> list[Formalized]:
     """W5: requirements of many forms, bounds to 1 000, on a few propositions."""
     forms = (
         "whenever p{0} sw shall within {n} ticks satisfy p{1}",
@@ -83,7 +83,7 @@ def mixed(count: int, names: int = 12) -> list[Rule]:
     return found
 
 
-def monitor(*rules: Rule) -> Monitor:
+def monitor(*rules: Formalized) -> Monitor:
     return load("monitor.py", text(*rules))
 
 

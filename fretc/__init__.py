@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from compiler.files.edition import __version__ as __version__
-    from compiler.formalization.rule import Rule as Rule
+    from compiler.formalization.rule import Formalized as Formalized
     from compiler.logic.claims import Evidence as Proof
     from compiler.project.folder import Project as Project
     from fretc.api.audits import Audit as Audit
@@ -42,7 +42,7 @@ _HOMES = {
     "Refusal": "fretc.api.refusal",
     "Report": "fretc.api.reports",
     "Result": "fretc.audit.evidence.schema",
-    "Rule": "compiler.formalization.rule",
+    "Formalized": "compiler.formalization.rule",
     "Stream": "fretc.api.streams",
     "Tick": "fretc.api.streams",
     "__version__": "compiler.files.edition",
@@ -61,6 +61,7 @@ __all__ = [
     "Audit",
     "Diagnostic",
     "End",
+    "Formalized",
     "Formulas",
     "Monitor",
     "Project",
@@ -68,7 +69,6 @@ __all__ = [
     "Refusal",
     "Report",
     "Result",
-    "Rule",
     "Stream",
     "Tick",
     "__version__",

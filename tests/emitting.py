@@ -2,13 +2,13 @@
 
 from compiler.emit import TARGETS
 from compiler.formalization.formalize import formalize
-from compiler.formalization.rule import Rule
+from compiler.formalization.rule import Formalized
 from fretish.diagnostics.rendering import render
 from fretish.diagnostics.source import Source
 from fretish.documents import Requirement
 
 
-def rule(sentence: str, id: str = "R1") -> Rule:
+def rule(sentence: str, id: str = "R1") -> Formalized:
     result, diagnostics = formalize(Requirement(id, Source("r.fret", sentence).span()), None)
     assert result is not None, diagnostics
     return result

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 from compiler.formalization.formalize import formalize
 from compiler.formalization.past import Watch
-from compiler.formalization.rule import Rule
+from compiler.formalization.rule import Formalized
 from compiler.logic import formula as f
 from compiler.targets.python import monitor as target
 from fretish.bindings.declarations import Declarations
@@ -40,7 +40,7 @@ class Step(NamedTuple):
     answer: Truth
 
 
-def rule(sentence: str, id: str = "R1", clock: Clock | None = None) -> Rule:
+def rule(sentence: str, id: str = "R1", clock: Clock | None = None) -> Formalized:
     """The rule of a sentence."""
     source = Source("r.fret", sentence)
     declared = Declarations(Source("bindings.toml", ""), clock, {}, {}) if clock else None

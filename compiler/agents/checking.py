@@ -18,7 +18,7 @@ from compiler.agents.psl import Property
 from compiler.agents.psl_printing import property_text
 from compiler.agents.vacuity import bare, demanded
 from compiler.files.text_files import sha256
-from compiler.formalization.rule import Rule
+from compiler.formalization.rule import Formalized
 from compiler.logic import formula as f
 from compiler.logic import spot as automata
 from compiler.logic.claims import (
@@ -65,7 +65,7 @@ def checked(
 
 @deep
 def agent_evidence(
-    rule: Rule, files: Mapping[str, str], percepts: Sequence[str], limit: int = STATES
+    rule: Formalized, files: Mapping[str, str], percepts: Sequence[str], limit: int = STATES
 ) -> tuple[Evidence, ...]:
     """Evidence for the texts of a bundle.
 

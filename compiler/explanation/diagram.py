@@ -15,7 +15,7 @@ from typing import assert_never
 
 from compiler.explanation.windows import Column, Need, Window, intervals, windows
 from compiler.formalization.reference import Template, template
-from compiler.formalization.rule import Rule
+from compiler.formalization.rule import Formalized
 from fretish import syntax as s
 from fretish.meaning import span as in_ticks
 from fretish.printer import expression
@@ -102,7 +102,7 @@ class Diagram:
     """What the triggers in the picture ask for."""
 
 
-def diagram(rule: Rule) -> Diagram:
+def diagram(rule: Formalized) -> Diagram:
     """The picture of a formalized sentence, whatever its bound."""
     drawn = template(rule.sentence, rule.ticks or 0)
     trace = _trace(drawn)
@@ -182,7 +182,7 @@ def _mode(scope: ScopeKind | None, t: int, left: int, right: int) -> bool:
 
 
 def _lanes(
-    rule: Rule, drawn: Template, trace: Trace, found: Sequence[Window], end: int
+    rule: Formalized, drawn: Template, trace: Trace, found: Sequence[Window], end: int
 ) -> Iterator[Lane]:
     """From above: where, when, until when, and what."""
     sentence = rule.sentence
@@ -203,7 +203,7 @@ def _lanes(
     yield from _needs(rule, drawn, found, end)
 
 
-def _needs(rule: Rule, drawn: Template, found: Sequence[Window], end: int) -> Iterator[Lane]:
+def _needs(rule: Formalized, drawn: Template, found: Sequence[Window], end: int) -> Iterator[Lane]:
     q = expression(rule.sentence.response)
     several = len(found) > 1
     for window in found:

@@ -27,7 +27,7 @@ from compiler.formalization.reference import (
     TooManyStatesError,
     explore,
 )
-from compiler.formalization.rule import Rule
+from compiler.formalization.rule import Formalized
 
 MOST_STATES = 120_000
 """Seconds of search; a longer bound gets no examples."""
@@ -61,7 +61,7 @@ class Examples:
     """Why there are none, where there are none."""
 
 
-def examples(rule: Rule, wanted: int = WANTED) -> Examples:
+def examples(rule: Formalized, wanted: int = WANTED) -> Examples:
     """The traces of a rule: at most so many of either kind, the shortest ones first."""
     predicate = temporal_predicate(rule.sentence)
     if predicate is not None:

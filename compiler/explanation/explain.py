@@ -13,7 +13,7 @@ from compiler.explanation.examples import Example, examples
 from compiler.explanation.reasons import why
 from compiler.formalization import record
 from compiler.formalization.letters import Valuation, meanings
-from compiler.formalization.rule import Rule
+from compiler.formalization.rule import Formalized
 from compiler.logic.definition import holds
 from compiler.logic.formula import longest_bound
 from compiler.targets import ltl
@@ -51,7 +51,7 @@ class Shown:
 class Explanation:
     """All that is said of a requirement."""
 
-    rule: Rule
+    rule: Formalized
     picture: Diagram
     propositions: tuple[str, ...]
     """In the order of the values of a row."""
@@ -59,7 +59,7 @@ class Explanation:
     notes: tuple[str, ...]
 
 
-def explanation(rule: Rule) -> Explanation:
+def explanation(rule: Formalized) -> Explanation:
     """Explain a formalized requirement; every trace in it has been checked."""
     found = examples(rule)
     every = (*found.satisfied, *found.violated)
@@ -71,7 +71,7 @@ def explanation(rule: Rule) -> Explanation:
     return Explanation(rule, diagram(rule), found.atoms, shown, notes)
 
 
-def _notes(rule: Rule, reason: str, satisfied: int, violated: int) -> Iterator[str]:
+def _notes(rule: Formalized, reason: str, satisfied: int, violated: int) -> Iterator[str]:
     if reason:
         yield f"no traces are shown: {reason}"
         return
@@ -97,7 +97,7 @@ _CHECKED = 30
 """Ticks up to which the slow definition of the operators checks a trace, too."""
 
 
-def _check(rule: Rule, atoms: Sequence[str], example: Example) -> None:
+def _check(rule: Formalized, atoms: Sequence[str], example: Example) -> None:
     """The formulas say of the trace what the automaton does.
 
     Spot has the word of the endless trace, where the bound is small enough for it.
@@ -116,7 +116,7 @@ def _check(rule: Rule, atoms: Sequence[str], example: Example) -> None:
             assert told is example.satisfied
 
 
-def _shown(rule: Rule, letters: Mapping[Valuation, Any], example: Example) -> Shown:
+def _shown(rule: Formalized, letters: Mapping[Valuation, Any], example: Example) -> Shown:
     prefix = [letters[values] for values in example.prefix]
     loop = [letters[values] for values in example.loop]
     ends = not loop and example.decided is None

@@ -8,7 +8,7 @@ from typing import assert_never
 
 from compiler.explanation.windows import Column, Need, Part, Window, intervals, need, windows
 from compiler.formalization.reference import Letter, Template, template
-from compiler.formalization.rule import Rule
+from compiler.formalization.rule import Formalized
 from fretish import syntax as s
 from fretish.meaning import span as in_ticks
 from fretish.printer import expression
@@ -19,7 +19,7 @@ _MOST = 2
 
 
 def why(
-    rule: Rule,
+    rule: Formalized,
     prefix: Sequence[Letter],
     loop: Sequence[Letter] = (),
     *,
@@ -55,7 +55,7 @@ def why(
     return f"{'; '.join([*told, *rest])}{teller.bound()}"
 
 
-def _nothing(rule: Rule, counted: Template, m: Column) -> str:
+def _nothing(rule: Formalized, counted: Template, m: Column) -> str:
     """No demand begins."""
     scope, condition = rule.sentence.scope, rule.sentence.condition
     if not intervals(counted.scope, m):
@@ -69,7 +69,7 @@ def _nothing(rule: Rule, counted: Template, m: Column) -> str:
 class _Teller:
     """What is known of one trace."""
 
-    rule: Rule
+    rule: Formalized
     counted: Template
     q: Column
     """Of the ticks that are shown, and of those that follow."""

@@ -11,14 +11,14 @@ from __future__ import annotations
 from compiler.formalization.anticipation import SHORT
 from compiler.formalization.letters import occurring, temporal_predicate
 from compiler.formalization.reference import BROKEN, TooManyStatesError, explore, template
-from compiler.formalization.rule import Rule
+from compiler.formalization.rule import Formalized
 from compiler.logic.formula import FALSE
 from fretish.clock import End
 
 _MOST_STATES = 500
 
 
-def is_violable(rule: Rule) -> bool:
+def is_violable(rule: Formalized) -> bool:
     """Whether a run can get the verdict `violated`; where that is not found out, it can."""
     watch = rule.watch
     if rule.clock is not None and rule.clock.end is End.VIOLATED and watch.owed != FALSE:
@@ -28,7 +28,7 @@ def is_violable(rule: Rule) -> bool:
     return _is_lost_somewhere(rule)
 
 
-def limit(rule: Rule) -> str:
+def limit(rule: Formalized) -> str:
     """Why no run can violate it, as one sentence; empty where one can."""
     if is_violable(rule):
         return ""
@@ -40,7 +40,7 @@ def limit(rule: Rule) -> str:
     )
 
 
-def _is_lost_somewhere(rule: Rule) -> bool:
+def _is_lost_somewhere(rule: Formalized) -> bool:
     """Whether the automaton of the sentence, over the letters that can occur, has a lost state."""
     sentence = rule.sentence
     if temporal_predicate(sentence):

@@ -12,7 +12,7 @@ from collections.abc import Iterator, Mapping
 from fractions import Fraction
 
 from compiler.formalization.obligation import atom, variable
-from compiler.formalization.rule import Rule
+from compiler.formalization.rule import Formalized
 from fretish import expressions as e
 from fretish import units
 from fretish.bindings.constants import constants
@@ -33,7 +33,7 @@ _FUNCTIONS = {
 """What a function of sentences is called in bindings."""
 
 
-def disagreements(rule: Rule, declarations: Declarations) -> Iterator[Diagnostic]:
+def disagreements(rule: Formalized, declarations: Declarations) -> Iterator[Diagnostic]:
     """F524 for each comparison of the sentence that is bound to another one."""
     stated = _stated(rule.sentence)
     for name in rule.watched:
@@ -150,7 +150,7 @@ def _parts(expression: e.Expression) -> Iterator[e.Expression]:
         waiting.extend(e.children(part))
 
 
-def _drifted(rule: Rule, name: str, stated: e.Expression, bound: Proposition) -> Diagnostic:
+def _drifted(rule: Formalized, name: str, stated: e.Expression, bound: Proposition) -> Diagnostic:
     place: Span | None = getattr(stated, "span", None)
     inside = place is not None and place.source is rule.requirement.wording.source
     assert bound.span is not None
@@ -198,7 +198,7 @@ def drift(requirement: Requirement, declarations: Declarations) -> Iterator[Diag
             )
 
 
-def unbound(rule: Rule, declarations: Declarations) -> Iterator[Diagnostic]:
+def unbound(rule: Formalized, declarations: Declarations) -> Iterator[Diagnostic]:
     """F304 for every proposition of the sentence that the bindings do not have.
 
     Where they have one that cannot be used, it is the mistakes in its tables. No other proposition
@@ -217,7 +217,7 @@ def unbound(rule: Rule, declarations: Declarations) -> Iterator[Diagnostic]:
         )
 
 
-def place(rule: Rule, name: str) -> Span:
+def place(rule: Formalized, name: str) -> Span:
     """Where the sentence names it first; the whole sentence for a comparison."""
     for expression in conditions(rule.sentence):
         for mention in e.names(expression):

@@ -13,7 +13,7 @@ from compiler.formalization.binding_agreement import disagreements, drift, place
 from compiler.formalization.future import future, probabilistic
 from compiler.formalization.obligation import obligation
 from compiler.formalization.past import past, watch
-from compiler.formalization.rule import Rule
+from compiler.formalization.rule import Formalized
 from compiler.logic.formula import endless
 from compiler.logic.printing import identifier
 from fretish.bindings.declarations import Declarations, Modality, Variable
@@ -31,7 +31,7 @@ from fretish.syntax import Sentence
 @deep
 def formalize(
     requirement: Requirement, declarations: Declarations | None
-) -> tuple[Rule | None, tuple[Diagnostic, ...]]:
+) -> tuple[Formalized | None, tuple[Diagnostic, ...]]:
     """Parse, check and formalize one requirement.
 
     Returns:
@@ -45,7 +45,7 @@ def formalize(
 
 def _formalized(
     requirement: Requirement, declarations: Declarations | None
-) -> tuple[Rule | None, tuple[Diagnostic, ...]]:
+) -> tuple[Formalized | None, tuple[Diagnostic, ...]]:
     if requirement.is_free_text:
         return None, (_free_text(requirement),)
     sentence = parse(requirement.wording)
@@ -64,7 +64,7 @@ def _formalized(
     return rule, tuple(_remarks(requirement, sentence, declarations))
 
 
-def clashes(rules: Sequence[Rule]) -> Iterator[Diagnostic]:
+def clashes(rules: Sequence[Formalized]) -> Iterator[Diagnostic]:
     """F116: formulas spell `a.b` as `a_DOT_b`, and another name is spelt so already."""
     spelt: dict[str, str] = {}
     for rule in rules:
@@ -84,13 +84,13 @@ def _rule(
     sentence: Sentence,
     ticks: int | None,
     declarations: Declarations | None,
-) -> Rule:
+) -> Formalized:
     """The three formulas and the watch, each from the same obligation."""
     ahead = obligation(sentence, ticks or 0, predicates.Future())
     back = obligation(sentence, ticks or 0, predicates.Past())
     finite = future(ahead)
     odds = sentence.probability
-    return Rule(
+    return Formalized(
         requirement=requirement,
         sentence=sentence,
         ticks=ticks,

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from compiler.files.edition import __version__
-from compiler.formalization.rule import Rule
+from compiler.formalization.rule import Formalized
 from compiler.logic import printing
 from fretish import syntax
 from fretish.diagnostics.diagnostic import Diagnostic
@@ -17,7 +17,7 @@ from fretish.printer import canonical, expression
 SCHEMA = "fretc-requirement-1"
 
 
-def formulas(rule: Rule) -> dict[str, Any]:
+def formulas(rule: Formalized) -> dict[str, Any]:
     """The object of `--emit ltl --format json`.
 
     `ft_infinite` is LTL that Spot reads; `ft_finite` may use `LAST`; `pt` is for the last point.
@@ -53,7 +53,7 @@ def wording(requirement: Requirement) -> str:
     return " ".join(requirement.wording.text.split())
 
 
-def record(rule: Rule) -> dict[str, Any]:
+def record(rule: Formalized) -> dict[str, Any]:
     """The object of `--emit json`; its schema is `templates/json/requirement.schema.json`."""
     requirement, tree = rule.requirement, rule.sentence
     return {

@@ -22,7 +22,7 @@ from fretish.syntax import Sentence
 
 
 @dataclass(frozen=True, slots=True)
-class Rule:
+class Formalized:
     """A requirement, formalized: one meaning in three formulas, and as signals to watch."""
 
     requirement: Requirement
@@ -93,7 +93,7 @@ def _place(name: Name) -> int:
     return name.span.start if name.span else 0
 
 
-def plain(rule: Rule) -> Rule:
+def plain(rule: Formalized) -> Formalized:
     """The rule of the same sentence without its probability, under the same id."""
     if rule.sentence.probability is None:
         return rule

@@ -12,7 +12,7 @@ from typing import Any
 from compiler.files.settings import settings
 from compiler.files.text_files import read, unreadable
 from compiler.formalization.formalize import duplicates, formalize
-from compiler.formalization.rule import Rule
+from compiler.formalization.rule import Formalized
 from compiler.project.ancestry import circles, unknown_parents
 from compiler.project.parents import Parent
 from compiler.project.parents import parents as read_parents
@@ -55,7 +55,7 @@ class Project:
 
     requirements: tuple[Requirement, ...]
     """As written, in the order of the files."""
-    rules: tuple[Rule, ...]
+    rules: tuple[Formalized, ...]
     failed: tuple[Failed, ...]
     declarations: Declarations | None
     hazards: Mapping[str, Hazard]
@@ -131,7 +131,7 @@ def _written(paths: Sequence[str]) -> tuple[list[Requirement], list[Diagnostic]]
 
 def _formalized(
     written: Sequence[Requirement], declarations: Declarations | None, *, broken: bool
-) -> tuple[tuple[Rule, ...], tuple[Failed, ...], dict[int, Diagnostic], list[Diagnostic]]:
+) -> tuple[tuple[Formalized, ...], tuple[Failed, ...], dict[int, Diagnostic], list[Diagnostic]]:
     """The rules, requirements without one, mistakes of those with one, and all there is to say.
 
     Args:

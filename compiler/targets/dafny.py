@@ -31,7 +31,7 @@ from compiler.files.artifact import Artifact
 from compiler.files.templating import render
 from compiler.formalization.letters import atoms_of, temporal_predicate
 from compiler.formalization.obligation import Uninterpreted, boolean
-from compiler.formalization.rule import Rule
+from compiler.formalization.rule import Formalized
 from compiler.logic import formula as f
 from compiler.project.interceptor_options import options as core
 from compiler.targets.dafny_claims import CHANNELS, Delay, delay, loopless
@@ -47,7 +47,7 @@ _ELSEWHERE = "check its monitor with `fretc verify`"
 
 
 @deep
-def refuse(rule: Rule) -> Diagnostic | None:
+def refuse(rule: Formalized) -> Diagnostic | None:
     """F601 for the first part of the rule of which nothing could be proved."""
     sentence = rule.sentence
     if rule.pctl is not None:
@@ -76,17 +76,17 @@ _SCOPES: Mapping[ScopeKind, str] = {
 
 
 @deep
-def emit(rules: Sequence[Rule], options: Options = DEFAULT) -> tuple[Artifact, ...]:
+def emit(rules: Sequence[Formalized], options: Options = DEFAULT) -> tuple[Artifact, ...]:
     """`<id>.dfy` for each rule."""
     declared = options.declarations
     return tuple(Artifact(PurePosixPath(_name(rule)), text(rule, declared)) for rule in rules)
 
 
-def _name(rule: Rule) -> str:
+def _name(rule: Formalized) -> str:
     return f"{stem(rule)}.dfy"
 
 
-def text(rule: Rule, declarations: Declarations | None) -> str:
+def text(rule: Formalized, declarations: Declarations | None) -> str:
     """The whole file; the same for the same rule and declarations.
 
     Args:
@@ -161,7 +161,7 @@ _TRIGGERS: Mapping[ConditionKind | None, Trigger] = {
 }
 
 
-def _monitor(rule: Rule) -> str:
+def _monitor(rule: Formalized) -> str:
     sentence, timing = rule.sentence, rule.sentence.timing
     fields = _fields(atoms_of(sentence))
     stop, shape = s.stop(timing), s.SHAPES[type(timing)]
@@ -178,7 +178,7 @@ def _monitor(rule: Rule) -> str:
     )
 
 
-def _trigger(rule: Rule) -> Trigger:
+def _trigger(rule: Formalized) -> Trigger:
     condition = rule.sentence.condition
     return _TRIGGERS[condition.kind if condition else None]
 
@@ -199,7 +199,7 @@ _COUNTERS: Mapping[type[s.Timing], str] = {
 """The template of each timing."""
 
 
-def _bound(rule: Rule) -> Mapping[str, object]:
+def _bound(rule: Formalized) -> Mapping[str, object]:
     """How the templates name the bound: a parameter and an argument, where there is one."""
     bounded = s.duration(rule.sentence.timing) is not None
     return {
@@ -301,7 +301,7 @@ def _interceptor(declarations: Declarations | None) -> str:
 # Closed loop ----------------------------------------------------------------------------------
 
 
-def _loop(rule: Rule, declarations: Declarations | None) -> str:
+def _loop(rule: Formalized, declarations: Declarations | None) -> str:
     reason = loopless(rule, declarations)
     if reason is not None:
         return render("dafny/loopless.dfy.j2", reason=reason)

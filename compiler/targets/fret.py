@@ -9,7 +9,7 @@ from typing import Any
 
 from compiler.files.artifact import Artifact
 from compiler.files.templating import render
-from compiler.formalization.rule import Rule
+from compiler.formalization.rule import Formalized
 from compiler.logic import printing
 from compiler.project.fret_import import OWN, STATUSES
 from compiler.targets.target import DEFAULT, Options, Target
@@ -25,7 +25,7 @@ _SPACE = uuid.UUID("6ba7b811-9dad-11d1-80b4-00c04fd430c8")
 """RFC 4122's name space of URLs: the same requirement always has the same `_id`."""
 
 
-def emit(rules: Sequence[Rule], options: Options = DEFAULT) -> tuple[Artifact, ...]:
+def emit(rules: Sequence[Formalized], options: Options = DEFAULT) -> tuple[Artifact, ...]:
     """`fret.json` with all rules: `{"requirements": [...], "variables": [...]}`."""
     content = {
         "requirements": [requirement(entry, rule) for entry, rule in _ordered(rules, options)],
@@ -35,9 +35,13 @@ def emit(rules: Sequence[Rule], options: Options = DEFAULT) -> tuple[Artifact, .
     return (Artifact(PurePosixPath("fret.json"), text),)
 
 
-def _ordered(rules: Sequence[Rule], options: Options) -> list[tuple[Requirement, Rule | None]]:
+def _ordered(
+    rules: Sequence[Formalized], options: Options
+) -> list[tuple[Requirement, Formalized | None]]:
     """Rules and free texts in the order of their files, and of each file."""
-    pairs: list[tuple[Requirement, Rule | None]] = [(rule.requirement, rule) for rule in rules]
+    pairs: list[tuple[Requirement, Formalized | None]] = [
+        (rule.requirement, rule) for rule in rules
+    ]
     pairs += [(entry, None) for entry in options.free_texts]
     files = list(dict.fromkeys(entry.wording.source.name for entry, _ in pairs))
     return sorted(
@@ -45,7 +49,7 @@ def _ordered(rules: Sequence[Rule], options: Options) -> list[tuple[Requirement,
     )
 
 
-def requirement(entry: Requirement, rule: Rule | None) -> dict[str, Any]:
+def requirement(entry: Requirement, rule: Formalized | None) -> dict[str, Any]:
     """FRET's record of one requirement; one without a rule is free text."""
     fret = entry.fret
     return {
@@ -83,7 +87,7 @@ def _id(entry: Requirement) -> str:
     return entry.fret.get("_id") or str(uuid.uuid5(_SPACE, name))
 
 
-def semantics(rule: Rule) -> dict[str, Any]:
+def semantics(rule: Formalized) -> dict[str, Any]:
     """FRET's description of a sentence, with our formulas in FRET's spelling."""
     tree = rule.sentence
     base = rule.requirement.wording.start
@@ -148,7 +152,7 @@ def _spans(tree: s.Sentence) -> dict[str, Span | None]:
     }
 
 
-def variables(rules: Sequence[Rule]) -> list[dict[str, Any]]:
+def variables(rules: Sequence[Formalized]) -> list[dict[str, Any]]:
     """FRET's records of all variables; types and roles as far as the bindings know them."""
     records: dict[tuple[str, str, str], dict[str, Any]] = {}
     for rule in rules:

@@ -8,11 +8,11 @@ from pathlib import PurePosixPath
 from compiler.files.artifact import Artifact
 from compiler.files.templating import render
 from compiler.formalization.record import record
-from compiler.formalization.rule import Rule
+from compiler.formalization.rule import Formalized
 from compiler.targets.target import DEFAULT, Options, Target, stem
 
 
-def emit(rules: Sequence[Rule], options: Options = DEFAULT) -> tuple[Artifact, ...]:
+def emit(rules: Sequence[Formalized], options: Options = DEFAULT) -> tuple[Artifact, ...]:
     """`<id>.json` for each rule."""
     return tuple(
         Artifact(

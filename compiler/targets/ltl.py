@@ -8,21 +8,21 @@ from pathlib import PurePosixPath
 from compiler.files.artifact import Artifact
 from compiler.files.templating import render
 from compiler.formalization.record import wording
-from compiler.formalization.rule import Rule
+from compiler.formalization.rule import Formalized
 from compiler.logic import printing
 from compiler.targets.target import DEFAULT, Options, Target, stem
 from fretish.diagnostics.rendering import visible
 from fretish.meaning import meaning
 
 
-def emit(rules: Sequence[Rule], options: Options = DEFAULT) -> tuple[Artifact, ...]:
+def emit(rules: Sequence[Formalized], options: Options = DEFAULT) -> tuple[Artifact, ...]:
     """`<id>.ltl` for each rule."""
     return tuple(
         Artifact(PurePosixPath(f"{stem(rule)}.ltl"), text(rule, options)) for rule in rules
     )
 
 
-def text(rule: Rule, options: Options = DEFAULT) -> str:
+def text(rule: Formalized, options: Options = DEFAULT) -> str:
     """What a person reads: the sentence, its meaning, and its formulas."""
     dialect = printing.DIALECTS[options.notation]
     lines = {
@@ -49,7 +49,7 @@ def text(rule: Rule, options: Options = DEFAULT) -> str:
     )
 
 
-def _simplified(rule: Rule) -> str:
+def _simplified(rule: Formalized) -> str:
     """Spot's shorter form, proved equivalent; or why there is none."""
     from compiler.logic.spot import simplified
 

@@ -19,7 +19,7 @@ from pathlib import PurePosixPath
 from compiler.files.artifact import Artifact
 from compiler.files.templating import render
 from compiler.formalization.record import wording
-from compiler.formalization.rule import Rule
+from compiler.formalization.rule import Formalized
 from compiler.logic import formula as f
 from compiler.logic import printing
 from compiler.logic.identifiers import legal_names
@@ -50,7 +50,7 @@ _RESERVED = frozenset(
 
 
 @deep
-def refuse(rule: Rule) -> Diagnostic | None:
+def refuse(rule: Formalized) -> Diagnostic | None:
     """F601 without a probability, and for what PRISM's formulas cannot say."""
     if rule.pctl is None:
         return not_expressible(
@@ -78,7 +78,7 @@ def refuse(rule: Rule) -> Diagnostic | None:
     return too_long("PRISM", rule, rule.pctl)
 
 
-def _looks_back(rule: Rule) -> str | None:
+def _looks_back(rule: Formalized) -> str | None:
     for expression in conditions(rule.sentence):
         predicate = next((name for name in calls(expression) if name in LOOK_BACK), None)
         if predicate is None and any(name.id == "FTP" for name in e.names(expression)):
@@ -89,12 +89,12 @@ def _looks_back(rule: Rule) -> str | None:
 
 
 @deep
-def emit(rules: Sequence[Rule], options: Options = DEFAULT) -> tuple[Artifact, ...]:
+def emit(rules: Sequence[Formalized], options: Options = DEFAULT) -> tuple[Artifact, ...]:
     """`<id>.props` and `<id>.prism` for each rule."""
     return tuple(file for rule in rules for file in _files(rule))
 
 
-def _files(rule: Rule) -> Iterator[Artifact]:
+def _files(rule: Formalized) -> Iterator[Artifact]:
     assert rule.pctl is not None, "refused"
     names = legal_names(rule.propositions, _RESERVED)
     chances = legal_names(names.values(), _RESERVED | {*names.values()}, "p_")

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Protocol
 
 from compiler.files.artifact import Artifact
-from compiler.formalization.rule import Rule
+from compiler.formalization.rule import Formalized
 from compiler.logic import formula as f
 from fretish.bindings.declarations import Declarations
 from fretish.diagnostics.diagnostic import Code, Diagnostic
@@ -38,7 +38,9 @@ DEFAULT = Options()
 class Emit(Protocol):
     """Rules → files."""
 
-    def __call__(self, rules: Sequence[Rule], options: Options = DEFAULT) -> tuple[Artifact, ...]:
+    def __call__(
+        self, rules: Sequence[Formalized], options: Options = DEFAULT
+    ) -> tuple[Artifact, ...]:
         """Make all files of the rules; pure."""
 
 
@@ -52,8 +54,8 @@ class Target:
     name: str
     summary: str
     emit: Emit
-    refuse: Callable[[Rule], Diagnostic | None] = lambda rule: None
-    remark: Callable[[Rule], Diagnostic | None] = lambda rule: None
+    refuse: Callable[[Formalized], Diagnostic | None] = lambda rule: None
+    remark: Callable[[Formalized], Diagnostic | None] = lambda rule: None
     """A warning for the user of the output; it does not refuse the output."""
     refuse_project: Callable[[Options], Diagnostic | None] = lambda options: None
     """Asked once: a reason to refuse the target for any rules."""
@@ -65,12 +67,12 @@ class Target:
     """The same target where weakening is allowed: it refuses less, and remarks what is lost."""
 
 
-def stem(rule: Rule) -> str:
+def stem(rule: Formalized) -> str:
     """The name of the rule's files, without their ending: the id in lower case."""
     return rule.id.lower()
 
 
-def not_expressible(target: str, rule: Rule, what: str, mend: str) -> Diagnostic:
+def not_expressible(target: str, rule: Formalized, what: str, mend: str) -> Diagnostic:
     """F601: the target's language has no words for a part of the rule."""
     return Diagnostic(
         Code.NOT_EXPRESSIBLE,
@@ -84,7 +86,7 @@ _MOST_OPERATORS = 100_000
 """Of a property."""
 
 
-def too_long(target: str, rule: Rule, formula: f.Formula) -> Diagnostic | None:
+def too_long(target: str, rule: Formalized, formula: f.Formula) -> Diagnostic | None:
     """F670 where the formula is endless once `<->` and `xor` are written with other operators."""
     if _size(formula) <= _MOST_OPERATORS:
         return None

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping
 from typing import Any, Protocol, cast
 
 from compiler.formalization.formalize import clashes, duplicates
-from compiler.formalization.rule import Rule
+from compiler.formalization.rule import Formalized
 from compiler.targets.python import monitor as python
 from fretc.api.refusal import Refusal, bounded
 from fretish.diagnostics.diagnostic import Code, Diagnostic
@@ -48,7 +48,7 @@ class Monitor(Protocol):
 
 
 @bounded
-def monitor_text(*rules: Rule) -> str:
+def monitor_text(*rules: Formalized) -> str:
     """The text of one monitor for all of the requirements: a file that needs Python alone.
 
     Args:
@@ -72,7 +72,7 @@ def monitor_text(*rules: Rule) -> str:
     return python.text(*rules)
 
 
-def load_monitor(*rules: Rule) -> Monitor:
+def load_monitor(*rules: Formalized) -> Monitor:
     """The monitor of the requirements, compiled and ready to be stepped.
 
     Args, raises: as for `monitor_text`.
@@ -80,7 +80,7 @@ def load_monitor(*rules: Rule) -> Monitor:
     return cast(Monitor, load("monitor.py", monitor_text(*rules)))
 
 
-def _several_clocks(rules: tuple[Rule, ...]) -> Iterable[Diagnostic]:
+def _several_clocks(rules: tuple[Formalized, ...]) -> Iterable[Diagnostic]:
     first, *others = rules
     for rule in others:
         if rule.clock != first.clock:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from compiler.files.text_files import read
 from compiler.formalization.formalize import formalize as formalized
-from compiler.formalization.rule import Rule
+from compiler.formalization.rule import Formalized
 from compiler.logic import printing
 from compiler.project.folder import Project, whole
 from fretc.api.refusal import Refusal, accepted, bounded
@@ -46,7 +46,7 @@ def read_project(
 
 
 @bounded
-def formalize(sentence: str, bindings: Path | None = None, id: str = "R1") -> Rule:
+def formalize(sentence: str, bindings: Path | None = None, id: str = "R1") -> Formalized:
     """Parse and formalize one sentence of FRETish.
 
     Args:
@@ -92,7 +92,7 @@ class Formulas:
     """The sentence in plain English."""
 
 
-def formulas(rule: Rule, notation: str = "plain") -> Formulas:
+def formulas(rule: Formalized, notation: str = "plain") -> Formulas:
     """The formulas of a requirement.
 
     Args:

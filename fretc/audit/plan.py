@@ -12,7 +12,7 @@ from functools import lru_cache, partial
 from compiler.files.edition import edition
 from compiler.formalization.binding_agreement import unbound
 from compiler.formalization.record import wording
-from compiler.formalization.rule import Rule
+from compiler.formalization.rule import Formalized
 from compiler.project.folder import Project
 from compiler.targets.python import monitor as monitors
 from fretc.audit.evidence.basis import Basis, basis
@@ -144,7 +144,7 @@ def refusals(project: Project) -> tuple[tuple[Requirement, tuple[Diagnostic, ...
     return tuple(found)
 
 
-def _in_force(project: Project) -> list[Rule]:
+def _in_force(project: Project) -> list[Formalized]:
     return [rule for rule in project.rules if rule.requirement.status != "retired"]
 
 
@@ -154,7 +154,7 @@ def _left(
     return Refused(requirement.id, wording(requirement), known[id(requirement)], why)
 
 
-def _claim(rule: Rule, rests_on: Basis) -> Claim:
+def _claim(rule: Formalized, rests_on: Basis) -> Claim:
     return Claim(
         rule.id,
         wording(rule.requirement),
@@ -211,7 +211,7 @@ def watched(plan: Plan) -> tuple[Watched, ...]:
     )
 
 
-def _unusable(project: Project, first: Rule) -> Diagnostic | None:
+def _unusable(project: Project, first: Formalized) -> Diagnostic | None:
     """Why the bindings cannot be used for any requirement, said once; None where they can."""
     declarations = project.declarations
     if declarations is None:
@@ -231,7 +231,7 @@ def _unusable(project: Project, first: Rule) -> Diagnostic | None:
     return None
 
 
-def _not_auditable(rule: Rule, declarations: Declarations) -> tuple[Diagnostic, ...]:
+def _not_auditable(rule: Formalized, declarations: Declarations) -> tuple[Diagnostic, ...]:
     """Why no log can be judged by a rule; empty where one can."""
     refused = monitors.refuse(replace(rule, pctl=None))
     return (*([refused] if refused else []), *unbound(rule, declarations))

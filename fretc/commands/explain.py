@@ -16,7 +16,7 @@ from fretish.diagnostics.diagnostic import Code, Diagnostic, has_errors, suggest
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from compiler.formalization.rule import Rule
+    from compiler.formalization.rule import Formalized
     from compiler.project.folder import Project
     from fretish.documents import Requirement
 
@@ -79,7 +79,7 @@ _MOST_TICKS = 100_000
 """Of a duration: a picture has a column for each of them."""
 
 
-def _too_long(rule: Rule) -> Diagnostic:
+def _too_long(rule: Formalized) -> Diagnostic:
     return Diagnostic(
         Code.TOO_LARGE,
         f"the picture of {rule.id} would have more than {_MOST_TICKS} ticks",
@@ -88,7 +88,7 @@ def _too_long(rule: Rule) -> Diagnostic:
     )
 
 
-def _explain_rules(rules: Sequence[Rule], form: str, picture: str | None) -> None:
+def _explain_rules(rules: Sequence[Formalized], form: str, picture: str | None) -> None:
     from compiler.explanation import explain as explanation
     from compiler.explanation.drawing import svg
     from compiler.files.templating import to_json
@@ -107,7 +107,7 @@ def _explain_rules(rules: Sequence[Rule], form: str, picture: str | None) -> Non
         deliver({Path(picture): svg(explained[0].picture)}, protected=sources)
 
 
-def _rules(what: str, folder: str, bindings: str | None, *, is_file: bool) -> list[Rule]:
+def _rules(what: str, folder: str, bindings: str | None, *, is_file: bool) -> list[Formalized]:
     """The rules asked for; exits where there is none."""
     from compiler.project.folder import listed, load
 

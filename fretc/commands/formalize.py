@@ -14,7 +14,7 @@ from fretc.terminal.output import BAD, SHOWN, VIOLATION, deliver, say, say_line,
 from fretish.diagnostics.diagnostic import Code, Diagnostic, has_errors
 
 if TYPE_CHECKING:
-    from compiler.formalization.rule import Rule
+    from compiler.formalization.rule import Formalized
     from compiler.project.folder import Project
     from compiler.targets.target import Options, Target
 
@@ -144,8 +144,8 @@ def _emit(project: Project, kinds: dict[str, None], output: str, options: Option
 
 
 def _emitted(
-    target: Target, rules: Sequence[Rule], options: Options
-) -> tuple[list[Rule] | None, list[Diagnostic]]:
+    target: Target, rules: Sequence[Formalized], options: Options
+) -> tuple[list[Formalized] | None, list[Diagnostic]]:
     """The rules that the target can make files of, None: no file at all; and what it refuses.
 
     A file of all rules is made of all of them or not at all.

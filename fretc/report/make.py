@@ -7,7 +7,7 @@ from dataclasses import asdict, dataclass
 
 from compiler.files.dates import today
 from compiler.files.templating import to_json
-from compiler.formalization.rule import Rule
+from compiler.formalization.rule import Formalized
 from compiler.project.folder import Project
 from fretc.attestation.signatures import gathered
 from fretc.audit.evidence.reader import read
@@ -29,7 +29,7 @@ class Made:
 
     report: Report | None
     diagnostics: tuple[Diagnostic, ...]
-    rules: tuple[Rule, ...] = ()
+    rules: tuple[Formalized, ...] = ()
     """Those that the report is about; the page draws what they mean."""
     results: tuple[Result, ...] = ()
     """Those of the evidence, in its order."""

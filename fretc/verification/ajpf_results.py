@@ -16,7 +16,7 @@ from pathlib import Path, PurePath
 from compiler.files.checked_json import MisshapenError, Shape, plain
 from compiler.files.text_files import content, sha256
 from compiler.files.text_files import read as read_text
-from compiler.formalization.rule import Rule
+from compiler.formalization.rule import Formalized
 from compiler.logic.claims import (
     COUNTEREXAMPLE,
     Counterexample,
@@ -95,7 +95,7 @@ def written() -> tuple[str, ...]:
 
 
 def evidence(
-    rules: Sequence[Rule], paths: Sequence[str]
+    rules: Sequence[Formalized], paths: Sequence[str]
 ) -> tuple[tuple[Evidence, ...], tuple[Diagnostic, ...]]:
     """A line for each result, in the order of the paths, and what there is to say of the files.
 
@@ -241,7 +241,7 @@ def _trace(at: Shape) -> Trace:
 
 
 @deep
-def _line(rule: Rule, found: AjpfResult) -> Evidence:
+def _line(rule: Formalized, found: AjpfResult) -> Evidence:
     options = Options(weaken=True) if found.weakened else DEFAULT
     main = next((c for c in found.checks if c.role == "requirement"), None)
     stated = f": {main.text}" if main else ""
@@ -268,7 +268,7 @@ def _line(rule: Rule, found: AjpfResult) -> Evidence:
     return Evidence(rule.id, Layer.AJPF, claim, said, found.engine, _ASSUMED, hashes)
 
 
-def _reason(rule: Rule, found: AjpfResult, options: Options) -> str | None:
+def _reason(rule: Formalized, found: AjpfResult, options: Options) -> str | None:
     """Why the result says nothing of what is made now; None: it does."""
     refused = bundle.refusal(rule, options)
     if refused is not None:

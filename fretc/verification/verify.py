@@ -9,7 +9,7 @@ from pathlib import PurePath
 
 from compiler.agents.checking import checked
 from compiler.files.text_files import sha256
-from compiler.formalization.rule import Rule
+from compiler.formalization.rule import Formalized
 from compiler.logic.claims import Evidence, Layer, NotChecked
 from compiler.project.folder import Project
 from compiler.project.interceptor_options import ASSUMED, assumed, options
@@ -106,7 +106,7 @@ def _ajpf(project: Project, asked: Request) -> Iterator[Evidence]:
                 yield _unknown(rule.id, Layer.AJPF, claim, "there is no result of AJPF (--ajpf)")
 
 
-def _of_rule(rule: Rule, project: Project, asked: Request, tell: Tell) -> Iterator[Evidence]:
+def _of_rule(rule: Formalized, project: Project, asked: Request, tell: Tell) -> Iterator[Evidence]:
     setup = _setup(rule, project, asked)
     if Layer.MONITOR in asked.layers:
         tell(f"{rule.id}: monitor")
@@ -124,7 +124,7 @@ def _of_rule(rule: Rule, project: Project, asked: Request, tell: Tell) -> Iterat
         yield replace(one, artefacts={**one.artefacts, **({ASSUMED: known} if known else {})})
 
 
-def _setup(rule: Rule, project: Project, asked: Request) -> Setup:
+def _setup(rule: Formalized, project: Project, asked: Request) -> Setup:
     declared = project.declarations
     return Setup(
         _named(asked.monitor) or Named(f"{stem(rule)}_monitor.py", monitor.text(rule)),
@@ -203,7 +203,7 @@ def _crosshair(gate: Named, limits: Limits, tell: Tell) -> Iterator[Evidence]:
     yield from (replace(one, artefacts={gate.name: sha256(gate.text)}) for one in found)
 
 
-def _dafny(rule: Rule, project: Project, limits: Limits) -> Iterator[Evidence]:
+def _dafny(rule: Formalized, project: Project, limits: Limits) -> Iterator[Evidence]:
     refused = dafny.TARGET.refuse(rule)
     if refused is not None:
         claim = "Dafny verifies the file of the requirement"
@@ -225,7 +225,7 @@ def _agent(project: Project, asked: Request) -> tuple[Evidence, ...] | Diagnosti
     return found
 
 
-def _bundle(rule: Rule, claim: str, limits: Limits) -> tuple[Evidence, ...]:
+def _bundle(rule: Formalized, claim: str, limits: Limits) -> tuple[Evidence, ...]:
     refused = ajpf.refusal(rule)
     found = processes.confined(limits, bundle.checked_agent, rule) if refused is None else refused
     if isinstance(found, Diagnostic):

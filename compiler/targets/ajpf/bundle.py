@@ -20,7 +20,7 @@ from compiler.files.artifact import Artifact
 from compiler.files.edition import __version__
 from compiler.files.templating import render, to_json
 from compiler.files.text_files import sha256
-from compiler.formalization.rule import Rule
+from compiler.formalization.rule import Formalized
 from compiler.logic.claims import Evidence, NotChecked, Proved
 from compiler.targets.ajpf import properties as ajpf
 from compiler.targets.ajpf.safety_function import Reaction, Sif, sif
@@ -36,7 +36,7 @@ _WEAKEN = Options(weaken=True)
 
 
 @deep
-def refusal(rule: Rule, options: Options = DEFAULT) -> Diagnostic | None:
+def refusal(rule: Formalized, options: Options = DEFAULT) -> Diagnostic | None:
     """F601 for what AJPF or the agent cannot express; F614 where the agent is not proved right."""
     refused = ajpf.refusal(rule, options)
     if refused is not None:
@@ -58,7 +58,7 @@ class CheckedAgent:
         return all(isinstance(line.result, Proved) for line in self.evidence)
 
 
-def forms(rule: Rule) -> tuple[Sif, ...] | Diagnostic:
+def forms(rule: Formalized) -> tuple[Sif, ...] | Diagnostic:
     """The possible agents: one that checks the whole condition, and one that does not.
 
     Only one where both are the same; F601 where there is none.
@@ -73,7 +73,7 @@ def forms(rule: Rule) -> tuple[Sif, ...] | Diagnostic:
 
 @deep
 def checked_agent(
-    rule: Rule, options: Options = DEFAULT, limit: int | None = None
+    rule: Formalized, options: Options = DEFAULT, limit: int | None = None
 ) -> CheckedAgent | Diagnostic:
     """The first form of the agent that is proved to keep its requirement, the guarded one first.
 
@@ -103,7 +103,7 @@ def checked_agent(
     return agents[0]
 
 
-def _not_kept(rule: Rule, evidence: Sequence[Evidence]) -> Diagnostic | None:
+def _not_kept(rule: Formalized, evidence: Sequence[Evidence]) -> Diagnostic | None:
     for line in evidence:
         if isinstance(line.result, Proved):
             continue
@@ -120,12 +120,12 @@ def _not_kept(rule: Rule, evidence: Sequence[Evidence]) -> Diagnostic | None:
 
 
 @deep
-def emit(rules: Sequence[Rule], options: Options = DEFAULT) -> tuple[Artifact, ...]:
+def emit(rules: Sequence[Formalized], options: Options = DEFAULT) -> tuple[Artifact, ...]:
     """A folder `<id>_ajpf/` for each rule."""
     return tuple(artifact for rule in rules for artifact in _bundle(rule, options))
 
 
-def _bundle(rule: Rule, options: Options) -> Iterator[Artifact]:
+def _bundle(rule: Formalized, options: Options) -> Iterator[Artifact]:
     agent = checked_agent(rule, options)
     assert isinstance(agent, CheckedAgent), f"{rule.id} was to be refused"
     assert agent.is_proved, f"{rule.id} was to be refused"
@@ -141,13 +141,13 @@ def _bundle(rule: Rule, options: Options) -> Iterator[Artifact]:
         yield Artifact(PurePosixPath(package(rule)) / name, text)
 
 
-def package(rule: Rule) -> str:
+def package(rule: Formalized) -> str:
     """The name of the folder, which is that of the Java package: neither has room for more."""
     name = re.sub(r"[^a-z0-9]+", "_", stem(rule)).strip("_")
     return f"{name if name[:1].isalpha() else f'r{name}'}_ajpf"
 
 
-def texts(rule: Rule, form: Sif, options: Options = DEFAULT) -> dict[str, str]:
+def texts(rule: Formalized, form: Sif, options: Options = DEFAULT) -> dict[str, str]:
     """The texts that the model examines and the bundle contains, by the names of the files."""
     return {
         "SIF.gwen": _agent(rule, form, form.plans, "the agent of"),
@@ -158,11 +158,11 @@ def texts(rule: Rule, form: Sif, options: Options = DEFAULT) -> dict[str, str]:
     }
 
 
-def _sentence(rule: Rule) -> str:
+def _sentence(rule: Formalized) -> str:
     return " ".join(rule.requirement.wording.text.split())
 
 
-def _agent(rule: Rule, form: Sif, plans: Sequence[Reaction], title: str) -> str:
+def _agent(rule: Formalized, form: Sif, plans: Sequence[Reaction], title: str) -> str:
     return render(
         "ajpf-bundle/agent.gwen.j2",
         title=f"{title} {rule.id}",
@@ -179,7 +179,7 @@ def _plan(plan: Reaction) -> str:
     return f"{plan.event} : {{{', '.join(guards)}}}{deeds};"
 
 
-def _configuration(rule: Rule, form: Sif, options: Options) -> dict[str, str]:
+def _configuration(rule: Formalized, form: Sif, options: Options) -> dict[str, str]:
     """The further files for MCAPL and Java PathFinder."""
     name = package(rule)
     texts = {
@@ -200,7 +200,7 @@ def _configuration(rule: Rule, form: Sif, options: Options) -> dict[str, str]:
     return texts
 
 
-def _checks(rule: Rule, options: Options) -> list[dict[str, str]]:
+def _checks(rule: Formalized, options: Options) -> list[dict[str, str]]:
     """The checks for AJPF, each with its expected answer."""
     main, *controls = ajpf.properties(rule, options)
     return [
@@ -231,7 +231,9 @@ def _check(
     }
 
 
-def _manifest(rule: Rule, form: Sif, options: Options, texts: Mapping[str, str]) -> dict[str, Any]:
+def _manifest(
+    rule: Formalized, form: Sif, options: Options, texts: Mapping[str, str]
+) -> dict[str, Any]:
     from compiler.logic import printing
 
     return {
@@ -257,7 +259,7 @@ def _manifest(rule: Rule, form: Sif, options: Options, texts: Mapping[str, str])
     }
 
 
-def _atom(rule: Rule, form: Sif, name: str) -> dict[str, Any]:
+def _atom(rule: Formalized, form: Sif, name: str) -> dict[str, Any]:
     declared = rule.glossary.get(name)
     return {
         "proposition": name,
@@ -301,16 +303,16 @@ def _comparisons(declarations: Declarations, expression: e.Expression) -> Iterat
         yield from _comparisons(declarations, part)
 
 
-def _refuse(rule: Rule) -> Diagnostic | None:
+def _refuse(rule: Formalized) -> Diagnostic | None:
     return refusal(rule)
 
 
-def _refuse_weak(rule: Rule) -> Diagnostic | None:
+def _refuse_weak(rule: Formalized) -> Diagnostic | None:
     return refusal(rule, _WEAKEN)
 
 
 @deep
-def remark(rule: Rule, options: Options = DEFAULT) -> Diagnostic | None:
+def remark(rule: Formalized, options: Options = DEFAULT) -> Diagnostic | None:
     """A warning about the properties (F605, F606, F607); else about the agent (F615)."""
     warning = ajpf.remark(rule, options)
     agent = checked_agent(rule, options) if warning is None else warning
@@ -327,11 +329,11 @@ def remark(rule: Rule, options: Options = DEFAULT) -> Diagnostic | None:
     )
 
 
-def _remark(rule: Rule) -> Diagnostic | None:
+def _remark(rule: Formalized) -> Diagnostic | None:
     return remark(rule)
 
 
-def _remark_weak(rule: Rule) -> Diagnostic | None:
+def _remark_weak(rule: Formalized) -> Diagnostic | None:
     return remark(rule, _WEAKEN)
 
 

@@ -22,7 +22,7 @@ from compiler.files.artifact import Artifact
 from compiler.files.templating import render
 from compiler.formalization import without_next as nextfree
 from compiler.formalization.obligation import Uninterpreted, boolean, obligation
-from compiler.formalization.rule import Rule
+from compiler.formalization.rule import Formalized
 from compiler.logic import formula as f
 from compiler.logic.printing import is_compound
 from compiler.targets.target import (
@@ -74,7 +74,7 @@ class ExpectedProperty:
 
 
 @deep
-def properties(rule: Rule, options: Options = DEFAULT) -> tuple[ExpectedProperty, ...]:
+def properties(rule: Formalized, options: Options = DEFAULT) -> tuple[ExpectedProperty, ...]:
     """The requirement, and the controls that make a verdict about it mean something.
 
     Args:
@@ -96,7 +96,7 @@ def properties(rule: Rule, options: Options = DEFAULT) -> tuple[ExpectedProperty
     )
 
 
-def weakened(rule: Rule, options: Options = DEFAULT) -> str | None:
+def weakened(rule: Formalized, options: Options = DEFAULT) -> str | None:
     """The loss in words, where the property is weaker than the requirement; None: no loss."""
     if not options.weaken or not _can_be_weakened(rule):
         return None
@@ -110,7 +110,7 @@ def weakened(rule: Rule, options: Options = DEFAULT) -> str | None:
     return f"{loss}, and so does a stretch of the scope that ends without one, however long"
 
 
-def _can_be_weakened(rule: Rule) -> bool:
+def _can_be_weakened(rule: Formalized) -> bool:
     """`within` only: without their numbers the other timings say nothing, or something else.
 
     Nor in the `only` scopes, where the demand is that the response is missed for that long.
@@ -124,7 +124,7 @@ def _can_be_weakened(rule: Rule) -> bool:
 
 
 @deep
-def refusal(rule: Rule, options: Options = DEFAULT) -> Diagnostic | None:
+def refusal(rule: Formalized, options: Options = DEFAULT) -> Diagnostic | None:
     """F601 for the first part of the rule that AJPF's language cannot say; F604."""
     return (
         _refused_timing(rule, options)
@@ -133,7 +133,7 @@ def refusal(rule: Rule, options: Options = DEFAULT) -> Diagnostic | None:
     )
 
 
-def _refused_timing(rule: Rule, options: Options) -> Diagnostic | None:
+def _refused_timing(rule: Formalized, options: Options) -> Diagnostic | None:
     if rule.pctl is not None:
         return _not(rule, "the probability", "leave it out, or use a probabilistic tool")
     for expression in conditions(rule.sentence):
@@ -169,7 +169,7 @@ def _counts_states(timing: s.Timing) -> bool:
             assert_never(extent)
 
 
-def _refused_name(rule: Rule) -> Diagnostic | None:
+def _refused_name(rule: Formalized) -> Diagnostic | None:
     agent = rule.sentence.component
     if not AGENT.fullmatch(agent) or agent in KEY_WORDS:
         mend = "begin with a letter, use letters, digits and `_` only, and no key word of AJPF"
@@ -184,7 +184,7 @@ def _refused_name(rule: Rule) -> Diagnostic | None:
     return None
 
 
-def _refused_form(rule: Rule, formula: f.Formula | None) -> Diagnostic | None:
+def _refused_form(rule: Formalized, formula: f.Formula | None) -> Diagnostic | None:
     if formula is None:
         return Diagnostic(
             Code.NOT_PROVED,
@@ -204,7 +204,7 @@ def _refused_form(rule: Rule, formula: f.Formula | None) -> Diagnostic | None:
     return None
 
 
-def _not(rule: Rule, part: str, mend: str) -> Diagnostic:
+def _not(rule: Formalized, part: str, mend: str) -> Diagnostic:
     return not_expressible("AJPF", rule, part, mend)
 
 
@@ -219,7 +219,7 @@ def _levels(text: str) -> int:
 # The formulas -----------------------------------------------------------------------------------
 
 
-def _formula(rule: Rule, options: Options) -> f.Formula | None:
+def _formula(rule: Formalized, options: Options) -> f.Formula | None:
     """The rule's own formula where it has no X, else its next-free form; None: not proved."""
     duty = obligation(rule.sentence, rule.ticks or 0)
     condition = duty.condition
@@ -231,7 +231,7 @@ def _formula(rule: Rule, options: Options) -> f.Formula | None:
     return nextfree.next_free(duty) if proved else None
 
 
-def _controls(rule: Rule, key: str) -> Iterator[tuple[str, f.Formula, str]]:
+def _controls(rule: Formalized, key: str) -> Iterator[tuple[str, f.Formula, str]]:
     """Name, formula and reason of each control; it may be constant where an expression is."""
     duty = obligation(rule.sentence, rule.ticks or 0)
     response = boolean(rule.sentence.response, Uninterpreted().alone())
@@ -252,7 +252,7 @@ def _controls(rule: Rule, key: str) -> Iterator[tuple[str, f.Formula, str]]:
         yield "stop", f.globally(f.not_(duty.demand.stop)), reason
 
 
-def _text(formula: f.Formula, rule: Rule) -> str:
+def _text(formula: f.Formula, rule: Formalized) -> str:
     agent = rule.sentence.component
 
     def spell(name: str) -> str:
@@ -271,7 +271,7 @@ def _key(id: str) -> str:
 # What a user should know ------------------------------------------------------------------------
 
 
-def remark(rule: Rule, options: Options = DEFAULT) -> Diagnostic | None:
+def remark(rule: Formalized, options: Options = DEFAULT) -> Diagnostic | None:
     """F605, F606, F607: limits of AJPF's verdict on the property."""
     loss = weakened(rule, options)
     if loss is not None:
@@ -297,20 +297,20 @@ def remark(rule: Rule, options: Options = DEFAULT) -> Diagnostic | None:
     )
 
 
-def _warning(rule: Rule, code: Code, message: str, mend: str) -> Diagnostic:
+def _warning(rule: Formalized, code: Code, message: str, mend: str) -> Diagnostic:
     place = rule.sentence.timing_span or rule.requirement.wording
     return Diagnostic(code, message, place, mend, Severity.WARNING)
 
 
 @deep
-def emit(rules: Sequence[Rule], options: Options = DEFAULT) -> tuple[Artifact, ...]:
+def emit(rules: Sequence[Formalized], options: Options = DEFAULT) -> tuple[Artifact, ...]:
     """`<id>.psl` for each rule: the property, its key the requirement's id, and its controls."""
     return tuple(
         Artifact(PurePosixPath(f"{stem(rule)}.psl"), text(rule, options)) for rule in rules
     )
 
 
-def text(rule: Rule, options: Options = DEFAULT) -> str:
+def text(rule: Formalized, options: Options = DEFAULT) -> str:
     """The property file of one rule."""
     return render(
         "ajpf/properties.psl.j2",
@@ -321,19 +321,19 @@ def text(rule: Rule, options: Options = DEFAULT) -> str:
     )
 
 
-def _refuse(rule: Rule) -> Diagnostic | None:
+def _refuse(rule: Formalized) -> Diagnostic | None:
     return refusal(rule)
 
 
-def _refuse_weak(rule: Rule) -> Diagnostic | None:
+def _refuse_weak(rule: Formalized) -> Diagnostic | None:
     return refusal(rule, _WEAKEN)
 
 
-def _remark(rule: Rule) -> Diagnostic | None:
+def _remark(rule: Formalized) -> Diagnostic | None:
     return remark(rule)
 
 
-def _remark_weak(rule: Rule) -> Diagnostic | None:
+def _remark_weak(rule: Formalized) -> Diagnostic | None:
     return remark(rule, _WEAKEN)
 
 

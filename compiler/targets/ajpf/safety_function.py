@@ -16,7 +16,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from compiler.agents.gwendolen import Action, Change, Deed, Guard
-from compiler.formalization.rule import Rule
+from compiler.formalization.rule import Formalized
 from compiler.targets.target import not_expressible
 from fretish import expressions as e
 from fretish import syntax as s
@@ -62,7 +62,7 @@ Term = tuple[tuple[str, bool], ...]
 """A conjunction: propositions, each true or false."""
 
 
-def sif(rule: Rule, guarded: bool = True) -> Sif | Diagnostic:
+def sif(rule: Formalized, guarded: bool = True) -> Sif | Diagnostic:
     """The agent that reacts as the rule demands; or F601 for what no such agent can be made of.
 
     Args:
@@ -99,7 +99,7 @@ def sif(rule: Rule, guarded: bool = True) -> Sif | Diagnostic:
     return Sif(sentence.component, percepts, responses, plans, mutant, released, bare)
 
 
-def _terms(rule: Rule, condition: e.Expression) -> tuple[Term, ...] | Diagnostic:
+def _terms(rule: Formalized, condition: e.Expression) -> tuple[Term, ...] | Diagnostic:
     """The condition as a disjunction; each term has a proposition that has to be true."""
     parts = condition.args if isinstance(condition, e.Or) else (condition,)
     terms: list[Term] = []
@@ -131,7 +131,7 @@ def _literal(expression: e.Expression) -> tuple[str, bool] | None:
             return None
 
 
-def _responses(rule: Rule) -> tuple[str, ...] | Diagnostic:
+def _responses(rule: Formalized) -> tuple[str, ...] | Diagnostic:
     response = rule.sentence.response
     parts = response.args if isinstance(response, e.And) else (response,)
     names = [part.id for part in parts if isinstance(part, e.Name)]
@@ -154,7 +154,7 @@ def _percepts(sentence: s.Sentence) -> tuple[str, ...]:
 
 
 def _wrong_name(
-    rule: Rule, percepts: tuple[str, ...], responses: tuple[str, ...]
+    rule: Formalized, percepts: tuple[str, ...], responses: tuple[str, ...]
 ) -> Diagnostic | None:
     for name in percepts:
         if name in responses:
@@ -178,23 +178,23 @@ def _wrong_name(
     return not_expressible(_TARGET, rule, f"the name `{reserved}`", mend)
 
 
-def _modality(rule: Rule, name: str) -> Modality:
+def _modality(rule: Formalized, name: str) -> Modality:
     declared = rule.glossary.get(name)
     return declared.modality if declared else Modality.BELIEF
 
 
-def _is_belief(rule: Rule, *names: str) -> bool:
+def _is_belief(rule: Formalized, *names: str) -> bool:
     return all(_modality(rule, name) is Modality.BELIEF for name in names)
 
 
-def _answer(rule: Rule, name: str) -> tuple[Deed, ...]:
+def _answer(rule: Formalized, name: str) -> tuple[Deed, ...]:
     """An action and the belief that it was done; only the action where that is the response."""
     if not _is_belief(rule, name):
         return (Action(name),)
     return Action(_action(rule, name)), Change("+", name)
 
 
-def _action(rule: Rule, name: str) -> str:
+def _action(rule: Formalized, name: str) -> str:
     """What the agent does to make it true, as the bindings call it."""
     declared = rule.glossary.get(name)
     return (declared.action if declared else "") or f"do_{name}"

@@ -26,7 +26,7 @@ from compiler.formalization.reference import (
     explore,
     template,
 )
-from compiler.formalization.rule import Rule
+from compiler.formalization.rule import Formalized
 from compiler.logic import formula as f
 from compiler.logic.implicants import Term, cover
 from fretish.reading.recursion import deep
@@ -87,7 +87,7 @@ class Chart:
 
 
 @deep
-def chart(rule: Rule) -> Chart:
+def chart(rule: Formalized) -> Chart:
     """The automaton of a rule.
 
     Raises:
@@ -111,7 +111,7 @@ def chart(rule: Rule) -> Chart:
 
 
 @deep
-def explored(rule: Rule) -> Automaton:
+def explored(rule: Formalized) -> Automaton:
     """The automaton of a rule over the letters that can occur.
 
     Raises:
@@ -127,7 +127,7 @@ def _cached(kind: Template, letters: tuple[Letter, ...]) -> Automaton:
 
 
 @deep
-def kind(rule: Rule) -> Kind:
+def kind(rule: Formalized) -> Kind:
     """The kind of the demand; `only` scopes demand the dual of their timing."""
     return obligation(rule.sentence, rule.ticks or 0).demand.kind
 

@@ -13,7 +13,7 @@ from pathlib import PurePosixPath
 from compiler.files.artifact import Artifact
 from compiler.files.templating import render
 from compiler.formalization.record import wording
-from compiler.formalization.rule import Rule
+from compiler.formalization.rule import Formalized
 from compiler.logic import formula as f
 from compiler.logic import printing
 from compiler.logic.implicants import Term
@@ -31,18 +31,18 @@ _WIDTH = 76
 """Characters of a line below the picture."""
 
 
-def refuse(rule: Rule) -> Diagnostic | None:
+def refuse(rule: Formalized) -> Diagnostic | None:
     """F601 for a probability or a temporal predicate, F670 for too many states."""
     return refusal(rule, "DOT")
 
 
 @deep
-def emit(rules: Sequence[Rule], options: Options = DEFAULT) -> tuple[Artifact, ...]:
+def emit(rules: Sequence[Formalized], options: Options = DEFAULT) -> tuple[Artifact, ...]:
     """`<id>.dot` for each rule."""
     return tuple(Artifact(PurePosixPath(f"{stem(rule)}.dot"), _text(rule)) for rule in rules)
 
 
-def _text(rule: Rule) -> str:
+def _text(rule: Formalized) -> str:
     picture = folded(rule)
     automaton = chart(rule)
     inputs, guard = automaton.inputs, automaton.guard
@@ -61,7 +61,7 @@ def _text(rule: Rule) -> str:
     )
 
 
-def _caption(rule: Rule, long: Mapping[int, f.Formula], nodes: Sequence[Node]) -> list[str]:
+def _caption(rule: Formalized, long: Mapping[int, f.Formula], nodes: Sequence[Node]) -> list[str]:
     lines = [f"{rule.id}: {wording(rule.requirement)}"]
     lines.append(meaning(rule.sentence, rule.ticks, rule.clock))
     lines.extend(f"{PLACES[i]}: {printing.readable(part)}" for i, part in long.items())

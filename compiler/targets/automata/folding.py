@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 
 from compiler.formalization.obligation import TRAITS, Trait
 from compiler.formalization.reference import Letter, State
-from compiler.formalization.rule import Rule
+from compiler.formalization.rule import Formalized
 from compiler.targets.automata.chart import START, Chart, chart, kind, words
 
 VIOLATED, SATISFIED = "violated", "satisfied"
@@ -54,7 +54,7 @@ class Folded:
     start: str
 
 
-def folded(rule: Rule) -> Folded:
+def folded(rule: Formalized) -> Folded:
     """The chart of a rule, folded; a start that does as another node does is that node.
 
     Raises:
@@ -64,7 +64,7 @@ def folded(rule: Rule) -> Folded:
 
 
 class _Folding:
-    def __init__(self, rule: Rule, unfolded: Chart) -> None:
+    def __init__(self, rule: Formalized, unfolded: Chart) -> None:
         self.chart = unfolded
         self.demanded = kind(rule)
         self.scoped = rule.sentence.scope is not None

@@ -17,7 +17,7 @@ from compiler.files.edition import __version__
 from compiler.files.templating import render
 from compiler.formalization.record import wording
 from compiler.formalization.reference import Letter
-from compiler.formalization.rule import Rule
+from compiler.formalization.rule import Formalized
 from compiler.logic import formula as f
 from compiler.logic import printing
 from compiler.logic.implicants import Term
@@ -28,18 +28,18 @@ from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.reading.recursion import deep
 
 
-def refuse(rule: Rule) -> Diagnostic | None:
+def refuse(rule: Formalized) -> Diagnostic | None:
     """F601 for a probability or a temporal predicate, F670 for too many states."""
     return refusal(rule, "HOA")
 
 
 @deep
-def emit(rules: Sequence[Rule], options: Options = DEFAULT) -> tuple[Artifact, ...]:
+def emit(rules: Sequence[Formalized], options: Options = DEFAULT) -> tuple[Artifact, ...]:
     """`<id>.hoa` for each rule."""
     return tuple(Artifact(PurePosixPath(f"{stem(rule)}.hoa"), _text(rule)) for rule in rules)
 
 
-def _text(rule: Rule) -> str:
+def _text(rule: Formalized) -> str:
     automaton = chart(rule)
     atoms = tuple(
         dict.fromkeys(name for part in automaton.inputs.values() for name in f.atoms(part))
@@ -73,7 +73,7 @@ def _numbers(automaton: Chart) -> dict[int, int]:
 
 
 def _states(
-    rule: Rule, automaton: Chart, numbers: Mapping[int, int]
+    rule: Formalized, automaton: Chart, numbers: Mapping[int, int]
 ) -> Iterator[tuple[int, str, bool, list[tuple[str, int]]]]:
     """Number, name, whether it accepts, and edges of each state."""
     demanded = kind(rule)

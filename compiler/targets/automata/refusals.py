@@ -4,18 +4,18 @@ from __future__ import annotations
 
 from compiler.formalization.letters import temporal_predicate
 from compiler.formalization.reference import TooManyStatesError
-from compiler.formalization.rule import Rule
+from compiler.formalization.rule import Formalized
 from compiler.targets.automata.chart import MOST_STATES, explored
 from compiler.targets.target import not_expressible
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 
 
-def refusal(rule: Rule, target: str) -> Diagnostic | None:
+def refusal(rule: Formalized, target: str) -> Diagnostic | None:
     """F601 or F670 where the sentence has no automaton, or none that is small enough."""
     return no_automaton(rule, target) or _too_large(rule)
 
 
-def no_automaton(rule: Rule, target: str) -> Diagnostic | None:
+def no_automaton(rule: Formalized, target: str) -> Diagnostic | None:
     """F601 for a sentence that says more than a counter automaton can tell."""
     if rule.pctl is not None:
         return not_expressible(
@@ -32,7 +32,7 @@ def no_automaton(rule: Rule, target: str) -> Diagnostic | None:
     return None
 
 
-def _too_large(rule: Rule) -> Diagnostic | None:
+def _too_large(rule: Formalized) -> Diagnostic | None:
     try:
         explored(rule)
     except TooManyStatesError:

@@ -18,7 +18,7 @@ from compiler.files.templating import render
 from compiler.formalization.letters import atoms_of
 from compiler.formalization.obligation import TRAITS, Obligation, Trait, obligation
 from compiler.formalization.record import wording
-from compiler.formalization.rule import Rule
+from compiler.formalization.rule import Formalized
 from compiler.logic import printing
 from compiler.logic.identifiers import legal_names
 from compiler.targets.automata.refusals import no_automaton
@@ -36,13 +36,13 @@ _RESERVED = RESERVED | frozenset(
 """Key words of NuSMV, nuXmv and PSL; and the phases, as constants are known in all modules."""
 
 
-def refuse(rule: Rule) -> Diagnostic | None:
+def refuse(rule: Formalized) -> Diagnostic | None:
     """F601 for a probability or a temporal predicate."""
     return no_automaton(rule, "NuSMV")
 
 
 @deep
-def emit(rules: Sequence[Rule], options: Options = DEFAULT) -> tuple[Artifact, ...]:
+def emit(rules: Sequence[Formalized], options: Options = DEFAULT) -> tuple[Artifact, ...]:
     """`<id>.smv` for each rule."""
     return tuple(Artifact(PurePosixPath(f"{stem(rule)}.smv"), _text(rule)) for rule in rules)
 
@@ -56,7 +56,7 @@ class Spec:
     comment: str
 
 
-def _text(rule: Rule) -> str:
+def _text(rule: Formalized) -> str:
     demanded = obligation(rule.sentence, rule.ticks or 0)
     plain = re.sub(r"\W", "_", stem(rule))
     monitor_name = f"monitor_{plain}"
@@ -87,7 +87,7 @@ def _text(rule: Rule) -> str:
 
 
 def _specs(
-    rule: Rule, demanded: Obligation, names: tuple[str, str], dialect: printing.Dialect
+    rule: Formalized, demanded: Obligation, names: tuple[str, str], dialect: printing.Dialect
 ) -> list[Spec]:
     """The formulas, and the properties that link them to the module.
 

@@ -18,7 +18,7 @@ from compiler.files.artifact import Artifact
 from compiler.files.edition import __version__
 from compiler.files.templating import render
 from compiler.formalization.obligation import TRAITS, Trait, obligation
-from compiler.formalization.rule import Rule, plain
+from compiler.formalization.rule import Formalized, plain
 from compiler.logic import printing
 from compiler.targets.python.program import (
     MARKS,
@@ -38,7 +38,7 @@ from fretish.reading.recursion import deep
 from monitors.source_text import kernel
 
 
-def refuse(rule: Rule) -> Diagnostic | None:
+def refuse(rule: Formalized) -> Diagnostic | None:
     """F312: a monitor steps by ticks, so it must be known how long a tick is.
 
     F601: Python reads no more than 200 parentheses within each other; and one run cannot show
@@ -86,7 +86,7 @@ _ASKS_FOR_FIRST = re.compile(r'^[^"].*\bFTP\b')
 
 
 @deep
-def remark(rule: Rule) -> Diagnostic | None:
+def remark(rule: Formalized) -> Diagnostic | None:
     """F203: after any prefix of a run, both verdicts are still possible.
 
     This holds for 12 of FRET's 288 templates: each trigger demands a response at some later time,
@@ -108,7 +108,7 @@ def remark(rule: Rule) -> Diagnostic | None:
     )
 
 
-def emit(rules: Sequence[Rule], options: Options = DEFAULT) -> tuple[Artifact, ...]:
+def emit(rules: Sequence[Formalized], options: Options = DEFAULT) -> tuple[Artifact, ...]:
     """`<id>_monitor.py` for each rule, or one file; they need Python 3.11 and nothing else."""
     if options.one_file:
         return (Artifact(PurePosixPath("monitors.py"), text(*rules)),)
@@ -117,7 +117,7 @@ def emit(rules: Sequence[Rule], options: Options = DEFAULT) -> tuple[Artifact, .
     )
 
 
-def text(*rules: Rule) -> str:
+def text(*rules: Formalized) -> str:
     """The Python source of one monitor for all of the rules.
 
     Of a sentence with a probability it is the monitor of the same sentence without it, and says so.
@@ -154,7 +154,7 @@ def text(*rules: Rule) -> str:
     )
 
 
-def _digest(code: Program, rules: Sequence[Rule]) -> str:
+def _digest(code: Program, rules: Sequence[Formalized]) -> str:
     """SHA-256 of everything that the meaning of a rail's cells depends on."""
     identities = [(rule.id, rule.fingerprint, rule.ticks) for rule in rules]
     return hashlib.sha256(repr((__version__, identities, code)).encode()).hexdigest()
@@ -192,13 +192,13 @@ def _is_negated(proposition: str, code: Program) -> bool:
     )
 
 
-def _probability_note(rule: Rule) -> dict[str, str]:
+def _probability_note(rule: Formalized) -> dict[str, str]:
     odds = rule.sentence.probability
     assert odds is not None
     return {"id": rule.id, "odds": f"{odds.op} {odds.digits}", "fingerprint": rule.fingerprint}
 
 
-def _described(rule: Rule) -> dict[str, object]:
+def _described(rule: Formalized) -> dict[str, object]:
     return {
         "id": rule.id,
         "sentence": " ".join(rule.requirement.wording.text.split()),

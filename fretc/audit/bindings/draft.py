@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 
 from compiler.files.edition import __version__
 from compiler.files.templating import render
-from compiler.formalization.rule import Rule
+from compiler.formalization.rule import Formalized
 from compiler.project.folder import Project
 from fretc.audit.bindings.quantities import QUANTITIES, Quantity
 from fretc.logs.reader import Overview
@@ -102,7 +102,7 @@ def wanted(project: Project) -> tuple[Wanted, ...]:
     """
     declared = project.declarations
     known = declared.propositions if declared and not declared.mistakes else {}
-    users: dict[str, list[Rule]] = {}
+    users: dict[str, list[Formalized]] = {}
     for rule in project.rules:
         if rule.requirement.status == "retired":
             continue
@@ -112,7 +112,7 @@ def wanted(project: Project) -> tuple[Wanted, ...]:
     return tuple(_wanted(name, rules) for name, rules in users.items())
 
 
-def _wanted(name: str, rules: Sequence[Rule]) -> Wanted:
+def _wanted(name: str, rules: Sequence[Formalized]) -> Wanted:
     roles = {_role(name, rule.sentence) for rule in rules}
     role = roles.pop() if len(roles) == 1 else Role.INTERNAL
     aggregate = "any" if role is Role.INPUT else "last"

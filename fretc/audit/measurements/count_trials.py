@@ -15,7 +15,7 @@ from compiler.formalization import predicates
 from compiler.formalization.future import demanded_at, end_marker
 from compiler.formalization.obligation import TRAITS, Demand, Obligation, Trait, obligation
 from compiler.formalization.past import staged
-from compiler.formalization.rule import Rule
+from compiler.formalization.rule import Formalized
 from compiler.logic.evaluation import evaluate_unknown
 from compiler.logic.formula import FALSE, Formula
 from fretc.audit.measurements.trials import Trials
@@ -40,7 +40,7 @@ class Chance:
 
 
 @deep
-def chance(rule: Rule) -> Chance | None:
+def chance(rule: Formalized) -> Chance | None:
     """None where the sentence gives no probability."""
     odds = rule.sentence.probability
     if odds is None:

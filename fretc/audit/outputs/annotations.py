@@ -24,7 +24,7 @@ from mcap.writer import Writer
 
 from compiler.files.edition import __version__
 from compiler.formalization.record import wording
-from compiler.formalization.rule import Rule
+from compiler.formalization.rule import Formalized
 from fretc.audit.evidence.basis import BINDINGS, CLOCK, MONITOR, PARAMS, SENTENCE, TOPICS
 from fretc.audit.evidence.schema import Result
 from fretc.audit.log_paths import ANNOTATIONS
@@ -66,7 +66,9 @@ class _Event:
     content: Mapping[str, Any]
 
 
-def sidecars(results: Sequence[Result], rules: Sequence[Rule], folder: Path) -> dict[Path, bytes]:
+def sidecars(
+    results: Sequence[Result], rules: Sequence[Formalized], folder: Path
+) -> dict[Path, bytes]:
     """A file for each run that could be read; the same results give the same bytes.
 
     Args:
@@ -82,7 +84,7 @@ def sidecars(results: Sequence[Result], rules: Sequence[Rule], folder: Path) -> 
     return {folder / names[run]: sidecar(found, rules) for run, found in runs.items()}
 
 
-def sidecar(results: Sequence[Result], rules: Sequence[Rule]) -> bytes:
+def sidecar(results: Sequence[Result], rules: Sequence[Formalized]) -> bytes:
     """The log of one run: what happened, in order of time.
 
     Args:
@@ -117,7 +119,7 @@ def state_topic(id: str) -> str:
     return f"{topic}/state" if topic == VERDICTS else topic
 
 
-def _events(result: Result, rules: Mapping[str, Rule]) -> Iterator[_Event]:
+def _events(result: Result, rules: Mapping[str, Formalized]) -> Iterator[_Event]:
     """Of one requirement; of those at the same time, what comes first is told first."""
     id = result.requirement
     place = rules[id].requirement.wording

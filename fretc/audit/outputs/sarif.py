@@ -18,7 +18,7 @@ from urllib.parse import quote
 from compiler.files.edition import __version__
 from compiler.files.templating import to_json
 from compiler.formalization.record import wording
-from compiler.formalization.rule import Rule
+from compiler.formalization.rule import Formalized
 from fretc.audit.evidence import verdicts
 from fretc.audit.evidence.probabilities import Estimated
 from fretc.audit.evidence.schema import Result
@@ -76,7 +76,7 @@ class AllRuns:
 
 def sarif(
     results: Sequence[OneRun],
-    rules: Sequence[Rule],
+    rules: Sequence[Formalized],
     diagnostics: Sequence[Diagnostic] = (),
     together: Sequence[AllRuns] = (),
     failed: Sequence[Requirement] = (),
@@ -109,7 +109,7 @@ def sarif(
 
 
 def _driver(
-    used: Sequence[Requirement], rules: Mapping[str, Rule], diagnostics: Sequence[Diagnostic]
+    used: Sequence[Requirement], rules: Mapping[str, Formalized], diagnostics: Sequence[Diagnostic]
 ) -> dict[str, Any]:
     codes = {diagnostic.code.number: diagnostic.code for diagnostic in diagnostics}
     return {
@@ -123,7 +123,7 @@ def _driver(
     }
 
 
-def _rule(requirement: Requirement, rule: Rule | None) -> dict[str, Any]:
+def _rule(requirement: Requirement, rule: Formalized | None) -> dict[str, Any]:
     """A requirement; without a rule nothing says what it means."""
     sentence = wording(requirement)
     words = meaning(rule.sentence, rule.ticks, rule.clock) if rule else ""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from compiler.formalization.rule import Rule
+from compiler.formalization.rule import Formalized
 from fretc.audit.evidence.schema import Result
 from fretc.audit.outputs import sarif as results
 from fretc.report.model.views import Report
@@ -15,7 +15,7 @@ from fretish.documents import Requirement
 def sarif(
     report: Report,
     audited: Sequence[Result],
-    rules: Sequence[Rule],
+    rules: Sequence[Formalized],
     diagnostics: Sequence[Diagnostic],
     failed: Sequence[Requirement] = (),
 ) -> str:

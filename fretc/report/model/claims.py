@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from types import MappingProxyType
 
-from compiler.formalization.rule import Rule, plain
+from compiler.formalization.rule import Formalized, plain
 from compiler.logic.claims import Proof
 from compiler.project.folder import Project
 from compiler.targets.python import monitor
@@ -96,7 +96,7 @@ class Claim:
 
     requirement: Requirement
     anchor: str
-    rule: Rule | None
+    rule: Formalized | None
     diagnostic: Diagnostic | None
     judged: tuple[Judged, ...]
     products: tuple[Product, ...]
@@ -261,7 +261,7 @@ def idle_waivers(claims: Sequence[Claim]) -> tuple[Diagnostic, ...]:
 
 
 def _together(
-    id: str, rule: Rule | None, evidence: Evidence | None, judged: Sequence[Judged]
+    id: str, rule: Formalized | None, evidence: Evidence | None, judged: Sequence[Judged]
 ) -> Together | None:
     answers = evidence.probabilities if evidence is not None else ()
     told = next((one for one in answers if one.requirement == id), None)
@@ -276,7 +276,7 @@ def _together(
     return Together(told, tuple(dict.fromkeys((*stale, *wrong))))
 
 
-def _is_bound(rule: Rule, declarations: Declarations | None) -> bool:
+def _is_bound(rule: Formalized, declarations: Declarations | None) -> bool:
     known = declarations.propositions if declarations else {}
     return all(name in known for name in rule.watched)
 
@@ -308,7 +308,7 @@ def _anchor(id: str, taken: Sequence[str]) -> str:
 class _Judge:
     """Compares evidence with what its verdict would rest on now."""
 
-    def __init__(self, rule: Rule | None, now: Basis, evidence: Evidence | None) -> None:
+    def __init__(self, rule: Formalized | None, now: Basis, evidence: Evidence | None) -> None:
         self._is_formal, self._now = rule is not None, now
         self._audited_by = evidence.fretc if evidence else ""
 

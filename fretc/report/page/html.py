@@ -11,7 +11,7 @@ from typing import Any
 from compiler.explanation.diagram import diagram
 from compiler.explanation.drawing import drawing as diagram_drawing
 from compiler.files.templating import render
-from compiler.formalization.rule import Rule
+from compiler.formalization.rule import Formalized
 from fretc.report.model.phrases import visible
 from fretc.report.model.views import Report
 from fretc.report.page.selection import Selection, selection, slimmed
@@ -23,7 +23,7 @@ from fretc.report.sections.argument import argument
 _SCRIPT, _STYLE = "report/page.js.j2", "report/style.css.j2"
 
 
-def html(report: Report, rules: Sequence[Rule] = ()) -> str:
+def html(report: Report, rules: Sequence[Formalized] = ()) -> str:
     """The whole file.
 
     Args:
@@ -78,7 +78,7 @@ def _histograms(page: Report) -> dict[str, list[dict[str, Any]]]:
     }
 
 
-def _diagrams(page: Report, rules: Sequence[Rule]) -> Mapping[str, dict[str, Any]]:
+def _diagrams(page: Report, rules: Sequence[Formalized]) -> Mapping[str, dict[str, Any]]:
     """What each sentence means, drawn; the drawing makes its own texts visible."""
     known = {(rule.id, rule.fingerprint): rule for rule in rules}
     found = {}

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator, Sequence
 from math import ceil, floor
 from statistics import median
 
-from compiler.formalization.rule import Rule
+from compiler.formalization.rule import Formalized
 from fretc.audit.evidence.schema import Result, Threshold
 from fretc.report.model import phrases
 from fretc.report.model.claims import Claim
@@ -73,7 +73,7 @@ def _counted(claim: Claim) -> list[Result]:
 # Latency ---------------------------------------------------------------------------------------
 
 
-def is_answered(rule: Rule | None) -> bool:
+def is_answered(rule: Formalized | None) -> bool:
     """Whether each trigger waits for an answer, so that one without is missing."""
     return rule is not None and rule.watch.answer is not None
 
@@ -83,7 +83,7 @@ def _unanswered(result: Result) -> int:
     return max(0, len(result.triggers) - len(result.latencies) - len(result.open))
 
 
-def _latency(late: Sequence[float], runs: Sequence[Result], rule: Rule | None) -> Histogram:
+def _latency(late: Sequence[float], runs: Sequence[Result], rule: Formalized | None) -> Histogram:
     bound = _seconds_allowed(rule)
     bins = _bins(late, [0.0, *([bound] if bound is not None else [])], _below)
     label = f"bound {phrases.seconds(bound)}" if bound is not None else ""
@@ -120,7 +120,7 @@ def _without(unanswered: int, waiting: int) -> str:
     return f" Without an answer: {told}." if told else ""
 
 
-def _seconds_allowed(rule: Rule | None) -> float | None:
+def _seconds_allowed(rule: Formalized | None) -> float | None:
     """What `within` allows, where a tick is a time."""
     if rule is None or syntax.deadline(rule.sentence.timing) is None:
         return None

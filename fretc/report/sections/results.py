@@ -6,7 +6,7 @@ from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from itertools import groupby
 from statistics import median
 
-from compiler.formalization.rule import Rule
+from compiler.formalization.rule import Formalized
 from fretc.audit.evidence.schema import Moment, Result, Threshold, Violation
 from fretc.audit.evidence.verdicts import (
     NOT_EXERCISED,
@@ -121,7 +121,7 @@ def _stretches(moments: Iterable[Moment]) -> list[list[Moment]]:
 # Latency ---------------------------------------------------------------------------------------
 
 
-def _latency(result: Result, rule: Rule | None) -> Latency | None:
+def _latency(result: Result, rule: Formalized | None) -> Latency | None:
     if not result.latencies:
         return None
     longest = max(result.latencies)
@@ -144,7 +144,7 @@ def _latency(result: Result, rule: Rule | None) -> Latency | None:
     )
 
 
-def _bound(rule: Rule | None) -> str:
+def _bound(rule: Formalized | None) -> str:
     """What the sentence says about how long the response may take."""
     if rule is None:
         return ""

@@ -9,7 +9,7 @@ from typing import Any
 from compiler.explanation.diagram import diagram, words
 from compiler.explanation.violability import limit
 from compiler.formalization.record import wording
-from compiler.formalization.rule import Rule
+from compiler.formalization.rule import Formalized
 from compiler.logic import printing
 from compiler.logic.claims import Proof
 from compiler.project.folder import Project
@@ -103,7 +103,7 @@ def section(
     )
 
 
-def _limit(rule: Rule | None) -> str:
+def _limit(rule: Formalized | None) -> str:
     """Of a probability many runs decide."""
     return "" if rule is None or rule.sentence.probability is not None else limit(rule)
 
@@ -128,7 +128,7 @@ def remark(diagnostic: Diagnostic) -> Remark:
     )
 
 
-def _formulas(rule: Rule) -> tuple[Formula, ...]:
+def _formulas(rule: Formalized) -> tuple[Formula, ...]:
     return (
         Formula("Future time", "infinite traces", printing.readable(rule.ft_infinite)),
         Formula(
@@ -164,7 +164,7 @@ def _parent(id: str, project: Project, anchors: Mapping[str, str]) -> Parent:
 # Propositions ----------------------------------------------------------------------------------
 
 
-def _propositions(rule: Rule, declared: Declarations | None) -> tuple[PropositionView, ...]:
+def _propositions(rule: Formalized, declared: Declarations | None) -> tuple[PropositionView, ...]:
     return tuple(_proposition(name, declared) for name in rule.propositions)
 
 

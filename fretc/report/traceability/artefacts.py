@@ -7,7 +7,7 @@ from pathlib import PurePath
 
 from compiler.emit import TARGETS
 from compiler.files.text_files import sha256
-from compiler.formalization.rule import Rule
+from compiler.formalization.rule import Formalized
 from compiler.project.interceptor_options import ASSUMED, assumed
 from compiler.targets.python import interceptor
 from compiler.targets.target import Target
@@ -27,7 +27,7 @@ class Product:
 _ALWAYS = ("monitor", "ltl", "ajpf", "json")
 
 
-def products(rule: Rule | None) -> tuple[Product, ...]:
+def products(rule: Formalized | None) -> tuple[Product, ...]:
     """A product for each file that is made of the requirement; where a target refuses, why.
 
     Some targets are always asked, the others where the requirement plans them in its `verify`:
@@ -40,7 +40,7 @@ def products(rule: Rule | None) -> tuple[Product, ...]:
     return tuple(product for name in names for product in _of_target(TARGETS[name], rule))
 
 
-def _of_target(target: Target, rule: Rule) -> tuple[Product, ...]:
+def _of_target(target: Target, rule: Formalized) -> tuple[Product, ...]:
     refused = target.refuse(rule)
     if refused is not None:
         mend = f"; {refused.help}" if refused.help else ""

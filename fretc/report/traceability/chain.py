@@ -14,7 +14,7 @@ from dataclasses import asdict, dataclass, field
 from typing import Any
 
 from compiler.files.edition import __version__
-from compiler.formalization.rule import Rule
+from compiler.formalization.rule import Formalized
 from compiler.logic import printing
 from compiler.logic.claims import Proof
 from compiler.project.folder import Project
@@ -139,7 +139,7 @@ class _Chain:
     def of(
         self,
         requirement: Requirement,
-        rule: Rule | None,
+        rule: Formalized | None,
         made: Iterable[Product],
         results: Sequence[Result],
         proofs: Sequence[Proof],
@@ -194,7 +194,9 @@ class _Chain:
                 self._above(above, seen)
                 self._link(Node(TEXT, parent), text)
 
-    def _below(self, rule: Rule, sentence: Node, made: Iterable[Product]) -> Mapping[str, Node]:
+    def _below(
+        self, rule: Formalized, sentence: Node, made: Iterable[Product]
+    ) -> Mapping[str, Node]:
         """Formulas, words and artefacts; gives the artefact of each target."""
         formulas, words = Node(FORMULAS, rule.id), Node(WORDS, rule.id)
         clock, fretc = self._clock(), Node(basis.FRETC, _VERSION)
@@ -249,7 +251,7 @@ class _Chain:
         if old:
             self._outdated[verdict] = tuple(sources[kind] for kind in old)
 
-    def _proved(self, rule: Rule, proofs: Sequence[Proof]) -> None:
+    def _proved(self, rule: Formalized, proofs: Sequence[Proof]) -> None:
         """Each claim, with the texts and assumptions that it is about, as they are now."""
         now = self._common.shared
         for proof in proofs:
@@ -312,7 +314,7 @@ def _judgement(result: Result) -> dict[str, Any]:
     }
 
 
-def _formulas(rule: Rule) -> str:
+def _formulas(rule: Formalized) -> str:
     told = [rule.ft_infinite, rule.ft_finite, rule.pt]
     return digest([printing.readable(formula) for formula in told])
 

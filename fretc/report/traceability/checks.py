@@ -10,7 +10,7 @@ from collections.abc import Iterator, Sequence
 from shlex import quote
 
 from compiler.emit import TARGETS
-from compiler.formalization.rule import Rule
+from compiler.formalization.rule import Formalized
 from compiler.logic.claims import METHODS
 from compiler.project.ancestry import without_hazard
 from compiler.project.folder import Project
@@ -44,7 +44,7 @@ def checks(project: Project, standings: Sequence[Standing]) -> tuple[Diagnostic,
 # Vacuity ---------------------------------------------------------------------------------------
 
 
-def _own_triggers(rule: Rule, project: Project) -> Iterator[Diagnostic]:
+def _own_triggers(rule: Formalized, project: Project) -> Iterator[Diagnostic]:
     """F209: the condition waits for what the component itself commands.
 
     Where the component is what the sentence is about, its commands are answers: a property that
@@ -68,7 +68,7 @@ def _own_triggers(rule: Rule, project: Project) -> Iterator[Diagnostic]:
         )
 
 
-def _place(rule: Rule, name: str) -> Span:
+def _place(rule: Formalized, name: str) -> Span:
     assert rule.sentence.condition is not None
     found = (n.span for n in names(rule.sentence.condition.expression) if n.id == name)
     return next(found, None) or rule.requirement.wording
@@ -77,7 +77,7 @@ def _place(rule: Rule, name: str) -> Span:
 # Planned methods -------------------------------------------------------------------------------
 
 
-def _planned(rule: Rule) -> Iterator[Diagnostic]:
+def _planned(rule: Formalized) -> Iterator[Diagnostic]:
     """F525: a planned method that can give no result; and what a target has to remark."""
     for method in rule.requirement.verify:
         target = TARGETS.get("monitor" if method == "audit" else method)
@@ -99,7 +99,7 @@ def _planned(rule: Rule) -> Iterator[Diagnostic]:
             yield remark
 
 
-def _misspelt(rule: Rule, method: str) -> Iterator[Diagnostic]:
+def _misspelt(rule: Formalized, method: str) -> Iterator[Diagnostic]:
     """F528: nearly the name of a method whose results fretc knows; any other name is one's own."""
     near = suggestion(method, _METHODS, cutoff=0.75)
     if method not in _METHODS and near is not None:

@@ -13,7 +13,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from compiler.files.text_files import sha256
-from compiler.formalization.rule import Rule
+from compiler.formalization.rule import Formalized
 from compiler.logic.claims import (
     Evidence,
     NotChecked,
@@ -42,7 +42,7 @@ _VERSION = re.compile(r"\b(\d+)\.\d+[\w.+-]*")
 
 
 def with_dafny(
-    rule: Rule,
+    rule: Formalized,
     text: str,
     declarations: Declarations | None,
     *,

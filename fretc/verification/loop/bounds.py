@@ -18,7 +18,7 @@ from typing import Any
 
 from compiler.formalization.formalize import formalize
 from compiler.formalization.letters import atoms_of, meanings
-from compiler.formalization.rule import Rule
+from compiler.formalization.rule import Formalized
 from compiler.logic.claims import (
     Counterexample,
     Evidence,
@@ -95,7 +95,7 @@ class Answer:
     z3: str = ""
 
 
-def bounds(rule: Rule, setup: Setup, limits: Limits) -> tuple[Evidence, ...]:
+def bounds(rule: Formalized, setup: Setup, limits: Limits) -> tuple[Evidence, ...]:
     """Both claims: an answer comes in time, whatever the times are; and the bound is enough."""
     query = question(rule, setup)
     answer: Answer | Stopped
@@ -123,7 +123,7 @@ def _answered(query: Question | str) -> str:
     return f"every demand is answered within {beat} ticks for each message of `lost` and {_MORE}"
 
 
-def _enough(rule: Rule) -> str:
+def _enough(rule: Formalized) -> str:
     if s.deadline(rule.sentence.timing) is None:
         return "some bound is enough"
     return f"the bound of {_ticks(rule.ticks or 0)} is enough"
@@ -136,7 +136,7 @@ def _ticks(amount: int) -> str:
 # The question ---------------------------------------------------------------------------------
 
 
-def question(rule: Rule, setup: Setup) -> Question | str:
+def question(rule: Formalized, setup: Setup) -> Question | str:
     """The question to prove, or why there is none."""
     problem = case(rule, setup)
     if isinstance(problem, str):

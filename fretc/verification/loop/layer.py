@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from math import gcd
 
 from compiler.files.text_files import sha256
-from compiler.formalization.rule import Rule
+from compiler.formalization.rule import Formalized
 from compiler.logic import spot as automata
 from compiler.logic.claims import Evidence, Layer, NotChecked, Result
 from compiler.project.interceptor_options import options, ticks
@@ -51,7 +51,7 @@ class Setup:
     assumed: Assumed | None
 
 
-def loop(rule: Rule, setup: Setup, limits: Limits) -> tuple[Evidence, ...]:
+def loop(rule: Formalized, setup: Setup, limits: Limits) -> tuple[Evidence, ...]:
     """Both claims: the requirement is kept, and the stop is released."""
     problem = case(rule, setup)
     if isinstance(problem, str):
@@ -68,7 +68,7 @@ def loop(rule: Rule, setup: Setup, limits: Limits) -> tuple[Evidence, ...]:
 
 
 def _evidence(
-    rule: Rule, setup: Setup, claim: str, result: Result, premises: tuple[str, ...]
+    rule: Formalized, setup: Setup, claim: str, result: Result, premises: tuple[str, ...]
 ) -> Evidence:
     return Evidence(
         rule.id,
@@ -90,7 +90,7 @@ def artefacts(setup: Setup) -> dict[str, str]:
 # The case -------------------------------------------------------------------------------------
 
 
-def case(rule: Rule, setup: Setup) -> Case | str:
+def case(rule: Formalized, setup: Setup) -> Case | str:
     """The case to search, or why there is none."""
     interception, assumed = setup.interception, setup.assumed
     if interception is None or setup.interceptor is None:
@@ -117,7 +117,7 @@ def case(rule: Rule, setup: Setup) -> Case | str:
     )
 
 
-def channel(rule: Rule, interception: Interception, assumed: Assumed) -> Channel | str:
+def channel(rule: Formalized, interception: Interception, assumed: Assumed) -> Channel | str:
     """The assumptions in cells; or why no cell fits."""
     tick = rule.clock.period if rule.clock else None
     if tick is None:
@@ -152,7 +152,7 @@ def cell_of(tick: int, interception: Interception, assumed: Assumed) -> int:
 
 
 def assumptions(
-    rule: Rule, setup: Setup, problem: Case, *, any_time: bool = False
+    rule: Formalized, setup: Setup, problem: Case, *, any_time: bool = False
 ) -> Iterator[str]:
     """The assumptions of the verdict in words, each with its place of declaration.
 

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import assert_never
 
 from compiler.files.text_files import sha256
-from compiler.formalization.rule import Rule
+from compiler.formalization.rule import Formalized
 from compiler.logic import claims as v
 from fretc.verification.engines import sandbox as processes
 from fretc.verification.engines.sandbox import Limits, Stopped
@@ -23,7 +23,7 @@ ENGINE = "fretc, lock step with the counter automaton of the sentence"
 
 
 def evidence(
-    rule: Rule, name: str, text: str, limits: Limits, others: Sequence[Rule] = ()
+    rule: Formalized, name: str, text: str, limits: Limits, others: Sequence[Formalized] = ()
 ) -> v.Evidence:
     """The evidence about a monitor's text.
 

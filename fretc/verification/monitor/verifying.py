@@ -20,7 +20,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from compiler.formalization.letters import atoms_of
-from compiler.formalization.rule import Rule
+from compiler.formalization.rule import Formalized
 from compiler.targets.python import monitor as target
 from fretc.verification.monitor import rails
 from fretc.verification.monitor.column_terms import Terms
@@ -71,7 +71,7 @@ class Verified:
 
 
 def verified(
-    rule: Rule, text: str, limit: int = MOST_STATES, others: Sequence[Rule] = ()
+    rule: Formalized, text: str, limit: int = MOST_STATES, others: Sequence[Formalized] = ()
 ) -> Verified:
     """Compare the text of a monitor with its rule.
 
@@ -97,7 +97,7 @@ def verified(
 
 
 def _compared(
-    rule: Rule, text: str, monitor: Monitor, limit: int, others: Sequence[Rule]
+    rule: Formalized, text: str, monitor: Monitor, limit: int, others: Sequence[Formalized]
 ) -> Verified:
     """The result for a text that is safe to execute."""
     places = [i for i, each in enumerate(monitor.REQUIREMENTS) if each.id == rule.id]
@@ -126,7 +126,7 @@ def _compared(
     return Verified(rule.id, atoms, compared_states, compared)
 
 
-def _is_generated(text: str, monitor: Monitor, rules: Sequence[Rule]) -> bool:
+def _is_generated(text: str, monitor: Monitor, rules: Sequence[Formalized]) -> bool:
     """Whether fretc writes this text for some of these rules, but for comments."""
     by_id = {rule.id: rule for rule in rules}
     ids = [requirement.id for requirement in monitor.REQUIREMENTS]

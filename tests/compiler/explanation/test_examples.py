@@ -7,7 +7,7 @@ import pytest
 
 from compiler.explanation.examples import Example, Examples, examples
 from compiler.explanation.reasons import why
-from compiler.formalization.rule import Rule
+from compiler.formalization.rule import Formalized
 from compiler.logic.spot import holds_on
 from tests import meaning
 from tests.monitoring import monitor, rule, steps
@@ -18,7 +18,7 @@ QUIET = 3
 
 
 @cache
-def found(sentence: str) -> tuple[Rule, Examples]:
+def found(sentence: str) -> tuple[Formalized, Examples]:
     made = rule(sentence)
     return made, examples(made)
 

@@ -6,7 +6,7 @@ from itertools import product
 
 import pytest
 
-from compiler.formalization.rule import Rule
+from compiler.formalization.rule import Formalized
 from fretc.verification.monitor.equivalence import Proved
 from fretc.verification.monitor.verifying import verified
 from tests.meaning import SCOPES
@@ -29,7 +29,7 @@ def words(names: tuple[str, ...], count: int, seed: str) -> list[dict[str, list[
     return found
 
 
-def check(sentence: str, made: Rule, names: tuple[str, ...], count: int) -> None:
+def check(sentence: str, made: Formalized, names: tuple[str, ...], count: int) -> None:
     machine, oracle = monitor(sentence), Ltl3(made.ft_infinite)
     for columns in words(names, count, sentence):
         letters = [

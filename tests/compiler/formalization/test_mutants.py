@@ -16,7 +16,7 @@ from typing import Any, get_args
 import pytest
 
 from compiler.formalization.past import Watch
-from compiler.formalization.rule import Rule
+from compiler.formalization.rule import Formalized
 from compiler.logic import formula as f
 from compiler.targets.python import monitor as target
 from fretc.verification.monitor.equivalence import NotChecked, Proved, Refuted
@@ -217,7 +217,7 @@ REFUTED, DIFFERS, REFUSED, TOLD, SAME = "refuted", "differs", "refused", "told a
 class Judge:
     """What is found of a monitor with a mistake."""
 
-    def __init__(self, right: Rule) -> None:
+    def __init__(self, right: Formalized) -> None:
         self.rule = right
         self.machine = load("right.py", target.text(right))
         choose = random.Random(right.id)

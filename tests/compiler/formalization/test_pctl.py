@@ -7,7 +7,7 @@ import pytest
 
 from compiler.formalization.formalize import formalize
 from compiler.formalization.record import formulas
-from compiler.formalization.rule import Rule
+from compiler.formalization.rule import Formalized
 from compiler.logic import printing
 from compiler.logic.spot import same_language
 from fretish.diagnostics.source import Source
@@ -16,7 +16,7 @@ from tests import meaning
 from tests.each import each
 
 
-def rule(sentence: str) -> Rule:
+def rule(sentence: str) -> Formalized:
     ((requirement,), _) = requirements(Source("r.fret", sentence))
     formalized, diagnostics = formalize(requirement, None)
     assert formalized is not None, diagnostics

@@ -11,7 +11,7 @@ from typing import Any
 import pytest
 
 from compiler.formalization.formalize import formalize
-from compiler.formalization.rule import Rule
+from compiler.formalization.rule import Formalized
 from compiler.logic import printing
 from compiler.logic.definition import holds
 from compiler.logic.spot import same_language
@@ -28,7 +28,7 @@ TABLE = Path(__file__).parents[2] / "data/fret_templates.json"
 
 
 @cache
-def rule(sentence: str) -> Rule:
+def rule(sentence: str) -> Formalized:
     ((requirement,), _) = requirements(Source("r.fret", sentence))
     formalized, diagnostics = formalize(requirement, None)
     assert formalized is not None, diagnostics

@@ -29,7 +29,7 @@ from compiler.formalization.reference import (
     template,
 )
 from compiler.formalization.reference import Template as Counted
-from compiler.formalization.rule import Rule
+from compiler.formalization.rule import Formalized
 from compiler.logic import printing
 from fretish import syntax as s
 from fretish.diagnostics.source import Source
@@ -45,7 +45,7 @@ Valuation = tuple[bool, ...]
 
 
 @cache
-def ruled(sentence: str) -> Rule:
+def ruled(sentence: str) -> Formalized:
     ((requirement,), _) = requirements(Source("r.fret", sentence))
     rule, diagnostics = formalize(requirement, None)
     assert rule is not None, diagnostics
@@ -162,7 +162,7 @@ def guards_of(graph: Any, names: Sequence[str]) -> dict[Valuation, Any]:
     return guards
 
 
-def in_spot(rule: Rule) -> Any:
+def in_spot(rule: Formalized) -> Any:
     return spot.formula(printing.text(rule.ft_infinite, printing.SPOT))
 
 

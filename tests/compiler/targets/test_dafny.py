@@ -12,7 +12,7 @@ import pytest
 from compiler.emit import TARGETS
 from compiler.formalization.formalize import formalize
 from compiler.formalization.reference import accepts, initial, step, template
-from compiler.formalization.rule import Rule
+from compiler.formalization.rule import Formalized
 from compiler.project.folder import load
 from compiler.targets.dafny import text
 from compiler.targets.dafny_claims import claims
@@ -85,7 +85,7 @@ def bound(text: str = BINDINGS) -> Declarations:
     return found
 
 
-def rule(sentence: str, declarations: Declarations | None = None) -> Rule:
+def rule(sentence: str, declarations: Declarations | None = None) -> Formalized:
     requirement = Requirement("R1", Source("r.fret", sentence).span())
     made, diagnostics = formalize(requirement, declarations)
     assert made is not None, diagnostics

@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from compiler.formalization.rule import Rule
+from compiler.formalization.rule import Formalized
 from compiler.logic.claims import (
     Counterexample,
     Evidence,
@@ -46,7 +46,7 @@ def ran(tmp_path: Path) -> Mcapl:
     return mcapl
 
 
-def only(mcapl: Mcapl, made: Rule | None = None) -> Evidence:
+def only(mcapl: Mcapl, made: Formalized | None = None) -> Evidence:
     (line,), said = evidence([made or rule(R1)], [str(mcapl.bundle / "result.json")])
     assert not said
     return line

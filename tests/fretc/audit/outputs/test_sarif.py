@@ -11,7 +11,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from compiler.formalization.rule import Rule
+from compiler.formalization.rule import Formalized
 from fretc.audit.outputs.sarif import OneRun, sarif
 from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
 from fretish.diagnostics.source import Source
@@ -42,7 +42,7 @@ ALL = [
 
 def read(
     results: Sequence[OneRun],
-    rules: Sequence[Rule] = RULES,
+    rules: Sequence[Formalized] = RULES,
     diagnostics: Sequence[Diagnostic] = (),
 ) -> Any:
     """The only run of the file, which fits the schema."""
