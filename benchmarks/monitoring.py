@@ -19,8 +19,8 @@ import numpy as np
 from benchmarks.peers import PEERS, WORKLOADS, Columns, Evaluation, Peer, rate, speed
 from benchmarks.timing import seconds
 from compiler.formalization.formalize import formalize
+from compiler.formalization.formalized import Formalized
 from compiler.formalization.past import Watch
-from compiler.formalization.rule import Formalized
 from compiler.logic import formula as f
 from compiler.targets.python.monitor import text
 from fretc.logs.signals.traces import bits

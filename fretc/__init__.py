@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from compiler.files.edition import __version__ as __version__
-    from compiler.formalization.rule import Formalized as Formalized
+    from compiler.formalization.formalized import Formalized as Formalized
     from compiler.logic.claims import Evidence as Proof
     from compiler.project.folder import Project as Project
     from fretc.api.audits import Audit as Audit
@@ -42,7 +42,7 @@ _HOMES = {
     "Refusal": "fretc.api.refusal",
     "Report": "fretc.api.reports",
     "Result": "fretc.audit.evidence.schema",
-    "Formalized": "compiler.formalization.rule",
+    "Formalized": "compiler.formalization.formalized",
     "Stream": "fretc.api.streams",
     "Tick": "fretc.api.streams",
     "__version__": "compiler.files.edition",

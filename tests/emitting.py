@@ -2,7 +2,7 @@
 
 from compiler.emit import TARGETS
 from compiler.formalization.formalize import formalize
-from compiler.formalization.rule import Formalized
+from compiler.formalization.formalized import Formalized
 from fretish.diagnostics.rendering import render
 from fretish.diagnostics.source import Source
 from fretish.documents import Requirement

@@ -7,8 +7,8 @@ from dataclasses import replace
 from typing import NamedTuple
 
 from compiler.formalization.formalize import formalize
+from compiler.formalization.formalized import Formalized
 from compiler.formalization.past import Watch
-from compiler.formalization.rule import Formalized
 from compiler.logic import formula as f
 from compiler.targets.python import monitor as target
 from fretish.bindings.declarations import Declarations

@@ -18,7 +18,7 @@ from compiler.agents.psl import Property
 from compiler.agents.psl_printing import property_text
 from compiler.agents.vacuity import bare, demanded
 from compiler.files.text_files import sha256
-from compiler.formalization.rule import Formalized
+from compiler.formalization.formalized import Formalized
 from compiler.logic import formula as f
 from compiler.logic import spot as automata
 from compiler.logic.claims import (

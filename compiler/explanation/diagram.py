@@ -14,8 +14,8 @@ from enum import StrEnum
 from typing import assert_never
 
 from compiler.explanation.windows import Column, Need, Window, intervals, windows
+from compiler.formalization.formalized import Formalized
 from compiler.formalization.reference import Template, template
-from compiler.formalization.rule import Formalized
 from fretish import syntax as s
 from fretish.meaning import span as in_ticks
 from fretish.printer import expression

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from compiler.explanation.shortest_words import Move, Run, Waypoint, Words
 from compiler.explanation.windows import has_deadline, kept
 from compiler.formalization import reference as counters
+from compiler.formalization.formalized import Formalized
 from compiler.formalization.letters import (
     MOST_ATOMS,
     Valuation,
@@ -27,7 +28,6 @@ from compiler.formalization.reference import (
     TooManyStatesError,
     explore,
 )
-from compiler.formalization.rule import Formalized
 
 MOST_STATES = 120_000
 """Seconds of search; a longer bound gets no examples."""

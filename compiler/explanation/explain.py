@@ -12,8 +12,8 @@ from compiler.explanation.diagram import Diagram, Lane, diagram, words
 from compiler.explanation.examples import Example, examples
 from compiler.explanation.reasons import why
 from compiler.formalization import record
+from compiler.formalization.formalized import Formalized
 from compiler.formalization.letters import Valuation, meanings
-from compiler.formalization.rule import Formalized
 from compiler.logic.definition import holds
 from compiler.logic.formula import longest_bound
 from compiler.targets import ltl

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from typing import assert_never
 
 from compiler.explanation.windows import Column, Need, Part, Window, intervals, need, windows
+from compiler.formalization.formalized import Formalized
 from compiler.formalization.reference import Letter, Template, template
-from compiler.formalization.rule import Formalized
 from fretish import syntax as s
 from fretish.meaning import span as in_ticks
 from fretish.printer import expression

@@ -9,9 +9,9 @@ what no finite run can violate is a liveness property.
 from __future__ import annotations
 
 from compiler.formalization.anticipation import SHORT
+from compiler.formalization.formalized import Formalized
 from compiler.formalization.letters import occurring, temporal_predicate
 from compiler.formalization.reference import BROKEN, TooManyStatesError, explore, template
-from compiler.formalization.rule import Formalized
 from compiler.logic.formula import FALSE
 from fretish.clock import End
 

@@ -11,8 +11,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from fractions import Fraction
 
+from compiler.formalization.formalized import Formalized
 from compiler.formalization.obligation import atom, variable
-from compiler.formalization.rule import Formalized
 from fretish import expressions as e
 from fretish import units
 from fretish.bindings.constants import constants

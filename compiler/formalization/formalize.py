@@ -10,10 +10,10 @@ from functools import partial
 from compiler.formalization import predicates
 from compiler.formalization.anticipation import anticipated
 from compiler.formalization.binding_agreement import disagreements, drift, place
+from compiler.formalization.formalized import Formalized
 from compiler.formalization.future import future, probabilistic
 from compiler.formalization.obligation import obligation
 from compiler.formalization.past import past, watch
-from compiler.formalization.rule import Formalized
 from compiler.logic.formula import endless
 from compiler.logic.printing import identifier
 from fretish.bindings.declarations import Declarations, Modality, Variable

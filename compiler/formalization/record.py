@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from compiler.files.edition import __version__
-from compiler.formalization.rule import Formalized
+from compiler.formalization.formalized import Formalized
 from compiler.logic import printing
 from fretish import syntax
 from fretish.diagnostics.diagnostic import Diagnostic

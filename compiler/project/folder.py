@@ -12,7 +12,7 @@ from typing import Any
 from compiler.files.settings import settings
 from compiler.files.text_files import read, unreadable
 from compiler.formalization.formalize import duplicates, formalize
-from compiler.formalization.rule import Formalized
+from compiler.formalization.formalized import Formalized
 from compiler.project.ancestry import circles, unknown_parents
 from compiler.project.parents import Parent
 from compiler.project.parents import parents as read_parents

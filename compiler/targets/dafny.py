@@ -29,9 +29,9 @@ from pathlib import PurePosixPath
 
 from compiler.files.artifact import Artifact
 from compiler.files.templating import render
+from compiler.formalization.formalized import Formalized
 from compiler.formalization.letters import atoms_of, temporal_predicate
 from compiler.formalization.obligation import Uninterpreted, boolean
-from compiler.formalization.rule import Formalized
 from compiler.logic import formula as f
 from compiler.project.interceptor_options import options as core
 from compiler.targets.dafny_claims import CHANNELS, Delay, delay, loopless

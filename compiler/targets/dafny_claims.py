@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
+from compiler.formalization.formalized import Formalized
 from compiler.formalization.obligation import Uninterpreted, boolean
-from compiler.formalization.rule import Formalized
 from compiler.logic import formula as f
 from compiler.logic.claims import Layer
 from compiler.logic.printing import identifier

@@ -9,7 +9,7 @@ from typing import Any
 
 from compiler.files.artifact import Artifact
 from compiler.files.templating import render
-from compiler.formalization.rule import Formalized
+from compiler.formalization.formalized import Formalized
 from compiler.logic import printing
 from compiler.project.fret_import import OWN, STATUSES
 from compiler.targets.target import DEFAULT, Options, Target

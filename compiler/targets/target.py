@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Protocol
 
 from compiler.files.artifact import Artifact
-from compiler.formalization.rule import Formalized
+from compiler.formalization.formalized import Formalized
 from compiler.logic import formula as f
 from fretish.bindings.declarations import Declarations
 from fretish.diagnostics.diagnostic import Code, Diagnostic

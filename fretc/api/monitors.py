@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping
 from typing import Any, Protocol, cast
 
 from compiler.formalization.formalize import clashes, duplicates
-from compiler.formalization.rule import Formalized
+from compiler.formalization.formalized import Formalized
 from compiler.targets.python import monitor as python
 from fretc.api.refusal import Refusal, bounded
 from fretish.diagnostics.diagnostic import Code, Diagnostic

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from compiler.files.text_files import read
 from compiler.formalization.formalize import formalize as formalized
-from compiler.formalization.rule import Formalized
+from compiler.formalization.formalized import Formalized
 from compiler.logic import printing
 from compiler.project.folder import Project, whole
 from fretc.api.refusal import Refusal, accepted, bounded

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import assert_never
 
-from compiler.formalization.rule import Formalized
+from compiler.formalization.formalized import Formalized
 from fretc.audit.measurements.violations import Demand
 from fretish import expressions as e
 from fretish import syntax as s

@@ -11,8 +11,8 @@ from functools import lru_cache, partial
 
 from compiler.files.edition import edition
 from compiler.formalization.binding_agreement import unbound
+from compiler.formalization.formalized import Formalized
 from compiler.formalization.record import wording
-from compiler.formalization.rule import Formalized
 from compiler.project.folder import Project
 from compiler.targets.python import monitor as monitors
 from fretc.audit.evidence.basis import Basis, basis

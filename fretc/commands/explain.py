@@ -16,7 +16,7 @@ from fretish.diagnostics.diagnostic import Code, Diagnostic, has_errors, suggest
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from compiler.formalization.rule import Formalized
+    from compiler.formalization.formalized import Formalized
     from compiler.project.folder import Project
     from fretish.documents import Requirement
 

@@ -14,7 +14,7 @@ from fretc.terminal.output import BAD, SHOWN, VIOLATION, deliver, say, say_line,
 from fretish.diagnostics.diagnostic import Code, Diagnostic, has_errors
 
 if TYPE_CHECKING:
-    from compiler.formalization.rule import Formalized
+    from compiler.formalization.formalized import Formalized
     from compiler.project.folder import Project
     from compiler.targets.target import Options, Target
 

@@ -7,7 +7,7 @@ from dataclasses import asdict, dataclass
 
 from compiler.files.dates import today
 from compiler.files.templating import to_json
-from compiler.formalization.rule import Formalized
+from compiler.formalization.formalized import Formalized
 from compiler.project.folder import Project
 from fretc.attestation.signatures import gathered
 from fretc.audit.evidence.reader import read

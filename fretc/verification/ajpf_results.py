@@ -16,7 +16,7 @@ from pathlib import Path, PurePath
 from compiler.files.checked_json import MisshapenError, Shape, plain
 from compiler.files.text_files import content, sha256
 from compiler.files.text_files import read as read_text
-from compiler.formalization.rule import Formalized
+from compiler.formalization.formalized import Formalized
 from compiler.logic.claims import (
     COUNTEREXAMPLE,
     Counterexample,

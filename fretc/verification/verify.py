@@ -9,7 +9,7 @@ from pathlib import PurePath
 
 from compiler.agents.checking import checked
 from compiler.files.text_files import sha256
-from compiler.formalization.rule import Formalized
+from compiler.formalization.formalized import Formalized
 from compiler.logic.claims import Evidence, Layer, NotChecked
 from compiler.project.folder import Project
 from compiler.project.interceptor_options import ASSUMED, assumed, options

@@ -20,7 +20,7 @@ from compiler.files.artifact import Artifact
 from compiler.files.edition import __version__
 from compiler.files.templating import render, to_json
 from compiler.files.text_files import sha256
-from compiler.formalization.rule import Formalized
+from compiler.formalization.formalized import Formalized
 from compiler.logic.claims import Evidence, NotChecked, Proved
 from compiler.targets.ajpf import properties as ajpf
 from compiler.targets.ajpf.safety_function import Reaction, Sif, sif

@@ -21,8 +21,8 @@ from compiler.agents.psl_printing import property_text
 from compiler.files.artifact import Artifact
 from compiler.files.templating import render
 from compiler.formalization import without_next as nextfree
+from compiler.formalization.formalized import Formalized
 from compiler.formalization.obligation import Uninterpreted, boolean, obligation
-from compiler.formalization.rule import Formalized
 from compiler.logic import formula as f
 from compiler.logic.printing import is_compound
 from compiler.targets.target import (

@@ -16,7 +16,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from compiler.agents.gwendolen import Action, Change, Deed, Guard
-from compiler.formalization.rule import Formalized
+from compiler.formalization.formalized import Formalized
 from compiler.targets.target import not_expressible
 from fretish import expressions as e
 from fretish import syntax as s

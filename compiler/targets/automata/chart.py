@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 from typing import assert_never
 
+from compiler.formalization.formalized import Formalized
 from compiler.formalization.letters import occurring, parts
 from compiler.formalization.obligation import Kind, obligation
 from compiler.formalization.reference import (
@@ -26,7 +27,6 @@ from compiler.formalization.reference import (
     explore,
     template,
 )
-from compiler.formalization.rule import Formalized
 from compiler.logic import formula as f
 from compiler.logic.implicants import Term, cover
 from fretish.reading.recursion import deep

@@ -12,8 +12,8 @@ from pathlib import PurePosixPath
 
 from compiler.files.artifact import Artifact
 from compiler.files.templating import render
+from compiler.formalization.formalized import Formalized
 from compiler.formalization.record import wording
-from compiler.formalization.rule import Formalized
 from compiler.logic import formula as f
 from compiler.logic import printing
 from compiler.logic.implicants import Term

@@ -9,9 +9,9 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 
+from compiler.formalization.formalized import Formalized
 from compiler.formalization.obligation import TRAITS, Trait
 from compiler.formalization.reference import Letter, State
-from compiler.formalization.rule import Formalized
 from compiler.targets.automata.chart import START, Chart, chart, kind, words
 
 VIOLATED, SATISFIED = "violated", "satisfied"

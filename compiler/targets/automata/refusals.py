@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
+from compiler.formalization.formalized import Formalized
 from compiler.formalization.letters import temporal_predicate
 from compiler.formalization.reference import TooManyStatesError
-from compiler.formalization.rule import Formalized
 from compiler.targets.automata.chart import MOST_STATES, explored
 from compiler.targets.target import not_expressible
 from fretish.diagnostics.diagnostic import Code, Diagnostic

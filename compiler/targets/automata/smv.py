@@ -15,10 +15,10 @@ from pathlib import PurePosixPath
 
 from compiler.files.artifact import Artifact
 from compiler.files.templating import render
+from compiler.formalization.formalized import Formalized
 from compiler.formalization.letters import atoms_of
 from compiler.formalization.obligation import TRAITS, Obligation, Trait, obligation
 from compiler.formalization.record import wording
-from compiler.formalization.rule import Formalized
 from compiler.logic import printing
 from compiler.logic.identifiers import legal_names
 from compiler.targets.automata.refusals import no_automaton

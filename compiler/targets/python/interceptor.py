@@ -13,7 +13,7 @@ from typing import Any
 from compiler.files.artifact import Artifact
 from compiler.files.edition import __version__
 from compiler.files.templating import render
-from compiler.formalization.rule import Formalized
+from compiler.formalization.formalized import Formalized
 from compiler.project.interceptor_options import options as counted
 from compiler.project.interceptor_options import repetition, ticks
 from compiler.targets.target import DEFAULT, Options, Target

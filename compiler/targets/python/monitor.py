@@ -17,8 +17,8 @@ from pathlib import PurePosixPath
 from compiler.files.artifact import Artifact
 from compiler.files.edition import __version__
 from compiler.files.templating import render
+from compiler.formalization.formalized import Formalized, plain
 from compiler.formalization.obligation import TRAITS, Trait, obligation
-from compiler.formalization.rule import Formalized, plain
 from compiler.logic import printing
 from compiler.targets.python.program import (
     MARKS,

@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 
 from compiler.files.edition import __version__
 from compiler.files.templating import render
-from compiler.formalization.rule import Formalized
+from compiler.formalization.formalized import Formalized
 from compiler.project.folder import Project
 from fretc.audit.bindings.quantities import QUANTITIES, Quantity
 from fretc.logs.reader import Overview

@@ -12,7 +12,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 
 from compiler.files.text_files import sha256
-from compiler.formalization.rule import Formalized
+from compiler.formalization.formalized import Formalized
 from compiler.targets.python import monitor
 from fretish.bindings.canonical import bound, clock, digest, parameter
 from fretish.bindings.declarations import Declarations

@@ -12,10 +12,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 from compiler.formalization import predicates
+from compiler.formalization.formalized import Formalized
 from compiler.formalization.future import demanded_at, end_marker
 from compiler.formalization.obligation import TRAITS, Demand, Obligation, Trait, obligation
 from compiler.formalization.past import staged
-from compiler.formalization.rule import Formalized
 from compiler.logic.evaluation import evaluate_unknown
 from compiler.logic.formula import FALSE, Formula
 from fretc.audit.measurements.trials import Trials

@@ -23,8 +23,8 @@ from mcap.well_known import MessageEncoding, SchemaEncoding
 from mcap.writer import Writer
 
 from compiler.files.edition import __version__
+from compiler.formalization.formalized import Formalized
 from compiler.formalization.record import wording
-from compiler.formalization.rule import Formalized
 from fretc.audit.evidence.basis import BINDINGS, CLOCK, MONITOR, PARAMS, SENTENCE, TOPICS
 from fretc.audit.evidence.schema import Result
 from fretc.audit.log_paths import ANNOTATIONS

@@ -17,8 +17,8 @@ from urllib.parse import quote
 
 from compiler.files.edition import __version__
 from compiler.files.templating import to_json
+from compiler.formalization.formalized import Formalized
 from compiler.formalization.record import wording
-from compiler.formalization.rule import Formalized
 from fretc.audit.evidence import verdicts
 from fretc.audit.evidence.probabilities import Estimated
 from fretc.audit.evidence.schema import Result

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from compiler.formalization.rule import Formalized
+from compiler.formalization.formalized import Formalized
 from fretc.audit.evidence.schema import Result
 from fretc.audit.outputs import sarif as results
 from fretc.report.model.views import Report

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from types import MappingProxyType
 
-from compiler.formalization.rule import Formalized, plain
+from compiler.formalization.formalized import Formalized, plain
 from compiler.logic.claims import Proof
 from compiler.project.folder import Project
 from compiler.targets.python import monitor

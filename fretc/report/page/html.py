@@ -11,7 +11,7 @@ from typing import Any
 from compiler.explanation.diagram import diagram
 from compiler.explanation.drawing import drawing as diagram_drawing
 from compiler.files.templating import render
-from compiler.formalization.rule import Formalized
+from compiler.formalization.formalized import Formalized
 from fretc.report.model.phrases import visible
 from fretc.report.model.views import Report
 from fretc.report.page.selection import Selection, selection, slimmed

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator, Sequence
 from math import ceil, floor
 from statistics import median
 
-from compiler.formalization.rule import Formalized
+from compiler.formalization.formalized import Formalized
 from fretc.audit.evidence.schema import Result, Threshold
 from fretc.report.model import phrases
 from fretc.report.model.claims import Claim

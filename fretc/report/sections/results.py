@@ -6,7 +6,7 @@ from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from itertools import groupby
 from statistics import median
 
-from compiler.formalization.rule import Formalized
+from compiler.formalization.formalized import Formalized
 from fretc.audit.evidence.schema import Moment, Result, Threshold, Violation
 from fretc.audit.evidence.verdicts import (
     NOT_EXERCISED,

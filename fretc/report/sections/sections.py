@@ -8,8 +8,8 @@ from typing import Any
 
 from compiler.explanation.diagram import diagram, words
 from compiler.explanation.violability import limit
+from compiler.formalization.formalized import Formalized
 from compiler.formalization.record import wording
-from compiler.formalization.rule import Formalized
 from compiler.logic import printing
 from compiler.logic.claims import Proof
 from compiler.project.folder import Project

@@ -7,7 +7,7 @@ from pathlib import PurePath
 
 from compiler.emit import TARGETS
 from compiler.files.text_files import sha256
-from compiler.formalization.rule import Formalized
+from compiler.formalization.formalized import Formalized
 from compiler.project.interceptor_options import ASSUMED, assumed
 from compiler.targets.python import interceptor
 from compiler.targets.target import Target

@@ -14,7 +14,7 @@ from dataclasses import asdict, dataclass, field
 from typing import Any
 
 from compiler.files.edition import __version__
-from compiler.formalization.rule import Formalized
+from compiler.formalization.formalized import Formalized
 from compiler.logic import printing
 from compiler.logic.claims import Proof
 from compiler.project.folder import Project

@@ -10,7 +10,7 @@ from collections.abc import Iterator, Sequence
 from shlex import quote
 
 from compiler.emit import TARGETS
-from compiler.formalization.rule import Formalized
+from compiler.formalization.formalized import Formalized
 from compiler.logic.claims import METHODS
 from compiler.project.ancestry import without_hazard
 from compiler.project.folder import Project

@@ -23,7 +23,7 @@ from compiler.logic.claims import (
     Trace,
 )
 from fretc.verification.interceptor.exploration import Search, explored
-from fretc.verification.interceptor.heard import (
+from fretc.verification.interceptor.incoming import (
     CHANNELS,
     COMMAND,
     RELEASE,

@@ -12,7 +12,7 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
-from fretc.verification.interceptor.heard import (
+from fretc.verification.interceptor.incoming import (
     COMMAND,
     RELEASE,
     RING,

@@ -17,8 +17,8 @@ from importlib.util import find_spec
 from typing import Any
 
 from compiler.formalization.formalize import formalize
+from compiler.formalization.formalized import Formalized
 from compiler.formalization.letters import atoms_of, meanings
-from compiler.formalization.rule import Formalized
 from compiler.logic.claims import (
     Counterexample,
     Evidence,

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from math import gcd
 
 from compiler.files.text_files import sha256
-from compiler.formalization.rule import Formalized
+from compiler.formalization.formalized import Formalized
 from compiler.logic import spot as automata
 from compiler.logic.claims import Evidence, Layer, NotChecked, Result
 from compiler.project.interceptor_options import options, ticks

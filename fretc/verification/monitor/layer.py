@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import assert_never
 
 from compiler.files.text_files import sha256
-from compiler.formalization.rule import Formalized
+from compiler.formalization.formalized import Formalized
 from compiler.logic import claims as v
 from fretc.verification.engines import sandbox as processes
 from fretc.verification.engines.sandbox import Limits, Stopped

@@ -19,8 +19,8 @@ import random
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
+from compiler.formalization.formalized import Formalized
 from compiler.formalization.letters import atoms_of
-from compiler.formalization.rule import Formalized
 from compiler.targets.python import monitor as target
 from fretc.verification.monitor import rails
 from fretc.verification.monitor.column_terms import Terms

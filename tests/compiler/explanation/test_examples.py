@@ -7,7 +7,7 @@ import pytest
 
 from compiler.explanation.examples import Example, Examples, examples
 from compiler.explanation.reasons import why
-from compiler.formalization.rule import Formalized
+from compiler.formalization.formalized import Formalized
 from compiler.logic.spot import holds_on
 from tests import meaning
 from tests.monitoring import monitor, rule, steps

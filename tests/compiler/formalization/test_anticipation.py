@@ -6,7 +6,7 @@ from itertools import product
 
 import pytest
 
-from compiler.formalization.rule import Formalized
+from compiler.formalization.formalized import Formalized
 from fretc.verification.monitor.equivalence import Proved
 from fretc.verification.monitor.verifying import verified
 from tests.meaning import SCOPES

@@ -15,8 +15,8 @@ from typing import Any, get_args
 
 import pytest
 
+from compiler.formalization.formalized import Formalized
 from compiler.formalization.past import Watch
-from compiler.formalization.rule import Formalized
 from compiler.logic import formula as f
 from compiler.targets.python import monitor as target
 from fretc.verification.monitor.equivalence import NotChecked, Proved, Refuted

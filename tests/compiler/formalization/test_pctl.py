@@ -6,8 +6,8 @@ from collections.abc import Iterator
 import pytest
 
 from compiler.formalization.formalize import formalize
+from compiler.formalization.formalized import Formalized
 from compiler.formalization.record import formulas
-from compiler.formalization.rule import Formalized
 from compiler.logic import printing
 from compiler.logic.spot import same_language
 from fretish.diagnostics.source import Source

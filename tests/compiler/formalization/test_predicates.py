@@ -11,7 +11,7 @@ from typing import Any
 import pytest
 
 from compiler.formalization.formalize import formalize
-from compiler.formalization.rule import Formalized
+from compiler.formalization.formalized import Formalized
 from compiler.logic import printing
 from compiler.logic.definition import holds
 from compiler.logic.spot import same_language

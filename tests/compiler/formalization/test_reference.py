@@ -13,6 +13,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from compiler.formalization.formalize import formalize
+from compiler.formalization.formalized import Formalized
 from compiler.formalization.letters import meanings
 from compiler.formalization.reference import (
     BROKEN,
@@ -29,7 +30,6 @@ from compiler.formalization.reference import (
     template,
 )
 from compiler.formalization.reference import Template as Counted
-from compiler.formalization.rule import Formalized
 from compiler.logic import printing
 from fretish import syntax as s
 from fretish.diagnostics.source import Source

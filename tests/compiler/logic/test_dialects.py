@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from compiler.formalization.formalize import formalize
-from compiler.formalization.rule import Formalized
+from compiler.formalization.formalized import Formalized
 from compiler.logic import formula as f
 from compiler.logic import printing
 from compiler.logic.definition import holds

@@ -11,8 +11,8 @@ import pytest
 
 from compiler.emit import TARGETS
 from compiler.formalization.formalize import formalize
+from compiler.formalization.formalized import Formalized
 from compiler.formalization.reference import accepts, initial, step, template
-from compiler.formalization.rule import Formalized
 from compiler.project.folder import load
 from compiler.targets.dafny import text
 from compiler.targets.dafny_claims import claims

@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from compiler.formalization.rule import Formalized
+from compiler.formalization.formalized import Formalized
 from compiler.logic.claims import (
     Counterexample,
     Evidence,

@@ -13,7 +13,7 @@ from compiler.agents import gwendolen, psl
 from compiler.agents.checking import agent_evidence
 from compiler.files.text_files import sha256
 from compiler.formalization.formalize import formalize
-from compiler.formalization.rule import Formalized
+from compiler.formalization.formalized import Formalized
 from compiler.logic.claims import status
 from compiler.targets.ajpf.bundle import TARGET, emit, refusal
 from compiler.targets.target import DEFAULT, Options

@@ -11,7 +11,7 @@ from compiler.agents import psl
 from compiler.agents.psl_printing import property_text
 from compiler.emit import TARGETS
 from compiler.formalization.formalize import formalize
-from compiler.formalization.rule import Formalized
+from compiler.formalization.formalized import Formalized
 from compiler.logic import formula as f
 from compiler.logic import printing
 from compiler.logic.spot import equivalent, same_language

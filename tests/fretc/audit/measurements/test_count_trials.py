@@ -8,7 +8,7 @@ from itertools import product
 
 import pytest
 
-from compiler.formalization.rule import plain
+from compiler.formalization.formalized import plain
 from compiler.targets.python.monitor import text
 from fretc.audit.measurements.count_trials import chance, trials
 from fretc.audit.measurements.trials import Trials

@@ -11,7 +11,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from compiler.formalization.rule import Formalized
+from compiler.formalization.formalized import Formalized
 from fretc.audit.outputs.sarif import OneRun, sarif
 from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
 from fretish.diagnostics.source import Source

@@ -11,7 +11,7 @@ from compiler.project.interceptor_options import options as counted
 from compiler.targets.python.interceptor import text
 from fretc.verification.interceptor.contracts import contracts
 from fretc.verification.interceptor.file import Core, Head, core, head
-from fretc.verification.interceptor.heard import COMMAND, RELEASE, RING, SCAN, STOP
+from fretc.verification.interceptor.incoming import COMMAND, RELEASE, RING, SCAN, STOP
 from fretc.verification.interceptor.machine import Gate, NotAnInterceptorError
 from fretish.bindings.declarations import Form, Interception
 from monitors.interceptor import Options

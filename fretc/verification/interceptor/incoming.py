@@ -1,4 +1,7 @@
-"""What an interceptor has heard, and what that demands: nothing here knows how a core keeps it."""
+"""The messages that came in to an interceptor, and what they demand.
+
+Nothing here knows how a core keeps them.
+"""
 
 from __future__ import annotations
 
@@ -13,7 +16,7 @@ STOP, RELEASE, COMMAND, SCAN, RING = (
     "a scan comes",
     "the timer rings",
 )
-"""What can be heard, as the actions of a trace begin."""
+"""What can come in, as the actions of a trace begin."""
 
 
 CHANNELS = (
@@ -24,7 +27,7 @@ CHANNELS = (
 
 
 class Seen(NamedTuple):
-    """What has been heard up to now; durations in ticks."""
+    """What has come in up to now; durations in ticks."""
 
     requested: bool
     """By the last message of the safety function."""
