@@ -19,7 +19,7 @@ from typing import Any, ClassVar
 import fsspec
 import pytest
 
-from fretc.logs import reader as recordings
+from fretc.logs import containers
 from fretc.logs.mcap import contents
 from fretc.logs.reader import read
 from fretc.logs.signals.integrity import Integrity
@@ -346,7 +346,7 @@ def written_to(monkeypatch: pytest.MonkeyPatch, change: Callable[[], object]) ->
         change()
         return found
 
-    monkeypatch.setattr(recordings, "contents", read)
+    monkeypatch.setattr(containers, "contents", read)
     monkeypatch.setattr(inputs._Digest, "begin", lambda self: None)
     monkeypatch.setattr(inputs._Digest, "result", _later)
 
