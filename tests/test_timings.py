@@ -63,7 +63,11 @@ def test_no_two_timings_ask_for_the_same() -> None:
 @pytest.mark.parametrize("timing", TIMINGS, ids=lambda timing: timing.__name__)
 def test_a_timing_is_read_and_printed(timing: type[s.Timing]) -> None:
     """The grammar has its words, and they are those that the printer writes."""
-    values: dict[str, Any] = {"duration": s.Duration(2, "tick"), "stop": Name("p"), "explicit": True}
+    values: dict[str, Any] = {
+        "duration": s.Duration(2, "tick"),
+        "stop": Name("p"),
+        "explicit": True,
+    }
     written = timing(**{name: values[name] for name in timing.__dataclass_fields__})
     sentence = f"the sw shall {printed(written)} satisfy q"
     read = parse(Source("r.fret", sentence).span())
