@@ -59,6 +59,8 @@ def decoded(value: object, kind: type[R]) -> R:
         return msgspec.convert(value, kind, strict=True)
     except msgspec.ValidationError as error:
         raise MisshapenError(_in_words(str(error))) from None
+    except UnicodeEncodeError:
+        raise MisshapenError("a text in it has half of a character: a lone surrogate") from None
 
 
 def plain(record: object) -> Any:
