@@ -6,9 +6,9 @@ Spans do not compare: two expressions are equal when they say the same, wherever
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
-from typing import Literal
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, field, replace
+from typing import Literal, assert_never
 
 from fretish.diagnostics.source import Span
 
@@ -193,6 +193,26 @@ def children(expression: Expression) -> tuple[Expression, ...]:
             | Comparison(_, left, right)
         ):
             return (left, right)
+
+
+def with_comparisons(
+    expression: Expression, rewrite: Callable[[Comparison], Expression]
+) -> Expression:
+    """The expression with each comparison in it replaced; those within calls, too."""
+    match expression:
+        case Comparison():
+            return rewrite(expression)
+        case Not(arg) | Persistence(arg):
+            return replace(expression, arg=with_comparisons(arg, rewrite))
+        case And(args) | Or(args) | Call(_, args):
+            return replace(expression, args=tuple(with_comparisons(arg, rewrite) for arg in args))
+        case Xor(left, right) | Implies(left, right) | Iff(left, right):
+            sides = with_comparisons(left, rewrite), with_comparisons(right, rewrite)
+            return replace(expression, left=sides[0], right=sides[1])
+        case Truth() | Name() | Number() | Quantity() | Negation() | Arithmetic():
+            return expression
+        case _:
+            assert_never(expression)
 
 
 def names(expression: Expression) -> Iterator[Name]:

@@ -32,7 +32,8 @@ from fretish.syntax_errors import (
     no_sentence,
     unknown_character,
 )
-from fretish.units import number
+from fretish.units import NAMES, number
+from fretish.units import split as split_quantity
 
 _UNITS: dict[str, s.TimeUnit] = {
     "TICK": "tick",
@@ -102,12 +103,22 @@ def _span(first: Token, last: Token | None = None) -> Span:
 def _lark() -> Lark:
     grammar = files("fretish").joinpath("grammar.lark").read_text(encoding="utf-8")
     return Lark(
-        grammar,
+        grammar + _QUANTITY,
         parser="lalr",
         lexer="basic",
         propagate_positions=True,
         maybe_placeholders=False,
     )
+
+
+_UNIT = "(?:" + "|".join(sorted((n for n in NAMES if n != "1"), key=len, reverse=True)) + ")"
+_POWERED = rf"{_UNIT}(?:\^?-?[0-9]{{1,2}})?(?![\w%]|\.\w)"
+_QUANTITY = (
+    "\nQUANTITY.3: "
+    r"/(?:0|[1-9][0-9]{0,59})(?:\.[0-9]{1,60})?(?:[eE][+-]?[0-9]{1,3}(?![0-9.]))?"
+    rf" *{_POWERED}(?:[*\/]{_POWERED})*/"
+)
+"""A number and its unit: all units are known to the lexer, so no name is taken for one."""
 
 
 def _meta_span(meta: Any) -> Span:
@@ -160,11 +171,18 @@ class _Build(Transformer_NonRecursive[Token, Any]):
     def name(self, meta: Any, children: list[e.Name]) -> e.Name:
         return children[0]
 
+    def mode_name(self, meta: Any, children: list[Token]) -> e.Name:
+        return e.Name(str(children[0]), _span(children[0]))
+
     def named_mode(self, meta: Any, children: list[Any]) -> e.Name:
         return cast(e.Name, _parts(children)[0])
 
     def number(self, meta: Any, children: list[Token]) -> e.Number:
         return e.Number(str(children[0]), _span(children[0]))
+
+    def quantity(self, meta: Any, children: list[Token]) -> e.Quantity:
+        digits, unit = split_quantity(str(children[0]))
+        return e.Quantity(digits, unit, _span(children[0]))
 
     def truth(self, meta: Any, children: list[Token]) -> e.Truth:
         return e.Truth(children[0] == "true")
@@ -313,6 +331,13 @@ def _number(digits: str) -> Fraction | None:
 def _unexpected(error: UnexpectedToken, text: Span) -> Diagnostic:
     token: Token = error.token
     before = _word_before(token, text)
+    if token.type == "QUANTITY" and "NUMBER" in (error.accepts or error.expected):
+        in_duration = before is not None and before.type in ("WITHIN", "FOR", "AFTER")
+        return (
+            explain(_duration(token, text))
+            if in_duration
+            else bad_probability(_lexeme(token, text).span)
+        )
     return explain(
         Unexpected(
             _lexeme(token, text),
@@ -320,6 +345,20 @@ def _unexpected(error: UnexpectedToken, text: Span) -> Diagnostic:
             frozenset(error.accepts or error.expected),
             text,
         )
+    )
+
+
+def _duration(token: Token, text: Span) -> Unexpected:
+    """A duration in one of our units, `within 5 s`: FRETish has words of its own."""
+    digits, unit = split_quantity(str(token))
+    start, end = token.start_pos, token.end_pos
+    assert start is not None
+    assert end is not None
+    return Unexpected(
+        Lexeme("ID", text.part(end - len(unit), end)),
+        Lexeme("NUMBER", text.part(start, start + len(digits))),
+        frozenset(_UNITS),
+        text,
     )
 
 

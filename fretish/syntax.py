@@ -5,14 +5,15 @@ The tree keeps `3 seconds`; how many ticks that is belongs to `fretish.clock`.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
 from enum import Enum, StrEnum, auto
 from fractions import Fraction
 from typing import Literal, assert_never
 
+from fretish import expressions
 from fretish.diagnostics.source import Span
-from fretish.expressions import ComparisonOperator, Expression
+from fretish.expressions import Comparison, ComparisonOperator, Expression
 
 
 class ScopeKind(StrEnum):
@@ -330,3 +331,21 @@ def deadline(timing: Timing) -> Duration | None:
 def is_eventual(timing: Timing) -> bool:
     """Whether one response is enough, however late in the interval: `eventually`, or no timing."""
     return SHAPES[type(timing)] == Shape(Extent.INTERVAL, Quantifier.SOME)
+
+
+def with_comparisons(sentence: Sentence, rewrite: Callable[[Comparison], Expression]) -> Sentence:
+    """The sentence with each comparison in it replaced."""
+
+    def rewritten(expression: Expression) -> Expression:
+        return expressions.with_comparisons(expression, rewrite)
+
+    scope, condition, timing = sentence.scope, sentence.condition, sentence.timing
+    return replace(
+        sentence,
+        scope=scope and replace(scope, mode=rewritten(scope.mode)),
+        condition=condition and replace(condition, expression=rewritten(condition.expression)),
+        timing=replace(timing, stop=rewritten(timing.stop))
+        if isinstance(timing, Until | Before)
+        else timing,
+        response=rewritten(sentence.response),
+    )

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from fretish.diagnostics.diagnostic import Code, Diagnostic, suggestion
 from fretish.diagnostics.source import Span
 from fretish.keywords import KEYWORDS
+from fretish.units import unknown_unit
 
 
 @dataclass(frozen=True, slots=True)
@@ -185,6 +186,13 @@ def _unit(u: Unexpected) -> Diagnostic | None:
         u.lexeme.span,
         help=f"did you mean `{near}`?" if near else mend,
     )
+
+
+def _measured(u: Unexpected) -> Diagnostic | None:
+    """A name behind a number stands where a unit may stand."""
+    if u.before is None or u.before.kind != "NUMBER" or u.lexeme.kind != "ID":
+        return None
+    return unknown_unit(u.lexeme.word, u.lexeme.span)
 
 
 def _number(u: Unexpected) -> Diagnostic | None:
@@ -421,6 +429,7 @@ def _alternatives(words: list[str]) -> str:
 
 _RULES: tuple[Callable[[Unexpected], Diagnostic | None], ...] = (
     _unit,
+    _measured,
     _number,
     _globally,
     _mode,

@@ -11,6 +11,9 @@ import re
 from dataclasses import dataclass
 from fractions import Fraction
 
+from fretish.diagnostics.diagnostic import Code, Diagnostic, suggestion
+from fretish.diagnostics.source import Span
+
 _BASES = ("m", "kg", "s", "A", "K", "rad")
 Dimension = tuple[int, ...]
 """Exponents of metre, kilogram, second, ampere, kelvin, radian."""
@@ -34,7 +37,8 @@ def _base(name: str, factor: Fraction | int = 1) -> Unit:
     return Unit(tuple(int(name == base) for base in _BASES), Fraction(factor))
 
 
-def _times(left: Unit, right: Unit, power: int = 1) -> Unit:
+def times(left: Unit, right: Unit, power: int = 1) -> Unit:
+    """`left * right ^ power`."""
     dimension = tuple(a + power * b for a, b in zip(left.dimension, right.dimension, strict=True))
     return Unit(dimension, left.factor * right.factor**power)
 
@@ -70,13 +74,13 @@ _UNITS: dict[str, Unit] = {
     "mA": _base("A", Fraction(1, 1000)),
     "K": _base("K"),
     "N": _NEWTON,
-    "Nm": _times(_NEWTON, _METRE),
-    "Pa": _times(_NEWTON, _METRE, -2),
+    "Nm": times(_NEWTON, _METRE),
+    "Pa": times(_NEWTON, _METRE, -2),
     "kPa": Unit((-1, 1, -2, 0, 0, 0), Fraction(1000)),
     "bar": Unit((-1, 1, -2, 0, 0, 0), Fraction(10**5)),
     "V": _VOLT,
     "mV": Unit(_VOLT.dimension, Fraction(1, 1000)),
-    "W": _times(_VOLT, _base("A")),
+    "W": times(_VOLT, _base("A")),
     "Hz": Unit((0, 0, -1, 0, 0, 0), Fraction(1)),
 }
 NAMES = tuple(_UNITS)
@@ -96,8 +100,33 @@ def unit(text: str) -> Unit | None:
             if match is None or match[1] not in _UNITS:
                 return None
             power = int(match[2] or 1) * (1 if position == 0 else -1)
-            result = _times(result, _UNITS[match[1]], power)
+            result = times(result, _UNITS[match[1]], power)
     return result
+
+
+def unit_product(left: str, right: str) -> str:
+    """The name of a product of units: `km*s/h` for `km/h` and `s`; empty for plain numbers."""
+    above, below = _fraction(left)
+    more, less = _fraction(right)
+    return _spelt([*above, *more], [*below, *less])
+
+
+def unit_quotient(left: str, right: str) -> str:
+    """The name of a quotient of units: `m/s` for `m` and `s`; empty for plain numbers."""
+    above, below = _fraction(left)
+    more, less = _fraction(right)
+    return _spelt([*above, *less], [*below, *more])
+
+
+def _fraction(name: str) -> tuple[list[str], list[str]]:
+    """The factors above and below the line; `m/s*s` is m / (s s)."""
+    above, *below = name.split("/")
+    factors = [factor for factor in above.split("*") if factor not in ("", "1")]
+    return factors, [factor for part in below for factor in part.split("*")]
+
+
+def _spelt(above: list[str], below: list[str]) -> str:
+    return "/".join(["*".join(above) or ("1" if below else ""), *below])
 
 
 _NUMBER = re.compile(r"-?[0-9]{1,60}(?:\.[0-9]{1,60})?(?:[eE][+-]?[0-9]{1,3})?")
@@ -136,6 +165,21 @@ def _power(base: str, exponent: int) -> str:
     return base if exponent == 1 else f"{base}^{exponent}"
 
 
+_SPLIT = re.compile(r"([0-9]+(?:\.[0-9]+)?(?:[eE][+-]?[0-9]+)?)\s*(.*)")
+
+
+def split(text: str) -> tuple[str, str]:
+    """`1.5 m/s` → its digits and its unit.
+
+    Raises:
+        ValueError: it does not begin with a digit.
+    """
+    match = _SPLIT.fullmatch(text.strip())
+    if match is None:
+        raise ValueError(f"`{text[:80]}` is no quantity")
+    return match[1], match[2]
+
+
 _DURATION = re.compile(r"\s*(\d{1,30}(?:\.\d{1,30})?)\s*(ns|us|ms|s|min|h)\s*")
 
 
@@ -146,3 +190,19 @@ def nanoseconds(text: str) -> int | None:
         return None
     exact = Fraction(match[1]) * _UNITS[match[2]].factor * 10**9
     return int(exact) if exact.denominator == 1 and exact < 2**62 else None
+
+
+_SPELT = {"mps": "m/s", "kph": "km/h", "kmh": "km/h", "rps": "rad/s", "degrees": "deg"}
+"""Units by names that are nearer to those of other units."""
+
+
+def unknown_unit(name: str, span: Span) -> Diagnostic:
+    """F306, with the nearest unit."""
+    near = _SPELT.get(name) or suggestion(name, NAMES)
+    examples = "m, cm, s, ms, rad, deg, m/s, rad/s, m/s^2, kg, A, V, Hz, %"
+    return Diagnostic(
+        Code.UNKNOWN_UNIT,
+        f"`{name}` is no unit",
+        span,
+        help=f"did you mean `{near}`?" if near else f"write one such as {examples}",
+    )

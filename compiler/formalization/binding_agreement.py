@@ -15,6 +15,8 @@ from compiler.formalization.formalized import Formalized
 from compiler.formalization.obligation import atom, variable
 from fretish import expressions as e
 from fretish import units
+from fretish.bindings.canonical import expression as meaning
+from fretish.bindings.comparisons import FUNCTIONS, bound, is_measured
 from fretish.bindings.constants import constants
 from fretish.bindings.declarations import Declarations, Proposition
 from fretish.checking import conditions
@@ -25,23 +27,18 @@ from fretish.parser import parse
 from fretish.reading.toml_text import as_key
 from fretish.syntax import Sentence
 
-_MIRRORED = {"<": ">", "<=": ">=", ">": "<", ">=": "<=", "=": "=", "!=": "!="}
-_FUNCTIONS = {
-    "absReal": "abs", "absInt": "abs",
-    "maxReal": "max", "maxInt": "max", "minReal": "min", "minInt": "min",
-}  # fmt: skip
-"""What a function of sentences is called in bindings."""
+_MIRRORED: Mapping[str, e.ComparisonOperator] = {**e.MIRRORED, "=": "=", "!=": "!="}
 
 
 def disagreements(rule: Formalized, declarations: Declarations) -> Iterator[Diagnostic]:
     """F524 for each comparison of the sentence that is bound to another one."""
     stated = _stated(rule.sentence)
     for name in rule.watched:
-        bound = declarations.propositions.get(name)
-        if bound is None or name not in stated:
+        proposition = declarations.propositions.get(name)
+        if proposition is None or name not in stated:
             continue
-        if not _agrees(stated[name], bound.expression, declarations):
-            yield _drifted(rule, name, stated[name], bound)
+        if not _agrees(stated[name], proposition.expression, declarations):
+            yield _drifted(rule, name, stated[name], proposition)
 
 
 def _stated(sentence: Sentence) -> Mapping[str, e.Expression]:
@@ -71,22 +68,33 @@ def _quoted(name: e.Name) -> e.Comparison | None:
     return response if isinstance(response, e.Comparison) else None
 
 
-def _agrees(stated: e.Expression, bound: e.Expression, declarations: Declarations) -> bool:
+def _agrees(stated: e.Expression, declared: e.Expression, declarations: Declarations) -> bool:
     if not isinstance(stated, e.Comparison):
         return not any(_constant(part) is not None for part in _parts(stated))
-    if not isinstance(bound, e.Comparison):
+    if not isinstance(declared, e.Comparison):
         return False
-    if stated.op == bound.op and _Terms(declarations).fit(
-        (stated.left, bound.left), (stated.right, bound.right)
+    if is_measured(stated, declarations.signals):
+        return _is_same(stated, declared, declarations)
+    if stated.op == declared.op and _Terms(declarations).fit(
+        (stated.left, declared.left), (stated.right, declared.right)
     ):
         return True
     sided = _constant(stated.left) is not None or _constant(stated.right) is not None
     turned = sided or stated.op in ("=", "!=")  # of two names nothing says which is which
     return (
         turned
-        and _MIRRORED[stated.op] == bound.op
-        and _Terms(declarations).fit((stated.left, bound.right), (stated.right, bound.left))
+        and _MIRRORED[stated.op] == declared.op
+        and _Terms(declarations).fit((stated.left, declared.right), (stated.right, declared.left))
     )
+
+
+def _is_same(stated: e.Comparison, declared: e.Comparison, declarations: Declarations) -> bool:
+    """Whether a comparison of signals means what is declared for it, each number in its unit."""
+    own = bound(stated, declarations.signals, declarations.source.span(0, 0))
+    if isinstance(own, Diagnostic):
+        return False
+    turned = e.Comparison(_MIRRORED[declared.op], declared.right, declared.left)
+    return meaning(own) in (meaning(declared), meaning(turned))
 
 
 class _Terms:
@@ -112,7 +120,7 @@ class _Terms:
                 return self._fits(arg, other)
             case e.Arithmetic(op, _, _), e.Arithmetic(other, _, _) if op == other:
                 return self._all(stated, bound)
-            case e.Call(name, _), e.Call(other, _) if _FUNCTIONS.get(name) == other:
+            case e.Call(name, _), e.Call(other, _) if FUNCTIONS.get(name) == other:
                 return self._all(stated, bound)
             case _:
                 return False

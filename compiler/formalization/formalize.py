@@ -14,6 +14,7 @@ from compiler.formalization.formalized import Formalized
 from compiler.formalization.future import future, probabilistic
 from compiler.formalization.obligation import obligation
 from compiler.formalization.past import past, watch
+from compiler.formalization.resolution import in_own_units, resolved
 from compiler.logic.formula import endless
 from compiler.logic.printing import identifier
 from fretish.bindings.declarations import Declarations, Modality, Variable
@@ -48,20 +49,27 @@ def _formalized(
 ) -> tuple[Formalized | None, tuple[Diagnostic, ...]]:
     if requirement.is_free_text:
         return None, (_free_text(requirement),)
-    sentence = parse(requirement.wording)
+    written = parse(requirement.wording)
+    if isinstance(written, Diagnostic):
+        return None, (written,)
+    place = requirement.wording
+    sentence = in_own_units(written, declarations, place) if declarations else written
     if isinstance(sentence, Diagnostic):
         return None, (sentence,)
     ticks = in_ticks(sentence, _clock(declarations))
     if isinstance(ticks, Diagnostic):
         return None, (ticks,)
     try:
-        rule = _rule(requirement, sentence, ticks, declarations)
+        rule = _rule(requirement, written, sentence, ticks, declarations)
     except RecursionError:  # some versions of Python bound it below what `deep` asks for
         return None, (too_deep(sentence),)
     wrong = (*clashes([rule]), *(disagreements(rule, declarations) if declarations else ()))
     if wrong:
         return None, wrong
-    return rule, tuple(_remarks(requirement, sentence, declarations))
+    bound = resolved(rule, declarations) if declarations else rule
+    if isinstance(bound, Diagnostic):
+        return None, (bound,)
+    return bound, tuple(_remarks(requirement, sentence, declarations))
 
 
 def clashes(rules: Sequence[Formalized]) -> Iterator[Diagnostic]:
@@ -81,6 +89,7 @@ def clashes(rules: Sequence[Formalized]) -> Iterator[Diagnostic]:
 
 def _rule(
     requirement: Requirement,
+    written: Sentence,
     sentence: Sentence,
     ticks: int | None,
     declarations: Declarations | None,
@@ -92,6 +101,7 @@ def _rule(
     odds = sentence.probability
     return Formalized(
         requirement=requirement,
+        written=written,
         sentence=sentence,
         ticks=ticks,
         clock=_clock(declarations),

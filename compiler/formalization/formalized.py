@@ -26,7 +26,10 @@ class Formalized:
     """A requirement, formalized: one meaning in three formulas, and as signals to watch."""
 
     requirement: Requirement
+    written: Sentence
+    """As it was written, with units."""
     sentence: Sentence
+    """With bare numbers, in the units of the signals; a unit stays where no signal is declared."""
     ticks: int | None
     """What the duration counts; None where the sentence has none."""
     clock: Clock | None
@@ -86,7 +89,7 @@ class Formalized:
     @property
     def fingerprint(self) -> str:
         """SHA-256 of the canonical sentence: white space and wording of key words do not count."""
-        return hashlib.sha256(canonical(self.sentence).encode()).hexdigest()
+        return hashlib.sha256(canonical(self.written).encode()).hexdigest()
 
 
 def _place(name: Name) -> int:
@@ -98,6 +101,7 @@ def plain(rule: Formalized) -> Formalized:
     if rule.sentence.probability is None:
         return rule
     sentence = replace(rule.sentence, probability=None)
-    source = Source(rule.requirement.wording.source.name, printed(sentence))
+    written = replace(rule.written, probability=None)
+    source = Source(rule.requirement.wording.source.name, printed(written))
     requirement = replace(rule.requirement, wording=source.span())
-    return replace(rule, requirement=requirement, sentence=sentence, pctl=None)
+    return replace(rule, requirement=requirement, written=written, sentence=sentence, pctl=None)

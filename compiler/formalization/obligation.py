@@ -266,6 +266,8 @@ def atom(expression: e.Expression) -> str:
             return identifier(id)  # as everywhere in formulas: `a.b` is `a_DOT_b`
         case e.Number(digits):
             return digits
+        case e.Quantity(digits, unit):
+            return f"{digits} {unit}"
         case e.Truth(value):
             return str(value).upper()
         case _:

@@ -55,7 +55,7 @@ def wording(requirement: Requirement) -> str:
 
 def record(rule: Formalized) -> dict[str, Any]:
     """The object of `--emit json`; its schema is `templates/json/requirement.schema.json`."""
-    requirement, tree = rule.requirement, rule.sentence
+    requirement, tree = rule.requirement, rule.written
     return {
         "schema": SCHEMA,
         "fretc": __version__,

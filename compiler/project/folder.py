@@ -13,6 +13,7 @@ from compiler.files.settings import settings
 from compiler.files.text_files import read, unreadable
 from compiler.formalization.formalize import duplicates, formalize
 from compiler.formalization.formalized import Formalized
+from compiler.formalization.resolution import extended
 from compiler.project.ancestry import circles, unknown_parents
 from compiler.project.parents import Parent
 from compiler.project.parents import parents as read_parents
@@ -100,6 +101,7 @@ def load(
     if (hazards or parents) and not has_errors(upward):
         upward.extend(unknown_parents(written, known, above, hazards))
         upward.extend(circles(written))
+    declarations = _with_atoms(declarations, rules)
     mistakes = declarations.mistakes.values() if declarations else ()
     single = frozenset(chain.from_iterable(mistakes))
     general = (*(each for each in said if each not in single), *unread, *upward)
@@ -114,6 +116,17 @@ def load(
         mistaken,
         above,
     )
+
+
+def _with_atoms(
+    declarations: Declarations | None, rules: Sequence[Formalized]
+) -> Declarations | None:
+    """The declarations with the atoms of all rules that signals decide."""
+    for rule in rules:
+        if declarations is not None and rule.declarations is not None:
+            own = rule.declarations
+            declarations = extended(declarations, own.propositions, own.mistakes)
+    return declarations
 
 
 def _written(paths: Sequence[str]) -> tuple[list[Requirement], list[Diagnostic]]:

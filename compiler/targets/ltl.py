@@ -26,7 +26,7 @@ def text(rule: Formalized, options: Options = DEFAULT) -> str:
     """What a person reads: the sentence, its meaning, and its formulas."""
     dialect = printing.DIALECTS[options.notation]
     lines = {
-        "meaning": meaning(rule.sentence, rule.ticks, rule.clock),
+        "meaning": meaning(rule.written, rule.ticks, rule.clock),
         "FT": printing.text(rule.ft_infinite, dialect),
     }
     if options.simplify:

@@ -110,7 +110,7 @@ def formulas(rule: Formalized, notation: str = "plain") -> Formulas:
         printing.text(rule.ft_finite, dialect),
         printing.text(rule.pt, dialect) if dialect.has_past else None,
         printing.pctl(rule.pctl) if rule.pctl is not None else None,
-        meaning(rule.sentence, rule.ticks, rule.clock),
+        meaning(rule.written, rule.ticks, rule.clock),
     )
 
 

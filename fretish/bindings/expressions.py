@@ -20,7 +20,14 @@ from lark.visitors import Transformer_NonRecursive
 from fretish import expressions as e
 from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity, suggestion
 from fretish.diagnostics.source import Span
-from fretish.units import DIMENSIONLESS, NAMES, Dimension, base_name, nanoseconds, unit
+from fretish.units import (
+    DIMENSIONLESS,
+    Dimension,
+    base_name,
+    nanoseconds,
+    unit,
+    unknown_unit,
+)
 
 FUNCTIONS = ("abs", "min", "max")
 Kind = Dimension | None
@@ -277,22 +284,6 @@ def plain_percents(
                 help=f"write `{limit.digits} %`",
                 severity=Severity.WARNING,
             )
-
-
-_SPELT = {"mps": "m/s", "kph": "km/h", "kmh": "km/h", "rps": "rad/s", "degrees": "deg"}
-"""Units by names that are nearer to those of other units."""
-
-
-def unknown_unit(name: str, span: Span) -> Diagnostic:
-    """F306, with the nearest unit."""
-    near = _SPELT.get(name) or suggestion(name, NAMES)
-    examples = "m, cm, s, ms, rad, deg, m/s, rad/s, m/s^2, kg, A, V, Hz, %"
-    return Diagnostic(
-        Code.UNKNOWN_UNIT,
-        f"`{name}` is no unit",
-        span,
-        help=f"did you mean `{near}`?" if near else f"write one such as {examples}",
-    )
 
 
 def _bad_duration(text: str, span: Span) -> Diagnostic:

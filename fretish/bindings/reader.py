@@ -238,7 +238,7 @@ class _Reader(Fields):
             unit_name = "1"
         unit = units.unit(unit_name) if unit_name is not None else None
         if unit is None and unit_name is not None:
-            self.diagnostics.append(binding.unknown_unit(unit_name, self.tables.value(*at, "unit")))
+            self.diagnostics.append(units.unknown_unit(unit_name, self.tables.value(*at, "unit")))
         if unit is not None:
             self.units[name] = unit
         reduce = self._reduce(table, at, where)

@@ -20,11 +20,11 @@ from compiler.agents.psl_grammar import AGENT, FUNCTOR, KEY_WORDS
 from compiler.agents.psl_printing import property_text
 from compiler.files.artifact import Artifact
 from compiler.files.templating import render
-from compiler.formalization import without_next as nextfree
 from compiler.formalization.formalized import Formalized
 from compiler.formalization.obligation import Uninterpreted, boolean, obligation
 from compiler.logic import formula as f
 from compiler.logic.printing import is_compound
+from compiler.targets.ajpf import without_next as nextfree
 from compiler.targets.target import (
     DEFAULT,
     Options,

@@ -63,7 +63,7 @@ def _text(rule: Formalized) -> str:
 
 def _caption(rule: Formalized, long: Mapping[int, f.Formula], nodes: Sequence[Node]) -> list[str]:
     lines = [f"{rule.id}: {wording(rule.requirement)}"]
-    lines.append(meaning(rule.sentence, rule.ticks, rule.clock))
+    lines.append(meaning(rule.written, rule.ticks, rule.clock))
     lines.extend(f"{PLACES[i]}: {printing.readable(part)}" for i, part in long.items())
     if any(node.counts for node in nodes):
         lines.append("On edges: [a condition on k], / what k becomes.")

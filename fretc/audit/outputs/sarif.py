@@ -126,7 +126,7 @@ def _driver(
 def _rule(requirement: Requirement, rule: Formalized | None) -> dict[str, Any]:
     """A requirement; without a rule nothing says what it means."""
     sentence = wording(requirement)
-    words = meaning(rule.sentence, rule.ticks, rule.clock) if rule else ""
+    words = meaning(rule.written, rule.ticks, rule.clock) if rule else ""
     told = [words, requirement.text, requirement.rationale]
     return {
         "id": requirement.id,

@@ -474,8 +474,8 @@ def test_nesting_has_an_end() -> None:
 
 
 def test_what_is_not_proved_is_not_emitted(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("compiler.formalization.without_next.is_proved", lambda *shape: False)
-    monkeypatch.setattr("compiler.formalization.without_next.is_weaker", lambda *shape: False)
+    monkeypatch.setattr("compiler.targets.ajpf.without_next.is_proved", lambda *shape: False)
+    monkeypatch.setattr("compiler.targets.ajpf.without_next.is_weaker", lambda *shape: False)
     for sentence, options in (
         ("when p sw shall eventually satisfy q", DEFAULT),
         (LATE.replace("2 seconds", "2 ticks"), WEAKEN),

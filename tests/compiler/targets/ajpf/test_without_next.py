@@ -10,7 +10,10 @@ import spot
 
 from compiler.formalization.future import future
 from compiler.formalization.obligation import TRAITS, Demand, Kind, Obligation, Trait, obligation
-from compiler.formalization.without_next import (
+from compiler.logic import formula as f
+from compiler.logic import printing
+from compiler.logic.spot import equivalent, same_language
+from compiler.targets.ajpf.without_next import (
     is_next_free,
     is_proved,
     is_weaker,
@@ -18,9 +21,6 @@ from compiler.formalization.without_next import (
     next_free,
     unbounded,
 )
-from compiler.logic import formula as f
-from compiler.logic import printing
-from compiler.logic.spot import equivalent, same_language
 from fretish.diagnostics.source import Source
 from fretish.parser import parse
 from fretish.syntax import ConditionKind, ScopeKind, Sentence, duration
@@ -97,7 +97,7 @@ def test_the_proof_at_emission_is_asked_of_every_shape() -> None:
 
 def test_a_wrong_form_is_not_proved(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(
-        "compiler.formalization.without_next.next_free", lambda meant: f.eventually(f.Atom("r"))
+        "compiler.targets.ajpf.without_next.next_free", lambda meant: f.eventually(f.Atom("r"))
     )
     is_proved.cache_clear()
     assert is_proved(None, None, Kind.EVENTUALLY)

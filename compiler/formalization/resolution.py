@@ -1,0 +1,108 @@
+"""What the atoms of a sentence are in the logs: propositions that are declared, or signals.
+
+A comparison of signals needs no proposition of its own: it is one, evaluated where it stands. So
+is a signal that stands where a truth value does.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
+from itertools import chain
+
+from compiler.formalization.formalized import Formalized
+from compiler.formalization.obligation import atom, variable
+from fretish import expressions as e
+from fretish import syntax as s
+from fretish.bindings import comparisons
+from fretish.bindings.declarations import Declarations, Part, Proposition
+from fretish.checking import conditions
+from fretish.diagnostics.diagnostic import Diagnostic
+from fretish.diagnostics.source import Span
+from fretish.printer import expression as printed
+from fretish.syntax import Sentence
+
+
+def in_own_units(
+    sentence: Sentence, declarations: Declarations, place: Span
+) -> Sentence | Diagnostic:
+    """The sentence with each unit converted into that of the signals beside it."""
+    mistakes: list[Diagnostic] = []
+
+    def converted(comparison: e.Comparison) -> e.Comparison:
+        if not comparisons.is_measured(comparison, declarations.signals):
+            return comparison
+        own = comparisons.in_own_units(comparison, declarations.signals, place)
+        if isinstance(own, e.Comparison):
+            return own
+        mistakes.append(own)
+        return comparison
+
+    own = s.with_comparisons(sentence, converted)
+    return mistakes[0] if mistakes else own
+
+
+def resolved(rule: Formalized, declarations: Declarations) -> Formalized | Diagnostic:
+    """The rule with declarations that hold each of its atoms which signals decide."""
+    propositions: dict[str, Proposition] = {}
+    mistakes: dict[Part, tuple[Diagnostic, ...]] = {}
+    atoms = {*rule.propositions, *rule.watched}
+    for name, part in _candidates(rule.sentence):
+        if name not in atoms or name in propositions:
+            continue
+        if name in declarations.propositions or ("proposition", name) in declarations.mistakes:
+            continue
+        broken = _mistakes(part, declarations)
+        if broken:
+            mistakes[("proposition", name)] = broken
+        elif comparisons.is_measured(part, declarations.signals):
+            bound = _bound(part, declarations, rule.requirement.wording)
+            if isinstance(bound, Diagnostic):
+                return bound
+            span = getattr(part, "span", None) or rule.requirement.wording
+            propositions[name] = Proposition(name, bound, printed(part), span=span)
+    return replace(rule, declarations=extended(declarations, propositions, mistakes))
+
+
+def extended(
+    declarations: Declarations,
+    propositions: Mapping[str, Proposition],
+    mistakes: Mapping[Part, tuple[Diagnostic, ...]],
+) -> Declarations:
+    """The declarations with propositions that sentences state."""
+    if not propositions and not mistakes:
+        return declarations
+    return replace(
+        declarations,
+        propositions={**declarations.propositions, **propositions},
+        mistakes={**declarations.mistakes, **mistakes},
+    )
+
+
+def _candidates(sentence: Sentence) -> Iterator[tuple[str, e.Expression]]:
+    """Comparisons and variables, by the names that formulas give them."""
+    waiting = list(conditions(sentence))
+    while waiting:
+        part = waiting.pop()
+        if isinstance(part, e.Comparison):
+            yield atom(part), part
+            continue
+        if isinstance(part, e.Name):
+            yield variable(part.id), part
+        waiting.extend(e.children(part))
+
+
+def _mistakes(part: e.Expression, declarations: Declarations) -> tuple[Diagnostic, ...]:
+    """Those of the signals that it reads, where all that is not declared is one of them."""
+    names = [name.id for name in e.names(part)]
+    own = [declarations.mistakes.get(("signal", name), ()) for name in names]
+    known = all(name in declarations.signals or own[i] for i, name in enumerate(names))
+    return tuple(dict.fromkeys(chain.from_iterable(own))) if known else ()
+
+
+def _bound(
+    part: e.Expression, declarations: Declarations, place: Span
+) -> e.Expression | Diagnostic:
+    if not isinstance(part, e.Comparison):
+        return part
+    return comparisons.bound(part, declarations.signals, place)

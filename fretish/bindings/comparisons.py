@@ -1,0 +1,289 @@
+"""Comparisons of sentences, over the signals of the bindings.
+
+A bare number is in the unit of the signal that it is compared with or added to, as in FRET, where
+variables have no units. A unit in a sentence is converted into that, exactly.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from fractions import Fraction
+
+from fretish import expressions as e
+from fretish.bindings import expressions as binding
+from fretish.bindings.declarations import Signal
+from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.diagnostics.source import Span
+from fretish.units import DIMENSIONLESS, ONE, Unit, number, times, unit, unit_product, unit_quotient
+
+FUNCTIONS = {
+    "absReal": "abs", "absInt": "abs",
+    "maxReal": "max", "maxInt": "max", "minReal": "min", "minInt": "min",
+}  # fmt: skip
+"""What a function of sentences is called in bindings."""
+
+
+class _MistakeError(Exception):
+    """Carries a diagnostic out of the recursion."""
+
+    def __init__(self, diagnostic: Diagnostic) -> None:
+        super().__init__(diagnostic.message)
+        self.diagnostic = diagnostic
+
+
+@dataclass(frozen=True, slots=True)
+class _Measure:
+    """In which unit the numbers of an expression are."""
+
+    name: str
+    """The unit as it is written; empty for plain numbers."""
+    unit: Unit
+    measured: bool
+    """Whether a signal says so; a quantity is converted."""
+    mixed: bool = False
+    """Whether signals in several units of one dimension meet."""
+
+
+_PLAIN = _Measure("", ONE, measured=False)
+
+
+def is_measured(expression: e.Expression, signals: Mapping[str, Signal]) -> bool:
+    """Whether every name in it is a signal, and every call a function of bindings."""
+    parts = list(_parts(expression))
+    names = {part.id for part in parts if isinstance(part, e.Name)}
+    calls = {part.name for part in parts if isinstance(part, e.Call)}
+    operators = {part.op for part in parts if isinstance(part, e.Arithmetic)}
+    known = names <= signals.keys() and calls <= FUNCTIONS.keys()
+    return bool(names) and known and operators.isdisjoint({"mod", "^"})
+
+
+def in_own_units(
+    comparison: e.Comparison, signals: Mapping[str, Signal], place: Span
+) -> e.Comparison | Diagnostic:
+    """The comparison with `20 %` as a bare number in the unit of the signal that it meets.
+
+    It is what FRET, formulas and monitors read. Where signals in several units of one dimension
+    meet, a quantity stays what it is.
+
+    Args:
+        comparison: of a sentence, `is_measured`.
+        signals: what is declared.
+        place: where to point when a part has no place of its own.
+    """
+    return _Writer(signals, place, bare=True).comparison(comparison)
+
+
+def bound(
+    comparison: e.Comparison, signals: Mapping[str, Signal], place: Span
+) -> e.Comparison | Diagnostic:
+    """The comparison in the language of bindings, where each number has its unit."""
+    return _Writer(signals, place, bare=False).comparison(comparison)
+
+
+class _Writer:
+    """Rewrites the numbers of a comparison, each for the unit of its place."""
+
+    def __init__(self, signals: Mapping[str, Signal], place: Span, *, bare: bool) -> None:
+        self._signals = signals
+        self._place = place
+        self._bare = bare
+        self._measures: dict[int, _Measure | None] = {}
+        """By the identity of a part: the hash of a tree takes as long as the tree is large."""
+
+    def comparison(self, comparison: e.Comparison) -> e.Comparison | Diagnostic:
+        sides = (comparison.left, comparison.right)
+        try:
+            common = self._common(sides)
+            left, right = (self._written(side, common) for side in sides)
+        except _MistakeError as error:
+            return error.diagnostic
+        return replace(comparison, left=left, right=right)
+
+    # Units
+
+    def _measure(self, part: e.Expression) -> _Measure | None:
+        """None for what is made of bare numbers alone."""
+        if id(part) not in self._measures:
+            self._measures[id(part)] = self._measured(part)
+        return self._measures[id(part)]
+
+    def _measured(self, part: e.Expression) -> _Measure | None:
+        match part:
+            case e.Number():
+                return None
+            case e.Quantity(_, name, span):
+                return _Measure(name, self._unit(name, span), measured=False)
+            case e.Name(id):
+                signal = self._signals[id]
+                return _Measure(signal.unit_name, signal.unit, measured=True)
+            case e.Arithmetic("*" | "/" as op, left, right):
+                return self._product(op, left, right)
+            case _:
+                parts = e.children(part)
+                plain = all(self._measure(each) is None for each in parts)
+                return None if plain else self._common(parts)
+
+    def _unit(self, name: str, span: Span | None) -> Unit:
+        """The unit of a quantity; F339 where a part of its name is a signal too."""
+        kinds = {id: signal.unit.dimension for id, signal in self._signals.items()}
+        kind = binding.dimension(e.Quantity("1", name, span), kinds, self._place)
+        if isinstance(kind, Diagnostic):
+            raise _MistakeError(kind)
+        known = unit(name)
+        assert known is not None, "the lexer knows all units"
+        return known
+
+    def _product(self, op: str, left: e.Expression, right: e.Expression) -> _Measure | None:
+        first, second = self._measure(left), self._measure(right)
+        if first is None and second is None:
+            return None
+        a, b = first or _PLAIN, second or _PLAIN
+        combined = times(a.unit, b.unit, 1 if op == "*" else -1)
+        name = unit_product(a.name, b.name) if op == "*" else unit_quotient(a.name, b.name)
+        return _Measure(name, combined, a.measured or b.measured, a.mixed or b.mixed)
+
+    def _common(self, parts: Sequence[e.Expression]) -> _Measure:
+        """The unit of parts that are compared or added: that of the signals among them."""
+        measures = [(part, m) for part in parts if (m := self._measure(part)) is not None]
+        if not measures:
+            return _PLAIN
+        _, first = measures[0]
+        for part, other in measures:
+            if other.unit.dimension != first.unit.dimension:
+                raise _MistakeError(_mismatch(first, other, self._span(part)))
+        measured = [m for _, m in measures if m.measured]
+        mixed = len({m.unit.factor for m in measured}) > 1 or any(m.mixed for m in measured)
+        return replace(measured[0] if measured else first, mixed=mixed)
+
+    def _span(self, part: e.Expression) -> Span:
+        return getattr(part, "span", None) or self._place
+
+    # Numbers
+
+    def _written(self, part: e.Expression, target: _Measure) -> e.Expression:
+        """The part, with its numbers in the target's unit."""
+        if self._measure(part) is None:
+            return self._constant(part, target)
+        match part:
+            case e.Quantity():
+                return self._quantity(part, target)
+            case e.Negation(arg):
+                return replace(part, arg=self._written(arg, target))
+            case e.Arithmetic("*" | "/", left, right):
+                return self._factors(part, left, right, target)
+            case e.Arithmetic(_, left, right):
+                left, right = self._written(left, target), self._written(right, target)
+                return replace(part, left=left, right=right)
+            case e.Call(name, args):
+                called = name if self._bare else FUNCTIONS[name]
+                return replace(
+                    part, name=called, args=tuple(self._written(a, target) for a in args)
+                )
+            case _:
+                return part
+
+    def _constant(self, part: e.Expression, target: _Measure) -> e.Expression:
+        """What is made of bare numbers alone."""
+        for each in _parts(part):
+            if isinstance(each, e.Number) and not _is_number(each.digits):
+                raise _MistakeError(_too_long(self._span(each)))
+        zero = isinstance(part, e.Number) and number(part.digits) == 0
+        if target.mixed and not zero:
+            raise _MistakeError(_which_unit(self._span(part)))
+        if self._bare or not target.name:
+            return part
+        if unit(target.name) is None:
+            raise _MistakeError(_which_unit(self._span(part)))
+        if isinstance(part, e.Number):
+            return e.Quantity(part.digits, target.name, part.span)
+        if isinstance(part, e.Negation):
+            return replace(part, arg=self._constant(part.arg, target))
+        return e.Arithmetic("*", part, e.Quantity("1", target.name))
+
+    def _quantity(self, quantity: e.Quantity, target: _Measure) -> e.Expression:
+        if not self._bare or target.mixed:
+            return quantity
+        factor = self._unit(quantity.unit, quantity.span).factor / target.unit.factor
+        return plain(number(quantity.digits) * factor, quantity.span)
+
+    def _factors(
+        self, part: e.Arithmetic, left: e.Expression, right: e.Expression, target: _Measure
+    ) -> e.Expression:
+        """Each factor in its own unit; a product of quantities is converted as a whole."""
+        own = self._measure(part)
+        assert own is not None
+        product = replace(
+            part,
+            left=self._written(left, self._measure(left) or _PLAIN),
+            right=self._written(right, self._measure(right) or _PLAIN),
+        )
+        if not self._bare or own.measured or own.unit == target.unit:
+            return product
+        ratio = plain(own.unit.factor / target.unit.factor, part.span)
+        return e.Arithmetic("*", product, ratio, part.span)
+
+
+def plain(exact: Fraction, span: Span | None = None) -> e.Expression:
+    """A number as FRETish writes it: a decimal where there is one, else a quotient."""
+    rest, digits = exact.denominator, 0
+    for prime in (2, 5):
+        while rest % prime == 0:
+            rest //= prime
+            digits += 1
+    if rest != 1:
+        over = e.Number(str(exact.denominator), span)
+        return e.Arithmetic("/", e.Number(str(exact.numerator), span), over, span)
+    scaled = exact * 10**digits
+    text = str(scaled.numerator).rjust(digits + 1, "0")
+    whole, fraction = text[: len(text) - digits], text[len(text) - digits :].rstrip("0")
+    return e.Number(f"{whole}.{fraction}" if fraction else whole, span)
+
+
+def _is_number(digits: str) -> bool:
+    try:
+        number(digits)
+    except ValueError:
+        return False
+    return True
+
+
+def _words(measure: _Measure) -> str:
+    if measure.unit.dimension == DIMENSIONLESS:
+        return "a number without a unit"
+    return f"a quantity in {measure.name}"
+
+
+def _mismatch(left: _Measure, right: _Measure, place: Span) -> Diagnostic:
+    return Diagnostic(
+        Code.UNIT_MISMATCH,
+        f"{_words(left)} cannot be compared with or added to {_words(right)}",
+        place,
+        help="a bare number is in the unit of the signal beside it",
+    )
+
+
+def _which_unit(place: Span) -> Diagnostic:
+    return Diagnostic(
+        Code.WHICH_UNIT,
+        "this number has no unit, and the signals beside it have several",
+        place,
+        help="give it its unit: `5 m/s`",
+    )
+
+
+def _too_long(place: Span) -> Diagnostic:
+    return Diagnostic(
+        Code.BAD_EXPRESSION,
+        "the number has more than 60 digits, or an exponent of more than 3",
+        place,
+        help="write fewer digits",
+    )
+
+
+def _parts(expression: e.Expression) -> Iterator[e.Expression]:
+    waiting = [expression]
+    while waiting:
+        part = waiting.pop()
+        yield part
+        waiting.extend(e.children(part))
