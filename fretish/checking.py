@@ -66,6 +66,17 @@ def calls(expression: e.Expression) -> Iterator[str]:
         waiting.extend(reversed(e.children(part)))
 
 
+def has_units(sentence: Sentence) -> bool:
+    """Whether a number in it has a unit, which FRET does not know."""
+    waiting = list(conditions(sentence))
+    while waiting:
+        part = waiting.pop()
+        if isinstance(part, e.Quantity):
+            return True
+        waiting.extend(e.children(part))
+    return False
+
+
 def check_names(sentence: Sentence) -> Diagnostic | None:
     """F109 for the first name that is a reserved word."""
     for expression in conditions(sentence):

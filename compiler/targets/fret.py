@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import uuid
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import PurePosixPath
 from typing import Any
 
@@ -12,13 +13,16 @@ from compiler.files.templating import render
 from compiler.formalization.formalized import Formalized
 from compiler.logic import printing
 from compiler.project.fret_import import OWN, STATUSES
-from compiler.targets.target import DEFAULT, Options, Target
+from compiler.targets.target import DEFAULT, Options, Target, not_expressible
 from fretish import syntax as s
 from fretish.bindings.declarations import Variable
-from fretish.diagnostics.source import Span
+from fretish.checking import has_units
+from fretish.diagnostics.diagnostic import Diagnostic
+from fretish.diagnostics.source import Source, Span
 from fretish.documents import Requirement
 from fretish.meaning import meaning
-from fretish.printer import expression, timing
+from fretish.parser import parse
+from fretish.printer import expression, sentence, timing
 
 _STATUSES = {"approved": "completed", "retired": "deprecated"}
 _SPACE = uuid.UUID("6ba7b811-9dad-11d1-80b4-00c04fd430c8")
@@ -27,12 +31,36 @@ _SPACE = uuid.UUID("6ba7b811-9dad-11d1-80b4-00c04fd430c8")
 
 def emit(rules: Sequence[Formalized], options: Options = DEFAULT) -> tuple[Artifact, ...]:
     """`fret.json` with all rules: `{"requirements": [...], "variables": [...]}`."""
+    rules = tuple(map(_without_units, rules))
     content = {
         "requirements": [requirement(entry, rule) for entry, rule in _ordered(rules, options)],
         "variables": variables(rules),
     }
     text = render("fret-json/fret.json.j2", content=content)
     return (Artifact(PurePosixPath("fret.json"), text),)
+
+
+def refuse(rule: Formalized) -> Diagnostic | None:
+    """F601: FRET has no units, and nothing says in which one a number would have to be."""
+    if not has_units(rule.sentence):
+        return None
+    return not_expressible(
+        "FRET",
+        rule,
+        "a number with a unit",
+        "declare the signals beside it in bindings.toml, in one unit, or leave the unit out",
+    )
+
+
+def _without_units(rule: Formalized) -> Formalized:
+    """The rule as if its sentence had been written with bare numbers, in the signals' own units."""
+    if not has_units(rule.written):
+        return rule
+    text = Source(rule.requirement.wording.source.name, sentence(rule.sentence)).span()
+    written = parse(text)
+    assert isinstance(written, s.Sentence), "what is printed is a sentence"
+    requirement = replace(rule.requirement, wording=text)
+    return replace(rule, requirement=requirement, written=written, sentence=written)
 
 
 def _ordered(
@@ -195,5 +223,5 @@ def _variable(glossary: Variable | None, project: str, component: str, name: str
 
 
 TARGET = Target(
-    "fret-json", "requirements and variables, as FRET imports them", emit, per_rule=False
+    "fret-json", "requirements and variables, as FRET imports them", emit, refuse, per_rule=False
 )

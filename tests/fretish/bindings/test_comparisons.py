@@ -105,7 +105,7 @@ def test_what_has_no_certain_unit_is_refused(text: str, code: Code) -> None:
     assert rewritten(text) == code
 
 
-# The law: raw arithmetic, as FRET has it, is the physical one --------------------------------------
+# The law: raw arithmetic, as FRET has it, is the physical one
 
 
 def raw(tree: e.Expression, values: dict[str, Fraction]) -> Fraction | None:
