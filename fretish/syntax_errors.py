@@ -411,7 +411,8 @@ def _key_word_as_name(u: Unexpected) -> Diagnostic | None:
 
 
 def _does_not_fit(u: Unexpected) -> Diagnostic:
-    expected = [words for words, kinds in _GROUPS if u.wants(*kinds)]
+    own = frozenset({"MODE"}) if u.wants("ID") else frozenset()  # there `mode` is a name, too
+    expected = [words for words, kinds in _GROUPS if u.wants(*kinds - own)]
     message = (
         "the sentence ends too early" if u.lexeme.at_end else f"`{u.lexeme.word}` does not fit here"
     )

@@ -245,12 +245,12 @@ def mistake_of(text: str) -> Diagnostic:
             "help: write `satisfy stopped & p`",
         ),
         (
-            "the sw shall satisfy mode",
-            "F109 `mode` is a key word of FRETish and cannot be a name\n"
+            "the sw shall satisfy first",
+            "F109 `first` is a key word of FRETish and cannot be a name\n"
             "  --> r.fret:1:22\n"
-            "   | the sw shall satisfy mode\n"
-            "   |                      ^^^^\n"
-            'help: choose another name, or quote it: `"mode"`',
+            "   | the sw shall satisfy first\n"
+            "   |                      ^^^^^\n"
+            'help: choose another name, or quote it: `"first"`',
         ),
         (
             "the sw shall satisfy (p",
@@ -411,7 +411,7 @@ def test_a_unit_of_other_tools_has_its_word_here(written: str, near: str) -> Non
         ("the sw shall satisfy TRUE", "the sw shall satisfy true"),
         ("the sw shall satisfy 3 < x < 5", "the sw shall satisfy 3 < x & x < 5"),
         ("the sw shall eventually stopped", "the sw shall eventually satisfy stopped"),
-        ("the sw shall satisfy mode", 'the sw shall satisfy "mode"'),
+        ("the sw shall satisfy first", 'the sw shall satisfy "first"'),
         ("when p is on the sw shall satisfy q", "when p is true the sw shall satisfy q"),
         ("the sw shall satisfy a[3]", 'the sw shall satisfy "a[3]"'),
     ],
