@@ -1,4 +1,4 @@
-"""Numbers, names and lists as a reader wants to see them."""
+"""Numbers, names, paths and lists in words."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from datetime import UTC, datetime
 from pathlib import PurePosixPath, PureWindowsPath
 
+from fretc.report.traceability.chain import Node
 from fretish.bindings.amounts import value as value
 
 _NARROW = "\N{NARROW NO-BREAK SPACE}"
@@ -75,6 +76,11 @@ def place(path: str) -> str:
     if PureWindowsPath(path).drive or path.startswith("\\"):
         return PureWindowsPath(path).name or path
     return path
+
+
+def thing(node: Node) -> str:
+    """A thing of the chain from hazard to review: `artefact r1_monitor.py`, `the clock`."""
+    return "the clock" if node.kind == "clock" else f"{node.kind} {place(node.name)}"
 
 
 def visible(text: str) -> str:

@@ -470,7 +470,7 @@ class RequirementView:
     limit: str
     """Why no run can violate it, in one sentence; empty where one can."""
     coverage: str
-    """How far along the chain it is; one of `fretc.report.model.claims.COVERAGE`."""
+    """How far along the chain it is; one of `fretc.report.model.assessments.COVERAGE`."""
     review: ReviewView
     waiver: WaiverView | None
 

@@ -15,7 +15,7 @@ from compiler.formalization.formalized import Formalized
 from fretc.report.model.phrases import visible
 from fretc.report.model.views import Report
 from fretc.report.page.selection import Selection, selection, slimmed
-from fretc.report.page.tree import MOST, NAMES, Placed, grouped, pieces, placed, shortened
+from fretc.report.page.tree import MOST, NAMES, Placement, grouped, pieces, placements, shortened
 from fretc.report.pictures.plots import drawing, histogram
 from fretc.report.pictures.scales import scale
 from fretc.report.sections.argument import argument
@@ -63,8 +63,8 @@ def _pictures(chosen: Selection) -> dict[str, list[dict[str, Any]]]:
             asdict(drawing(timeline, f"picture-{result.anchor}.{number}"))
             for number, timeline in enumerate(result.timelines, 1)
         ]
-        for shown in chosen.by_anchor.values()
-        for result in (*shown.details, *shown.folded)
+        for section in chosen.by_anchor.values()
+        for result in (*section.details, *section.folded)
     }
 
 
@@ -80,13 +80,13 @@ def _histograms(page: Report) -> dict[str, list[dict[str, Any]]]:
 
 def _diagrams(page: Report, rules: Sequence[Formalized]) -> Mapping[str, dict[str, Any]]:
     """What each sentence means, drawn; the drawing makes its own texts visible."""
-    known = {(rule.id, rule.fingerprint): rule for rule in rules}
-    found = {}
+    rules_by_key = {(rule.id, rule.fingerprint): rule for rule in rules}
+    diagrams = {}
     for view in page.requirements:
-        rule = known.get((view.id, view.fingerprint))
+        rule = rules_by_key.get((view.id, view.fingerprint))
         if view.diagram and rule is not None:
-            found[view.anchor] = asdict(diagram_drawing(diagram(rule), f"means-{view.anchor}"))
-    return found
+            diagrams[view.anchor] = asdict(diagram_drawing(diagram(rule), f"means-{view.anchor}"))
+    return diagrams
 
 
 def _argument(report: Report) -> dict[str, Any]:
@@ -99,11 +99,11 @@ def _argument(report: Report) -> dict[str, Any]:
         "most": MOST,
         "is_short": len(drawn) < len(few),
         "pieces": [asdict(piece) for piece in pieces(drawn)],
-        "items": _nested(placed(drawn)),
+        "items": _nested(placements(drawn)),
     }
 
 
-def _nested(flat: Sequence[Placed]) -> list[dict[str, Any]]:
+def _nested(flat: Sequence[Placement]) -> list[dict[str, Any]]:
     """Each element with how many lists open before it and close after it."""
     items = []
     for i, each in enumerate(flat):

@@ -19,7 +19,7 @@ DETAILED, PICTURES = 100, 60
 """Results with all details, and pictures of violations, in one page, shared among requirements."""
 _ROWS = 10
 """Rows of a requirement in a compact page."""
-_RUNS, _TOLD_RUNS = 8, 200
+_RUNS, _RUN_ROWS = 8, 200
 """More runs than the first are a table; more rows than the second it does not have."""
 _FOLDED = 60
 """Up to so many results in all, also those of satisfied runs are in the page, closed."""
@@ -49,7 +49,7 @@ class RunRow:
 
 
 @dataclass(frozen=True, slots=True)
-class Shown:
+class SectionRuns:
     """What the section of a requirement shows of its runs."""
 
     rows: tuple[RunRow, ...]
@@ -66,7 +66,7 @@ class Shown:
 class Selection:
     """What the page shows."""
 
-    by_anchor: Mapping[str, Shown]
+    by_anchor: Mapping[str, SectionRuns]
     runs: tuple[RunView, ...]
     """Those with a section of their own."""
     run_rows: tuple[RunView, ...]
@@ -83,24 +83,24 @@ def selection(report: Report) -> Selection:
     total = sum(len(view.results) for view in report.requirements)
     compact = total > COMPACT
     detailed = _detailed(report.requirements, None if total <= _FOLDED else _VIOLATIONS)
-    shown = {
-        view.anchor: _shown(view, detailed, compact, total, len(report.requirements))
+    by_anchor = {
+        view.anchor: _section_runs(view, detailed, compact, total, len(report.requirements))
         for view in report.requirements
     }
     many = len(report.runs) > _RUNS
-    rows = report.runs[:_TOLD_RUNS] if many else ()  # those with errors and damage come first
+    run_rows = report.runs[:_RUN_ROWS] if many else ()  # those with errors and damage come first
     alone = [run for run in report.runs if run.findings or run.gaps or not run.intact]
     sections = tuple(alone[:_RUNS]) if many else report.runs
-    left = len(report.runs) - len(rows) if many else 0
+    left = len(report.runs) - len(run_rows) if many else 0
     anchors = {
-        *(row.anchor for each in shown.values() for row in each.rows),
-        *(view.anchor for each in shown.values() for view in (*each.details, *each.folded)),
-        *(run.anchor for run in (*sections, *rows)),
+        *(row.anchor for each in by_anchor.values() for row in each.rows),
+        *(view.anchor for each in by_anchor.values() for view in (*each.details, *each.folded)),
+        *(run.anchor for run in (*sections, *run_rows)),
     }
     return Selection(
-        by_anchor=shown,
+        by_anchor=by_anchor,
         runs=sections,
-        run_rows=rows,
+        run_rows=run_rows,
         runs_left_out=_runs_left_out(left, len(alone) - len(sections) if many else 0),
         notes=tuple(_notes(total, compact, len(report.requirements))),
         is_compact=compact,
@@ -113,8 +113,8 @@ def _runs_left_out(rows: int, sections: int) -> str:
         f"{phrases.times(rows, 'run')} without a row" if rows else "",
         f"{phrases.times(sections, 'run')} whose findings are not shown" if sections else "",
     ]
-    told = phrases.joined(list(filter(None, parts)))
-    return f"Left out here: {told}. The evidence file has them all." if told else ""
+    omissions = phrases.joined(list(filter(None, parts)))
+    return f"Left out here: {omissions}. The evidence file has them all." if omissions else ""
 
 
 def _notes(total: int, compact: bool, requirements: int) -> Iterator[str]:
@@ -154,25 +154,25 @@ def _detailed(views: Sequence[RequirementView], listed: int | None) -> Mapping[s
         )[:DETAILED]
         for view in views
     ]
-    found: dict[str, ResultView] = {}
+    details: dict[str, ResultView] = {}
     pictures = PICTURES
     for result in (r for turn in zip_longest(*wanted) for r in turn if r is not None):
-        if len(found) == DETAILED:
+        if len(details) == DETAILED:
             break
         kept = result.timelines[:pictures]
         pictures -= len(kept)
-        few = result.violations[:listed]
-        found[result.anchor] = replace(result, timelines=kept, violations=few)
-    return found
+        violations = result.violations[:listed]
+        details[result.anchor] = replace(result, timelines=kept, violations=violations)
+    return details
 
 
-def _shown(
+def _section_runs(
     view: RequirementView,
     detailed: Mapping[str, ResultView],
     compact: bool,
     total: int,
     requirements: int,
-) -> Shown:
+) -> SectionRuns:
     details = tuple(detailed[r.anchor] for r in view.results if r.anchor in detailed)
     rest = [result for result in view.results if result.anchor not in detailed]
     folded = tuple(filter(_is_good, rest)) if total <= _FOLDED else ()
@@ -183,7 +183,7 @@ def _shown(
     elif view.results and not (details or folded):
         rows = view.results  # a single one without details
     open_ = {result.anchor for result in (*details, *folded)}
-    return Shown(
+    return SectionRuns(
         rows=tuple(_row(result, result.anchor in open_) for result in rows),
         details=details,
         folded=folded,
@@ -251,11 +251,11 @@ def slimmed(report: Report, chosen: Selection) -> Report:
         )
         for row in report.matrix
     )
-    told = tuple(
+    not_shown = tuple(
         replace(each, reasons=_few(each.reasons)) if chosen.is_compact else each
         for each in report.not_shown
     )
-    return replace(report, requirements=views, matrix=matrix, not_shown=told, runs=chosen.runs)
+    return replace(report, requirements=views, matrix=matrix, not_shown=not_shown, runs=chosen.runs)
 
 
 def _slim(view: RequirementView, chosen: Selection) -> RequirementView:

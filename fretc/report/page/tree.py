@@ -37,7 +37,7 @@ class Hang(StrEnum):
 
 
 @dataclass(frozen=True, slots=True)
-class Placed:
+class Placement:
     """An element in the tree."""
 
     element: Element
@@ -94,37 +94,37 @@ class Piece:
     shapes: tuple[Shape, ...]
 
 
-def placed(elements: Sequence[Element]) -> tuple[Placed, ...]:
+def placements(elements: Sequence[Element]) -> tuple[Placement, ...]:
     """All elements from the top goal down, where they are referred to first; then by reference."""
     known = {element.id: element for element in elements}
     against = _challengers(elements)
     doubtful = _above(set(against), known)
-    seen: set[str] = set()
-    found: list[Placed] = []
+    drawn: set[str] = set()
+    tree: list[Placement] = []
     waiting = [(element.id, 0, Hang.SUPPORT) for element in elements[:1]]
     while waiting:
         id, depth, hang = waiting.pop()
         element = known[id]
-        found.append(Placed(element, depth, hang, id in seen, id in against, id in doubtful))
-        if id in seen:
+        tree.append(Placement(element, depth, hang, id in drawn, id in against, id in doubtful))
+        if id in drawn:
             continue
-        seen.add(id)
+        drawn.add(id)
         below = [
             *((other, depth + 1, Hang.CONTEXT) for other in element.in_context_of),
             *((other, depth + 1, Hang.CHALLENGE) for other in against.get(id, ())),
             *((other, depth + 1, Hang.SUPPORT) for other in element.supported_by),
         ]
         waiting.extend(reversed(below))
-    return tuple(found)
+    return tuple(tree)
 
 
 def _challengers(elements: Sequence[Element]) -> Mapping[str, Sequence[str]]:
     """Of each challenged element what stands against it."""
-    found: dict[str, list[str]] = {}
+    challengers: dict[str, list[str]] = {}
     for element in elements:
         if element.challenges:
-            found.setdefault(element.challenges, []).append(element.id)
-    return found
+            challengers.setdefault(element.challenges, []).append(element.id)
+    return challengers
 
 
 def _above(ids: Collection[str], known: Mapping[str, Element]) -> set[str]:
@@ -133,13 +133,13 @@ def _above(ids: Collection[str], known: Mapping[str, Element]) -> set[str]:
     for element in known.values():
         for other in element.supported_by:
             above.setdefault(other, []).append(element.id)
-    found, waiting = set(ids), list(ids)
+    above_ids, waiting = set(ids), list(ids)
     while waiting:
         for id in above.get(waiting.pop(), ()):
-            if id not in found:
-                found.add(id)
+            if id not in above_ids:
+                above_ids.add(id)
                 waiting.append(id)
-    return found
+    return above_ids
 
 
 def shortened(elements: Sequence[Element]) -> tuple[Element, ...]:
@@ -171,19 +171,19 @@ def shortened(elements: Sequence[Element]) -> tuple[Element, ...]:
 def grouped(elements: Sequence[Element]) -> tuple[Element, ...]:
     """Many assumptions of one goal as one, which says how many; the page lists them elsewhere."""
     kinds = {element.id: element.kind for element in elements}
-    found: list[Element] = []
-    gone: set[str] = set()
+    kept: list[Element] = []
+    replaced: set[str] = set()
     for element in elements:
         assumed = [id for id in element.in_context_of if kinds[id] is Kind.ASSUMPTION]
         if len(assumed) <= _ASSUMED:
-            found.append(element)
+            kept.append(element)
             continue
-        gone.update(assumed)
+        replaced.update(assumed)
         id = f"{assumed[0]}_and_others"
         around = tuple(each for each in element.in_context_of if each not in assumed)
-        found.append(replace(element, in_context_of=(*around, id)))
-        found.append(Element(id, Kind.ASSUMPTION, f"{len(assumed)} assumptions, listed in part 6"))
-    return tuple(element for element in found if element.id not in gone)
+        kept.append(replace(element, in_context_of=(*around, id)))
+        kept.append(Element(id, Kind.ASSUMPTION, f"{len(assumed)} assumptions, listed in part 6"))
+    return tuple(element for element in kept if element.id not in replaced)
 
 
 # Layout ----------------------------------------------------------------------------------------
@@ -191,9 +191,9 @@ def grouped(elements: Sequence[Element]) -> tuple[Element, ...]:
 
 def pieces(elements: Sequence[Element]) -> tuple[Piece, ...]:
     """The drawing; where it is longer than a page, in several pieces."""
-    groups: list[list[Placed]] = [[]]
+    groups: list[list[Placement]] = [[]]
     height = 0.0
-    for cluster in _clusters(placed(elements)):
+    for cluster in _clusters(placements(elements)):
         tall = sum(map(_height, cluster))
         if groups[-1] and (height + tall > _TALL or _begins(cluster[0], height)):
             groups.append([])
@@ -203,9 +203,9 @@ def pieces(elements: Sequence[Element]) -> tuple[Piece, ...]:
     return tuple(_piece(group, i, len(groups)) for i, group in enumerate(groups, 1) if group)
 
 
-def _clusters(flat: Sequence[Placed]) -> Iterator[list[Placed]]:
+def _clusters(flat: Sequence[Placement]) -> Iterator[list[Placement]]:
     """What stays on one page: an element with its context and what challenges it."""
-    cluster: list[Placed] = []
+    cluster: list[Placement] = []
     height = 0.0
     for each in flat:
         height += _height(each)
@@ -217,12 +217,12 @@ def _clusters(flat: Sequence[Placed]) -> Iterator[list[Placed]]:
         yield cluster
 
 
-def _begins(each: Placed, height: float) -> bool:
+def _begins(each: Placement, height: float) -> bool:
     """A hazard does not begin near the end of a page."""
     return each.depth <= 2 and each.hang is Hang.SUPPORT and height > 0.75 * _TALL
 
 
-def _piece(group: Sequence[Placed], number: int, count: int) -> Piece:
+def _piece(group: Sequence[Placement], number: int, count: int) -> Piece:
     shapes: list[Shape] = []
     above: dict[int, tuple[float, float]] = {}
     y = 6.0
@@ -234,7 +234,7 @@ def _piece(group: Sequence[Placed], number: int, count: int) -> Piece:
     return Piece(f"argument-{number}", f"Assurance argument{part}", text, _WIDTH, y, tuple(shapes))
 
 
-def _shape(each: Placed, y: float, above: dict[int, tuple[float, float]]) -> Shape:
+def _shape(each: Placement, y: float, above: dict[int, tuple[float, float]]) -> Shape:
     element, depth = each.element, each.depth
     x = _MARGIN + _INDENT * depth + 10
     width = _WIDTH - x - _MARGIN - (0 if each.hang is Hang.CONTEXT else 160)
@@ -301,19 +301,19 @@ def _outline(kind: Kind, x: float, y: float, width: float, height: float) -> str
             )
 
 
-def _height(each: Placed) -> float:
+def _height(each: Placement) -> float:
     return _LINE * len(_lines(each)) + 2 * _PAD + _GAP
 
 
-def _lines(each: Placed) -> list[str]:
+def _lines(each: Placement) -> list[str]:
     """The text in at most three lines; what does not fit stands in the list."""
     aside = 0 if each.hang is Hang.CONTEXT else 160
     room = _WIDTH - 2 * _MARGIN - 10 - _INDENT * each.depth - 60 - aside
     letters = max(24, int(room / _LETTER))
-    found = list(_wrapped(each.text.replace("`", ""), letters))
-    if len(found) > _LINES:
-        return [*found[: _LINES - 1], f"{found[_LINES - 1][: letters - 1].rstrip()}…"]
-    return found or [""]
+    lines = list(_wrapped(each.text.replace("`", ""), letters))
+    if len(lines) > _LINES:
+        return [*lines[: _LINES - 1], f"{lines[_LINES - 1][: letters - 1].rstrip()}…"]
+    return lines or [""]
 
 
 def _wrapped(text: str, letters: int) -> Iterator[str]:

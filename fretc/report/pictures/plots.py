@@ -160,8 +160,8 @@ def places(start: float, end: float, most: int = _TICKS) -> list[float]:
     """Round numbers from `start` to `end`, at most some two more than `most` of them."""
     width = step((end - start) / most)
     first = int(-(-start // width))
-    found = [(first + i) * width for i in range(2 * most)]
-    return [place for place in found if place <= end + width * 1e-6]
+    numbers = [(first + i) * width for i in range(2 * most)]
+    return [place for place in numbers if place <= end + width * 1e-6]
 
 
 def _lane(lane: Lane, y: int, scale: _Scale) -> DrawnLane:
@@ -272,7 +272,7 @@ class DrawnHistogram:
     unit: str
 
 
-def histogram(found: Histogram, id: str) -> DrawnHistogram:
+def histogram(content: Histogram, id: str) -> DrawnHistogram:
     """The layout of a histogram; what has no value stands apart.
 
     Runs beyond the bound stand on the left of it, triggers without an answer on the right of all.
@@ -280,34 +280,34 @@ def histogram(found: Histogram, id: str) -> DrawnHistogram:
     late = [
         (count, kind, name)
         for count, kind, name in (
-            (found.unanswered, "unanswered", "none"),
-            (found.open, "open", "open"),
+            (content.unanswered, "unanswered", "none"),
+            (content.open, "open", "open"),
         )
         if count
     ]
-    left = 20 + (_APART if found.crossed else 0)
+    left = 20 + (_APART if content.crossed else 0)
     right = WIDTH - 30 - _APART * len(late)
-    low, high = found.bins[0].low, found.bins[-1].high
-    most = max([*(each.count for each in found.bins), found.crossed, *(n for n, _, _ in late)])
+    low, high = content.bins[0].low, content.bins[-1].high
+    most = max([*(each.count for each in content.bins), content.crossed, *(n for n, _, _ in late)])
     scale = (right - left) / (high - low)
 
     def x(number: float) -> float:
         return round(left + (number - low) * scale, 1)
 
     columns = [
-        _column(x(each.low), x(each.high), each.count, most) for each in found.bins if each.count
+        _column(x(each.low), x(each.high), each.count, most) for each in content.bins if each.count
     ]
-    if found.crossed:
-        columns.append(_column(4, _APART - 6, found.crossed, most, "crossed", "crossed"))
+    if content.crossed:
+        columns.append(_column(4, _APART - 6, content.crossed, most, "crossed", "crossed"))
     columns += [
         _column(right + 14 + _APART * i, right + 6 + _APART * (i + 1), count, most, kind, name)
         for i, (count, kind, name) in enumerate(late)
     ]
-    bound = None if found.bound is None else x(found.bound)
+    bound = None if content.bound is None else x(content.bound)
     return DrawnHistogram(
         id=id,
-        title=found.title,
-        text=found.text,
+        title=content.title,
+        text=content.text,
         width=WIDTH,
         height=_BASE + 34,
         left=left,
@@ -316,9 +316,9 @@ def histogram(found: Histogram, id: str) -> DrawnHistogram:
         columns=tuple(columns),
         ticks=tuple((x(place), decimal(place)) for place in places(low, high)),
         bound=bound,
-        bound_label=found.bound_label,
+        bound_label=content.bound_label,
         bound_anchor="start" if bound is None or bound < WIDTH / 2 else "end",
-        unit=found.unit,
+        unit=content.unit,
     )
 
 

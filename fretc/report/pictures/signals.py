@@ -97,18 +97,18 @@ def _stretches(
     old then, it ends when it grows too old.
     """
     longest = _longest(samples, age)
-    found: list[Known] = []
+    stretches: list[Known] = []
     following = (*samples.times[1:], inf)[: len(samples.times)]
     first = samples.times[0] if samples.times else end
     if first > start:
-        found.append((start, min(first, end), None))
+        stretches.append((start, min(first, end), None))
     for begin, after, value in zip(samples.times, following, samples.values, strict=True):
         is_stale = begin <= broken < after and round(broken - begin, 9) > age
         until = min(after, begin + (age if is_stale else longest))
-        found.append((begin, until, value))
+        stretches.append((begin, until, value))
         if until < after:
-            found.append((until, after, None))
-    inside = ((max(a, start), min(b, end), v) for a, b, v in found)
+            stretches.append((until, after, None))
+    inside = ((max(a, start), min(b, end), v) for a, b, v in stretches)
     return [(a, b, v) for a, b, v in inside if b - a > _EMPTY or (b == a and v is not None)]
 
 
@@ -158,13 +158,13 @@ def _range(values: Sequence[float]) -> tuple[float, float]:
 
 def _merged(stretches: Sequence[Known]) -> list[Known]:
     """Neighbours with the same value as one."""
-    found: list[Known] = []
+    merged: list[Known] = []
     for begin, end, value in stretches:
-        if found and found[-1][2] == value and begin - found[-1][1] <= _EMPTY:
-            found[-1] = (found[-1][0], end, value)
+        if merged and merged[-1][2] == value and begin - merged[-1][1] <= _EMPTY:
+            merged[-1] = (merged[-1][0], end, value)
         else:
-            found.append((begin, end, value))
-    return found
+            merged.append((begin, end, value))
+    return merged
 
 
 def _unknown(stretches: Sequence[Known]) -> Iterator[SpanMark]:

@@ -55,19 +55,19 @@ def _explained(
     plain: Timeline, violation: Violation, result: Result, tick: float, ages: Mapping[str, float]
 ) -> Timeline:
     """With the signals, the trigger, the deadline, the broken stretch, and the cause in words."""
-    drawn = panels(violation, result, ages, plain.start, plain.end)
+    drawings = panels(violation, result, ages, plain.start, plain.end)
     broken = _violated(violation, tick)
     why = cause(violation, result, ages)
-    told = [
+    sentences = [
         why,
         plain.text,
-        *(_panel_in_words(panel) for panel in drawn),
-        _not_drawn(left_out(violation, drawn)),
+        *(_panel_in_words(panel) for panel in drawings),
+        _not_drawn(left_out(violation, drawings)),
     ]
     return replace(
         plain,
-        text=" ".join(filter(None, told)),
-        panels=drawn,
+        text=" ".join(filter(None, sentences)),
+        panels=drawings,
         flags=tuple(_flags(violation)),
         broken=_rounded(SpanMark(broken.start, broken.end, 1)),
         cause=why,
@@ -134,13 +134,13 @@ def _around(violation: Violation, tick: float) -> Stretch:
     first = violation.trigger or violation.first
     start, end = min(first.seconds, violation.first.seconds), violation.last.seconds + tick
     margin = max(_AROUND * tick, (end - start) / 8, 1e-3)
-    shown = Stretch(max(0.0, start - margin), max(end, start) + margin)
+    stretch = Stretch(max(0.0, start - margin), max(end, start) + margin)
     window = violation.window
     if window is None or not window.samples:
-        return shown
+        return stretch
     # Of what lies outside the evidence holds no samples: it is not shown as if it were unknown.
-    inside = Stretch(max(shown.start, window.start), min(shown.end, window.end))
-    return inside if inside.end - inside.start > tick / 2 else shown
+    inside = Stretch(max(stretch.start, window.start), min(stretch.end, window.end))
+    return inside if inside.end - inside.start > tick / 2 else stretch
 
 
 class _Events:
@@ -161,8 +161,8 @@ class _Events:
 
     def timeline(self, title: str, window: Stretch) -> Timeline:
         lanes = [_lane(name, kind, events, window) for name, kind, events in self.lanes]
-        shown = tuple(lane for lane in lanes if lane.marks or lane.kind == "trigger")
-        return Timeline(title, window.start, window.end, shown, _in_words(shown, window))
+        visible = tuple(lane for lane in lanes if lane.marks or lane.kind == "trigger")
+        return Timeline(title, window.start, window.end, visible, _in_words(visible, window))
 
 
 def _ticks(moments: Iterable[Moment], tick: float) -> list[Stretch]:

@@ -87,7 +87,7 @@ class _Argument:
         self._shared = {
             name: [proof for proof in report.proofs if proof.requirement == name] for name in SHARED
         }
-        self._made: set[str] = set()
+        self._yielded: set[str] = set()
 
     def elements(self) -> Iterator[Element]:
         report = self._report
@@ -134,19 +134,19 @@ class _Argument:
     def _requirements(self, anchors: Sequence[str]) -> Iterator[Element]:
         """Each once, however many hazards refer to it."""
         for anchor in anchors:
-            if anchor not in self._made:
-                self._made.add(anchor)
+            if anchor not in self._yielded:
+                self._yielded.add(anchor)
                 yield from self._requirement(self._views[anchor])
 
     def _requirement(self, view: RequirementView) -> Iterator[Element]:
         goal = _id("G", view.anchor)
-        shown = view.mark.shows
-        against = tuple(_against(view, goal.replace("G_", "CSn_", 1)))
+        is_shown = view.mark.shows
+        counters = tuple(_against(view, goal.replace("G_", "CSn_", 1)))
         layers = {proof.layer: _of_layer(view.proofs, proof.layer) for proof in view.proofs}
         subjects = [f"{goal}_{layer}" for layer in layers] + self._relied_upon(view)
         solution, runs = goal.replace("G_", "Sn_", 1), f"{goal}_runs"
         # A goal is developed or not: where proofs develop it, what no run shows is a goal below it.
-        evidence = [solution] if shown else [runs] if subjects else []
+        evidence = [solution] if is_shown else [runs] if subjects else []
         context, waived = goal.replace("G_", "C_", 1), goal.replace("G_", "J_", 1)
         yield Element(
             goal,
@@ -155,19 +155,19 @@ class _Argument:
             (*evidence, *subjects),
             (*([context] if view.meaning else []), *([waived] if view.waiver else [])),
             undeveloped=not (evidence or subjects),
-            defeated=any(each.is_current for each in against),
+            defeated=any(each.is_current for each in counters),
             name=f"{view.id} holds",
         )
         if view.meaning:
             yield Element(context, Kind.CONTEXT, view.meaning)
         if view.waiver:
-            known = "" if view.waiver.signature.is_good else " (unauthenticated)"
-            by = f"{view.waiver.by}{known}"
+            note = "" if view.waiver.signature.is_good else " (unauthenticated)"
+            by = f"{view.waiver.by}{note}"
             words = f"Waived until {view.waiver.until} by {by}: {view.waiver.reason}"
             yield Element(waived, Kind.JUSTIFICATION, words)
-        for each in against:
+        for each in counters:
             yield Element(each.id, Kind.COUNTER_SOLUTION, each.text, challenges=goal)
-        if shown:
+        if is_shown:
             yield Element(solution, Kind.SOLUTION, _support(view))
         elif subjects:
             yield Element(runs, Kind.GOAL, f"The audited runs show {view.id}", undeveloped=True)
@@ -216,20 +216,20 @@ def _against(view: RequirementView, id: str) -> Iterator[_Counter]:
         return
     broken = [result for result in view.results if result.mark.word in BROKEN]
     for old in (False, True):
-        found = [result for result in broken if bool(result.suspicions) is old]
-        if found:
-            yield _Counter(f"{id}_older" if old else id, _violated(view, found, old), not old)
+        results = [result for result in broken if bool(result.suspicions) is old]
+        if results:
+            yield _Counter(f"{id}_older" if old else id, _violated(view, results, old), not old)
 
 
-def _violated(view: RequirementView, found: Sequence[ResultView], old: bool) -> str:
+def _violated(view: RequirementView, violating: Sequence[ResultView], old: bool) -> str:
     runs = phrases.times(len(view.results), "audited run")
-    worst = sorted(found, key=lambda result: -result.violations_total)[:_NAMED]
-    left = len(found) - len(worst)
+    worst = sorted(violating, key=lambda result: -result.violations_total)[:_NAMED]
+    left = len(violating) - len(worst)
     named = [f"{result.run_label}, {result.run_file}: {result.reason}" for result in worst]
     more = [f"and {phrases.times(left, 'more run')}"] if left else []
-    why = phrases.joined(list(dict.fromkeys(why for each in found for why in each.suspicions)))
+    why = phrases.joined(list(dict.fromkeys(why for each in violating for why in each.suspicions)))
     age = f", before a change ({why})" if old else ""
-    words = f"{view.id} is violated in {phrases.whole(len(found))} of {runs}{age}"
+    words = f"{view.id} is violated in {phrases.whole(len(violating))} of {runs}{age}"
     return "; ".join([f"{words}: {named[0]}", *named[1:], *more])
 
 
@@ -273,8 +273,8 @@ def _claims(head: str, proofs: Sequence[ProofView]) -> str:
     """`Proved: it stops; it moves again (by Spot 2.13)`."""
     by = dict.fromkeys(proof.engine for proof in proofs)
     why = dict.fromkeys(why for proof in proofs for why in proof.suspicions)
-    said = "; ".join([f"by {phrases.joined(list(by))}", *why])
-    return f"{head} {'; '.join(proof.claim for proof in proofs)} ({said})"
+    note = "; ".join([f"by {phrases.joined(list(by))}", *why])
+    return f"{head} {'; '.join(proof.claim for proof in proofs)} ({note})"
 
 
 def _id(prefix: str, name: str) -> str:

@@ -34,14 +34,14 @@ SHARED = ("interceptor", "agent")
 """Claims that are about no single requirement."""
 
 
-def proof_views(proofs: Iterable[Proof], made: Iterable[Product]) -> tuple[ProofView, ...]:
+def proof_views(proofs: Iterable[Proof], products: Iterable[Product]) -> tuple[ProofView, ...]:
     """Each proof as it is shown.
 
     Args:
         proofs: of one requirement, or of what all share.
-        made: what the targets make now; a proof about another text is suspect.
+        products: what the targets make now; a proof about another text is suspect.
     """
-    now = {product.file: product.sha256 for product in made if product.sha256}
+    now = {product.file: product.sha256 for product in products if product.sha256}
     return tuple(_view(proof, now) for proof in proofs)
 
 
@@ -62,11 +62,11 @@ def _view(proof: Proof, now: Mapping[str, str]) -> ProofView:
 
 def _suspicions(proof: Proof, now: Mapping[str, str]) -> Iterator[str]:
     """Texts that are made otherwise now; what fretc does not make is told by its hash only."""
-    for name, known in proof.artefacts.items():
-        if name in now and now[name] != known:
+    for name, examined in proof.artefacts.items():
+        if name in now and now[name] != examined:
             what = "is not what it was" if name == ASSUMED else "is not made like that any more"
             yield f"{name} {what}"
-    monitors = {hashed for name, hashed in now.items() if name.endswith("_monitor.py")}
+    monitors = {hash_ for name, hash_ in now.items() if name.endswith("_monitor.py")}
     if proof.layer in _OF_MONITOR and not monitors & {*proof.artefacts.values()}:
         yield "it is about another monitor than the one that is made now"
 
@@ -88,11 +88,11 @@ def worst(proofs: Iterable[ProofView]) -> ProofView:
 
 def in_words(proofs: Sequence[ProofView]) -> str:
     """`2 claims proved`; else what is in the way."""
-    found = worst(proofs)
-    if is_proved(found):
+    decisive = worst(proofs)
+    if is_proved(decisive):
         return f"{phrases.times(len(proofs), 'claim')} proved"
-    why = found.suspicions[0] if found.suspicions else found.detail
-    return f"{found.mark.text}: {found.claim} ({why})"
+    why = decisive.suspicions[0] if decisive.suspicions else decisive.detail
+    return f"{decisive.mark.text}: {decisive.claim} ({why})"
 
 
 def is_proved(proof: ProofView) -> bool:

@@ -51,19 +51,19 @@ def commands(
         return f"fretc audit {logs} {_options(project)}{level} --evidence {_quoted(evidence)}"
 
     def report() -> str:
-        proved = f" --verification {_quoted(proofs.file)}" if proofs else ""
-        return f"fretc report {_options(project)} --evidence {_quoted(evidence)}{proved}"
+        verification = f" --verification {_quoted(proofs.file)}" if proofs else ""
+        return f"fretc report {_options(project)} --evidence {_quoted(evidence)}{verification}"
 
     return (
         Command("Check the version of the tool", f"fretc --version   # fretc {__version__}"),
-        *_made("Check that the runs are those that were audited", lambda: _check(runs)),
-        *_made("Audit the runs", audit),
+        *_command("Check that the runs are those that were audited", lambda: _check(runs)),
+        *_command("Audit the runs", audit),
         *_emissions(sections),
-        *_made("Write this report", report),
+        *_command("Write this report", report),
     )
 
 
-def _made(purpose: str, text: Callable[[], str]) -> Iterator[Command]:
+def _command(purpose: str, text: Callable[[], str]) -> Iterator[Command]:
     """The command; none where its text is empty."""
     try:
         command = text()
@@ -108,8 +108,10 @@ def _files(project: Project) -> list[Source]:
 
 
 def _check(runs: Sequence[Run]) -> str:
-    known = [run.result for run in runs if "log" in run.result.hashes and _is_file(run.result.run)]
-    return check_of((result.hashes["log"], phrases.place(result.run)) for result in known)
+    results = [
+        run.result for run in runs if "log" in run.result.hashes and _is_file(run.result.run)
+    ]
+    return check_of((result.hashes["log"], phrases.place(result.run)) for result in results)
 
 
 def _is_file(run: str) -> bool:
@@ -131,7 +133,7 @@ def _emissions(sections: Sequence[RequirementView]) -> Iterable[Command]:
     for kinds, files in groups.items():
         if kinds:
             emits = " ".join(f"--emit {kind}" for kind in kinds)
-            yield from _made("Make the artefacts", partial(_emission, files, emits))
+            yield from _command("Make the artefacts", partial(_emission, files, emits))
 
 
 def _emission(files: Sequence[str], emits: str) -> str:
@@ -140,9 +142,9 @@ def _emission(files: Sequence[str], emits: str) -> str:
 
 def _of_bindings(project: Project) -> str:
     """As it stands in evidence: of what the requirements in force read of the bindings."""
-    known = bases(project)
+    basis_of = bases(project)
     inforce = [each for each in project.requirements if each.status != "retired"]
-    return of_all({each.id: known[id(each)][BINDINGS] for each in inforce})
+    return of_all({each.id: basis_of[id(each)][BINDINGS] for each in inforce})
 
 
 def manifest(

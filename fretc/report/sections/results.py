@@ -16,8 +16,10 @@ from fretc.audit.evidence.verdicts import (
     severity,
 )
 from fretc.report.model import phrases
-from fretc.report.model.claims import Claim, Judged, Together, since_review
+from fretc.report.model.assessments import Assessment
+from fretc.report.model.audits import ProbabilityAudit, SingleAudit
 from fretc.report.model.first_tick import reading
+from fretc.report.model.suspicions import since_review
 from fretc.report.model.views import (
     Latency,
     Listing,
@@ -36,42 +38,42 @@ from fretish.meaning import span
 LISTED = 100
 """Violations, open demands and unknown stretches that are listed; the evidence has them all."""
 _WAITS = 5
-_TOLD = 10
+_NAMED = 10
 """Runs that are named as reasons why a requirement is not shown."""
 
 
 def result_views(
-    claim: Claim, runs: dict[Key, Run], declared: Declarations | None
+    assessment: Assessment, runs: dict[Key, Run], declared: Declarations | None
 ) -> tuple[ResultView, ...]:
     """Every audit of a requirement, in the order of the runs."""
     return tuple(
-        _view(judged, claim, number, runs[key(judged.result)], declared)
-        for number, judged in enumerate(claim.results, 1)
+        _view(audit, assessment, number, runs[key(audit.result)], declared)
+        for number, audit in enumerate(assessment.reviewed_audits, 1)
     )
 
 
-def result_anchor(claim: Claim, number: int) -> str:
+def result_anchor(assessment: Assessment, number: int) -> str:
     """Where a result of a requirement is shown, numbered from 1."""
-    return f"{claim.anchor.replace('req-', 'result-', 1)}.{number}"
+    return f"{assessment.anchor.replace('req-', 'result-', 1)}.{number}"
 
 
 def _view(
-    judged: Judged, claim: Claim, number: int, run: Run, declared: Declarations | None
+    audit: SingleAudit, assessment: Assessment, number: int, run: Run, declared: Declarations | None
 ) -> ResultView:
-    result = judged.result
-    known = None if claim.judged[number - 1].is_stale else declared
-    tick, ages = _tick(result, known.clock if known else None), _ages(known)
+    result = audit.result
+    current = None if assessment.audits[number - 1].is_stale else declared
+    tick, ages = _tick(result, current.clock if current else None), _ages(current)
     return ResultView(
-        anchor=result_anchor(claim, number),
+        anchor=result_anchor(assessment, number),
         run=run.anchor,
         run_label=run.label,
         run_file=phrases.place(result.run),
-        mark=judged.mark,
-        suspicions=judged.suspicions,
+        mark=audit.mark,
+        suspicions=audit.suspicions,
         reason=result.reason,
         triggers=len(result.triggers),
         exercised=_exercised(result),
-        latency=_latency(result, claim.rule),
+        latency=_latency(result, assessment.rule),
         thresholds=tuple(map(_threshold, result.thresholds)),
         violations=tuple(_violation(v, result, ages) for v in result.violations[:LISTED]),
         violations_total=len(result.violations),
@@ -109,13 +111,13 @@ def _exercised(result: Result) -> str:
 
 def _stretches(moments: Iterable[Moment]) -> list[list[Moment]]:
     """The moments in order, those of neighbouring ticks together."""
-    found: list[list[Moment]] = []
+    groups: list[list[Moment]] = []
     for moment in sorted(moments, key=lambda m: m.tick):
-        if found and moment.tick - found[-1][-1].tick <= 1:
-            found[-1].append(moment)
+        if groups and moment.tick - groups[-1][-1].tick <= 1:
+            groups[-1].append(moment)
         else:
-            found.append([moment])
-    return found
+            groups.append([moment])
+    return groups
 
 
 # Latency ---------------------------------------------------------------------------------------
@@ -254,38 +256,42 @@ def _unknown(result: Result) -> Listing:
 # Why not ---------------------------------------------------------------------------------------
 
 
-def reasons(claim: Claim, runs: dict[Key, Run], *, audited: bool) -> tuple[str, ...]:
+def reasons(assessment: Assessment, runs: dict[Key, Run], *, audited: bool) -> tuple[str, ...]:
     """Why a requirement is not shown, the worst first; empty where it is, or is retired."""
-    if claim.is_shown or claim.unwaived == RETIRED:
+    if assessment.is_shown or assessment.unwaived == RETIRED:
         return ()
-    lines = [(severity(UNFORMALIZED), text) for text in _unformalized(claim)]
-    if claim.together is not None:
-        lines.append((claim.together.mark.severity, _over_all(claim.together)))
+    lines = [(severity(UNFORMALIZED), text) for text in _unformalized(assessment)]
+    if assessment.probability is not None:
+        lines.append((assessment.probability.mark.severity, _over_all(assessment.probability)))
     else:
-        lines += [(j.mark.severity, _against(j, runs)) for j in claim.judged if not j.mark.shows]
-        if not claim.judged and claim.rule is not None:
+        lines += [
+            (j.mark.severity, _against(j, runs)) for j in assessment.audits if not j.mark.shows
+        ]
+        if not assessment.audits and assessment.rule is not None:
             why = "the audit did not cover it" if audited else "no run has been audited"
             lines.append((severity(NOT_EXERCISED), why))
-    told = [text for _, text in sorted(lines, key=lambda line: line[0])]
-    left = len(told) - _TOLD
-    few = (*told[:_TOLD], f"and {phrases.times(left, 'more run')}") if left > 0 else tuple(told)
-    return (*few, *since_review(claim.standing))
+    texts = [text for _, text in sorted(lines, key=lambda line: line[0])]
+    left = len(texts) - _NAMED
+    few = (*texts[:_NAMED], f"and {phrases.times(left, 'more run')}") if left > 0 else tuple(texts)
+    return (*few, *since_review(assessment.standing))
 
 
-def _unformalized(claim: Claim) -> Iterator[str]:
-    if claim.diagnostic is not None and claim.rule is None:
-        yield f"{claim.diagnostic.code.number}: {claim.diagnostic.message}"
+def _unformalized(assessment: Assessment) -> Iterator[str]:
+    if assessment.diagnostic is not None and assessment.rule is None:
+        yield f"{assessment.diagnostic.code.number}: {assessment.diagnostic.message}"
 
 
-def _over_all(together: Together) -> str:
-    told = together.told
-    return f"over all runs: {told.answer}, {told.reason}{_because(together.suspicions)}"
+def _over_all(probability: ProbabilityAudit) -> str:
+    estimation = probability.estimation
+    return (
+        f"over all runs: {estimation.answer}, {estimation.reason}{_because(probability.suspicions)}"
+    )
 
 
-def _against(judged: Judged, runs: dict[Key, Run]) -> str:
-    result = judged.result
+def _against(audit: SingleAudit, runs: dict[Key, Run]) -> str:
+    result = audit.result
     label = runs[key(result)].label
-    return f"{label}: {judged.verdict}, {result.reason}{_because(judged.suspicions)}"
+    return f"{label}: {audit.verdict}, {result.reason}{_because(audit.suspicions)}"
 
 
 def _because(suspicions: Sequence[str]) -> str:

@@ -46,15 +46,15 @@ def key(result: Result) -> Key:
 
 def runs(evidence: Evidence | None) -> dict[Key, Run]:
     """The runs of the evidence, numbered from 1 in its order."""
-    found: dict[Key, Run] = {}
+    numbered: dict[Key, Run] = {}
     for result in evidence.results if evidence else ():
-        found.setdefault(key(result), Run(len(found) + 1, result))
-    return found
+        numbered.setdefault(key(result), Run(len(numbered) + 1, result))
+    return numbered
 
 
-def run_views(found: Iterable[Run], project: Project) -> tuple[RunView, ...]:
+def run_views(runs: Iterable[Run], project: Project) -> tuple[RunView, ...]:
     """Each run as it is shown, those with errors first."""
-    return tuple(_view(run, project) for run in sorted(found, key=_severity))
+    return tuple(_view(run, project) for run in sorted(runs, key=_severity))
 
 
 def _severity(run: Run) -> tuple[bool, bool, bool, bool]:
@@ -65,8 +65,8 @@ def _severity(run: Run) -> tuple[bool, bool, bool, bool]:
 
 def _errors(run: Run) -> list[str]:
     """The codes of its errors, each once."""
-    found = (f.code for f in run.result.health.findings if f.severity == Severity.ERROR.value)
-    return list(dict.fromkeys(found))
+    codes = (f.code for f in run.result.health.findings if f.severity == Severity.ERROR.value)
+    return list(dict.fromkeys(codes))
 
 
 def _view(run: Run, project: Project) -> RunView:
@@ -171,12 +171,12 @@ def _named(run: Run) -> str:
     return f"{run.label} ({codes})" if codes else run.label
 
 
-def trust(found: Sequence[Run]) -> str:
+def trust(runs: Sequence[Run]) -> str:
     """Whether the runs can be trusted, in one sentence; empty where there are none."""
-    damaged = [_named(run) for run in found if not run.result.health.intact]
-    wrong = [_named(run) for run in found if run.result.health.intact and _errors(run)]
-    told = [run.label for run in found if run.result.health.findings]
-    if not found:
+    damaged = [_named(run) for run in runs if not run.result.health.intact]
+    wrong = [_named(run) for run in runs if run.result.health.intact and _errors(run)]
+    with_findings = [run.label for run in runs if run.result.health.findings]
+    if not runs:
         return ""
     if damaged or wrong:
         verb = "is" if len(damaged) == 1 else "are"
@@ -186,11 +186,11 @@ def trust(found: Sequence[Run]) -> str:
             f"{phrases.some(wrong)} {had}: read them before the verdicts" if wrong else "",
         ]
         return f"{'; '.join(filter(None, parts))}."
-    if told:
-        verb = "has" if len(told) == 1 else "have"
-        return f"{phrases.some(told)} {verb} findings: read them before the verdicts."
+    if with_findings:
+        verb = "has" if len(with_findings) == 1 else "have"
+        return f"{phrases.some(with_findings)} {verb} findings: read them before the verdicts."
     return (
         "No damage was found in the run."
-        if len(found) == 1
-        else f"No damage was found in any of {len(found)} runs."
+        if len(runs) == 1
+        else f"No damage was found in any of {len(runs)} runs."
     )

@@ -41,11 +41,11 @@ def products(rule: Formalized | None) -> tuple[Product, ...]:
 
 
 def _of_target(target: Target, rule: Formalized) -> tuple[Product, ...]:
-    refused = target.refuse(rule)
-    if refused is not None:
-        mend = f"; {refused.help}" if refused.help else ""
-        refusal = f"{refused.code.number} {refused.message}{mend}"
-        return (Product(target.name, "", "", refusal),)
+    refusal = target.refuse(rule)
+    if refusal is not None:
+        mend = f"; {refusal.help}" if refusal.help else ""
+        text = f"{refusal.code.number} {refusal.message}{mend}"
+        return (Product(target.name, "", "", text),)
     return tuple(
         Product(target.name, str(artifact.path), sha256(artifact.text), "")
         for artifact in target.emit([rule])

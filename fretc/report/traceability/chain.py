@@ -24,7 +24,7 @@ from fretc.audit.evidence.reader import by_requirement
 from fretc.audit.evidence.schema import Evidence, Result
 from fretc.audit.plan import bases
 from fretc.report.traceability.artefacts import Product, shared_products
-from fretc.report.traceability.artefacts import products as _made
+from fretc.report.traceability.artefacts import products as products_of
 from fretish.bindings.canonical import described, digest
 from fretish.documents import Requirement
 
@@ -77,7 +77,7 @@ class Chain:
 def chains(
     project: Project,
     evidence: Evidence | None,
-    made: Mapping[int, Sequence[Product]] | None = None,
+    artefacts: Mapping[int, Sequence[Product]] | None = None,
     proofs: Sequence[Proof] = (),
 ) -> tuple[Chain, ...]:
     """The chain of each requirement, in the order of the project.
@@ -85,7 +85,7 @@ def chains(
     Args:
         project: with or without errors; a requirement without a rule has a chain that ends early.
         evidence: None where no run has been audited.
-        made: what the targets make of each requirement, by its `id()`; None: it is made here.
+        artefacts: what the targets make of each requirement, by its `id()`; None: it is made here.
         proofs: what verification has found.
     """
     rules = {id(rule.requirement): rule for rule in project.rules}
@@ -94,7 +94,9 @@ def chains(
         _Chain(common, requirement).of(
             requirement,
             rules.get(id(requirement)),
-            _made(rules.get(id(requirement))) if made is None else made.get(id(requirement), ()),
+            products_of(rules.get(id(requirement)))
+            if artefacts is None
+            else artefacts.get(id(requirement), ()),
             results.get(requirement.id, ()),
             [proof for proof in proofs if proof.requirement == requirement.id],
         )
@@ -140,7 +142,7 @@ class _Chain:
         self,
         requirement: Requirement,
         rule: Formalized | None,
-        made: Iterable[Product],
+        artefacts: Iterable[Product],
         results: Sequence[Result],
         proofs: Sequence[Proof],
     ) -> Chain:
@@ -149,12 +151,12 @@ class _Chain:
         sentence = Node(basis.SENTENCE, requirement.id)
         self._add(sentence, self._basis[basis.SENTENCE])
         self._link(Node(TEXT, requirement.id), sentence)
-        artefacts = self._below(rule, sentence, made) if rule is not None else {}
-        sources = self._sources(artefacts.get("monitor"), audited=bool(results))
+        nodes = self._below(rule, sentence, artefacts) if rule is not None else {}
+        sources = self._sources(nodes.get("monitor"), audited=bool(results))
         for result in results:
-            self._judged(result, sources)
+            self._add_result(result, sources)
         if rule is not None:
-            self._proved(rule, proofs)
+            self._add_proofs(rule, proofs)
         review = Node(REVIEW, requirement.id)
         sent = {link.source for link in self._links}
         for node in [node for node in self._prints if node not in sent]:
@@ -178,7 +180,7 @@ class _Chain:
     def _above(self, requirement: Requirement, seen: set[str]) -> None:
         """Hazards and requirements that it traces to, all the way up."""
         text = Node(TEXT, requirement.id)
-        self._add(text, digest(_said(requirement)))
+        self._add(text, digest(_wording(requirement)))
         for parent in requirement.parents:
             hazard, above = self._project.hazards.get(parent), self._common.texts.get(parent)
             if hazard is not None:
@@ -186,8 +188,8 @@ class _Chain:
                 self._link(Node(HAZARD, parent), text)
             elif parent in self._project.parents:
                 outside = self._project.parents[parent]
-                told = _normal([outside.title, outside.text])
-                self._add(Node(PARENT, parent), digest(told))
+                content = _normal([outside.title, outside.text])
+                self._add(Node(PARENT, parent), digest(content))
                 self._link(Node(PARENT, parent), text)
             elif above is not None and parent not in seen:
                 seen.add(parent)
@@ -195,7 +197,7 @@ class _Chain:
                 self._link(Node(TEXT, parent), text)
 
     def _below(
-        self, rule: Formalized, sentence: Node, made: Iterable[Product]
+        self, rule: Formalized, sentence: Node, artefacts: Iterable[Product]
     ) -> Mapping[str, Node]:
         """Formulas, words and artefacts; gives the artefact of each target."""
         formulas, words = Node(FORMULAS, rule.id), Node(WORDS, rule.id)
@@ -205,18 +207,18 @@ class _Chain:
         self._link(sentence, formulas)
         if rule.ticks is not None:
             self._link(clock, formulas)
-        told = described(self._project.declarations, rule.watched)
-        if told:
-            self._add(words, digest(told))
-        found = {}
-        for product in made:
+        meanings = described(self._project.declarations, rule.watched)
+        if meanings:
+            self._add(words, digest(meanings))
+        nodes = {}
+        for product in artefacts:
             if product.refusal or product.target in _READINGS:
                 continue
-            node = found[product.target] = Node(ARTEFACT, product.file)
+            node = nodes[product.target] = Node(ARTEFACT, product.file)
             self._add(node, product.sha256)
             for source in (formulas, fretc, *([clock] if product.target == "monitor" else ())):
                 self._link(source, node)
-        return found
+        return nodes
 
     def _clock(self) -> Node:
         node = Node(basis.CLOCK, "clock")
@@ -225,7 +227,7 @@ class _Chain:
 
     def _sources(self, monitor: Node | None, *, audited: bool) -> Mapping[str, Node]:
         """What a verdict rests on, by its kind."""
-        found = {
+        nodes = {
             basis.FRETC: Node(basis.FRETC, _VERSION),
             basis.SENTENCE: Node(basis.SENTENCE, self._id),
             basis.PARAMS: Node(basis.PARAMS, self._id),
@@ -235,10 +237,10 @@ class _Chain:
             basis.MONITOR: monitor or Node(basis.MONITOR, self._id),
         }
         for kind in (basis.PARAMS, basis.BINDINGS, *([basis.TOPICS] if audited else ())):
-            self._add(found[kind], self._basis[kind])
-        return found
+            self._add(nodes[kind], self._basis[kind])
+        return nodes
 
-    def _judged(self, result: Result, sources: Mapping[str, Node]) -> None:
+    def _add_result(self, result: Result, sources: Mapping[str, Node]) -> None:
         verdict, log = Node(VERDICT, f"{result.requirement} {result.run}"), Node(LOG, result.run)
         self._add(log, _print_of_log(result))
         self._add(verdict, digest(_judgement(result)))
@@ -251,7 +253,7 @@ class _Chain:
         if old:
             self._outdated[verdict] = tuple(sources[kind] for kind in old)
 
-    def _proved(self, rule: Formalized, proofs: Sequence[Proof]) -> None:
+    def _add_proofs(self, rule: Formalized, proofs: Sequence[Proof]) -> None:
         """Each claim, with the texts and assumptions that it is about, as they are now."""
         now = self._common.shared
         for proof in proofs:
@@ -298,7 +300,7 @@ def _print_of_log(result: Result) -> str:
     return result.hashes.get("log") or result.hashes.get("log_summary") or ""
 
 
-def _said(requirement: Requirement) -> dict[str, Any]:
+def _wording(requirement: Requirement) -> dict[str, Any]:
     """What a person says of it; its planned methods and whether it is claimed are no part of it."""
     texts = (requirement.title, requirement.text, requirement.rationale)
     return {"texts": _normal(list(texts)), "parents": sorted(requirement.parents)}
@@ -315,8 +317,8 @@ def _judgement(result: Result) -> dict[str, Any]:
 
 
 def _formulas(rule: Formalized) -> str:
-    told = [rule.ft_infinite, rule.ft_finite, rule.pt]
-    return digest([printing.readable(formula) for formula in told])
+    formulas = [rule.ft_infinite, rule.ft_finite, rule.pt]
+    return digest([printing.readable(formula) for formula in formulas])
 
 
 def _normal(value: Any) -> Any:
@@ -361,28 +363,28 @@ def suspects(chain: Chain, locked: Mapping[Node, str]) -> tuple[Suspect, ...]:
         chain: as it is now.
         locked: the fingerprints that were accepted.
     """
-    wrong = {
+    changed_nodes = {
         node for node in changed(chain.prints, locked) if node in locked or node.kind not in _ADDED
     }
     upstream = _upstream(chain)
     causes_of: dict[Link, set[Node]] = {}
     for link in chain.links:
         above = {link.source, *upstream[link.source]}
-        causes_of[link] = wrong & above
+        causes_of[link] = changed_nodes & above
         for node in chain.outdated.keys() & above & locked.keys():
             causes_of[link] |= {*chain.outdated[node]}
     for node in chain.outdated.keys() & locked.keys():
         for source in chain.outdated[node]:
             causes_of.setdefault(Link(source, node), set()).add(source)
-    found = [
+    links = [
         Suspect(link, tuple(sorted(_first(causes_of[link], upstream))))
         for link in sorted(causes_of, key=lambda link: (len(upstream.get(link.source, ())), link))
         if causes_of[link]
     ]
     gone = tuple(sorted(node for node in locked if node not in chain.prints))
     review = Node(REVIEW, chain.requirement)
-    found.extend(Suspect(Link(node, review), (node,)) for node in gone)
-    return tuple(found)
+    links.extend(Suspect(Link(node, review), (node,)) for node in gone)
+    return tuple(links)
 
 
 def _first(causes: set[Node], upstream: Mapping[Node, frozenset[Node]]) -> Iterator[Node]:
@@ -396,17 +398,17 @@ def _upstream(chain: Chain) -> dict[Node, frozenset[Node]]:
     above |= {node: set() for node in chain.prints if node not in above}
     for link in chain.links:
         above[link.target].add(link.source)
-    found: dict[Node, frozenset[Node]] = {}
+    upstream: dict[Node, frozenset[Node]] = {}
 
     def reach(node: Node) -> frozenset[Node]:
-        if node not in found:
-            found[node] = frozenset()  # a requirement may be its own ancestor
-            found[node] = frozenset(above[node]).union(*(reach(each) for each in above[node]))
-        return found[node]
+        if node not in upstream:
+            upstream[node] = frozenset()  # a requirement may be its own ancestor
+            upstream[node] = frozenset(above[node]).union(*(reach(each) for each in above[node]))
+        return upstream[node]
 
     for node in above:
         reach(node)
-    return found
+    return upstream
 
 
 def _ends(link: Link) -> tuple[Node, Node]:

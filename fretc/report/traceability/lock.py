@@ -67,16 +67,16 @@ class Review:
         return self.prints.get(in_force(self.requirement)) == IN_FORCE
 
     @property
-    def shown(self) -> str:
+    def verdict_summary(self) -> str:
         """The verdicts that were accepted, in words."""
         return _in_words(self.verdicts)
 
     @property
     def seal(self) -> str:
         """SHA-256 of all of it: a review that is edited by hand is nobody's."""
-        told = {name: getattr(self, name) for name in ("requirement", *_TEXTS)}
+        texts = {name: getattr(self, name) for name in ("requirement", *_TEXTS)}
         prints = {str(node): sha for node, sha in self.prints.items()}
-        return digest([told, prints, dict(self.verdicts)])
+        return digest([texts, prints, dict(self.verdicts)])
 
 
 @dataclass(frozen=True, slots=True)
@@ -97,7 +97,7 @@ def verdicts_of(chain: Chain) -> str:
 
 
 def _in_words(verdicts: Mapping[str, str]) -> str:
-    told = []
+    parts = []
     for word in VERDICTS:
         runs = sorted(run for run, verdict in verdicts.items() if verdict == word)
         if not runs:
@@ -105,8 +105,8 @@ def _in_words(verdicts: Mapping[str, str]) -> str:
         named = ", ".join(runs[:_NAMED]) if word == kernel.VIOLATED else ""
         rest = len(runs) - (_NAMED if named else 0)
         more = f"{rest} {'more ' if named else ''}run{'' if rest == 1 else 's'}" if rest > 0 else ""
-        told.append(f"{word} in {' and '.join(part for part in (named, more) if part)}")
-    return "; ".join(told) or "no run of it was audited"
+        parts.append(f"{word} in {' and '.join(part for part in (named, more) if part)}")
+    return "; ".join(parts) or "no run of it was audited"
 
 
 _NAMED = 3
@@ -120,28 +120,28 @@ def unnamed_violations(chosen: Sequence[Chain], refuted: Collection[str]) -> tup
         chosen: what is to be accepted.
         refuted: ids of the requirements with a probability that all runs together refute.
     """
-    wrong = {
+    violations = {
         c.requirement: verdicts_of(c) for c in chosen if kernel.VIOLATED in c.verdicts.values()
     }
-    wrong |= {c.requirement: "refuted by all runs" for c in chosen if c.requirement in refuted}
+    violations |= {c.requirement: "refuted by all runs" for c in chosen if c.requirement in refuted}
     return tuple(
         Diagnostic(
             Code.UNREVIEWED_VIOLATION,
-            f"{id} is {told}",
+            f"{id} is {verdicts}",
             help="mend it, or accept it as it is: add `--accept-violations`",
         )
-        for id, told in wrong.items()
+        for id, verdicts in violations.items()
     )
 
 
 def outdated_results(chosen: Sequence[Chain]) -> tuple[Diagnostic, ...]:
     """F541 for each requirement whose evidence is about something else; F542 for unknown logs."""
-    found = []
+    diagnostics = []
     for chain in chosen:
         causes = dict.fromkeys(cause for nodes in chain.outdated.values() for cause in nodes)
         if causes:
             what = ", ".join(f"{cause.kind} {cause.name}" for cause in causes)
-            found.append(
+            diagnostics.append(
                 Diagnostic(
                     Code.OUTDATED_RESULT,
                     f"what was shown of {chain.requirement} is about something else than what is "
@@ -150,7 +150,7 @@ def outdated_results(chosen: Sequence[Chain]) -> tuple[Diagnostic, ...]:
                 )
             )
         if chain.unhashed:
-            found.append(
+            diagnostics.append(
                 Diagnostic(
                     Code.UNKNOWN_LOG,
                     f"nothing tells the log `{chain.unhashed[0]}` of {chain.requirement} from "
@@ -158,7 +158,7 @@ def outdated_results(chosen: Sequence[Chain]) -> tuple[Diagnostic, ...]:
                     help="audit again where the log can be read, then lock",
                 )
             )
-    return tuple(found)
+    return tuple(diagnostics)
 
 
 def text(lock: Lock) -> str:
@@ -190,7 +190,7 @@ def read(path: str) -> Lock | Diagnostic:
     wrong = next(_mistakes(tables), None)
     if wrong is not None:
         return wrong
-    lock = Lock({id: _review(id, told) for id, told in _reviews(tables)})
+    lock = Lock({id: _review(id, fields) for id, fields in _reviews(tables)})
     return next(_broken(tables, lock), lock)
 
 
@@ -204,8 +204,8 @@ def _none_yet(path: str) -> Diagnostic:
 
 
 def _reviews(tables: Tables) -> Iterable[tuple[str, Any]]:
-    told = tables.data.get(_TABLE, {})
-    return told.items() if isinstance(told, dict) else ()
+    reviews = tables.data.get(_TABLE, {})
+    return reviews.items() if isinstance(reviews, dict) else ()
 
 
 def _mistakes(tables: Tables) -> Iterator[Diagnostic]:
@@ -218,17 +218,17 @@ def _mistakes(tables: Tables) -> Iterator[Diagnostic]:
     for name, value in tables.data.items():
         if name not in ("schema", _TABLE) or (name == _TABLE and not isinstance(value, dict)):
             yield _wrong(tables, f"`{name}` is no part of a lock", name)
-    for id, told in _reviews(tables):
-        if not isinstance(told, dict):
+    for id, fields in _reviews(tables):
+        if not isinstance(fields, dict):
             yield _wrong(tables, f"`{id}` is no review", _TABLE, id)
             continue
         for name in (*_TEXTS, "seal"):
-            if not isinstance(told.get(name), str):
+            if not isinstance(fields.get(name), str):
                 yield _wrong(tables, f"the review of {id} has no `{name}`", _TABLE, id, name)
-        if isinstance(told.get("date"), str) and not is_date(told["date"]):
-            yield _wrong(tables, f"`{told['date']}` is no date", _TABLE, id, "date")
+        if isinstance(fields.get("date"), str) and not is_date(fields["date"]):
+            yield _wrong(tables, f"`{fields['date']}` is no date", _TABLE, id, "date")
         for name in ("fingerprints", "verdicts"):
-            table = told.get(name)
+            table = fields.get(name)
             if not isinstance(table, dict) or not all(isinstance(v, str) for v in table.values()):
                 yield _wrong(tables, f"`{name}` of {id} must be a table of texts", _TABLE, id, name)
             elif name == "fingerprints":
@@ -245,8 +245,8 @@ def _no_prints(tables: Tables, id: str, table: Mapping[str, str]) -> Iterator[Di
 def _broken(tables: Tables, lock: Lock) -> Iterator[Diagnostic]:
     """Reviews that nobody can have made."""
     for id, review in lock.reviews.items():
-        told = tables.data[_TABLE][id]
-        if told["seal"] != review.seal:
+        fields = tables.data[_TABLE][id]
+        if fields["seal"] != review.seal:
             what = f"the review of {id} is not as `fretc lock` wrote it: somebody has edited it"
             yield _wrong(tables, what, _TABLE, id, "seal")
         elif is_to_come(review.date):
@@ -272,12 +272,12 @@ def _wrong(tables: Tables, what: str, *path: str) -> Diagnostic:
     )
 
 
-def _review(id: str, told: Mapping[str, Any]) -> Review:
+def _review(id: str, fields: Mapping[str, Any]) -> Review:
     return Review(
         requirement=id,
-        **{name: told[name] for name in _TEXTS},
-        prints={_node(name): sha for name, sha in told["fingerprints"].items()},
-        verdicts=told["verdicts"],
+        **{name: fields[name] for name in _TEXTS},
+        prints={_node(name): sha for name, sha in fields["fingerprints"].items()},
+        verdicts=fields["verdicts"],
     )
 
 
@@ -307,6 +307,11 @@ class Standing:
         """Whether anything that its review rests on has changed."""
         return any(suspect.link.target.kind == REVIEW for suspect in self.suspects)
 
+    @property
+    def causes(self) -> tuple[Node, ...]:
+        """The changes that make links suspect, each once."""
+        return tuple(dict.fromkeys(cause for each in self.suspects for cause in each.causes))
+
 
 def standings(chains: Sequence[Chain], lock: Lock | None) -> tuple[Standing, ...]:
     """Each requirement beside its review."""
@@ -317,12 +322,12 @@ def standings(chains: Sequence[Chain], lock: Lock | None) -> tuple[Standing, ...
 def _standing(chain: Chain, review: Review | None) -> Standing:
     if review is None:
         return Standing(chain, None, (), ())
-    known = review.prints
-    return Standing(chain, review, suspects(chain, known), changed(chain.prints, known))
+    prints = review.prints
+    return Standing(chain, review, suspects(chain, prints), changed(chain.prints, prints))
 
 
 @dataclass(frozen=True, slots=True)
-class Withdrawn:
+class WithdrawnRequirement:
     """A requirement that was reviewed when it was claimed, and is claimed no more."""
 
     review: Review
@@ -336,12 +341,13 @@ class Withdrawn:
         """In a sentence, with what the runs had shown of it."""
         how = "is retired now" if self.retired else "is not among the requirements any more"
         renamed = f"; {self.successor} has its sentence" if self.successor else ""
-        return f"{self.review.requirement} was reviewed ({self.review.shown}) and {how}{renamed}"
+        id, verdicts = self.review.requirement, self.review.verdict_summary
+        return f"{id} was reviewed ({verdicts}) and {how}{renamed}"
 
 
-def withdrawn(
+def withdrawn_requirements(
     requirements: Iterable[Requirement], chains: Iterable[Chain], lock: Lock | None
-) -> tuple[Withdrawn, ...]:
+) -> tuple[WithdrawnRequirement, ...]:
     """What the lock says was claimed, and is not any more: removed, renamed, split or retired."""
     if lock is None:
         return ()
@@ -352,7 +358,7 @@ def withdrawn(
         if chain.requirement not in lock.reviews
     }
     return tuple(
-        Withdrawn(
+        WithdrawnRequirement(
             review,
             id in status,
             new.get(review.prints.get(Node(SENTENCE, id)), "") if id not in status else "",
@@ -362,7 +368,9 @@ def withdrawn(
     )
 
 
-def told(found: Sequence[Withdrawn], path: str) -> tuple[Diagnostic, ...]:
+def withdrawal_warnings(
+    withdrawn: Sequence[WithdrawnRequirement], path: str
+) -> tuple[Diagnostic, ...]:
     """F511 or F540 for each requirement that was withdrawn since its review."""
     return tuple(
         Diagnostic(
@@ -372,5 +380,5 @@ def told(found: Sequence[Withdrawn], path: str) -> tuple[Diagnostic, ...]:
             help=f"if that is meant, accept it: `fretc lock {one.review.requirement} ...`",
             severity=Severity.WARNING,
         )
-        for one in found
+        for one in withdrawn
     )

@@ -62,13 +62,13 @@ class Waiver:
 
 
 def read(
-    path: str, known: Sequence[str] | None, day: str
+    path: str, ids: Sequence[str] | None, day: str
 ) -> tuple[Mapping[str, Waiver], tuple[Diagnostic, ...]]:
     """The waivers of a file, and all that there is to say of them.
 
     Args:
         path: the file.
-        known: the ids of the requirements; None: any may be waived.
+        ids: the ids of the requirements; None: any may be waived.
         day: on which they are to count; one that does not is told as a warning.
     """
     source = read_text(path)
@@ -77,11 +77,14 @@ def read(
     tables = read_tables(source.span(), Code.BAD_WAIVER, "the waivers file")
     if isinstance(tables, Diagnostic):
         return {}, (tables,)
-    wrong = tuple(d for id, told in tables.data.items() for d in _mistakes(tables, id, told, known))
+    wrong = tuple(
+        d for id, fields in tables.data.items() for d in _mistakes(tables, id, fields, ids)
+    )
     if wrong:
         return {}, wrong
     waivers = {
-        id: Waiver(id, **told, span=tables.value(id, "verdict")) for id, told in tables.data.items()
+        id: Waiver(id, **fields, span=tables.value(id, "verdict"))
+        for id, fields in tables.data.items()
     }
     return waivers, tuple(
         _ended(tables, waiver) for waiver in waivers.values() if not waiver.covers(day)
@@ -89,20 +92,20 @@ def read(
 
 
 def _mistakes(
-    tables: Tables, id: str, told: Any, known: Sequence[str] | None
+    tables: Tables, id: str, fields: Any, ids: Sequence[str] | None
 ) -> Iterator[Diagnostic]:
-    if not isinstance(told, dict):
+    if not isinstance(fields, dict):
         yield _wrong(tables, f"`{id}` is no waiver", f"write `[{id}]`, then its fields", id)
         return
-    if known is not None and id not in known:
-        near = suggestion(id, known)
+    if ids is not None and id not in ids:
+        near = suggestion(id, ids)
         mend = f"did you mean `{near}`?" if near else "name a requirement of the project"
         yield _wrong(tables, f"{id} is waived, and is not among the requirements", mend, id)
-    for key in told:
+    for key in fields:
         if key not in _FIELDS:
             yield unknown_key(Code.BAD_WAIVER, key, _FIELDS, tables.place(id, key), f"[{id}]")
     for name in _FIELDS:
-        value = told.get(name)
+        value = fields.get(name)
         if name == "verdict" and value not in VERDICTS:
             yield _no_verdict(tables, id, value)
         elif not isinstance(value, str) or not value.strip():

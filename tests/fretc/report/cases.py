@@ -10,7 +10,7 @@ from compiler.project.folder import Project, load
 from fretc.audit.evidence.basis import BINDINGS as BINDINGS_PART
 from fretc.audit.evidence.basis import KINDS, of_all
 from fretc.audit.plan import bases
-from fretc.report.make import Made, make
+from fretc.report.make import ReportBuild, make
 
 BINDINGS = """\
 [clock]
@@ -247,14 +247,14 @@ def evidence(known: Project, *results: Mapping[str, Any]) -> dict[str, Any]:
     }
 
 
-def made(known: Project, folder: Path, *results: Mapping[str, Any]) -> Made:
+def made(known: Project, folder: Path, *results: Mapping[str, Any]) -> ReportBuild:
     """The report about these results."""
     file = folder / "evidence.json"
     file.write_text(json.dumps(evidence(known, *results)), encoding="utf-8")
     return make(known, str(file))
 
 
-def said(report: Made) -> dict[str, Any]:
+def said(report: ReportBuild) -> dict[str, Any]:
     """What the report says, as plain data."""
     assert report.json is not None
     content: dict[str, Any] = json.loads(report.json)

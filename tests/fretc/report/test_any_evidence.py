@@ -21,7 +21,7 @@ from fretc.report.forms.gsn import gsn
 from fretc.report.forms.junit import junit
 from fretc.report.forms.markdown import markdown
 from fretc.report.forms.sarif import sarif
-from fretc.report.make import Made
+from fretc.report.make import ReportBuild
 from tests.fretc.report.cases import R1, moment, project, requirement, result
 from tests.fretc.report.cases import made as reported
 from tests.fretc.report.test_make import validate
@@ -185,7 +185,7 @@ def is_suspect(one: Mapping[str, Any], known: Project) -> bool:
     return changed or damaged
 
 
-def forms(made: Made, results: Sequence[dict[str, Any]], known: Project) -> dict[str, Any]:
+def forms(made: ReportBuild, results: Sequence[dict[str, Any]], known: Project) -> dict[str, Any]:
     assert made.report is not None, made.diagnostics[0].message
     whole = made.report
     suite = ElementTree.fromstring(junit(whole))[0]

@@ -18,7 +18,7 @@ from reqif.parser import ReqIFParser
 
 from compiler.files.settings import Settings
 from compiler.project.parents import Parent, parents
-from fretc.report.forms import extras as forms
+from fretc.report.forms import forms
 from fretc.report.forms.reqif import reqif as form
 from fretc.report.model.views import HazardView, Report, verdict_mark
 from tests.command import Fretc, write

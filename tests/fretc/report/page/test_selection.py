@@ -56,7 +56,7 @@ def test_a_compact_page_lists_what_is_not_satisfied_and_says_so(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(choosing, "COMPACT", 50)
-    monkeypatch.setattr(choosing, "_TOLD_RUNS", 9)
+    monkeypatch.setattr(choosing, "_RUN_ROWS", 9)
     report, html = reported(tmp_path, 3, 20, 0.5)
     chosen = selection(report)
     assert chosen.is_compact

@@ -1,4 +1,4 @@
-from fretc.report.page.tree import MOST, grouped, pieces, placed, shortened
+from fretc.report.page.tree import MOST, grouped, pieces, placements, shortened
 from fretc.report.sections.argument import Element, Kind
 
 
@@ -22,7 +22,7 @@ def many(count: int, open_: int) -> list[Element]:
 def test_elements_stand_below_what_they_support_contexts_first() -> None:
     top = Element("G", Kind.GOAL, "top", ("S",), ("C",))
     elements = [top, Element("S", Kind.STRATEGY, "over", ("H",)), Element("C", Kind.CONTEXT, "c")]
-    found = placed([*elements, goal("H")])
+    found = placements([*elements, goal("H")])
     assert [(each.element.id, each.depth, each.hang) for each in found] == [
         ("G", 0, "support"),
         ("C", 1, "context"),
@@ -34,7 +34,7 @@ def test_elements_stand_below_what_they_support_contexts_first() -> None:
 def test_an_element_under_two_goals_is_drawn_once_and_referred_to_below_the_other() -> None:
     named = Element("X", Kind.GOAL, "X holds: p", ("Y",), name="X holds")
     elements = [goal("G", "A", "B"), goal("A", "X"), goal("B", "X"), named, goal("Y")]
-    found = placed(elements)
+    found = placements(elements)
     assert [(each.element.id, each.depth) for each in found] == [
         ("G", 0), ("A", 1), ("X", 2), ("Y", 3), ("B", 1), ("X", 2),
     ]  # fmt: skip
@@ -54,7 +54,7 @@ def test_what_is_against_a_goal_hangs_on_it_and_all_that_rests_on_the_goal_is_in
         goal("Z"),
         Element("CSn2", Kind.COUNTER_SOLUTION, "old", challenges="Z"),
     ]
-    found = placed(elements)
+    found = placements(elements)
     assert [(each.element.id, each.hang, each.state) for each in found] == [
         ("G", "support", "in doubt"),
         ("A", "support", "in doubt"),
@@ -126,7 +126,7 @@ def test_of_a_large_argument_what_is_challenged_comes_before_what_is_open() -> N
     found = shortened([*many(1000, 1000), last])
     assert {"top", "H990", "G999", "CSn"} <= {each.id for each in found}
     assert len(found) == MOST
-    drawn = [each.element.id for each in placed(found)]
+    drawn = [each.element.id for each in placements(found)]
     assert {"G999", "CSn"} <= set(drawn)
 
 

@@ -11,7 +11,7 @@ from compiler.project.folder import Project
 from compiler.targets.python import monitor
 from fretc.cli import cli
 from fretc.report.forms.junit import junit
-from fretc.report.make import Made, make
+from fretc.report.make import ReportBuild, make
 from fretc.report.sections.argument import Kind, argument
 from fretish.diagnostics.diagnostic import Code
 from tests.command import Fretc, write
@@ -45,7 +45,7 @@ def proof(known: Project, found: str = "proved", **changes: Any) -> dict[str, An
     }
 
 
-def reported(folder: Path, *lines: dict[str, Any], verify: list[str]) -> Made:
+def reported(folder: Path, *lines: dict[str, Any], verify: list[str]) -> ReportBuild:
     """The report about R1, satisfied in one run, and what was proved of it."""
     known = project(folder, requirement("R1", SENTENCE, verify=verify))
     path, proofs = folder / "evidence.json", folder / "verification.json"
@@ -57,7 +57,7 @@ def reported(folder: Path, *lines: dict[str, Any], verify: list[str]) -> Made:
     return make(known, str(path), verification=str(proofs))
 
 
-def plan(report: Made) -> tuple[str, bool, bool]:
+def plan(report: ReportBuild) -> tuple[str, bool, bool]:
     (found,) = said(report)["planned"]
     return found["result"], found["has_result"], found["refuted"]
 
