@@ -1,4 +1,4 @@
-"""`--reqif`: hazards, requirements and what is shown of them, for a requirements tool.
+"""`--reqif`: hazards, requirements and their verdicts, for a requirements tool.
 
 Sources: OMG, Requirements Interchange Format (ReqIF) 1.2; prostep ivip, ReqIF Implementation
 Guide, for the names that begin with `ReqIF.`.

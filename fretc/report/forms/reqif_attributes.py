@@ -1,4 +1,4 @@
-"""What ReqIF is told of each hazard and each requirement, as text."""
+"""The ReqIF attributes of each hazard and each requirement, as text."""
 
 from __future__ import annotations
 

@@ -23,7 +23,7 @@ def sarif(
 
     Args:
         report: what it says.
-        audited: the results of the evidence that the report was made of, in its order.
+        audited: the results of the evidence, in its order.
         rules: all requirements of the project.
         diagnostics: what there is to say of requirements and evidence.
         failed: requirements of the project without a rule.

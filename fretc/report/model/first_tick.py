@@ -1,7 +1,7 @@
 """The signals at the first tick of a violation, as the monitor saw them and as the picture shows.
 
-A sample that has grown too old is unknown to the monitor: its value is told with its age and the
-limit, never as if it still counted.
+A sample above its age limit is unknown to the monitor: the text has its value, its age and the
+limit.
 """
 
 from __future__ import annotations
@@ -19,8 +19,8 @@ def reading(signal: str, violation: Violation, result: Result, ages: Mapping[str
     Args:
         signal: one of the violation's values.
         violation: with its window, where the audit kept one.
-        result: where it was found.
-        ages: seconds after which a sample no longer counts, by the signal; absent: never.
+        result: of the run with the violation.
+        ages: age limit of each signal in seconds; a signal without one has no limit.
     """
     value, limit = _value(signal, violation), ages.get(signal)
     bounds = _bounds(signal, result)
@@ -35,7 +35,7 @@ def reading(signal: str, violation: Violation, result: Result, ages: Mapping[str
 
 
 def _bounds(signal: str, result: Result) -> list[float]:
-    """What the signal itself, or its absolute value, is compared with."""
+    """The constants that thresholds compare the signal or its absolute value with."""
     unit, bounds = result.units.get(signal), list[float]()
     for each in result.thresholds:
         if each.unit == unit and each.signal == signal:
@@ -46,7 +46,7 @@ def _bounds(signal: str, result: Result) -> list[float]:
 
 
 def _value(signal: str, violation: Violation) -> float | str | None:
-    """The number in the evidence; the window also knows infinite ones."""
+    """The number in the evidence; an infinite one stands in the window only."""
     number = violation.values[signal]
     if number is None and violation.window and signal in violation.window.samples:
         sample = violation.window.samples[signal].at(violation.first.seconds)

@@ -1,4 +1,4 @@
-"""The headline of a report: what is violated, what is out of date, and which change made it so."""
+"""The headline of a report: violated requirements, suspect ones, and the changes behind them."""
 
 from __future__ import annotations
 
@@ -9,11 +9,11 @@ from fretc.report.model import phrases
 from fretc.report.model.assessments import Assessment
 
 _GROUPS = 3
-"""Different reasons that are named; of the others only the number is."""
+"""The most reasons that a headline names; it counts the others."""
 
 
 def violated(assessments: Sequence[Assessment]) -> str:
-    """What is violated, as `R1 is violated; R2 was violated, and the sentence has changed`.
+    """Violated requirements: `R1 is violated; R2 was violated, and the sentence has changed`.
 
     Args:
         assessments: at least one, all of them violated or refuted.
@@ -25,7 +25,7 @@ def violated(assessments: Sequence[Assessment]) -> str:
 
 
 def outdated(assessments: Sequence[Assessment]) -> str:
-    """What is suspect and no violation, with its reasons, as a sentence; empty: nothing is."""
+    """Suspect requirements that are not violated, with the reasons; empty where there is none."""
     stale = [
         assessment
         for assessment in assessments
@@ -35,7 +35,7 @@ def outdated(assessments: Sequence[Assessment]) -> str:
 
 
 def _groups(stale: Sequence[Assessment]) -> list[str]:
-    """Those of one verdict that are suspect for the same reasons together, the worst first."""
+    """A phrase for each verdict and reason, the worst first."""
     ordered = sorted(
         stale, key=lambda assessment: (assessment.mark.severity, assessment.suspicions)
     )

@@ -34,7 +34,7 @@ def some(words: Sequence[str], most: int = 6) -> str:
 
 
 def decimal(number: float) -> str:
-    """At most three decimals, none that says nothing: `39.8`, `0.001`, `2`."""
+    """At most three decimals, and no zeros at the end: `39.8`, `0.001`, `2`."""
     if abs(number) >= 10**7:
         return f"{number:.6g}"
     text = f"{number:,.3f}".rstrip("0").rstrip(".").replace(",", _NARROW)
@@ -70,7 +70,7 @@ def instant(ns: int | None) -> str:
 
 
 def place(path: str) -> str:
-    """A path as it may be shown anywhere: of an absolute one only the last part."""
+    """A path without places of one machine: of an absolute path only the last part."""
     if PurePosixPath(path).is_absolute():
         return PurePosixPath(path).name or path
     if PureWindowsPath(path).drive or path.startswith("\\"):
@@ -84,7 +84,7 @@ def thing(node: Node) -> str:
 
 
 def visible(text: str) -> str:
-    """Control and direction characters, which would hide or turn text, as escapes."""
+    """The text with escapes for control and direction characters, which hide or turn text."""
     return "".join(c if _is_plain(c) else _escape(c) for c in text)
 
 

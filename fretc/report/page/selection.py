@@ -1,6 +1,6 @@
-"""What of a report stands in the page: all verdicts, and as many details as a reader can open.
+"""The selection for the page: all verdicts, and as many details as a browser can open.
 
-Nothing that is not satisfied is left out without a word; the evidence has everything.
+The page says how many runs that are not satisfied it leaves out; the evidence file has them all.
 """
 
 from __future__ import annotations
@@ -14,20 +14,21 @@ from fretc.report.model import phrases
 from fretc.report.model.views import Mark, Report, RequirementView, ResultView, RunView
 
 COMPACT = 5_000
-"""More results than these, and only runs that are not satisfied have a row."""
+"""Above this number of results, only runs that are not satisfied have a row."""
 DETAILED, PICTURES = 100, 60
-"""Results with all details, and pictures of violations, in one page, shared among requirements."""
+"""The most results with all details, and the most pictures of violations, in one page."""
 _ROWS = 10
-"""Rows of a requirement in a compact page."""
+"""The most rows of a requirement in a compact page."""
 _RUNS, _RUN_ROWS = 8, 200
-"""More runs than the first are a table; more rows than the second it does not have."""
+"""Above the first number, runs stand in a table; the second is the most rows of that table."""
 _FOLDED = 60
-"""Up to so many results in all, also those of satisfied runs are in the page, closed."""
+"""Up to this number of results, the page has the details of satisfied runs too, folded."""
 _VIOLATIONS = 12
-"""Violations that are listed of one result, in a page with more results than that."""
+"""The most violations of one result in a page with more than `_FOLDED` results."""
 _WHOLE = 200
-"""More requirements than these, and a compact page tells of each only what it says and shows."""
+"""Above this number of requirements, a compact page has no formulas, artefacts and pictures."""
 _REASONS = 3
+"""The most reasons of a requirement in a compact page."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,7 +36,7 @@ class RunRow:
     """One run of a requirement in its table."""
 
     anchor: str
-    """Of its details; of the row itself where there are none."""
+    """The anchor of its details, or of the row where there are none."""
     run: str
     label: str
     file: str
@@ -50,36 +51,36 @@ class RunRow:
 
 @dataclass(frozen=True, slots=True)
 class SectionRuns:
-    """What the section of a requirement shows of its runs."""
+    """The runs in the section of a requirement."""
 
     rows: tuple[RunRow, ...]
     details: tuple[ResultView, ...]
     folded: tuple[ResultView, ...]
-    """Of satisfied runs, to be opened."""
+    """Details of satisfied runs, which the reader unfolds."""
     left_out: tuple[str, ...]
-    """What is not in the page, and where it is."""
+    """Sentences about what the page leaves out, and where that is."""
     is_short: bool
     """Whether formulas, propositions, artefacts and histograms are left out."""
 
 
 @dataclass(frozen=True, slots=True)
 class Selection:
-    """What the page shows."""
+    """What the page has of each requirement and of the runs."""
 
     by_anchor: Mapping[str, SectionRuns]
     runs: tuple[RunView, ...]
-    """Those with a section of their own."""
+    """Runs with a section of their own."""
     run_rows: tuple[RunView, ...]
-    """Those in a table; empty where each has a section."""
+    """Runs in a table; empty where each run has a section."""
     runs_left_out: str
     notes: tuple[str, ...]
     is_compact: bool
     anchors: frozenset[str]
-    """Of all results and runs that can be linked to."""
+    """The anchors of all results and runs in the page."""
 
 
 def selection(report: Report) -> Selection:
-    """Choose, from what the report says."""
+    """The selection for a report."""
     total = sum(len(view.results) for view in report.requirements)
     compact = total > COMPACT
     detailed = _detailed(report.requirements, None if total <= _FOLDED else _VIOLATIONS)
@@ -88,7 +89,7 @@ def selection(report: Report) -> Selection:
         for view in report.requirements
     }
     many = len(report.runs) > _RUNS
-    run_rows = report.runs[:_RUN_ROWS] if many else ()  # those with errors and damage come first
+    run_rows = report.runs[:_RUN_ROWS] if many else ()  # runs with errors and damage come first
     alone = [run for run in report.runs if run.findings or run.gaps or not run.intact]
     sections = tuple(alone[:_RUNS]) if many else report.runs
     left = len(report.runs) - len(run_rows) if many else 0
@@ -141,11 +142,11 @@ def _is_good(result: ResultView) -> bool:
 
 
 def _detailed(views: Sequence[RequirementView], listed: int | None) -> Mapping[str, ResultView]:
-    """Results that get all details: the worst of each requirement first, then the next of each.
+    """The results with all details: the worst of each requirement, then the next of each, ...
 
     Args:
         views: the requirements with all their results.
-        listed: violations of one result that have a row; None: all that the report lists.
+        listed: the most violations of one result; None: all that the report lists.
     """
     wanted = [
         sorted(
@@ -181,7 +182,7 @@ def _section_runs(
         bad = [result for result in rows if not _is_good(result)]
         rows = sorted(bad, key=lambda result: result.mark.severity)[:_ROWS]
     elif view.results and not (details or folded):
-        rows = view.results  # a single one without details
+        rows = view.results  # a single result without details has a row
     open_ = {result.anchor for result in (*details, *folded)}
     return SectionRuns(
         rows=tuple(_row(result, result.anchor in open_) for result in rows),
@@ -235,11 +236,14 @@ def _left_out(
         yield "Details of satisfied runs are in the evidence file and in `--json`."
 
 
-# The page as it is placed ----------------------------------------------------------------------
+# The report for the page -----------------------------------------------------------------------
 
 
 def slimmed(report: Report, chosen: Selection) -> Report:
-    """The report without what the page leaves out; links to nowhere lead to the requirement."""
+    """The report without what the page leaves out.
+
+    A link to a result that the page leaves out leads to its requirement.
+    """
     views = tuple(_slim(view, chosen) for view in report.requirements)
     matrix = tuple(
         replace(
@@ -259,7 +263,7 @@ def slimmed(report: Report, chosen: Selection) -> Report:
 
 
 def _slim(view: RequirementView, chosen: Selection) -> RequirementView:
-    """A section without its results, which are placed as they were chosen."""
+    """A section without its results: the template takes those from the selection."""
     reasons = _few(view.reasons) if chosen.is_compact else view.reasons
     kept = replace(view, results=(), reasons=reasons)
     if not chosen.by_anchor[view.anchor].is_short:

@@ -1,8 +1,10 @@
-"""The assurance argument as an indented tree: each element a shape of GSN, in pieces of a page.
+"""The assurance argument as an indented tree, in pieces that fit on a page.
 
-An element with several parents is drawn below the first, and referred to below the others.
-Counter-evidence hangs on its goal by a dashed line with an open arrowhead; a defeated goal is
-crossed. Source of the shapes: GSN Community Standard, version 3 (2021), part 1, with its dialectic
+Each element is a shape of GSN. An element with several parents stands below the first of them;
+the others have a reference to it. A dashed line with an open arrowhead joins counter-evidence to
+its goal. A defeated goal has a cross.
+
+Source of the shapes: GSN Community Standard, version 3 (2021), part 1, with its dialectic
 extension.
 """
 
@@ -15,21 +17,21 @@ from enum import StrEnum
 from fretc.report.sections.argument import Element, Kind
 
 MOST = 120
-"""More elements than these are not drawn: then only what is not shown is."""
+"""The most elements of a drawing. A larger argument is drawn without the goals that are shown."""
 _WIDTH, _INDENT, _MARGIN = 720, 26, 4
 _LINE, _PAD, _GAP = 15, 9, 12
 _LETTER = 6.1
 _LINES = 3
 _TALL = 880
-"""A piece fits on a page of A4 at this height."""
+"""The greatest height of a piece: it fits on a page of A4."""
 _ASSUMED = 4
-"""More assumptions of one goal are drawn as one."""
+"""Above this number, the assumptions of one goal are one shape."""
 _ROUND = (Kind.SOLUTION, Kind.COUNTER_SOLUTION, Kind.ASSUMPTION, Kind.JUSTIFICATION)
 NAMES = {kind: kind.name.capitalize().replace("_", "-") for kind in Kind}
 
 
 class Hang(StrEnum):
-    """How an element hangs on the one above."""
+    """The relation of an element to the one above it."""
 
     SUPPORT = "support"
     CONTEXT = "context"
@@ -38,26 +40,26 @@ class Hang(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Placement:
-    """An element in the tree."""
+    """An element at its place in the tree."""
 
     element: Element
     depth: int
     hang: Hang
     is_reference: bool = False
-    """Whether it stands with all that is below it at a place further up."""
+    """Whether it only refers to the same element further up."""
     is_challenged: bool = False
     is_doubtful: bool = False
     """Whether it, or something that it rests on, is challenged."""
 
     @property
     def text(self) -> str:
-        """What is written into it."""
+        """The text in its shape."""
         element = self.element
         return f"{element.name or element.text}: see above" if self.is_reference else element.text
 
     @property
     def state(self) -> str:
-        """`defeated`, `challenged` or `in doubt`; empty where nothing stands against it."""
+        """`defeated`, `challenged` or `in doubt`; empty where there is no counter-evidence."""
         if self.element.defeated:
             return "defeated"
         return "challenged" if self.is_challenged else "in doubt" if self.is_doubtful else ""
@@ -79,7 +81,7 @@ class Shape:
     diamond: str
     cross: str
     state: tuple[float, float, str] | None
-    """Where it says that it is challenged, defeated or in doubt."""
+    """The place and the text of its state."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -95,7 +97,7 @@ class Piece:
 
 
 def placements(elements: Sequence[Element]) -> tuple[Placement, ...]:
-    """All elements from the top goal down, where they are referred to first; then by reference."""
+    """All elements from the top goal down: in full at the first place, then as references."""
     known = {element.id: element for element in elements}
     against = _challengers(elements)
     doubtful = _above(set(against), known)
@@ -119,7 +121,7 @@ def placements(elements: Sequence[Element]) -> tuple[Placement, ...]:
 
 
 def _challengers(elements: Sequence[Element]) -> Mapping[str, Sequence[str]]:
-    """Of each challenged element what stands against it."""
+    """The counter-evidence against each challenged element, by its id."""
     challengers: dict[str, list[str]] = {}
     for element in elements:
         if element.challenges:
@@ -128,7 +130,7 @@ def _challengers(elements: Sequence[Element]) -> Mapping[str, Sequence[str]]:
 
 
 def _above(ids: Collection[str], known: Mapping[str, Element]) -> set[str]:
-    """These elements, and all that rest on them: a requirement may stand under several hazards."""
+    """These elements, and all elements that they support, directly or not."""
     above: dict[str, list[str]] = {}
     for element in known.values():
         for other in element.supported_by:
@@ -143,10 +145,10 @@ def _above(ids: Collection[str], known: Mapping[str, Element]) -> set[str]:
 
 
 def shortened(elements: Sequence[Element]) -> tuple[Element, ...]:
-    """What is challenged and what is not shown, where all would be too many; the first comes first.
+    """The elements of a drawing: all of them, or those that a reader must see, at most `MOST`.
 
-    A goal is left out where everything below it is developed and nothing stands against it, and
-    whatever is neither a goal, a strategy nor counter-evidence with it.
+    Counter-evidence and the goals above it come first, then undeveloped goals and the goals above
+    them. Goals that are developed and unchallenged are left out, and so are solutions and context.
     """
     if len(elements) <= MOST:
         return tuple(elements)
@@ -169,7 +171,7 @@ def shortened(elements: Sequence[Element]) -> tuple[Element, ...]:
 
 
 def grouped(elements: Sequence[Element]) -> tuple[Element, ...]:
-    """Many assumptions of one goal as one, which says how many; the page lists them elsewhere."""
+    """The elements with one in place of many assumptions of a goal; part 6 lists them all."""
     kinds = {element.id: element.kind for element in elements}
     kept: list[Element] = []
     replaced: set[str] = set()
@@ -190,7 +192,7 @@ def grouped(elements: Sequence[Element]) -> tuple[Element, ...]:
 
 
 def pieces(elements: Sequence[Element]) -> tuple[Piece, ...]:
-    """The drawing; where it is longer than a page, in several pieces."""
+    """The drawing, in as many pieces as it fills pages."""
     groups: list[list[Placement]] = [[]]
     height = 0.0
     for cluster in _clusters(placements(elements)):
@@ -204,7 +206,7 @@ def pieces(elements: Sequence[Element]) -> tuple[Piece, ...]:
 
 
 def _clusters(flat: Sequence[Placement]) -> Iterator[list[Placement]]:
-    """What stays on one page: an element with its context and what challenges it."""
+    """The groups that stay on one page: an element with its context and its counter-evidence."""
     cluster: list[Placement] = []
     height = 0.0
     for each in flat:
@@ -218,7 +220,7 @@ def _clusters(flat: Sequence[Placement]) -> Iterator[list[Placement]]:
 
 
 def _begins(each: Placement, height: float) -> bool:
-    """A hazard does not begin near the end of a page."""
+    """Whether a new page begins here: no hazard begins near the end of a page."""
     return each.depth <= 2 and each.hang is Hang.SUPPORT and height > 0.75 * _TALL
 
 
@@ -266,7 +268,7 @@ def _shape(each: Placement, y: float, above: dict[int, tuple[float, float]]) -> 
 
 
 def _link(hang: Hang, x: float, y: float, to_x: float, to_y: float) -> tuple[str, str]:
-    """A line and its arrowhead; evidence against an element points at it, all else away."""
+    """A line and its arrowhead: it points at the challenged element, or at the element below."""
     if hang is Hang.CHALLENGE:
         return f"M{x:g} {y + 1:g}V{to_y:g}H{to_x:g}", f"M{x - 5:g} {y + 9:g}L{x:g} {y + 1:g}l5 8"
     return f"M{x:g} {y:g}V{to_y:g}H{to_x - 7:g}", f"M{to_x:g} {to_y:g}l-8 -4v8z"
@@ -306,7 +308,7 @@ def _height(each: Placement) -> float:
 
 
 def _lines(each: Placement) -> list[str]:
-    """The text in at most three lines; what does not fit stands in the list."""
+    """The text in at most three lines; the list beside the drawing has the whole text."""
     aside = 0 if each.hang is Hang.CONTEXT else 160
     room = _WIDTH - 2 * _MARGIN - 10 - _INDENT * each.depth - 60 - aside
     letters = max(24, int(room / _LETTER))

@@ -1,4 +1,4 @@
-"""What happened when, as a picture with few elements, whatever the length of the run."""
+"""The timeline of a result, with few elements whatever the length of the run."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ from fretc.report.model.pictures import Flag, Lane, Panel, SpanMark, Timeline
 from fretc.report.pictures.signals import left_out, panels
 
 DETAIL = 400
-"""Two marks nearer than this part of the picture are drawn as one: that bounds their number."""
+"""Two marks nearer than this fraction of the picture are one, which bounds their number."""
 DRAWN = 6
-"""Violations of one result that get a picture of their own; the others are listed."""
+"""The most violations of one result with a picture; the report lists the others."""
 _AROUND = 10
-"""Ticks to show before and after a violation, at least."""
+"""The least number of ticks before and after a violation."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,12 +32,12 @@ class Stretch:
 def timelines(
     result: Result, tick: float, ages: Mapping[str, float] = MappingProxyType({})
 ) -> tuple[Timeline, ...]:
-    """One for each of the first violations; where there is none, one for the whole run.
+    """A timeline for each of the first violations; without violations, one for the whole run.
 
     Args:
         result: one run, one requirement.
         tick: seconds of a tick; an average where the clock ticks by message.
-        ages: seconds after which a sample of a signal no longer counts; absent: never.
+        ages: age limit of each signal in seconds; a signal without one has no limit.
     """
     if not result.ticks:
         return ()
@@ -54,7 +54,7 @@ def timelines(
 def _explained(
     plain: Timeline, violation: Violation, result: Result, tick: float, ages: Mapping[str, float]
 ) -> Timeline:
-    """With the signals, the trigger, the deadline, the broken stretch, and the cause in words."""
+    """The timeline with signals, trigger, deadline, the violating stretch, and the cause."""
     drawings = panels(violation, result, ages, plain.start, plain.end)
     broken = _violated(violation, tick)
     why = cause(violation, result, ages)
@@ -81,7 +81,7 @@ def _flags(violation: Violation) -> Iterable[Flag]:
 
 
 def cause(violation: Violation, result: Result, ages: Mapping[str, float]) -> str:
-    """Why it is a violation: what did not come, and what the signals were then."""
+    """The cause of a violation: the response that did not come, and the signals then."""
     start, end = violation.first.seconds, violation.last.seconds
     when = f"at {seconds(start)}" if start == end else f"from {seconds(start)} to {seconds(end)}"
     missing = violation.missing or "the response"
@@ -138,7 +138,7 @@ def _around(violation: Violation, tick: float) -> Stretch:
     window = violation.window
     if window is None or not window.samples:
         return stretch
-    # Of what lies outside the evidence holds no samples: it is not shown as if it were unknown.
+    # The evidence has no samples outside the window, and without samples it would look unknown.
     inside = Stretch(max(stretch.start, window.start), min(stretch.end, window.end))
     return inside if inside.end - inside.start > tick / 2 else stretch
 
@@ -178,7 +178,7 @@ def _waiting(result: Result) -> list[Stretch]:
 
 
 def answered(result: Result) -> list[tuple[Moment, float]]:
-    """Each trigger that was answered with its latency; empty where that cannot be told."""
+    """Each trigger with an answer, and its latency; empty where they do not match up."""
     still_open = {moment.tick for moment in result.open}
     closed = [trigger for trigger in result.triggers if trigger.tick not in still_open]
     if len(closed) != len(result.latencies):
@@ -225,7 +225,7 @@ _WORDS = {
     "open": ("demand open at the end", "demands open at the end"),
 }
 _NAMED = 3
-"""Stretches of a lane that are named one by one."""
+"""The most stretches of a lane that the text names."""
 
 
 def _in_words(lanes: Sequence[Lane], window: Stretch) -> str:

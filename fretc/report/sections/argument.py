@@ -1,9 +1,9 @@
 """The assurance argument: hazards are controlled because requirements hold, as the evidence shows.
 
-An argument never says more than the report. A goal that nothing shows is undeveloped; counter-
-evidence stands in the argument as a solution that challenges its goal, and defeats it where it is
-about what stands there now. A proof supports what it is about: one about the text of the monitor
-supports the monitor.
+The argument claims no more than the report. A goal without evidence is undeveloped. Counter-
+evidence is a solution that challenges its goal; current counter-evidence defeats the goal. A proof
+supports the goal about its own subject: a proof about a monitor supports the monitor.
+
 Source: GSN Community Standard, version 3 (2021), part 1, with its dialectic extension.
 """
 
@@ -46,11 +46,11 @@ class Element:
     in_context_of: tuple[str, ...] = ()
     undeveloped: bool = False
     challenges: str = ""
-    """Of a counter-solution: the goal that it is evidence against."""
+    """The goal that a counter-solution challenges."""
     defeated: bool = False
-    """Of a goal: evidence that is current stands against it."""
+    """Whether current counter-evidence challenges the goal."""
     name: str = ""
-    """What it is called where it is referred to again; empty: its text."""
+    """Its short name in a reference; empty: the text."""
 
 
 _SUBJECTS: Mapping[str, str] = MappingProxyType(
@@ -63,16 +63,16 @@ _SUBJECTS: Mapping[str, str] = MappingProxyType(
         Layer.AJPF: "The agent keeps {id} by the verdict of AJPF",
     }
 )
-"""What the proofs of each layer are about, and no more."""
+"""The goal that the proofs of each layer support."""
 _SHARED_SUBJECTS: Mapping[str, str] = MappingProxyType(
     {
         "interceptor": "The interceptor keeps its contracts",
         "agent": "The agent has the properties of its property file in its model",
     }
 )
-"""The same for proofs that are about no single requirement."""
+"""The goal that proofs about shared parts support."""
 _NAMED = 3
-"""Violating runs that an element names; it counts the others."""
+"""The most violating runs that an element names; it counts the others."""
 
 
 def argument(report: Report) -> tuple[Element, ...]:
@@ -132,7 +132,7 @@ class _Argument:
         yield from self._requirements(anchors)
 
     def _requirements(self, anchors: Sequence[str]) -> Iterator[Element]:
-        """Each once, however many hazards refer to it."""
+        """The elements of each requirement once, however many hazards it has."""
         for anchor in anchors:
             if anchor not in self._yielded:
                 self._yielded.add(anchor)
@@ -145,7 +145,7 @@ class _Argument:
         layers = {proof.layer: _of_layer(view.proofs, proof.layer) for proof in view.proofs}
         subjects = [f"{goal}_{layer}" for layer in layers] + self._relied_upon(view)
         solution, runs = goal.replace("G_", "Sn_", 1), f"{goal}_runs"
-        # A goal is developed or not: where proofs develop it, what no run shows is a goal below it.
+        # A goal with proofs is developed; where no run shows it, a goal about runs below it is not.
         evidence = [solution] if is_shown else [runs] if subjects else []
         context, waived = goal.replace("G_", "C_", 1), goal.replace("G_", "J_", 1)
         yield Element(
@@ -176,7 +176,7 @@ class _Argument:
             yield from _subject(f"{goal}_{layer}", subject, proofs)
 
     def _relied_upon(self, view: RequirementView) -> list[str]:
-        """What all requirements share, where a planned method of this one is shown by it."""
+        """The goals about shared parts whose proofs are results of methods that this one plans."""
         methods = [plan.method for plan in view.planned if plan.method in METHODS]
         return [
             _id("G_shared", name)
@@ -190,12 +190,12 @@ class _Argument:
 
 @dataclass(frozen=True, slots=True)
 class _Counter:
-    """Evidence against a goal."""
+    """Counter-evidence against a goal."""
 
     id: str
     text: str
     is_current: bool
-    """Whether it is about what stands there now."""
+    """Whether it is about the requirement as it is now."""
 
 
 def _support(view: RequirementView) -> str:
@@ -207,7 +207,7 @@ def _support(view: RequirementView) -> str:
 
 
 def _against(view: RequirementView, id: str) -> Iterator[_Counter]:
-    """The runs that violate it; those of older texts apart. With a probability, all together."""
+    """The runs that violate it, suspect ones apart; or the answer about its probability."""
     chance = view.probability
     if chance is not None:
         if chance.mark.word == REFUTED:
@@ -241,7 +241,7 @@ def _of_layer(proofs: Sequence[ProofView], layer: str) -> list[ProofView]:
 
 
 def _subject(goal: str, text: str, proofs: Sequence[ProofView]) -> Iterator[Element]:
-    """What proofs of one layer are about: claims that are proved, refuted, and left open."""
+    """The goal of one layer, with its claims that are proved, refuted, and open."""
     proved = [proof for proof in proofs if is_proved(proof)]
     against = [proof for proof in proofs if proof.mark.word == COUNTEREXAMPLE]
     left = [proof for proof in proofs if proof not in proved and proof not in against]
@@ -278,5 +278,5 @@ def _claims(head: str, proofs: Sequence[ProofView]) -> str:
 
 
 def _id(prefix: str, name: str) -> str:
-    """Different for different names; anchors of requirements begin with `req-`."""
+    """An id of GSN letters; different names have different ids."""
     return f"{prefix}_{re.sub(r'[^A-Za-z0-9]', lambda m: f'_{ord(m[0]):x}_', name)}"

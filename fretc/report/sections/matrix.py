@@ -1,4 +1,4 @@
-"""Hazard by requirement by artefacts by runs, and where the chain has no link."""
+"""The matrix of hazards, requirements, artefacts and runs, and the links that are missing."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from fretc.report.sections.runs import Key, Run, key
 from fretish.reading.natural_order import natural
 
 _SINGLE = 6
-"""More runs of one verdict than these share one cell."""
+"""Above this number, the runs of one verdict share one cell."""
 
 
 def hazard_views(project: Project) -> tuple[HazardView, ...]:
@@ -54,7 +54,7 @@ def matrix(
 def _chains(
     id: str, parents: dict[str, tuple[str, ...]], project: Project
 ) -> dict[str, tuple[str, ...]]:
-    """Each hazard that a requirement traces to, and the requirements in between."""
+    """Each hazard that a requirement traces to → the requirements in between."""
     chains: dict[str, tuple[str, ...]] = {}
     visited = {id}
     waiting: list[tuple[str, tuple[str, ...]]] = [(id, ())]
@@ -92,7 +92,7 @@ def _row(
 
 
 def _cells(assessment: Assessment, runs: dict[Key, Run]) -> tuple[Cell, ...]:
-    """The worst first, one for each run; many of one verdict share one."""
+    """A cell for each run, the worst first; many runs of one verdict share a cell."""
     if not assessment.audits:
         return (Cell(assessment.mark, "", assessment.anchor),)
     counts = Counter(audit.mark for audit in assessment.reviewed_audits)
@@ -154,7 +154,7 @@ def _undeclared(project: Project, assessments: Sequence[Assessment]) -> Iterable
 
 
 def strangers(assessments: Sequence[Assessment], evidence: Evidence | None) -> tuple[str, ...]:
-    """Ids that the evidence is about and the project does not have."""
+    """The ids in the evidence that are not ids of the project."""
     ids = {assessment.id for assessment in assessments}
     results = evidence.results if evidence else ()
     return tuple(sorted({result.requirement for result in results} - ids, key=natural))

@@ -20,8 +20,8 @@ def planned(assessment: Assessment, proofs: Sequence[ProofView]) -> tuple[Planne
     """Every method that the requirement's `verify` names, in its order.
 
     Args:
-        assessment: the requirement.
-        proofs: of it, and of what all requirements share.
+        assessment: of the requirement.
+        proofs: about it, and about parts that all requirements share.
     """
     return tuple(
         _planned(assessment, method, proofs)
@@ -37,7 +37,7 @@ def _planned(assessment: Assessment, method: str, proofs: Sequence[ProofView]) -
 
 
 def _by_proofs(assessment: Assessment, method: str, proofs: Sequence[ProofView]) -> Planned:
-    """The worst of its proofs decides; what was not checked or says nothing is no result."""
+    """The worst proof decides; one that is vacuous or not checked is no result."""
     decisive = worst(proofs)
     refuted = decisive.mark.word == verification.COUNTEREXAMPLE
     has_result = refuted or is_proved(decisive)
@@ -55,7 +55,7 @@ def _audit(assessment: Assessment) -> Planned:
 
 
 def _other(assessment: Assessment, method: str) -> Planned:
-    """A method whose result nothing tells this report: it says so, and what is at hand for it."""
+    """A method without a known result, and what fretc can make for it."""
     return Planned(
         assessment.id,
         assessment.anchor,

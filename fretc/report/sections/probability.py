@@ -1,4 +1,4 @@
-"""What all runs say of a requirement with a probability: held against the runs, and shown."""
+"""The answer of all runs about the probability of a requirement."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from fretc.report.model.views import BoundsView, ProbabilityView, verdict_mark
 
 
 def probability_view(estimation: Estimated, suspicions: Sequence[str]) -> ProbabilityView:
-    """What is shown in the section of the requirement."""
+    """The view of an estimation with its suspicions."""
     bars = (BoundsView("by whole logs", estimation.bounds.low, estimation.bounds.high),)
     share = "not known" if estimation.estimate is None else f"{estimation.estimate:.4f}"
     return ProbabilityView(

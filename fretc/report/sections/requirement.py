@@ -1,4 +1,4 @@
-"""A requirement as its section shows it: what it says, means, is made of and has been shown."""
+"""The section of one requirement: its text, meaning, formulas, proofs, runs and review."""
 
 from __future__ import annotations
 
@@ -53,13 +53,13 @@ def section(
     """The view of one requirement.
 
     Args:
-        assessment: the requirement.
-        project: all that was read.
+        assessment: of the requirement.
+        project: with or without errors.
         runs: all runs.
-        anchors: where the section of each requirement is, by its id.
+        anchors: of the section of each requirement, by its id.
         audited: whether there is any evidence.
-        proofs: of all requirements, and of what they share.
-        shared_products: what is made of the bindings alone, which proofs are about too.
+        proofs: about all requirements, and about shared parts.
+        shared_products: what targets make from the bindings alone.
         book: who signed what.
     """
     requirement, rule = assessment.requirement, assessment.rule
@@ -104,7 +104,7 @@ def section(
 
 
 def _limit(rule: Formalized | None) -> str:
-    """Of a probability many runs decide."""
+    """Why no run can violate it; many runs decide about a probability, so it has no limit."""
     return "" if rule is None or rule.sentence.probability is not None else limit(rule)
 
 
@@ -115,7 +115,7 @@ def _probability(assessment: Assessment) -> ProbabilityView | None:
 
 
 def remark(diagnostic: Diagnostic) -> Remark:
-    """A diagnostic as it is shown."""
+    """The view of a diagnostic."""
     span = diagnostic.span
     place = phrases.place(span.source.name) if span else ""
     where = f":{span.line}:{span.column}" if span and span.source.text else ""
@@ -183,7 +183,7 @@ def _proposition(name: str, declared: Declarations | None) -> PropositionView:
 
 
 def _expression(declared: Declarations, name: str) -> str:
-    """The expression as it stands in the bindings."""
+    """The expression, as the bindings write it."""
     data: Mapping[str, Any] = tomllib.loads(declared.source.text)
     return str(data["proposition"][name]["expr"])
 

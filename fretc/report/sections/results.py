@@ -1,4 +1,4 @@
-"""One run against one requirement, as it is shown."""
+"""The results of one requirement, run by run, and the reasons why it is not shown."""
 
 from __future__ import annotations
 
@@ -36,16 +36,17 @@ from fretish.clock import Clock
 from fretish.meaning import span
 
 LISTED = 100
-"""Violations, open demands and unknown stretches that are listed; the evidence has them all."""
+"""The most violations, open demands and unknown stretches; the evidence file has them all."""
 _WAITS = 5
+"""The most waits of a result."""
 _NAMED = 10
-"""Runs that are named as reasons why a requirement is not shown."""
+"""The most runs among the reasons why a requirement is not shown."""
 
 
 def result_views(
     assessment: Assessment, runs: dict[Key, Run], declared: Declarations | None
 ) -> tuple[ResultView, ...]:
-    """Every audit of a requirement, in the order of the runs."""
+    """The view of each audit of a requirement, in the order of the runs."""
     return tuple(
         _view(audit, assessment, number, runs[key(audit.result)], declared)
         for number, audit in enumerate(assessment.reviewed_audits, 1)
@@ -53,7 +54,7 @@ def result_views(
 
 
 def result_anchor(assessment: Assessment, number: int) -> str:
-    """Where a result of a requirement is shown, numbered from 1."""
+    """The anchor of a result of a requirement; results are numbered from 1."""
     return f"{assessment.anchor.replace('req-', 'result-', 1)}.{number}"
 
 
@@ -84,7 +85,7 @@ def _view(
 
 
 def _tick(result: Result, clock: Clock | None) -> float:
-    """Seconds of a tick; on average, where the clock ticks by message or is not known."""
+    """Seconds of a tick; the average where the clock ticks by message or is not known."""
     if clock is not None and clock.period:
         return clock.period / 1e9
     if result.start_ns is None or result.end_ns is None or result.end_ns <= result.start_ns:
@@ -93,7 +94,7 @@ def _tick(result: Result, clock: Clock | None) -> float:
 
 
 def _ages(declared: Declarations | None) -> dict[str, float]:
-    """Seconds after which a sample no longer counts, of the signals that have such an age."""
+    """The age limit of each signal that has one, in seconds."""
     signals = declared.signals.values() if declared else ()
     return {signal.name: signal.max_age / 1e9 for signal in signals if signal.max_age}
 
@@ -110,7 +111,7 @@ def _exercised(result: Result) -> str:
 
 
 def _stretches(moments: Iterable[Moment]) -> list[list[Moment]]:
-    """The moments in order, those of neighbouring ticks together."""
+    """The moments in order, in groups of neighbouring ticks."""
     groups: list[list[Moment]] = []
     for moment in sorted(moments, key=lambda m: m.tick):
         if groups and moment.tick - groups[-1][-1].tick <= 1:
@@ -147,7 +148,7 @@ def _latency(result: Result, rule: Formalized | None) -> Latency | None:
 
 
 def _bound(rule: Formalized | None) -> str:
-    """What the sentence says about how long the response may take."""
+    """The time that the sentence allows for the response, in words."""
     if rule is None:
         return ""
     if syntax.deadline(rule.sentence.timing):
@@ -163,7 +164,7 @@ def _bound(rule: Formalized | None) -> str:
 
 
 def _waits(result: Result) -> tuple[str, ...]:
-    """The longest waits; triggers that one answer ends are one wait."""
+    """The longest waits; triggers with one answer are one wait."""
     waiting = [(m.seconds, round(m.seconds + late, 6)) for m, late in answered(result) if late > 0]
     ends = groupby(sorted(waiting, key=lambda wait: wait[::-1]), key=lambda wait: wait[1])
     waits = [(end, [start for start, _ in group]) for end, group in ends]
@@ -236,7 +237,7 @@ def _since(stretch: Sequence[Moment], uncertain: Collection[int]) -> str:
 
 
 def _perhaps(count: int, of: int) -> str:
-    """How many may be otherwise, for propositions were unknown."""
+    """How many are uncertain because propositions are unknown; empty where none is."""
     if not count:
         return ""
     some = "" if of == 1 else "all of them " if count == of else f"{count} of them "
@@ -253,7 +254,7 @@ def _unknown(result: Result) -> Listing:
     return Listing(tuple(lines), total)
 
 
-# Why not ---------------------------------------------------------------------------------------
+# Reasons ---------------------------------------------------------------------------------------
 
 
 def reasons(assessment: Assessment, runs: dict[Key, Run], *, audited: bool) -> tuple[str, ...]:

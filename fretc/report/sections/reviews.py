@@ -1,4 +1,4 @@
-"""Who has accepted what, what has changed since, and what is waived, as it is shown."""
+"""Reviews, changes since a review, and waivers."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def review(assessment: Assessment, book: Book) -> ReviewView:
 
 
 def waiver(assessment: Assessment, book: Book) -> WaiverView | None:
-    """The waiver that counts now."""
+    """The waiver that counts today."""
     granted = assessment.waiver
     if granted is None:
         return None
@@ -50,7 +50,7 @@ def waiver(assessment: Assessment, book: Book) -> WaiverView | None:
 
 
 def summary(assessments: Sequence[Assessment], book: Book) -> str:
-    """How many have been reviewed, and how many of the reviews are signed, in sentences."""
+    """The number of reviews, of those that stand, and of those without a signature."""
     standings = [each.standing for each in assessments if each.standing.review is not None]
     if not standings:
         return "No requirement has been reviewed."
@@ -66,13 +66,13 @@ def summary(assessments: Sequence[Assessment], book: Book) -> str:
 
 
 def changes(assessments: Sequence[Assessment]) -> tuple[Change, ...]:
-    """What is not as it was reviewed; requirements that are as they were are left out."""
+    """The changes of each requirement since its review; one without changes is left out."""
     pairs = [(each, difference(each.standing)) for each in assessments if each.standing.review]
     return tuple(_change(each, change) for each, change in pairs if change.state != "same")
 
 
 def withdrawals(withdrawn: Sequence[WithdrawnRequirement]) -> tuple[Change, ...]:
-    """What was reviewed and is not there any more; one that was retired since is a change."""
+    """A change for each requirement that is gone; a retired one is among `changes` already."""
     return tuple(
         Change(
             one.review.requirement,
@@ -102,7 +102,7 @@ def _link(suspect: Suspect) -> str:
 
 
 def reservations(assessment: Assessment) -> Iterator[str]:
-    """What a reader has to know of a review."""
+    """Sentences that qualify a review."""
     if assessment.standing.review is None:
         return
     new = [how for node, how in difference(assessment.standing).changes if node.kind == "log"]

@@ -1,4 +1,4 @@
-"""The audited runs: what they are, and whether they can be trusted."""
+"""The audited runs, and the condition of their data."""
 
 from __future__ import annotations
 
@@ -20,14 +20,14 @@ _UNREAD = sign_mark("not readable", signs.UNKNOWN)
 
 @dataclass(frozen=True, slots=True)
 class Run:
-    """One audited file, by its name and hash; `result` is any of its results."""
+    """One audited file; `result` is any of its results."""
 
     number: int
     result: Result
 
     @property
     def anchor(self) -> str:
-        """Where its section is."""
+        """The anchor of its section."""
         return f"run-{self.number}"
 
     @property
@@ -40,7 +40,7 @@ Key = tuple[str, str]
 
 
 def key(result: Result) -> Key:
-    """What makes two results those of the same run: the file's name and its hash."""
+    """Name and hash of the file: results of one run have the same key."""
     return result.run, result.hashes.get("log", "")
 
 
@@ -53,12 +53,12 @@ def runs(evidence: Evidence | None) -> dict[Key, Run]:
 
 
 def run_views(runs: Iterable[Run], project: Project) -> tuple[RunView, ...]:
-    """Each run as it is shown, those with errors first."""
+    """The view of each run, runs with errors first."""
     return tuple(_view(run, project) for run in sorted(runs, key=_severity))
 
 
 def _severity(run: Run) -> tuple[bool, bool, bool, bool]:
-    """By which runs are sorted: errors, damage, other findings, gaps."""
+    """The key that sorts runs: errors, damage, other findings, gaps."""
     health = run.result.health
     return not _errors(run), health.intact, not health.findings, not health.gaps
 
@@ -98,7 +98,7 @@ def _duration(result: Result) -> str:
 
 
 def _checked(checked: Checked | None, *, hashed: bool) -> str:
-    """What could be checked of the file, and what was not."""
+    """The checks of the file, and what they left out."""
     if checked is None:
         return "not known"
     if not checked.chunks:
@@ -130,7 +130,7 @@ def _gaps(result: Result) -> tuple[str, ...]:
 
 
 def _badness(finding: Finding) -> int:
-    """By which findings are sorted."""
+    """The key that sorts findings."""
     return [str(severity) for severity in Severity].index(finding.severity)
 
 
@@ -172,7 +172,7 @@ def _named(run: Run) -> str:
 
 
 def trust(runs: Sequence[Run]) -> str:
-    """Whether the runs can be trusted, in one sentence; empty where there are none."""
+    """The condition of the runs, in one sentence; empty where there is no run."""
     damaged = [_named(run) for run in runs if not run.result.health.intact]
     wrong = [_named(run) for run in runs if run.result.health.intact and _errors(run)]
     with_findings = [run.label for run in runs if run.result.health.findings]

@@ -1,4 +1,4 @@
-"""Who signed the evidence, the proofs, each review and each waiver, as it is shown."""
+"""The signatures of the evidence, the proofs, each review and each waiver."""
 
 from __future__ import annotations
 
@@ -23,12 +23,12 @@ BROKEN = sign_mark("does not verify", signs.BAD)
 
 
 def of_review(book: Book, review: Review) -> SignatureView:
-    """Whether a review is signed by its reviewer."""
+    """The signature of the reviewer."""
     return _view(_review(book, review))
 
 
 def of_waiver(book: Book, waiver: Waiver) -> SignatureView:
-    """Whether a waiver is signed by whoever has granted it."""
+    """The signature of the person who granted the waiver."""
     return _view(_waiver(book, waiver))
 
 
@@ -47,7 +47,7 @@ def _view(signing: Signing) -> SignatureView:
 def signatures(
     book: Book, assessments: Sequence[Assessment], evidence: Evidence | None, proofs: Proofs | None
 ) -> Signatures:
-    """All that could be signed, who signed it, and whose keys count."""
+    """The table of signatures; those that do not verify come first."""
     signers = book.signers.signers if book.signers else ()
     return Signatures(
         file=phrases.place(book.signers.file) if book.signers else "",

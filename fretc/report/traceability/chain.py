@@ -1,9 +1,9 @@
 """The chain from hazard to review as a graph: a fingerprint for each thing, a link for each step.
 
-What has changed since a review makes the links downstream of it suspect, and no others: whoever
-reads a suspect link knows what to look at again, and that the rest still stands.
+A change since a review makes the links downstream of it suspect, and no others: a suspect link
+names what to review again, and the rest still stands.
 
-Source of the notion: ISO 26262-8 clause 6 (traceability of safety requirements) asks for links
+Source: ISO 26262-8 clause 6 (traceability of safety requirements) asks for links
 that can be followed both ways; Doorstop and StrictDoc call a link suspect whose parent changed.
 """
 
@@ -33,9 +33,9 @@ TEXT, WORDS, FORMULAS, ARTEFACT = "text", "words", "formulas", "artefact"
 LOG, VERDICT, REVIEW = "log", "verdict", "review"
 PROOF, SHARED = "proof", "shared"
 _ADDED = (LOG, VERDICT, PROOF, SHARED, PLAN, ARTEFACT, basis.TOPICS)
-"""What may come after a review without changing anything that was reviewed."""
+"""Kinds of nodes that may come after a review without a change of what was reviewed."""
 _READINGS = ("ltl", "json")
-"""Targets that only show what the formulas are: those have fingerprints of their own."""
+"""Targets that only print formulas, which have fingerprints of their own."""
 
 
 @dataclass(frozen=True, slots=True, order=True)
@@ -46,13 +46,13 @@ class Node:
     name: str
 
     def __str__(self) -> str:
-        """As it stands in a lock."""
+        """The text in a lock."""
         return f"{self.kind}:{self.name}"
 
 
 @dataclass(frozen=True, slots=True, order=True)
 class Link:
-    """What the target is made of, or judged by."""
+    """The target depends on the source."""
 
     source: Node
     target: Node
@@ -60,18 +60,18 @@ class Link:
 
 @dataclass(frozen=True, slots=True)
 class Chain:
-    """Everything that bears upon one requirement."""
+    """All nodes and links of one requirement."""
 
     requirement: str
     prints: Mapping[Node, str]
-    """SHA-256 of each thing but the review; white space, comments and order do not count."""
+    """SHA-256 of each node but the review; white space, comments and order do not count."""
     links: tuple[Link, ...]
     verdicts: Mapping[str, str]
     """Run → the word of its verdict."""
     outdated: Mapping[Node, tuple[Node, ...]] = field(default_factory=dict)
-    """Each verdict and proof that is about something else than what is here now → what differs."""
+    """Each verdict and proof that is out of date → the nodes that differ."""
     unhashed: tuple[str, ...] = ()
-    """Runs of whose log nothing is known that tells it from another one."""
+    """Runs without a SHA-256 of their log."""
 
 
 def chains(
@@ -85,8 +85,8 @@ def chains(
     Args:
         project: with or without errors; a requirement without a rule has a chain that ends early.
         evidence: None where no run has been audited.
-        artefacts: what the targets make of each requirement, by its `id()`; None: it is made here.
-        proofs: what verification has found.
+        artefacts: the products of each requirement, by its `id()`; None: `products` makes them.
+        proofs: the results of verification.
     """
     rules = {id(rule.requirement): rule for rule in project.rules}
     results, common = by_requirement(evidence), _common(project, evidence, proofs)
@@ -106,15 +106,15 @@ def chains(
 
 @dataclass(frozen=True, slots=True)
 class _Common:
-    """What the chains of all requirements are made of."""
+    """What all chains of a project share."""
 
     project: Project
     texts: Mapping[str, Requirement]
     bases: Mapping[int, Basis]
     audited_by: str
-    """The version of fretc that made the evidence."""
+    """The version of fretc that wrote the evidence."""
     shared: Mapping[str, str]
-    """Name of what is made of the bindings alone → its SHA-256; nothing where nothing is proved."""
+    """Name of each shared product → its SHA-256; empty where there is no proof."""
 
 
 def _common(project: Project, evidence: Evidence | None, proofs: Sequence[Proof]) -> _Common:
@@ -171,14 +171,14 @@ class _Chain:
         )
 
     def _beside(self, requirement: Requirement) -> None:
-        """What no log depends on, and a review does: whether it is claimed, and how it is shown."""
+        """Status and planned methods: a review depends on them, and no verdict does."""
         retired = requirement.status == "retired"
         self._add(in_force(self._id), digest("retired") if retired else IN_FORCE)
         for method in requirement.verify:
             self._add(Node(PLAN, f"{self._id} {method}"), digest(method))
 
-    def _above(self, requirement: Requirement, seen: set[str]) -> None:
-        """Hazards and requirements that it traces to, all the way up."""
+    def _above(self, requirement: Requirement, visited: set[str]) -> None:
+        """Add the hazards and requirements that it traces to, all the way up."""
         text = Node(TEXT, requirement.id)
         self._add(text, digest(_wording(requirement)))
         for parent in requirement.parents:
@@ -191,15 +191,15 @@ class _Chain:
                 content = _normal([outside.title, outside.text])
                 self._add(Node(PARENT, parent), digest(content))
                 self._link(Node(PARENT, parent), text)
-            elif above is not None and parent not in seen:
-                seen.add(parent)
-                self._above(above, seen)
+            elif above is not None and parent not in visited:
+                visited.add(parent)
+                self._above(above, visited)
                 self._link(Node(TEXT, parent), text)
 
     def _below(
         self, rule: Formalized, sentence: Node, artefacts: Iterable[Product]
     ) -> Mapping[str, Node]:
-        """Formulas, words and artefacts; gives the artefact of each target."""
+        """Add formulas, words and artefacts; gives the artefact of each target."""
         formulas, words = Node(FORMULAS, rule.id), Node(WORDS, rule.id)
         clock, fretc = self._clock(), Node(basis.FRETC, _VERSION)
         self._add(formulas, _formulas(rule))
@@ -226,7 +226,7 @@ class _Chain:
         return node
 
     def _sources(self, monitor: Node | None, *, audited: bool) -> Mapping[str, Node]:
-        """What a verdict rests on, by its kind."""
+        """The nodes that a verdict rests on, by kind."""
         nodes = {
             basis.FRETC: Node(basis.FRETC, _VERSION),
             basis.SENTENCE: Node(basis.SENTENCE, self._id),
@@ -254,7 +254,7 @@ class _Chain:
             self._outdated[verdict] = tuple(sources[kind] for kind in old)
 
     def _add_proofs(self, rule: Formalized, proofs: Sequence[Proof]) -> None:
-        """Each claim, with the texts and assumptions that it is about, as they are now."""
+        """Add each proof, with the texts and assumptions that it is about."""
         now = self._common.shared
         for proof in proofs:
             node = Node(PROOF, f"{rule.id} {proof.layer}: {proof.claim}")
@@ -290,18 +290,18 @@ def in_force(requirement: str) -> Node:
 
 
 def outdated(result: Result, audited_by: str, now: Basis) -> tuple[str, ...]:
-    """The kinds of what a result rests on that are not as they were when it was audited."""
+    """The kinds of things that a result rests on and that have changed since its audit."""
     recorded = {**result.hashes, basis.FRETC: audited_by}
     return basis.outdated(recorded, {**now, basis.FRETC: __version__})
 
 
 def _print_of_log(result: Result) -> str:
-    """SHA-256 of the log; of its summary, where it was read by its index; "": neither is known."""
+    """SHA-256 of the log, or of its summary where the audit read its index only; or ""."""
     return result.hashes.get("log") or result.hashes.get("log_summary") or ""
 
 
 def _wording(requirement: Requirement) -> dict[str, Any]:
-    """What a person says of it; its planned methods and whether it is claimed are no part of it."""
+    """The texts and parents of a requirement, without status and planned methods."""
     texts = (requirement.title, requirement.text, requirement.rationale)
     return {"texts": _normal(list(texts)), "parents": sorted(requirement.parents)}
 
@@ -322,7 +322,7 @@ def _formulas(rule: Formalized) -> str:
 
 
 def _normal(value: Any) -> Any:
-    """Texts without the difference that white space makes."""
+    """The value with white space in texts made uniform."""
     match value:
         case str():
             return " ".join(value.split())
@@ -343,11 +343,11 @@ class Suspect:
 
     link: Link
     causes: tuple[Node, ...]
-    """What has changed, come or gone upstream of it: the first changes, not what follows."""
+    """The first changes upstream of it, without changes that follow from these."""
 
 
 def changed(prints: Mapping[Node, str], locked: Mapping[Node, str]) -> tuple[Node, ...]:
-    """What is not as it was locked: another fingerprint, new, or gone; sorted."""
+    """The nodes with another fingerprint than in the lock, new nodes, and gone ones; sorted."""
     return tuple(
         sorted(node for node in {*prints, *locked} if prints.get(node) != locked.get(node))
     )
@@ -356,12 +356,12 @@ def changed(prints: Mapping[Node, str], locked: Mapping[Node, str]) -> tuple[Nod
 def suspects(chain: Chain, locked: Mapping[Node, str]) -> tuple[Suspect, ...]:
     """The links downstream of what has changed since the lock, those nearest to it first.
 
-    What is about something else than what is here now is suspect too, whatever was locked: a
-    verdict of another binding stays one when the binding of the review has come back.
+    A verdict or proof that is out of date is suspect too, whatever the lock has: a verdict on
+    another binding stays one when the binding of the review has come back.
 
     Args:
         chain: as it is now.
-        locked: the fingerprints that were accepted.
+        locked: the fingerprints in the review.
     """
     changed_nodes = {
         node for node in changed(chain.prints, locked) if node in locked or node.kind not in _ADDED
@@ -388,12 +388,12 @@ def suspects(chain: Chain, locked: Mapping[Node, str]) -> tuple[Suspect, ...]:
 
 
 def _first(causes: set[Node], upstream: Mapping[Node, frozenset[Node]]) -> Iterator[Node]:
-    """Those that no other cause explains."""
+    """The causes that do not follow from another cause."""
     return (cause for cause in causes if not upstream.get(cause, frozenset()) & causes)
 
 
 def _upstream(chain: Chain) -> dict[Node, frozenset[Node]]:
-    """Everything from which each thing can be reached."""
+    """Each node → all nodes that lead to it."""
     above: dict[Node, set[Node]] = {node: set() for link in chain.links for node in _ends(link)}
     above |= {node: set() for node in chain.prints if node not in above}
     for link in chain.links:

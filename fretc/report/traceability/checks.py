@@ -1,7 +1,7 @@
-"""What can be said of a project before any run: drift, vacuity, missing links, changes.
+"""Warnings about a whole project before any run: vacuity, plans without result, missing links.
 
-Mistakes are found while the project is read (`compiler.project.folder`). Here is what is no mistake
-of any one file, and yet keeps the whole from showing what it is there to show.
+`compiler.project.folder` reports mistakes of single files while it reads them. These warnings are
+about no single file: with them, the project cannot show all that it should.
 """
 
 from __future__ import annotations
@@ -24,11 +24,11 @@ from fretish.expressions import names
 
 _COMMAND = "command"
 _METHODS = ("audit", *METHODS, *TARGETS)
-"""Those whose results fretc knows, or whose files it makes."""
+"""Methods with results that fretc knows, or with files that it makes."""
 
 
 def checks(project: Project, standings: Sequence[Standing]) -> tuple[Diagnostic, ...]:
-    """Everything, in the order of the project: warnings, no errors.
+    """All warnings, in the order of the project.
 
     Args:
         project: read without errors.

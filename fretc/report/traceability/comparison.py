@@ -1,4 +1,4 @@
-"""What has changed between two states of a project: things, links, verdicts."""
+"""The difference between a project and its lock: nodes, links, verdicts."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from fretc.report.traceability.chain import Node, Suspect
 from fretc.report.traceability.lock import Lock, Standing
 
 _MOST = 6
-"""Links of one requirement that a person is shown."""
+"""The most suspect links of one requirement that `text` prints."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,8 +1,7 @@
 """`fretc.lock`: what was reviewed, by whom, and the fingerprint of each thing at that time.
 
 Sorted TOML, a table for each requirement, so that two reviews merge like code. A lock is written
-by `fretc lock` only; a person's reason not to have something shown yet is a waiver, in
-`waivers.toml` (`fretc.report.traceability.waivers`).
+by `fretc lock` only; waivers stand in `waivers.toml` (`fretc.report.traceability.waivers`).
 """
 
 from __future__ import annotations
@@ -87,12 +86,12 @@ class Lock:
 
 
 def accepted(chain: Chain, reviewer: str, role: str, date: str, comment: str) -> Review:
-    """The present state of a requirement, accepted."""
+    """A review of the present state of a requirement."""
     return Review(chain.requirement, reviewer, role, date, comment, chain.prints, chain.verdicts)
 
 
 def verdicts_of(chain: Chain) -> str:
-    """The verdicts that a review of it would accept, in words, the worst first."""
+    """The verdicts that a review would accept, in words, the worst first."""
     return _in_words(chain.verdicts)
 
 
@@ -110,14 +109,14 @@ def _in_words(verdicts: Mapping[str, str]) -> str:
 
 
 _NAMED = 3
-"""Of so many violated runs the names are told."""
+"""The most violating runs that a summary names."""
 
 
 def unnamed_violations(chosen: Sequence[Chain], refuted: Collection[str]) -> tuple[Diagnostic, ...]:
-    """F529 for each requirement that would be accepted though runs show that it does not hold.
+    """F529 for each requirement to accept though runs show that it does not hold.
 
     Args:
-        chosen: what is to be accepted.
+        chosen: the chains to accept.
         refuted: ids of the requirements with a probability that all runs together refute.
     """
     violations = {
@@ -243,7 +242,7 @@ def _no_prints(tables: Tables, id: str, table: Mapping[str, str]) -> Iterator[Di
 
 
 def _broken(tables: Tables, lock: Lock) -> Iterator[Diagnostic]:
-    """Reviews that nobody can have made."""
+    """A diagnostic for each review that is edited, or dated in the future."""
     for id, review in lock.reviews.items():
         fields = tables.data[_TABLE][id]
         if fields["seal"] != review.seal:
@@ -298,13 +297,13 @@ class Standing:
     """None: it has never been reviewed, or the review has been taken back."""
 
     suspects: tuple[Suspect, ...]
-    """The links that no longer stand on what was reviewed; none where nothing was."""
+    """The suspect links; none where there is no review."""
     changes: tuple[Node, ...]
-    """Everything that is not as it was reviewed."""
+    """The nodes that have changed since the review."""
 
     @property
     def is_suspect(self) -> bool:
-        """Whether anything that its review rests on has changed."""
+        """Whether a link to the review is suspect."""
         return any(suspect.link.target.kind == REVIEW for suspect in self.suspects)
 
     @property
@@ -332,13 +331,13 @@ class WithdrawnRequirement:
 
     review: Review
     retired: bool
-    """It is still there, and was retired since; else it is not among the requirements."""
+    """Whether it has been retired; else it is not among the requirements."""
     successor: str = ""
     """The requirement that has its sentence now, and had none when it was reviewed."""
 
     @property
     def text(self) -> str:
-        """In a sentence, with what the runs had shown of it."""
+        """A sentence, with the verdicts of the review."""
         how = "is retired now" if self.retired else "is not among the requirements any more"
         renamed = f"; {self.successor} has its sentence" if self.successor else ""
         id, verdicts = self.review.requirement, self.review.verdict_summary
@@ -348,7 +347,7 @@ class WithdrawnRequirement:
 def withdrawn_requirements(
     requirements: Iterable[Requirement], chains: Iterable[Chain], lock: Lock | None
 ) -> tuple[WithdrawnRequirement, ...]:
-    """What the lock says was claimed, and is not any more: removed, renamed, split or retired."""
+    """The requirements of the lock that are removed, renamed, split or retired."""
     if lock is None:
         return ()
     status = {requirement.id: requirement.status for requirement in requirements}

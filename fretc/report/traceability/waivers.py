@@ -1,6 +1,6 @@
-"""`waivers.toml`: why a requirement may stand without being shown, who says so, and until when.
+"""`waivers.toml`: requirements that pass without being shown, with reason, person and last day.
 
-A waiver hides nothing: the verdict that it covers is shown beside it. It ends by itself.
+A waiver hides nothing: the report has the verdict that it covers. It ends by itself.
 """
 
 from __future__ import annotations
@@ -32,17 +32,17 @@ VERDICTS = (
     kernel.VACUOUS,
     NOT_EXERCISED,
 )
-"""What a waiver may cover: verdicts that do not show a requirement. That something has changed
-since is none of them: what somebody waived was another thing."""
+"""The verdicts that a waiver may cover: those that do not show a requirement. `suspect` is none of
+them, because the person waived an earlier state."""
 
 
 @dataclass(frozen=True, slots=True)
 class Waiver:
-    """One requirement, and why it need not be shown up to a day."""
+    """The waiver of one verdict of one requirement, up to a day."""
 
     requirement: str
     verdict: str
-    """The one that it covers: one of `VERDICTS`."""
+    """The verdict that it covers: one of `VERDICTS`."""
     reason: str
     by: str
     role: str
@@ -64,12 +64,12 @@ class Waiver:
 def read(
     path: str, ids: Sequence[str] | None, day: str
 ) -> tuple[Mapping[str, Waiver], tuple[Diagnostic, ...]]:
-    """The waivers of a file, and all that there is to say of them.
+    """The waivers of a file, and diagnostics about them.
 
     Args:
         path: the file.
         ids: the ids of the requirements; None: any may be waived.
-        day: on which they are to count; one that does not is told as a warning.
+        day: on which they shall count; one that does not is a warning.
     """
     source = read_text(path)
     if isinstance(source, Diagnostic):
@@ -118,7 +118,7 @@ def _mistakes(
 
 
 def _no_verdict(tables: Tables, id: str, value: object) -> Diagnostic:
-    """A waiver that named none would excuse whatever comes later."""
+    """A waiver without a verdict would cover whatever comes later."""
     listed = ", ".join(f"`{word}`" for word in VERDICTS)
     if value is None:
         what, mend = f"the waiver of {id} does not say which verdict it covers", 'add `verdict = "'
