@@ -38,8 +38,7 @@ from fretc.report.sections.proofs import SHARED, proof_views
 from fretc.report.sections.reproduction import commands, folder_of, manifest
 from fretc.report.sections.requirement import remark, section
 from fretc.report.sections.runs import run_views, runs
-from fretc.report.sections.signatures import idle as idle_signatures
-from fretc.report.sections.signatures import signatures
+from fretc.report.sections.signatures import idle_signatures, signatures
 from fretc.report.traceability.artefacts import shared_products
 from fretc.report.traceability.checks import checks
 from fretc.report.traceability.lock import Lock, withdrawn_requirements

@@ -8,8 +8,8 @@ from fretc.audit.evidence.schema import Evidence
 from fretc.audit.evidence.verdicts import WAIVED
 from fretc.report.model import phrases
 from fretc.report.model.assessments import Assessment
-from fretc.report.sections.matrix import strangers
-from fretc.report.traceability.waivers import idle
+from fretc.report.sections.matrix import unknown_ids
+from fretc.report.traceability.waivers import idle_waiver
 from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
 from fretish.diagnostics.source import Source
 
@@ -39,7 +39,7 @@ def stale_evidence(
             help=again,
             severity=Severity.WARNING,
         )
-        for id in strangers(assessments, evidence)
+        for id in unknown_ids(assessments, evidence)
     ]
     return (*suspect, *strange)
 
@@ -54,7 +54,7 @@ def _suspicions(assessment: Assessment) -> tuple[int, str]:
 def idle_waivers(assessments: Sequence[Assessment]) -> tuple[Diagnostic, ...]:
     """F543 for each waiver of another verdict than the one that is there."""
     return tuple(
-        idle(assessment.waiver, assessment.verdict)
+        idle_waiver(assessment.waiver, assessment.verdict)
         for assessment in assessments
         if assessment.waiver is not None and assessment.verdict != WAIVED
     )

@@ -30,7 +30,7 @@ _ROUND = (Kind.SOLUTION, Kind.COUNTER_SOLUTION, Kind.ASSUMPTION, Kind.JUSTIFICAT
 NAMES = {kind: kind.name.capitalize().replace("_", "-") for kind in Kind}
 
 
-class Hang(StrEnum):
+class Relation(StrEnum):
     """The relation of an element to the one above it."""
 
     SUPPORT = "support"
@@ -44,7 +44,7 @@ class Placement:
 
     element: Element
     depth: int
-    hang: Hang
+    relation: Relation
     is_reference: bool = False
     """Whether it only refers to the same element further up."""
     is_challenged: bool = False
@@ -75,7 +75,7 @@ class Shape:
     path: str
     link: str
     arrow: str
-    hang: str
+    relation: str
     is_reference: bool
     letter: tuple[float, float, str] | None
     diamond: str
@@ -98,23 +98,23 @@ class Piece:
 
 def placements(elements: Sequence[Element]) -> tuple[Placement, ...]:
     """All elements from the top goal down: in full at the first place, then as references."""
-    known = {element.id: element for element in elements}
+    by_id = {element.id: element for element in elements}
     against = _challengers(elements)
-    doubtful = _above(set(against), known)
+    doubtful = _above(set(against), by_id)
     drawn: set[str] = set()
     tree: list[Placement] = []
-    waiting = [(element.id, 0, Hang.SUPPORT) for element in elements[:1]]
+    waiting = [(element.id, 0, Relation.SUPPORT) for element in elements[:1]]
     while waiting:
-        id, depth, hang = waiting.pop()
-        element = known[id]
-        tree.append(Placement(element, depth, hang, id in drawn, id in against, id in doubtful))
+        id, depth, relation = waiting.pop()
+        element = by_id[id]
+        tree.append(Placement(element, depth, relation, id in drawn, id in against, id in doubtful))
         if id in drawn:
             continue
         drawn.add(id)
         below = [
-            *((other, depth + 1, Hang.CONTEXT) for other in element.in_context_of),
-            *((other, depth + 1, Hang.CHALLENGE) for other in against.get(id, ())),
-            *((other, depth + 1, Hang.SUPPORT) for other in element.supported_by),
+            *((other, depth + 1, Relation.CONTEXT) for other in element.in_context_of),
+            *((other, depth + 1, Relation.CHALLENGE) for other in against.get(id, ())),
+            *((other, depth + 1, Relation.SUPPORT) for other in element.supported_by),
         ]
         waiting.extend(reversed(below))
     return tuple(tree)
@@ -129,10 +129,10 @@ def _challengers(elements: Sequence[Element]) -> Mapping[str, Sequence[str]]:
     return challengers
 
 
-def _above(ids: Collection[str], known: Mapping[str, Element]) -> set[str]:
+def _above(ids: Collection[str], by_id: Mapping[str, Element]) -> set[str]:
     """These elements, and all elements that they support, directly or not."""
     above: dict[str, list[str]] = {}
-    for element in known.values():
+    for element in by_id.values():
         for other in element.supported_by:
             above.setdefault(other, []).append(element.id)
     above_ids, waiting = set(ids), list(ids)
@@ -152,10 +152,10 @@ def shortened(elements: Sequence[Element]) -> tuple[Element, ...]:
     """
     if len(elements) <= MOST:
         return tuple(elements)
-    known = {element.id: element for element in elements}
+    by_id = {element.id: element for element in elements}
     against = _challengers(elements)
-    worst = _above(set(against), known) | {each for ids in against.values() for each in ids}
-    open_ = {elements[0].id} | _above({e.id for e in elements if e.undeveloped}, known)
+    worst = _above(set(against), by_id) | {each for ids in against.values() for each in ids}
+    open_ = {elements[0].id} | _above({e.id for e in elements if e.undeveloped}, by_id)
     wanted = [
         *(element.id for element in elements if element.id in worst),
         *(element.id for element in elements if element.id in open_ - worst),
@@ -211,7 +211,7 @@ def _clusters(flat: Sequence[Placement]) -> Iterator[list[Placement]]:
     height = 0.0
     for each in flat:
         height += _height(each)
-        if cluster and (each.hang is Hang.SUPPORT or height > _TALL):
+        if cluster and (each.relation is Relation.SUPPORT or height > _TALL):
             yield cluster
             cluster, height = [], _height(each)
         cluster.append(each)
@@ -221,7 +221,7 @@ def _clusters(flat: Sequence[Placement]) -> Iterator[list[Placement]]:
 
 def _begins(each: Placement, height: float) -> bool:
     """Whether a new page begins here: no hazard begins near the end of a page."""
-    return each.depth <= 2 and each.hang is Hang.SUPPORT and height > 0.75 * _TALL
+    return each.depth <= 2 and each.relation is Relation.SUPPORT and height > 0.75 * _TALL
 
 
 def _piece(group: Sequence[Placement], number: int, count: int) -> Piece:
@@ -239,7 +239,7 @@ def _piece(group: Sequence[Placement], number: int, count: int) -> Piece:
 def _shape(each: Placement, y: float, above: dict[int, tuple[float, float]]) -> Shape:
     element, depth = each.element, each.depth
     x = _MARGIN + _INDENT * depth + 10
-    width = _WIDTH - x - _MARGIN - (0 if each.hang is Hang.CONTEXT else 160)
+    width = _WIDTH - x - _MARGIN - (0 if each.relation is Relation.CONTEXT else 160)
     lines = _lines(each)
     height = _LINE * len(lines) + 2 * _PAD
     inset = x + (26 if element.kind in _ROUND or element.kind is Kind.STRATEGY else 12)
@@ -248,7 +248,7 @@ def _shape(each: Placement, y: float, above: dict[int, tuple[float, float]]) -> 
     link = arrow = ""
     if depth:
         from_x, from_y = above.get(depth - 1, (x - _INDENT + 6, 0.0))  # from the piece before
-        link, arrow = _link(each.hang, from_x, from_y, x, middle)
+        link, arrow = _link(each.relation, from_x, from_y, x, middle)
     above[depth] = (x + 6, y + height)
     cross = f"M{x:g} {y:g}L{right:g} {y + height:g}M{right:g} {y:g}L{x:g} {y + height:g}"
     return Shape(
@@ -258,7 +258,7 @@ def _shape(each: Placement, y: float, above: dict[int, tuple[float, float]]) -> 
         path=_outline(element.kind, x, y, width, height),
         link=link,
         arrow=arrow,
-        hang=each.hang,
+        relation=each.relation,
         is_reference=each.is_reference,
         letter=_letter(element.kind, right, y + height),
         diamond="" if whole else f"M{x + width / 2:g} {y + height:g}l7 5l-7 5l-7 -5z",
@@ -267,9 +267,9 @@ def _shape(each: Placement, y: float, above: dict[int, tuple[float, float]]) -> 
     )
 
 
-def _link(hang: Hang, x: float, y: float, to_x: float, to_y: float) -> tuple[str, str]:
+def _link(relation: Relation, x: float, y: float, to_x: float, to_y: float) -> tuple[str, str]:
     """A line and its arrowhead: it points at the challenged element, or at the element below."""
-    if hang is Hang.CHALLENGE:
+    if relation is Relation.CHALLENGE:
         return f"M{x:g} {y + 1:g}V{to_y:g}H{to_x:g}", f"M{x - 5:g} {y + 9:g}L{x:g} {y + 1:g}l5 8"
     return f"M{x:g} {y:g}V{to_y:g}H{to_x - 7:g}", f"M{to_x:g} {to_y:g}l-8 -4v8z"
 
@@ -309,7 +309,7 @@ def _height(each: Placement) -> float:
 
 def _lines(each: Placement) -> list[str]:
     """The text in at most three lines; the list beside the drawing has the whole text."""
-    aside = 0 if each.hang is Hang.CONTEXT else 160
+    aside = 0 if each.relation is Relation.CONTEXT else 160
     room = _WIDTH - 2 * _MARGIN - 10 - _INDENT * each.depth - 60 - aside
     letters = max(24, int(room / _LETTER))
     lines = list(_wrapped(each.text.replace("`", ""), letters))

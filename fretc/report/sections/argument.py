@@ -81,6 +81,8 @@ def argument(report: Report) -> tuple[Element, ...]:
 
 
 class _Argument:
+    """Yields the elements of a report, each once."""
+
     def __init__(self, report: Report) -> None:
         self._report = report
         self._views = {view.anchor: view for view in report.requirements}
@@ -92,11 +94,11 @@ class _Argument:
     def elements(self) -> Iterator[Element]:
         report = self._report
         hazards = [hazard.id for hazard in report.hazards]
-        loose = [row.anchor for row in report.matrix if not row.hazard]
+        untraced = [row.anchor for row in report.matrix if not row.hazard]
         name = ", ".join(report.components) or report.project
         below = (
             *(["S_hazards"] if hazards else []),
-            *(["S_others"] if loose else []),
+            *(["S_others"] if untraced else []),
             *(_id("G_shared", name) for name, proofs in self._shared.items() if proofs),
         )
         assumed = [f"A_{number}" for number, _ in enumerate(report.assumptions, 1)]
@@ -114,11 +116,11 @@ class _Argument:
             for hazard in report.hazards:
                 anchors = [row.anchor for row in report.matrix if row.hazard == hazard.id]
                 yield from self._hazard(hazard.id, hazard.title, anchors)
-        if loose:
-            goals = tuple(_id("G", anchor) for anchor in dict.fromkeys(loose))
+        if untraced:
+            goals = tuple(_id("G", anchor) for anchor in dict.fromkeys(untraced))
             words = "Argument over the requirements that trace to no hazard"
             yield Element("S_others", Kind.STRATEGY, words, goals)
-            yield from self._requirements(loose)
+            yield from self._requirements(untraced)
         for name, proofs in self._shared.items():
             if proofs:
                 yield from _subject(_id("G_shared", name), _SHARED_SUBJECTS[name], proofs)
@@ -141,9 +143,9 @@ class _Argument:
     def _requirement(self, view: RequirementView) -> Iterator[Element]:
         goal = _id("G", view.anchor)
         is_shown = view.mark.shows
-        counters = tuple(_against(view, goal.replace("G_", "CSn_", 1)))
+        counters = tuple(_counter_evidence(view, goal.replace("G_", "CSn_", 1)))
         layers = {proof.layer: _of_layer(view.proofs, proof.layer) for proof in view.proofs}
-        subjects = [f"{goal}_{layer}" for layer in layers] + self._relied_upon(view)
+        subjects = [f"{goal}_{layer}" for layer in layers] + self._shared_goals(view)
         solution, runs = goal.replace("G_", "Sn_", 1), f"{goal}_runs"
         # A goal with proofs is developed; where no run shows it, a goal about runs below it is not.
         evidence = [solution] if is_shown else [runs] if subjects else []
@@ -175,7 +177,7 @@ class _Argument:
             subject = _SUBJECTS[layer].format(id=view.id)
             yield from _subject(f"{goal}_{layer}", subject, proofs)
 
-    def _relied_upon(self, view: RequirementView) -> list[str]:
+    def _shared_goals(self, view: RequirementView) -> list[str]:
         """The goals about shared parts whose proofs are results of methods that this one plans."""
         methods = [plan.method for plan in view.planned if plan.method in METHODS]
         return [
@@ -189,7 +191,7 @@ class _Argument:
 
 
 @dataclass(frozen=True, slots=True)
-class _Counter:
+class _CounterEvidence:
     """Counter-evidence against a goal."""
 
     id: str
@@ -206,19 +208,21 @@ def _support(view: RequirementView) -> str:
     return f"{view.id} is {view.mark.word} in {runs}{limit}"
 
 
-def _against(view: RequirementView, id: str) -> Iterator[_Counter]:
+def _counter_evidence(view: RequirementView, id: str) -> Iterator[_CounterEvidence]:
     """The runs that violate it, suspect ones apart; or the answer about its probability."""
-    chance = view.probability
-    if chance is not None:
-        if chance.mark.word == REFUTED:
-            words = f"{view.id} is {REFUTED} over all runs: {chance.reason}"
-            yield _Counter(id, words, not chance.suspicions)
+    probability = view.probability
+    if probability is not None:
+        if probability.mark.word == REFUTED:
+            words = f"{view.id} is {REFUTED} over all runs: {probability.reason}"
+            yield _CounterEvidence(id, words, not probability.suspicions)
         return
     broken = [result for result in view.results if result.mark.word in BROKEN]
     for old in (False, True):
         results = [result for result in broken if bool(result.suspicions) is old]
         if results:
-            yield _Counter(f"{id}_older" if old else id, _violated(view, results, old), not old)
+            yield _CounterEvidence(
+                f"{id}_older" if old else id, _violated(view, results, old), not old
+            )
 
 
 def _violated(view: RequirementView, violating: Sequence[ResultView], old: bool) -> str:

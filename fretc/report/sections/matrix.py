@@ -12,7 +12,7 @@ from fretc.report.model import phrases
 from fretc.report.model.assessments import Assessment
 from fretc.report.model.views import Cell, HazardView, Orphans, RequirementView, Row
 from fretc.report.sections.results import result_anchor
-from fretc.report.sections.runs import Key, Run, key
+from fretc.report.sections.runs import Run, RunKey, run_key
 from fretish.reading.natural_order import natural
 
 _SINGLE = 6
@@ -31,7 +31,7 @@ def matrix(
     project: Project,
     assessments: Sequence[Assessment],
     sections: Sequence[RequirementView],
-    runs: dict[Key, Run],
+    runs: dict[RunKey, Run],
 ) -> tuple[Row, ...]:
     """A row for each hazard and requirement below it; then the requirements below none."""
     parents = {assessment.id: assessment.requirement.parents for assessment in assessments}
@@ -74,7 +74,7 @@ def _row(
     assessment: Assessment,
     section: RequirementView,
     project: Project,
-    runs: dict[Key, Run],
+    runs: dict[RunKey, Run],
 ) -> Row:
     return Row(
         hazard=hazard,
@@ -91,13 +91,13 @@ def _row(
     )
 
 
-def _cells(assessment: Assessment, runs: dict[Key, Run]) -> tuple[Cell, ...]:
+def _cells(assessment: Assessment, runs: dict[RunKey, Run]) -> tuple[Cell, ...]:
     """A cell for each run, the worst first; many runs of one verdict share a cell."""
     if not assessment.audits:
         return (Cell(assessment.mark, "", assessment.anchor),)
     counts = Counter(audit.mark for audit in assessment.reviewed_audits)
     single = [
-        Cell(audit.mark, runs[key(audit.result)].label, result_anchor(assessment, number))
+        Cell(audit.mark, runs[run_key(audit.result)].label, result_anchor(assessment, number))
         for number, audit in enumerate(assessment.reviewed_audits, 1)
         if counts[audit.mark] <= _SINGLE
     ]
@@ -126,7 +126,7 @@ def orphans(
         parents=tuple(_undeclared(project, assessments)),
         evidence=tuple(
             f"{id} has evidence, but is not among the requirements"
-            for id in strangers(assessments, evidence)
+            for id in unknown_ids(assessments, evidence)
         ),
     )
 
@@ -153,7 +153,7 @@ def _undeclared(project: Project, assessments: Sequence[Assessment]) -> Iterable
                 yield f"{assessment.id} names {parent}, which is not declared"
 
 
-def strangers(assessments: Sequence[Assessment], evidence: Evidence | None) -> tuple[str, ...]:
+def unknown_ids(assessments: Sequence[Assessment], evidence: Evidence | None) -> tuple[str, ...]:
     """The ids in the evidence that are not ids of the project."""
     ids = {assessment.id for assessment in assessments}
     results = evidence.results if evidence else ()

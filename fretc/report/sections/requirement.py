@@ -31,7 +31,7 @@ from fretc.report.sections.probability import probability_view
 from fretc.report.sections.proofs import SHARED, proof_views
 from fretc.report.sections.results import reasons, result_views
 from fretc.report.sections.reviews import review, waiver
-from fretc.report.sections.runs import Key, Run
+from fretc.report.sections.runs import Run, RunKey
 from fretc.report.traceability.artefacts import Product
 from fretish.bindings.declarations import Declarations, Proposition, Signal
 from fretish.clock import Clock
@@ -43,7 +43,7 @@ from fretish.printer import sentence
 def section(
     assessment: Assessment,
     project: Project,
-    runs: dict[Key, Run],
+    runs: dict[RunKey, Run],
     anchors: Mapping[str, str],
     audited: bool,
     proofs: Sequence[Proof] = (),

@@ -28,7 +28,7 @@ from fretc.report.model.views import (
     ViolationView,
 )
 from fretc.report.pictures.timeline import answered, timelines
-from fretc.report.sections.runs import Key, Run, key
+from fretc.report.sections.runs import Run, RunKey, run_key
 from fretish import syntax
 from fretish.bindings.amounts import exact
 from fretish.bindings.declarations import Declarations
@@ -44,11 +44,11 @@ _NAMED = 10
 
 
 def result_views(
-    assessment: Assessment, runs: dict[Key, Run], declared: Declarations | None
+    assessment: Assessment, runs: dict[RunKey, Run], declared: Declarations | None
 ) -> tuple[ResultView, ...]:
     """The view of each audit of a requirement, in the order of the runs."""
     return tuple(
-        _view(audit, assessment, number, runs[key(audit.result)], declared)
+        _view(audit, assessment, number, runs[run_key(audit.result)], declared)
         for number, audit in enumerate(assessment.reviewed_audits, 1)
     )
 
@@ -62,8 +62,9 @@ def _view(
     audit: SingleAudit, assessment: Assessment, number: int, run: Run, declared: Declarations | None
 ) -> ResultView:
     result = audit.result
-    current = None if assessment.audits[number - 1].is_stale else declared
-    tick, ages = _tick(result, current.clock if current else None), _ages(current)
+    # A stale result was judged by other bindings: the clock and the ages of now are not its own.
+    bindings = None if assessment.audits[number - 1].is_stale else declared
+    tick, ages = _tick(result, bindings.clock if bindings else None), _ages(bindings)
     return ResultView(
         anchor=result_anchor(assessment, number),
         run=run.anchor,
@@ -257,17 +258,17 @@ def _unknown(result: Result) -> Listing:
 # Reasons ---------------------------------------------------------------------------------------
 
 
-def reasons(assessment: Assessment, runs: dict[Key, Run], *, audited: bool) -> tuple[str, ...]:
+def reasons(assessment: Assessment, runs: dict[RunKey, Run], *, audited: bool) -> tuple[str, ...]:
     """Why a requirement is not shown, the worst first; empty where it is, or is retired."""
     if assessment.is_shown or assessment.unwaived == RETIRED:
         return ()
     lines = [(severity(UNFORMALIZED), text) for text in _unformalized(assessment)]
     if assessment.probability is not None:
-        lines.append((assessment.probability.mark.severity, _over_all(assessment.probability)))
+        probability = assessment.probability
+        lines.append((probability.mark.severity, _probability_reason(probability)))
     else:
-        lines += [
-            (j.mark.severity, _against(j, runs)) for j in assessment.audits if not j.mark.shows
-        ]
+        audits = [audit for audit in assessment.audits if not audit.mark.shows]
+        lines += [(audit.mark.severity, _run_reason(audit, runs)) for audit in audits]
         if not assessment.audits and assessment.rule is not None:
             why = "the audit did not cover it" if audited else "no run has been audited"
             lines.append((severity(NOT_EXERCISED), why))
@@ -282,16 +283,14 @@ def _unformalized(assessment: Assessment) -> Iterator[str]:
         yield f"{assessment.diagnostic.code.number}: {assessment.diagnostic.message}"
 
 
-def _over_all(probability: ProbabilityAudit) -> str:
-    estimation = probability.estimation
-    return (
-        f"over all runs: {estimation.answer}, {estimation.reason}{_because(probability.suspicions)}"
-    )
+def _probability_reason(probability: ProbabilityAudit) -> str:
+    estimation, why = probability.estimation, _because(probability.suspicions)
+    return f"over all runs: {estimation.answer}, {estimation.reason}{why}"
 
 
-def _against(audit: SingleAudit, runs: dict[Key, Run]) -> str:
+def _run_reason(audit: SingleAudit, runs: dict[RunKey, Run]) -> str:
     result = audit.result
-    label = runs[key(result)].label
+    label = runs[run_key(result)].label
     return f"{label}: {audit.verdict}, {result.reason}{_because(audit.suspicions)}"
 
 

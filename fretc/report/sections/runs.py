@@ -36,19 +36,19 @@ class Run:
         return f"Run {self.number}"
 
 
-Key = tuple[str, str]
+RunKey = tuple[str, str]
 
 
-def key(result: Result) -> Key:
+def run_key(result: Result) -> RunKey:
     """Name and hash of the file: results of one run have the same key."""
     return result.run, result.hashes.get("log", "")
 
 
-def runs(evidence: Evidence | None) -> dict[Key, Run]:
+def runs(evidence: Evidence | None) -> dict[RunKey, Run]:
     """The runs of the evidence, numbered from 1 in its order."""
-    numbered: dict[Key, Run] = {}
+    numbered: dict[RunKey, Run] = {}
     for result in evidence.results if evidence else ():
-        numbered.setdefault(key(result), Run(len(numbered) + 1, result))
+        numbered.setdefault(run_key(result), Run(len(numbered) + 1, result))
     return numbered
 
 

@@ -89,7 +89,7 @@ def _people(book: Book, assessments: Sequence[Assessment]) -> Iterator[Signed]:
             yield Signed("waiver", name, assessment.anchor, of_waiver(book, waiver))
 
 
-def idle(book: Book, assessments: Sequence[Assessment]) -> Iterator[Diagnostic]:
+def idle_signatures(book: Book, assessments: Sequence[Assessment]) -> Iterator[Diagnostic]:
     """F559 for each review and waiver with a signature that does not count."""
     for assessment in assessments:
         review, waiver = assessment.standing.review, assessment.waiver

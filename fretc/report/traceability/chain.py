@@ -91,7 +91,7 @@ def chains(
     rules = {id(rule.requirement): rule for rule in project.rules}
     results, common = by_requirement(evidence), _common(project, evidence, proofs)
     return tuple(
-        _Chain(common, requirement).of(
+        _ChainBuilder(common, requirement).build(
             requirement,
             rules.get(id(requirement)),
             products_of(rules.get(id(requirement)))
@@ -128,7 +128,7 @@ def _common(project: Project, evidence: Evidence | None, proofs: Sequence[Proof]
     )
 
 
-class _Chain:
+class _ChainBuilder:
     """Collects nodes and links of one requirement."""
 
     def __init__(self, common: _Common, requirement: Requirement) -> None:
@@ -138,7 +138,7 @@ class _Chain:
         self._links: dict[Link, None] = {}
         self._outdated: dict[Node, tuple[Node, ...]] = {}
 
-    def of(
+    def build(
         self,
         requirement: Requirement,
         rule: Formalized | None,
@@ -146,20 +146,20 @@ class _Chain:
         results: Sequence[Result],
         proofs: Sequence[Proof],
     ) -> Chain:
-        self._above(requirement, {requirement.id})
-        self._beside(requirement)
+        self._add_parents(requirement, {requirement.id})
+        self._add_status_and_plans(requirement)
         sentence = Node(basis.SENTENCE, requirement.id)
         self._add(sentence, self._basis[basis.SENTENCE])
         self._link(Node(TEXT, requirement.id), sentence)
-        nodes = self._below(rule, sentence, artefacts) if rule is not None else {}
-        sources = self._sources(nodes.get("monitor"), audited=bool(results))
+        nodes = self._add_artefacts(rule, sentence, artefacts) if rule is not None else {}
+        sources = self._add_sources(nodes.get("monitor"), audited=bool(results))
         for result in results:
             self._add_result(result, sources)
         if rule is not None:
             self._add_proofs(rule, proofs)
         review = Node(REVIEW, requirement.id)
-        sent = {link.source for link in self._links}
-        for node in [node for node in self._prints if node not in sent]:
+        sources_of_links = {link.source for link in self._links}
+        for node in [node for node in self._prints if node not in sources_of_links]:
             self._link(node, review)
         return Chain(
             requirement.id,
@@ -170,14 +170,14 @@ class _Chain:
             tuple(result.run for result in results if not _print_of_log(result)),
         )
 
-    def _beside(self, requirement: Requirement) -> None:
-        """Status and planned methods: a review depends on them, and no verdict does."""
+    def _add_status_and_plans(self, requirement: Requirement) -> None:
+        """Add status and planned methods: a review depends on them, and no verdict does."""
         retired = requirement.status == "retired"
         self._add(in_force(self._id), digest("retired") if retired else IN_FORCE)
         for method in requirement.verify:
             self._add(Node(PLAN, f"{self._id} {method}"), digest(method))
 
-    def _above(self, requirement: Requirement, visited: set[str]) -> None:
+    def _add_parents(self, requirement: Requirement, visited: set[str]) -> None:
         """Add the hazards and requirements that it traces to, all the way up."""
         text = Node(TEXT, requirement.id)
         self._add(text, digest(_wording(requirement)))
@@ -193,15 +193,15 @@ class _Chain:
                 self._link(Node(PARENT, parent), text)
             elif above is not None and parent not in visited:
                 visited.add(parent)
-                self._above(above, visited)
+                self._add_parents(above, visited)
                 self._link(Node(TEXT, parent), text)
 
-    def _below(
+    def _add_artefacts(
         self, rule: Formalized, sentence: Node, artefacts: Iterable[Product]
     ) -> Mapping[str, Node]:
         """Add formulas, words and artefacts; gives the artefact of each target."""
         formulas, words = Node(FORMULAS, rule.id), Node(WORDS, rule.id)
-        clock, fretc = self._clock(), Node(basis.FRETC, _VERSION)
+        clock, fretc = self._add_clock(), Node(basis.FRETC, _VERSION)
         self._add(formulas, _formulas(rule))
         self._add(fretc, digest(__version__))
         self._link(sentence, formulas)
@@ -220,18 +220,18 @@ class _Chain:
                 self._link(source, node)
         return nodes
 
-    def _clock(self) -> Node:
+    def _add_clock(self) -> Node:
         node = Node(basis.CLOCK, "clock")
         self._add(node, self._basis[basis.CLOCK])
         return node
 
-    def _sources(self, monitor: Node | None, *, audited: bool) -> Mapping[str, Node]:
-        """The nodes that a verdict rests on, by kind."""
+    def _add_sources(self, monitor: Node | None, *, audited: bool) -> Mapping[str, Node]:
+        """Add the nodes that a verdict rests on; gives them by kind."""
         nodes = {
             basis.FRETC: Node(basis.FRETC, _VERSION),
             basis.SENTENCE: Node(basis.SENTENCE, self._id),
             basis.PARAMS: Node(basis.PARAMS, self._id),
-            basis.CLOCK: self._clock(),
+            basis.CLOCK: self._add_clock(),
             basis.TOPICS: Node(basis.TOPICS, "audited"),
             basis.BINDINGS: Node(basis.BINDINGS, self._id),
             basis.MONITOR: monitor or Node(basis.MONITOR, self._id),
@@ -241,12 +241,13 @@ class _Chain:
         return nodes
 
     def _add_result(self, result: Result, sources: Mapping[str, Node]) -> None:
+        """Add the verdict of a run; a monitor stands between the sentence and the verdict."""
         verdict, log = Node(VERDICT, f"{result.requirement} {result.run}"), Node(LOG, result.run)
         self._add(log, _print_of_log(result))
         self._add(verdict, digest(_judgement(result)))
-        follows = sources[basis.MONITOR] in self._prints
+        has_monitor = sources[basis.MONITOR] in self._prints
         for kind, source in sources.items():
-            if source in self._prints and not (follows and kind == basis.SENTENCE):
+            if source in self._prints and not (has_monitor and kind == basis.SENTENCE):
                 self._link(source, verdict)
         self._link(log, verdict)
         old = outdated(result, self._common.audited_by, self._basis)
@@ -260,14 +261,14 @@ class _Chain:
             node = Node(PROOF, f"{rule.id} {proof.layer}: {proof.claim}")
             self._add(node, digest([proof.result, sorted(proof.assumptions)]))
             self._link(Node(FORMULAS, rule.id), node)
-            for name, looked_at in proof.artefacts.items():
+            for name, fingerprint in proof.artefacts.items():
                 source = Node(SHARED, name) if name in now else Node(ARTEFACT, name)
                 if name in now:
                     self._add(source, now[name])
                 if source not in self._prints:
                     continue
                 self._link(source, node)
-                if self._prints[source] != looked_at:
+                if self._prints[source] != fingerprint:
                     self._outdated[node] = (*self._outdated.get(node, ()), source)
 
     def _add(self, node: Node, fingerprint: str) -> None:

@@ -128,7 +128,7 @@ def _no_verdict(tables: Tables, id: str, value: object) -> Diagnostic:
     return _wrong(tables, f"`{value}` is no verdict that can be waived", mend, id, "verdict")
 
 
-def idle(waiver: Waiver, verdict: str) -> Diagnostic:
+def idle_waiver(waiver: Waiver, verdict: str) -> Diagnostic:
     """F543: the requirement has another verdict than the one that is waived."""
     return Diagnostic(
         Code.IDLE_WAIVER,

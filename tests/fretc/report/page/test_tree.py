@@ -23,7 +23,7 @@ def test_elements_stand_below_what_they_support_contexts_first() -> None:
     top = Element("G", Kind.GOAL, "top", ("S",), ("C",))
     elements = [top, Element("S", Kind.STRATEGY, "over", ("H",)), Element("C", Kind.CONTEXT, "c")]
     tree = placements([*elements, goal("H")])
-    assert [(each.element.id, each.depth, each.hang) for each in tree] == [
+    assert [(each.element.id, each.depth, each.relation) for each in tree] == [
         ("G", 0, "support"),
         ("C", 1, "context"),
         ("S", 1, "support"),
@@ -55,7 +55,7 @@ def test_what_is_against_a_goal_hangs_on_it_and_all_that_rests_on_the_goal_is_in
         Element("CSn2", Kind.COUNTER_SOLUTION, "old", challenges="Z"),
     ]
     tree = placements(elements)
-    assert [(each.element.id, each.hang, each.state) for each in tree] == [
+    assert [(each.element.id, each.relation, each.state) for each in tree] == [
         ("G", "support", "in doubt"),
         ("A", "support", "in doubt"),
         ("X", "support", "defeated"),
@@ -83,7 +83,7 @@ def test_what_is_against_a_goal_stands_on_its_page() -> None:
     drawing = pieces([goal("top", *names), *(goal(name) for name in names), *against])
     assert len(drawing) > 2
     for piece in drawing[1:]:
-        assert [shape.hang for shape in piece.shapes[:2]] == ["support", "challenge"]
+        assert [shape.relation for shape in piece.shapes[:2]] == ["support", "challenge"]
 
 
 def test_each_kind_has_its_shape_and_an_open_goal_its_diamond() -> None:
@@ -103,7 +103,7 @@ def test_each_kind_has_its_shape_and_an_open_goal_its_diamond() -> None:
     letters = {kind: shape.letter[2] for kind, shape in shapes.items() if shape.letter}
     assert letters == {"assumption": "A", "justification": "J"}
     assert [kind for kind, shape in shapes.items() if shape.diamond] == ["goal"]
-    assert {kind for kind, shape in shapes.items() if shape.hang == "context"} == {
+    assert {kind for kind, shape in shapes.items() if shape.relation == "context"} == {
         "context",
         "assumption",
         "justification",
