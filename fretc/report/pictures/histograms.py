@@ -17,8 +17,9 @@ from fretish import syntax
 _BINS = 20
 """The number of bars, about."""
 _MARGINS = 3
-"""Thresholds of a requirement that get a histogram of their own."""
+"""The most thresholds of a requirement with a histogram."""
 _NAMED = 3
+"""The most bars that the text names."""
 
 
 def step(least: float) -> float:
