@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from compiler.project.folder import Project, beside
 from fretc.api.refusal import Refusal, bounded
 from fretc.attestation.signatures import SIGNERS
-from fretc.report.make import Made, make
+from fretc.report.make import ReportBuild, make
 from fretc.verification.ajpf_results import written as ajpf_results
 from fretc.verification.reader import written as verification_file
 from fretish.diagnostics.diagnostic import Code, Diagnostic
@@ -21,22 +21,22 @@ Path = str | os.PathLike[str]
 class Report:
     """Hazard, requirement, formula, artefact, run and verdict in one."""
 
-    _made: Made
+    _build: ReportBuild
 
     @property
     def html(self) -> str:
         """One page that works offline."""
-        return self._made.html or ""
+        return self._build.html or ""
 
     @property
     def json(self) -> str:
         """What it says, for programs."""
-        return self._made.json or ""
+        return self._build.json or ""
 
     @property
     def diagnostics(self) -> tuple[Diagnostic, ...]:
         """What there is to say of evidence, proofs, reviews and waivers."""
-        return self._made.diagnostics
+        return self._build.diagnostics
 
 
 @bounded
@@ -67,7 +67,7 @@ def make_report(
     if not project.requirements:
         raise Refusal((Diagnostic(Code.NOTHING_TO_DO, "there is no requirement to report on"),))
     first = project.requirements[0].wording.source.name
-    made = make(
+    build = make(
         project,
         os.fspath(evidence),
         lock=_path(lock) or beside(first, "fretc.lock"),
@@ -76,9 +76,9 @@ def make_report(
         ajpf=[os.fspath(path) for path in ajpf] or ajpf_results(),
         signers=_path(signers) or beside(first, SIGNERS),
     )
-    if made.report is None:
-        raise Refusal(made.diagnostics)
-    return Report(made)
+    if build.report is None:
+        raise Refusal(build.diagnostics)
+    return Report(build)
 
 
 def _path(path: Path | None) -> str | None:

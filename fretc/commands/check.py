@@ -36,10 +36,10 @@ def check(
     from compiler.project.folder import beside, whole
     from fretc.audit.evidence.reader import read as read_evidence
     from fretc.audit.plan import refusals
-    from fretc.report.assembly import stale
-    from fretc.report.model.claims import claims, idle_waivers
+    from fretc.report.diagnostics import idle_waivers, stale_evidence
+    from fretc.report.model.assessments import assessments
     from fretc.report.traceability.checks import checks, unreviewed
-    from fretc.report.traceability.lock import Lock, told, withdrawn
+    from fretc.report.traceability.lock import Lock, withdrawal_warnings, withdrawn_requirements
     from fretc.report.traceability.lock import read as read_lock
     from fretc.report.traceability.waivers import read as read_waivers
     from fretc.verification.reader import known as proven
@@ -66,13 +66,14 @@ def check(
         found, wrong = read_waivers(waived, [r.id for r in project.requirements], today())
         waivers = {id: waiver for id, waiver in found.items() if waiver.covers(today())}
         said.extend(wrong)
-    claimed = claims(project, results, lock, waivers, proofs)
-    standings = [claim.standing for claim in claimed]
+    assessed = assessments(project, results, lock, waivers, proofs)
+    standings = [assessment.standing for assessment in assessed]
     if path is not None:
         chains = [standing.chain for standing in standings]
-        said.extend(told(withdrawn(project.requirements, chains, lock), path))
-    said.extend(stale(claimed, results, evidence))
-    said.extend(idle_waivers(claimed))
+        withdrawn = withdrawn_requirements(project.requirements, chains, lock)
+        said.extend(withdrawal_warnings(withdrawn, path))
+    said.extend(stale_evidence(assessed, results, evidence))
+    said.extend(idle_waivers(assessed))
     flawed = has_errors(said)
     said.extend(reason for _, why in refusals(project) for reason in why)
     if not flawed:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from fretc.report.outputs import FORMS, Form, Subject
+from fretc.report.forms.forms import FORMS, Form, Subject
 from fretc.terminal.group import Grouped
 from fretc.terminal.output import BAD, NOT_SHOWN, SHOWN, VIOLATION, deliver, say, stop
 from fretish.diagnostics.diagnostic import Diagnostic, has_errors
@@ -123,7 +123,7 @@ def report(
     say([*project.diagnostics, *made.diagnostics])
     if made.report is None:
         raise SystemExit(BAD)
-    subject = Subject(made, made.report, project)
+    subject = Subject(made.report, project, made.results, made.diagnostics)
     read = filter(None, (bindings, hazards, verification, lock, waivers, signers, *said))
     logs = [result.run for result in made.results]
     _deliver(wanted, subject, [evidence, *files, *companions(files), *read, *dict.fromkeys(logs)])

@@ -221,10 +221,10 @@ def _evidence(audited: Evidence, proofs: Proofs | None) -> Signable:
 
 def _said(audited: Evidence) -> Iterator[str]:
     from fretc.audit.measurements.confidence_intervals import REFUTED
-    from fretc.report.model.claims import Judged
+    from fretc.report.model.audits import SingleAudit
     from monitors import kernel
 
-    verdicts = [Judged(result, ()).verdict for result in audited.results]
+    verdicts = [SingleAudit(result, ()).verdict for result in audited.results]
     counts = Counter(verdicts)
     told = ", ".join(f"{count} {verdict}" for verdict, count in sorted(counts.items()))
     yield f"evidence {audited.file}: {told}"
@@ -314,7 +314,10 @@ def of_reviews(path: str, mine: Iterable[Review], all_: Iterable[Review]) -> Sig
         path,
         attestation.reviews(chosen),
         frozenset(map(attestation.review, all_)),
-        tuple(f"review of {r.requirement} by {r.reviewer}, {r.date}: {r.shown}" for r in chosen),
+        tuple(
+            f"review of {r.requirement} by {r.reviewer}, {r.date}: {r.verdict_summary}"
+            for r in chosen
+        ),
     )
 
 

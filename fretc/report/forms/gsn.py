@@ -22,15 +22,15 @@ def gsn(report: Report) -> str:
 
 
 def _attributes(element: Element) -> dict[str, Any]:
-    found: dict[str, Any] = {"text": " ".join(element.text.split())}
+    attributes: dict[str, Any] = {"text": " ".join(element.text.split())}
     if element.supported_by:
-        found["supportedBy"] = list(element.supported_by)
+        attributes["supportedBy"] = list(element.supported_by)
     if element.in_context_of:
-        found["inContextOf"] = list(element.in_context_of)
+        attributes["inContextOf"] = list(element.in_context_of)
     if element.undeveloped:
-        found["undeveloped"] = True
+        attributes["undeveloped"] = True
     if element.challenges:
-        found["challenges"] = element.challenges
+        attributes["challenges"] = element.challenges
     if element.defeated:
-        found["defeated"] = True
-    return found
+        attributes["defeated"] = True
+    return attributes

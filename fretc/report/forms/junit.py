@@ -17,14 +17,14 @@ from fretc.report.sections.proofs import is_refuted, refutations
 def junit(report: Report) -> str:
     """One test suite; a case fails exactly where `--strict` would end with 1."""
     root = ElementTree.Element("testsuites", name="fretc report")
-    gone = {one.requirement: one.text for one in report.withdrawn}
-    views = [view for view in report.requirements if view.id not in gone]
-    counts = counted([*map(_kind, views), *("failure" for _ in gone)])
+    withdrawn = {one.requirement: one.text for one in report.withdrawn}
+    views = [view for view in report.requirements if view.id not in withdrawn]
+    counts = counted([*map(_kind, views), *("failure" for _ in withdrawn)])
     name = valid(report.project)
     suite = ElementTree.SubElement(root, "testsuite", {"name": name, **counts})
     for view in views:
         _case(suite, view, name)
-    for id, text in gone.items():
+    for id, text in withdrawn.items():
         case = ElementTree.SubElement(suite, "testcase", name=valid(id), classname=name, time="0")
         ElementTree.SubElement(case, "failure", message=valid(f"withdrawn: {text}"))
     return as_text(root)
@@ -49,9 +49,9 @@ def _case(suite: ElementTree.Element, view: RequirementView, project: str) -> No
     if kind:
         reasons = list(_reasons(view))
         message = valid(f"{view.mark.text}: {reasons[0]}" if reasons else view.mark.text)
-        told = ElementTree.SubElement(case, kind, message=message)
+        outcome = ElementTree.SubElement(case, kind, message=message)
         if kind != "skipped":
-            told.text = valid("\n".join((view.sentence, *reasons)))
+            outcome.text = valid("\n".join((view.sentence, *reasons)))
 
 
 def _reasons(view: RequirementView) -> Iterator[str]:

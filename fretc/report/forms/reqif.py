@@ -1,4 +1,4 @@
-"""`--reqif`: hazards, requirements and what is shown of them, for a requirements tool.
+"""`--reqif`: hazards, requirements and their verdicts, for a requirements tool.
 
 Sources: OMG, Requirements Interchange Format (ReqIF) 1.2; prostep ivip, ReqIF Implementation
 Guide, for the names that begin with `ReqIF.`.
@@ -162,28 +162,31 @@ class _Exchange:
         values: Mapping[str, str],
     ) -> ReqIFSpecObject:
         """What is empty is left out."""
-        found = [
+        attributes_ = [
             SpecObjectAttribute(
                 _KINDS[kind], _attribute(kind_of, name), _value(kind, name, values[name])
             )
             for name, kind in attributes.items()
             if (values[name] if kind is Kind.ID else values[name].strip())
         ]
-        return ReqIFSpecObject(id, found, kind_of, last_change=self._changed)
+        return ReqIFSpecObject(id, attributes_, kind_of, last_change=self._changed)
 
     def _relations(self) -> Iterator[ReqIFSpecRelation]:
         """From the child to each parent that is an object here."""
         ids = [view.id for view in self._report.requirements]
-        known = {**dict(zip(reversed(ids), reversed(self._objects), strict=True)), **self._hazards}
+        identifiers = {
+            **dict(zip(reversed(ids), reversed(self._objects), strict=True)),
+            **self._hazards,
+        }
         for id, view in zip(self._objects, self._report.requirements, strict=True):
             for parent in dict.fromkeys(parent.id for parent in view.parents):
-                if parent in known:
+                if parent in identifiers:
                     yield ReqIFSpecRelation(
-                        identifier=f"parent-{id}-of-{known[parent]}",
+                        identifier=f"parent-{id}-of-{identifiers[parent]}",
                         last_change=self._changed,
                         relation_type_ref=_PARENT,
                         source=id,
-                        target=known[parent],
+                        target=identifiers[parent],
                     )
 
     # The order ---------------------------------------------------------------------------------
@@ -229,10 +232,10 @@ class _Exchange:
 
 def _objects(report: Report) -> Iterator[str]:
     """The identifier of each requirement, also of those that wrongly share an id."""
-    seen: Counter[str] = Counter()
+    counts: Counter[str] = Counter()
     for view in report.requirements:
-        seen[view.id] += 1
-        again = f"__{seen[view.id]}" if seen[view.id] > 1 else ""
+        counts[view.id] += 1
+        again = f"__{counts[view.id]}" if counts[view.id] > 1 else ""
         yield f"requirement-{_name(view.id)}{again}"
 
 
@@ -266,4 +269,4 @@ def _word(name: str, word: str) -> str:
 
 def _name(id: str) -> str:
     """Letters, digits, `-`, `.`, and `_` around a code point; different for different ids."""
-    return re.sub(r"[^A-Za-z0-9.-]", lambda found: f"_{ord(found[0]):x}_", id)
+    return re.sub(r"[^A-Za-z0-9.-]", lambda match: f"_{ord(match[0]):x}_", id)

@@ -1,4 +1,4 @@
-"""What ReqIF is told of each hazard and each requirement, as text."""
+"""The ReqIF attributes of each hazard and each requirement, as text."""
 
 from __future__ import annotations
 
@@ -100,10 +100,10 @@ def of_requirement(view: RequirementView) -> Mapping[str, str]:
 
 def _waived(view: RequirementView) -> Iterator[str]:
     """The waiver, and the verdict that it covers: a waiver hides nothing."""
-    found = view.waiver
-    if found is not None:
-        yield f"waived until {found.until} by {found.by}: {found.reason}"
-        yield f"without the waiver: {found.covers.text}"
+    waiver = view.waiver
+    if waiver is not None:
+        yield f"waived until {waiver.until} by {waiver.by}: {waiver.reason}"
+        yield f"without the waiver: {waiver.covers.text}"
 
 
 def _runs(view: RequirementView) -> Iterator[str]:

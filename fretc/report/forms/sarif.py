@@ -23,16 +23,16 @@ def sarif(
 
     Args:
         report: what it says.
-        audited: the results of the evidence that the report was made of, in its order.
+        audited: the results of the evidence, in its order.
         rules: all requirements of the project.
         diagnostics: what there is to say of requirements and evidence.
         failed: requirements of the project without a rule.
     """
-    together = list(_together(report))
-    return results.sarif(list(_judged(report, audited)), rules, diagnostics, together, failed)
+    all_runs = list(_all_runs(report))
+    return results.sarif(list(_single_runs(report, audited)), rules, diagnostics, all_runs, failed)
 
 
-def _judged(report: Report, audited: Sequence[Result]) -> Iterator[results.OneRun]:
+def _single_runs(report: Report, audited: Sequence[Result]) -> Iterator[results.OneRun]:
     """With verdict and currency as the report has them."""
     views = {view.id: iter(view.results) for view in report.requirements}
     for result in audited:
@@ -42,11 +42,11 @@ def _judged(report: Report, audited: Sequence[Result]) -> Iterator[results.OneRu
         yield results.OneRun(result, view.mark.word, view.suspicions)
 
 
-def _together(report: Report) -> Iterator[results.AllRuns]:
+def _all_runs(report: Report) -> Iterator[results.AllRuns]:
     """What all runs say of each requirement with a probability."""
     for view in report.requirements:
-        told = view.probability
-        if told is not None:
-            text = "; ".join((told.reason, *told.lines))
-            why = told.suspicions or view.suspicions
-            yield results.AllRuns(view.id, told.mark.word, text, why)
+        probability = view.probability
+        if probability is not None:
+            text = "; ".join((probability.reason, *probability.lines))
+            why = probability.suspicions or view.suspicions
+            yield results.AllRuns(view.id, probability.mark.word, text, why)

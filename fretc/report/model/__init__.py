@@ -1,1 +1,1 @@
-"""What the report says, as frozen values."""
+"""The values of the report: assessments of requirements, and the views that a reader gets."""

@@ -1,7 +1,7 @@
 """The signals at the first tick of a violation, as the monitor saw them and as the picture shows.
 
-A sample that has grown too old is unknown to the monitor: its value is told with its age and the
-limit, never as if it still counted.
+A sample above its age limit is unknown to the monitor: the text has its value, its age and the
+limit.
 """
 
 from __future__ import annotations
@@ -19,40 +19,40 @@ def reading(signal: str, violation: Violation, result: Result, ages: Mapping[str
     Args:
         signal: one of the violation's values.
         violation: with its window, where the audit kept one.
-        result: where it was found.
-        ages: seconds after which a sample no longer counts, by the signal; absent: never.
+        result: of the run with the violation.
+        ages: age limit of each signal in seconds; a signal without one has no limit.
     """
-    known, limit = _value(signal, violation), ages.get(signal)
+    value, limit = _value(signal, violation), ages.get(signal)
     bounds = _bounds(signal, result)
-    value = phrases.value(known, result.units.get(signal, ""), bounds)
+    text = phrases.value(value, result.units.get(signal, ""), bounds)
     age = _age(signal, violation)
-    if known is None or age is None or limit is None or round(age, 9) <= limit:
-        return value
+    if value is None or age is None or limit is None or round(age, 9) <= limit:
+        return text
     old, most = phrases.seconds(age), phrases.seconds(limit)
     return (
-        f"unknown: {value} is {'just over ' if old == most else ''}{old} old, and counts for {most}"
+        f"unknown: {text} is {'just over ' if old == most else ''}{old} old, and counts for {most}"
     )
 
 
 def _bounds(signal: str, result: Result) -> list[float]:
-    """What the signal itself, or its absolute value, is compared with."""
-    unit, found = result.units.get(signal), list[float]()
+    """The constants that thresholds compare the signal or its absolute value with."""
+    unit, bounds = result.units.get(signal), list[float]()
     for each in result.thresholds:
         if each.unit == unit and each.signal == signal:
-            found.append(each.bound)
+            bounds.append(each.bound)
         elif each.unit == unit and each.signal == f"abs({signal})":
-            found.extend((each.bound, -each.bound))
-    return found
+            bounds.extend((each.bound, -each.bound))
+    return bounds
 
 
 def _value(signal: str, violation: Violation) -> float | str | None:
-    """The number in the evidence; the window also knows infinite ones."""
-    known = violation.values[signal]
-    if known is None and violation.window and signal in violation.window.samples:
-        found = violation.window.samples[signal].at(violation.first.seconds)
-        if found is not None and isinf(found):
-            return "+inf" if found > 0 else "-inf"
-    return known
+    """The number in the evidence; an infinite one stands in the window only."""
+    number = violation.values[signal]
+    if number is None and violation.window and signal in violation.window.samples:
+        sample = violation.window.samples[signal].at(violation.first.seconds)
+        if sample is not None and isinf(sample):
+            return "+inf" if sample > 0 else "-inf"
+    return number
 
 
 def _age(signal: str, violation: Violation) -> float | None:
@@ -60,5 +60,5 @@ def _age(signal: str, violation: Violation) -> float | None:
     if violation.window is None or signal not in violation.window.samples:
         return None
     at = violation.first.seconds
-    known = [time for time in violation.window.samples[signal].times if time <= at]
-    return at - known[-1] if known else None
+    times = [time for time in violation.window.samples[signal].times if time <= at]
+    return at - times[-1] if times else None

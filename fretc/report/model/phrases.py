@@ -1,4 +1,4 @@
-"""Numbers, names and lists as a reader wants to see them."""
+"""Numbers, names, paths and lists in words."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from datetime import UTC, datetime
 from pathlib import PurePosixPath, PureWindowsPath
 
+from fretc.report.traceability.chain import Node
 from fretish.bindings.amounts import value as value
 
 _NARROW = "\N{NARROW NO-BREAK SPACE}"
@@ -33,7 +34,7 @@ def some(words: Sequence[str], most: int = 6) -> str:
 
 
 def decimal(number: float) -> str:
-    """At most three decimals, none that says nothing: `39.8`, `0.001`, `2`."""
+    """At most three decimals, and no zeros at the end: `39.8`, `0.001`, `2`."""
     if abs(number) >= 10**7:
         return f"{number:.6g}"
     text = f"{number:,.3f}".rstrip("0").rstrip(".").replace(",", _NARROW)
@@ -69,7 +70,7 @@ def instant(ns: int | None) -> str:
 
 
 def place(path: str) -> str:
-    """A path as it may be shown anywhere: of an absolute one only the last part."""
+    """A path without places of one machine: of an absolute path only the last part."""
     if PurePosixPath(path).is_absolute():
         return PurePosixPath(path).name or path
     if PureWindowsPath(path).drive or path.startswith("\\"):
@@ -77,8 +78,13 @@ def place(path: str) -> str:
     return path
 
 
+def thing(node: Node) -> str:
+    """A thing of the chain from hazard to review: `artefact r1_monitor.py`, `the clock`."""
+    return "the clock" if node.kind == "clock" else f"{node.kind} {place(node.name)}"
+
+
 def visible(text: str) -> str:
-    """Control and direction characters, which would hide or turn text, as escapes."""
+    """The text with escapes for control and direction characters, which hide or turn text."""
     return "".join(c if _is_plain(c) else _escape(c) for c in text)
 
 

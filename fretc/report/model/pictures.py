@@ -1,4 +1,4 @@
-"""What the pictures of the report show, as frozen values; where it is drawn is decided elsewhere.
+"""The content of the report's pictures; `fretc.report.pictures.plots` has the layout.
 
 Times are seconds from the first tick of a run.
 """
@@ -28,7 +28,7 @@ class Lane:
 
 @dataclass(frozen=True, slots=True)
 class Piece:
-    """A signal while it is known: `(seconds, least, greatest)`, each in force up to the next."""
+    """A signal while it is known; a point is `(seconds, least, greatest)`, up to the next."""
 
     points: tuple[tuple[float, float, float], ...]
     end: float
@@ -36,7 +36,7 @@ class Piece:
 
 @dataclass(frozen=True, slots=True)
 class Level:
-    """The bound of a threshold, and how it is written."""
+    """The bound of a threshold and its label."""
 
     value: float
     label: str
@@ -83,7 +83,7 @@ class Timeline:
 
 @dataclass(frozen=True, slots=True)
 class Bin:
-    """Values from `low` on and below `high`; latencies above `low`, or 0, and up to `high`."""
+    """The count of values from `low` to below `high`; of latencies: above `low`, up to `high`."""
 
     low: float
     high: float
@@ -92,18 +92,18 @@ class Bin:
 
 @dataclass(frozen=True, slots=True)
 class Histogram:
-    """How often each value came; `text` says the numbers."""
+    """The counts of values in bins; `text` has the numbers in words."""
 
     title: str
     unit: str
     bins: tuple[Bin, ...]
     bound: float | None
-    """What no value may be beyond; None where nothing says so."""
+    """The limit of the values; None where there is none."""
     bound_label: str
     text: str
     crossed: int = 0
-    """Runs that have no value because they were beyond the bound."""
+    """Runs without a value, because they crossed the bound."""
     unanswered: int = 0
-    """Triggers that have no value because their time or their scope ended without an answer."""
+    """Triggers without a value, because their time or scope ended without an answer."""
     open: int = 0
-    """Triggers that have no value because they still waited when the log ended."""
+    """Triggers without a value, because they still waited when the log ended."""

@@ -1,6 +1,6 @@
-"""What the report says, as frozen values: templates place them and the JSON form lists them.
+"""The views: what a reader gets of each part of the report. Templates and `--json` print them.
 
-All that is decided is decided by the functions that build these; nothing here is markup. Times
+The names of classes and fields are those of `report.schema.json`. No view contains markup. Times
 are seconds from the first tick of a run, ticks count from 0, intervals include both ends.
 """
 
@@ -19,13 +19,13 @@ SCHEMA = "fretc-report-1"
 
 @dataclass(frozen=True, slots=True)
 class Mark:
-    """A verdict as it is shown: always a word and a sign; `kind` is only its colour."""
+    """A verdict for a reader: a word, a sign, and `kind`, the class of its colour."""
 
     word: str
     glyph: str
     kind: str
     suspect: bool = False
-    """Its currency: whether something that it rests on has changed."""
+    """The currency of the verdict: whether something that it rests on has changed."""
 
     @property
     def text(self) -> str:
@@ -34,22 +34,22 @@ class Mark:
 
     @property
     def shows(self) -> bool:
-        """Whether it shows its requirement: a suspect verdict never does."""
+        """Whether the verdict shows its requirement; a suspect verdict never does."""
         return shows(self.word, suspect=self.suspect)
 
     @property
     def severity(self) -> tuple[int, bool]:
-        """By which verdicts are sorted, the worst first."""
+        """The key that sorts verdicts, the worst first."""
         return severity(self.word, suspect=self.suspect)
 
 
 def verdict_mark(word: str, *, suspect: bool = False) -> Mark:
-    """A verdict as it is shown."""
+    """The mark of a verdict."""
     return sign_mark(word, VERDICTS[word].sign, suspect=suspect)
 
 
 def sign_mark(word: str, sign: Sign, *, suspect: bool = False) -> Mark:
-    """Any outcome as it is shown."""
+    """The mark of any other outcome."""
     return Mark(word, sign.glyph, sign.kind, suspect)
 
 
@@ -69,7 +69,7 @@ class Remark:
 
 @dataclass(frozen=True, slots=True)
 class Overall:
-    """The result of everything, in words."""
+    """The overall result in words."""
 
     mark: Mark
     headline: str
@@ -115,7 +115,7 @@ class RunView:
 
 @dataclass(frozen=True, slots=True)
 class Count:
-    """How many requirements, and how many single audits, have a verdict of one currency."""
+    """The number of requirements and of single audits with one mark."""
 
     mark: Mark
     requirements: int
@@ -135,7 +135,7 @@ class NotShown:
 
 @dataclass(frozen=True, slots=True)
 class Planned:
-    """A planned method of verification and what came of it."""
+    """A planned method of verification and its result."""
 
     requirement: str
     anchor: str
@@ -150,7 +150,7 @@ class Planned:
 
 @dataclass(frozen=True, slots=True)
 class Cell:
-    """A verdict in the matrix, or a number of runs with the same one; `anchor` is its section."""
+    """The verdict of one run in the matrix, or of several; `anchor` leads to the details."""
 
     mark: Mark
     label: str
@@ -159,7 +159,7 @@ class Cell:
 
 @dataclass(frozen=True, slots=True)
 class Row:
-    """A hazard and a requirement that traces to it; no hazard where it traces to none."""
+    """A requirement and a hazard that it traces to; `hazard` is empty where it traces to none."""
 
     hazard: str
     hazard_title: str
@@ -177,7 +177,7 @@ class Row:
 
 @dataclass(frozen=True, slots=True)
 class HazardView:
-    """A hazard as it was declared."""
+    """A hazard of the project."""
 
     id: str
     title: str
@@ -188,7 +188,7 @@ class HazardView:
 
 @dataclass(frozen=True, slots=True)
 class Orphans:
-    """Where the chain from hazard to verdict has no link, each with the reason in words."""
+    """The places where the chain from hazard to verdict has no link, in words."""
 
     hazards: tuple[str, ...]
     requirements: tuple[str, ...]
@@ -198,20 +198,20 @@ class Orphans:
 
 @dataclass(frozen=True, slots=True)
 class Change:
-    """What is not as it was reviewed, in words; `verdicts` are run, then and now."""
+    """The changes of a requirement since its review; `verdicts` are run, then and now."""
 
     requirement: str
     anchor: str
     state: str
     lines: tuple[str, ...]
     links: Listing
-    """The links that are suspect for that."""
+    """The links that the changes make suspect."""
     verdicts: tuple[tuple[str, str, str], ...]
 
 
 @dataclass(frozen=True, slots=True)
 class Withdrawal:
-    """A requirement that was reviewed and is claimed no more, and how, in a sentence."""
+    """A requirement that was reviewed and is claimed no more; `text` says how."""
 
     requirement: str
     text: str
@@ -219,7 +219,7 @@ class Withdrawal:
 
 @dataclass(frozen=True, slots=True)
 class SignatureView:
-    """Whether something is signed by whoever must have signed it, and by whom it is."""
+    """Whether the right person has signed something, and who has."""
 
     mark: Mark
     text: str
@@ -228,7 +228,7 @@ class SignatureView:
 
 @dataclass(frozen=True, slots=True)
 class Signed:
-    """A thing that can be signed, or a signature that does not verify."""
+    """A line of the table of signatures: a thing that can be signed, or a signature that fails."""
 
     kind: str
     name: str
@@ -238,17 +238,17 @@ class Signed:
 
 @dataclass(frozen=True, slots=True)
 class Signatures:
-    """Whose keys count, and who signed what."""
+    """The table of signatures, and the keys that count."""
 
     file: str
-    """The list of signers; empty: there is none, and no signature counts."""
+    """The file of signers; empty where there is none: then no signature counts."""
     signers: tuple[str, ...]
     signed: tuple[Signed, ...]
 
 
 @dataclass(frozen=True, slots=True)
 class ReviewView:
-    """Who has accepted a requirement, and whether that still stands."""
+    """The review of a requirement, and whether it still stands."""
 
     mark: Mark
     by: str
@@ -259,14 +259,14 @@ class ReviewView:
 
     @property
     def text(self) -> str:
-        """The word of its mark, and of its signature."""
+        """The words of both marks: `reviewed, unauthenticated`."""
         marks = (self.mark, *([self.signature.mark] if self.signature else []))
         return ", ".join(mark.word for mark in marks)
 
 
 @dataclass(frozen=True, slots=True)
 class WaiverView:
-    """Why a requirement need not be shown for a while; `covers` is the verdict behind it."""
+    """The waiver of a requirement; `covers` is the verdict without it."""
 
     requirement: str
     anchor: str
@@ -282,7 +282,7 @@ class WaiverView:
 
 @dataclass(frozen=True, slots=True)
 class ProofView:
-    """What `fretc verify` says of one claim, and why that does not count, if it does not."""
+    """The result of `fretc verify` for one claim, and why it does not count, if it does not."""
 
     requirement: str
     layer: str
@@ -297,7 +297,7 @@ class ProofView:
 
 @dataclass(frozen=True, slots=True)
 class Formula:
-    """A formula with what it is read over."""
+    """A formula, and the traces that it is read over."""
 
     name: str
     over: str
@@ -317,7 +317,7 @@ class SignalView:
 
 @dataclass(frozen=True, slots=True)
 class PropositionView:
-    """A name of the sentence and what it means in the messages."""
+    """A proposition of the sentence, and its binding to the messages."""
 
     name: str
     is_bound: bool
@@ -329,7 +329,7 @@ class PropositionView:
 
 @dataclass(frozen=True, slots=True)
 class Parent:
-    """What a requirement traces to; no anchor where it is not declared."""
+    """A parent of a requirement; `anchor` is empty where the parent has no section."""
 
     id: str
     title: str
@@ -338,7 +338,7 @@ class Parent:
 
 @dataclass(frozen=True, slots=True)
 class Latency:
-    """How long the response took; waits are the longest ones, those of one answer together."""
+    """The latency of the response; `waits` are the longest waits, one for each answer."""
 
     answered: int
     at_once: int
@@ -353,7 +353,7 @@ class Latency:
 
 @dataclass(frozen=True, slots=True)
 class ViolationView:
-    """A stretch at which the requirement was broken; values are `(signal, value)`."""
+    """A stretch of ticks that violates the requirement; `values` are `(signal, value)`."""
 
     start: str
     end: str
@@ -366,7 +366,7 @@ class ViolationView:
 
 @dataclass(frozen=True, slots=True)
 class ThresholdView:
-    """A comparison with a constant, and how near the signal came to it."""
+    """A comparison with a constant, and the margin of the signal."""
 
     proposition: str
     comparison: str
@@ -385,7 +385,7 @@ class Listing:
 
 @dataclass(frozen=True, slots=True)
 class ResultView:
-    """What one run shows of one requirement; with suspicions it is about something else."""
+    """The result of one run; with suspicions it is evidence of something else."""
 
     anchor: str
     run: str
@@ -407,7 +407,7 @@ class ResultView:
 
 @dataclass(frozen=True, slots=True)
 class BoundsView:
-    """An interval of a probability, and how it was made."""
+    """An interval of a probability; `name` is its method."""
 
     name: str
     low: float
@@ -416,11 +416,11 @@ class BoundsView:
 
 @dataclass(frozen=True, slots=True)
 class ProbabilityView:
-    """What all runs say of a probability; `text` says in words what its picture shows."""
+    """The answer of all runs about a probability; `text` is its picture in words."""
 
     mark: Mark
     suspicions: tuple[str, ...]
-    """Why it does not count; empty where it does."""
+    """Why the answer does not count; empty where it counts."""
     stated: str
     bound: float
     reason: str
@@ -432,14 +432,14 @@ class ProbabilityView:
 
 @dataclass(frozen=True, slots=True)
 class RequirementView:
-    """Everything known of one requirement."""
+    """The section of one requirement."""
 
     id: str
     anchor: str
     title: str
     mark: Mark
     suspicions: tuple[str, ...]
-    """Why its verdict is not that of what is there now; empty where it is."""
+    """Why its verdict is not current; empty where it is."""
     status: str
     source: str
     text: str
@@ -460,23 +460,23 @@ class RequirementView:
     artefacts: tuple[Product, ...]
     proofs: tuple[ProofView, ...]
     exercise: str
-    """What all runs together have asked of it."""
+    """How often all runs together have triggered it, in words."""
     histograms: tuple[Histogram, ...]
     probability: ProbabilityView | None
-    """None: the sentence gives none, or no evidence tells of it."""
+    """None where the sentence has no probability, or the evidence has no estimation."""
     results: tuple[ResultView, ...]
     reasons: tuple[str, ...]
     """Why it is not shown; empty where it is."""
     limit: str
     """Why no run can violate it, in one sentence; empty where one can."""
     coverage: str
-    """How far along the chain it is; one of `fretc.report.model.claims.COVERAGE`."""
+    """How far along the chain it is; one of `fretc.report.model.assessments.COVERAGE`."""
     review: ReviewView
     waiver: WaiverView | None
 
 
 def worst_first(views: Iterable[RequirementView]) -> list[RequirementView]:
-    """By their verdicts, those of one verdict in their order."""
+    """The views sorted by verdict; views of one verdict keep their order."""
     return sorted(views, key=lambda view: view.mark.severity)
 
 
@@ -518,7 +518,7 @@ class Report:
     reservations: tuple[str, ...]
     planned: tuple[Planned, ...]
     proofs: tuple[ProofView, ...]
-    """What was proved of things that are no requirement: of the interceptor, of the agent."""
+    """Proofs about the interceptor and the agent, which no single requirement has."""
     verification: str
     """The file with all proofs; empty where there is none."""
     remarks: tuple[Remark, ...]
@@ -526,10 +526,10 @@ class Report:
     matrix: tuple[Row, ...]
     orphans: Orphans
     reviewed: str
-    """How many requirements have been reviewed, and whether that stands."""
+    """The number of reviews, and whether they stand, in sentences."""
     changes: tuple[Change, ...]
     withdrawn: tuple[Withdrawal, ...]
-    """What was claimed when it was reviewed, and is not any more."""
+    """Requirements that were reviewed and are claimed no more."""
     waivers: tuple[WaiverView, ...]
     signatures: Signatures
     requirements: tuple[RequirementView, ...]

@@ -1,1 +1,1 @@
-"""The report as one HTML file."""
+"""The HTML page of the report: selection of details, the argument as a tree, layout."""

@@ -1,4 +1,4 @@
-"""The report as one HTML file: every text made visible, every picture laid out, then placed."""
+"""The report as one HTML file: the template places texts and pictures that are ready."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from compiler.formalization.formalized import Formalized
 from fretc.report.model.phrases import visible
 from fretc.report.model.views import Report
 from fretc.report.page.selection import Selection, selection, slimmed
-from fretc.report.page.tree import MOST, NAMES, Placed, grouped, pieces, placed, shortened
+from fretc.report.page.tree import MOST, NAMES, Placement, grouped, pieces, placements, shortened
 from fretc.report.pictures.plots import drawing, histogram
 from fretc.report.pictures.scales import scale
 from fretc.report.sections.argument import argument
@@ -27,18 +27,18 @@ def html(report: Report, rules: Sequence[Formalized] = ()) -> str:
     """The whole file.
 
     Args:
-        report: what it says.
-        rules: those whose meaning is drawn.
+        report: all parts.
+        rules: formalized requirements; the page draws what they mean.
     """
-    chosen = selection(report)
-    page = slimmed(report, chosen)
+    choice = selection(report)
+    page = slimmed(report, choice)
     script, style = render(_SCRIPT), render(_STYLE)
     return render(
         "report/report.html.j2",
         report=_visible(asdict(page)),
-        chosen=_visible(asdict(replace(chosen, anchors=frozenset()))),
-        anchors=chosen.anchors,
-        pictures=_visible(_pictures(chosen)),
+        selection=_visible(asdict(replace(choice, anchors=frozenset()))),
+        anchors=choice.anchors,
+        pictures=_visible(_pictures(choice)),
         histograms=_visible(_histograms(page)),
         scales=_visible(_scales(page)),
         diagrams=_diagrams(page, rules),
@@ -56,15 +56,15 @@ def _hash(text: str) -> str:
     return f"sha256-{base64.b64encode(hashlib.sha256(text.encode()).digest()).decode()}"
 
 
-def _pictures(chosen: Selection) -> dict[str, list[dict[str, Any]]]:
-    """Of each result with details its timelines."""
+def _pictures(choice: Selection) -> dict[str, list[dict[str, Any]]]:
+    """The timelines of each result with details, by its anchor."""
     return {
         result.anchor: [
             asdict(drawing(timeline, f"picture-{result.anchor}.{number}"))
             for number, timeline in enumerate(result.timelines, 1)
         ]
-        for shown in chosen.by_anchor.values()
-        for result in (*shown.details, *shown.folded)
+        for section in choice.by_anchor.values()
+        for result in (*section.details, *section.folded)
     }
 
 
@@ -79,31 +79,31 @@ def _histograms(page: Report) -> dict[str, list[dict[str, Any]]]:
 
 
 def _diagrams(page: Report, rules: Sequence[Formalized]) -> Mapping[str, dict[str, Any]]:
-    """What each sentence means, drawn; the drawing makes its own texts visible."""
-    known = {(rule.id, rule.fingerprint): rule for rule in rules}
-    found = {}
+    """A drawing of what each sentence means, by its anchor; it escapes its own texts."""
+    rules_by_key = {(rule.id, rule.fingerprint): rule for rule in rules}
+    diagrams = {}
     for view in page.requirements:
-        rule = known.get((view.id, view.fingerprint))
+        rule = rules_by_key.get((view.id, view.fingerprint))
         if view.diagram and rule is not None:
-            found[view.anchor] = asdict(diagram_drawing(diagram(rule), f"means-{view.anchor}"))
-    return found
+            diagrams[view.anchor] = asdict(diagram_drawing(diagram(rule), f"means-{view.anchor}"))
+    return diagrams
 
 
 def _argument(report: Report) -> dict[str, Any]:
-    """The tree drawn, the same as a list, and how many elements there are in all."""
+    """The argument as a tree and as a list, and the number of its elements."""
     whole = argument(report)
-    few = grouped(whole)
-    drawn = shortened(few)
+    groups = grouped(whole)
+    short = shortened(groups)
     return {
         "total": len(whole),
         "most": MOST,
-        "is_short": len(drawn) < len(few),
-        "pieces": [asdict(piece) for piece in pieces(drawn)],
-        "items": _nested(placed(drawn)),
+        "is_short": len(short) < len(groups),
+        "pieces": [asdict(piece) for piece in pieces(short)],
+        "items": _nested(placements(short)),
     }
 
 
-def _nested(flat: Sequence[Placed]) -> list[dict[str, Any]]:
+def _nested(flat: Sequence[Placement]) -> list[dict[str, Any]]:
     """Each element with how many lists open before it and close after it."""
     items = []
     for i, each in enumerate(flat):
@@ -123,7 +123,7 @@ def _nested(flat: Sequence[Placed]) -> list[dict[str, Any]]:
 
 
 def _scales(page: Report) -> dict[str, dict[str, Any]]:
-    """Of each probability its scale."""
+    """The scale of each probability, by its anchor."""
     return {
         view.anchor: asdict(scale(view.probability, f"picture-{view.anchor}"))
         for view in page.requirements
@@ -132,7 +132,7 @@ def _scales(page: Report) -> dict[str, dict[str, Any]]:
 
 
 def _visible(value: Any) -> Any:
-    """The same, with every character to be seen: no text can hide, turn or cut another one."""
+    """The same value with escapes for characters that hide or turn text."""
     match value:
         case str():
             return visible(value)

@@ -1,6 +1,6 @@
-"""What of a report stands in the page: all verdicts, and as many details as a reader can open.
+"""The selection for the page: all verdicts, and as many details as a browser can open.
 
-Nothing that is not satisfied is left out without a word; the evidence has everything.
+The page says how many runs that are not satisfied it leaves out; the evidence file has them all.
 """
 
 from __future__ import annotations
@@ -14,20 +14,21 @@ from fretc.report.model import phrases
 from fretc.report.model.views import Mark, Report, RequirementView, ResultView, RunView
 
 COMPACT = 5_000
-"""More results than these, and only runs that are not satisfied have a row."""
+"""Above this number of results, only runs that are not satisfied have a row."""
 DETAILED, PICTURES = 100, 60
-"""Results with all details, and pictures of violations, in one page, shared among requirements."""
+"""The most results with all details, and the most pictures of violations, in one page."""
 _ROWS = 10
-"""Rows of a requirement in a compact page."""
-_RUNS, _TOLD_RUNS = 8, 200
-"""More runs than the first are a table; more rows than the second it does not have."""
+"""The most rows of a requirement in a compact page."""
+_RUNS, _RUN_ROWS = 8, 200
+"""Above the first number, runs stand in a table; the second is the most rows of that table."""
 _FOLDED = 60
-"""Up to so many results in all, also those of satisfied runs are in the page, closed."""
+"""Up to this number of results, the page has the details of satisfied runs too, folded."""
 _VIOLATIONS = 12
-"""Violations that are listed of one result, in a page with more results than that."""
+"""The most violations of one result in a page with more than `_FOLDED` results."""
 _WHOLE = 200
-"""More requirements than these, and a compact page tells of each only what it says and shows."""
+"""Above this number of requirements, a compact page has no formulas, artefacts and pictures."""
 _REASONS = 3
+"""The most reasons of a requirement in a compact page."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,7 +36,7 @@ class RunRow:
     """One run of a requirement in its table."""
 
     anchor: str
-    """Of its details; of the row itself where there are none."""
+    """The anchor of its details, or of the row where there are none."""
     run: str
     label: str
     file: str
@@ -49,58 +50,58 @@ class RunRow:
 
 
 @dataclass(frozen=True, slots=True)
-class Shown:
-    """What the section of a requirement shows of its runs."""
+class SectionRuns:
+    """The runs in the section of a requirement."""
 
     rows: tuple[RunRow, ...]
     details: tuple[ResultView, ...]
     folded: tuple[ResultView, ...]
-    """Of satisfied runs, to be opened."""
+    """Details of satisfied runs, which the reader unfolds."""
     left_out: tuple[str, ...]
-    """What is not in the page, and where it is."""
+    """Sentences about what the page leaves out, and where that is."""
     is_short: bool
     """Whether formulas, propositions, artefacts and histograms are left out."""
 
 
 @dataclass(frozen=True, slots=True)
 class Selection:
-    """What the page shows."""
+    """What the page has of each requirement and of the runs."""
 
-    by_anchor: Mapping[str, Shown]
+    by_anchor: Mapping[str, SectionRuns]
     runs: tuple[RunView, ...]
-    """Those with a section of their own."""
+    """Runs with a section of their own."""
     run_rows: tuple[RunView, ...]
-    """Those in a table; empty where each has a section."""
+    """Runs in a table; empty where each run has a section."""
     runs_left_out: str
     notes: tuple[str, ...]
     is_compact: bool
     anchors: frozenset[str]
-    """Of all results and runs that can be linked to."""
+    """The anchors of all results and runs in the page."""
 
 
 def selection(report: Report) -> Selection:
-    """Choose, from what the report says."""
+    """The selection for a report."""
     total = sum(len(view.results) for view in report.requirements)
     compact = total > COMPACT
     detailed = _detailed(report.requirements, None if total <= _FOLDED else _VIOLATIONS)
-    shown = {
-        view.anchor: _shown(view, detailed, compact, total, len(report.requirements))
+    by_anchor = {
+        view.anchor: _section_runs(view, detailed, compact, total, len(report.requirements))
         for view in report.requirements
     }
     many = len(report.runs) > _RUNS
-    rows = report.runs[:_TOLD_RUNS] if many else ()  # those with errors and damage come first
+    run_rows = report.runs[:_RUN_ROWS] if many else ()  # runs with errors and damage come first
     alone = [run for run in report.runs if run.findings or run.gaps or not run.intact]
     sections = tuple(alone[:_RUNS]) if many else report.runs
-    left = len(report.runs) - len(rows) if many else 0
+    left = len(report.runs) - len(run_rows) if many else 0
     anchors = {
-        *(row.anchor for each in shown.values() for row in each.rows),
-        *(view.anchor for each in shown.values() for view in (*each.details, *each.folded)),
-        *(run.anchor for run in (*sections, *rows)),
+        *(row.anchor for each in by_anchor.values() for row in each.rows),
+        *(view.anchor for each in by_anchor.values() for view in (*each.details, *each.folded)),
+        *(run.anchor for run in (*sections, *run_rows)),
     }
     return Selection(
-        by_anchor=shown,
+        by_anchor=by_anchor,
         runs=sections,
-        run_rows=rows,
+        run_rows=run_rows,
         runs_left_out=_runs_left_out(left, len(alone) - len(sections) if many else 0),
         notes=tuple(_notes(total, compact, len(report.requirements))),
         is_compact=compact,
@@ -113,8 +114,8 @@ def _runs_left_out(rows: int, sections: int) -> str:
         f"{phrases.times(rows, 'run')} without a row" if rows else "",
         f"{phrases.times(sections, 'run')} whose findings are not shown" if sections else "",
     ]
-    told = phrases.joined(list(filter(None, parts)))
-    return f"Left out here: {told}. The evidence file has them all." if told else ""
+    omissions = phrases.joined(list(filter(None, parts)))
+    return f"Left out here: {omissions}. The evidence file has them all." if omissions else ""
 
 
 def _notes(total: int, compact: bool, requirements: int) -> Iterator[str]:
@@ -141,11 +142,11 @@ def _is_good(result: ResultView) -> bool:
 
 
 def _detailed(views: Sequence[RequirementView], listed: int | None) -> Mapping[str, ResultView]:
-    """Results that get all details: the worst of each requirement first, then the next of each.
+    """The results with all details: the worst of each requirement, then the next of each, ...
 
     Args:
         views: the requirements with all their results.
-        listed: violations of one result that have a row; None: all that the report lists.
+        listed: the most violations of one result; None: all that the report lists.
     """
     wanted = [
         sorted(
@@ -154,25 +155,25 @@ def _detailed(views: Sequence[RequirementView], listed: int | None) -> Mapping[s
         )[:DETAILED]
         for view in views
     ]
-    found: dict[str, ResultView] = {}
+    details: dict[str, ResultView] = {}
     pictures = PICTURES
     for result in (r for turn in zip_longest(*wanted) for r in turn if r is not None):
-        if len(found) == DETAILED:
+        if len(details) == DETAILED:
             break
         kept = result.timelines[:pictures]
         pictures -= len(kept)
-        few = result.violations[:listed]
-        found[result.anchor] = replace(result, timelines=kept, violations=few)
-    return found
+        violations = result.violations[:listed]
+        details[result.anchor] = replace(result, timelines=kept, violations=violations)
+    return details
 
 
-def _shown(
+def _section_runs(
     view: RequirementView,
     detailed: Mapping[str, ResultView],
     compact: bool,
     total: int,
     requirements: int,
-) -> Shown:
+) -> SectionRuns:
     details = tuple(detailed[r.anchor] for r in view.results if r.anchor in detailed)
     rest = [result for result in view.results if result.anchor not in detailed]
     folded = tuple(filter(_is_good, rest)) if total <= _FOLDED else ()
@@ -181,9 +182,9 @@ def _shown(
         bad = [result for result in rows if not _is_good(result)]
         rows = sorted(bad, key=lambda result: result.mark.severity)[:_ROWS]
     elif view.results and not (details or folded):
-        rows = view.results  # a single one without details
+        rows = view.results  # a single result without details has a row
     open_ = {result.anchor for result in (*details, *folded)}
-    return Shown(
+    return SectionRuns(
         rows=tuple(_row(result, result.anchor in open_) for result in rows),
         details=details,
         folded=folded,
@@ -235,11 +236,14 @@ def _left_out(
         yield "Details of satisfied runs are in the evidence file and in `--json`."
 
 
-# The page as it is placed ----------------------------------------------------------------------
+# The report for the page -----------------------------------------------------------------------
 
 
 def slimmed(report: Report, chosen: Selection) -> Report:
-    """The report without what the page leaves out; links to nowhere lead to the requirement."""
+    """The report without what the page leaves out.
+
+    A link to a result that the page leaves out leads to its requirement.
+    """
     views = tuple(_slim(view, chosen) for view in report.requirements)
     matrix = tuple(
         replace(
@@ -251,15 +255,15 @@ def slimmed(report: Report, chosen: Selection) -> Report:
         )
         for row in report.matrix
     )
-    told = tuple(
+    not_shown = tuple(
         replace(each, reasons=_few(each.reasons)) if chosen.is_compact else each
         for each in report.not_shown
     )
-    return replace(report, requirements=views, matrix=matrix, not_shown=told, runs=chosen.runs)
+    return replace(report, requirements=views, matrix=matrix, not_shown=not_shown, runs=chosen.runs)
 
 
 def _slim(view: RequirementView, chosen: Selection) -> RequirementView:
-    """A section without its results, which are placed as they were chosen."""
+    """A section without its results: the template takes those from the selection."""
     reasons = _few(view.reasons) if chosen.is_compact else view.reasons
     kept = replace(view, results=(), reasons=reasons)
     if not chosen.by_anchor[view.anchor].is_short:

@@ -1,8 +1,10 @@
-"""The assurance argument as an indented tree: each element a shape of GSN, in pieces of a page.
+"""The assurance argument as an indented tree, in pieces that fit on a page.
 
-An element with several parents is drawn below the first, and referred to below the others.
-Counter-evidence hangs on its goal by a dashed line with an open arrowhead; a defeated goal is
-crossed. Source of the shapes: GSN Community Standard, version 3 (2021), part 1, with its dialectic
+Each element is a shape of GSN. An element with several parents stands below the first of them;
+the others have a reference to it. A dashed line with an open arrowhead joins counter-evidence to
+its goal. A defeated goal has a cross.
+
+Source of the shapes: GSN Community Standard, version 3 (2021), part 1, with its dialectic
 extension.
 """
 
@@ -15,21 +17,21 @@ from enum import StrEnum
 from fretc.report.sections.argument import Element, Kind
 
 MOST = 120
-"""More elements than these are not drawn: then only what is not shown is."""
+"""The most elements of a drawing. A larger argument is drawn without the goals that are shown."""
 _WIDTH, _INDENT, _MARGIN = 720, 26, 4
 _LINE, _PAD, _GAP = 15, 9, 12
 _LETTER = 6.1
 _LINES = 3
 _TALL = 880
-"""A piece fits on a page of A4 at this height."""
+"""The greatest height of a piece: it fits on a page of A4."""
 _ASSUMED = 4
-"""More assumptions of one goal are drawn as one."""
+"""Above this number, the assumptions of one goal are one shape."""
 _ROUND = (Kind.SOLUTION, Kind.COUNTER_SOLUTION, Kind.ASSUMPTION, Kind.JUSTIFICATION)
 NAMES = {kind: kind.name.capitalize().replace("_", "-") for kind in Kind}
 
 
-class Hang(StrEnum):
-    """How an element hangs on the one above."""
+class Relation(StrEnum):
+    """The relation of an element to the one above it."""
 
     SUPPORT = "support"
     CONTEXT = "context"
@@ -37,27 +39,27 @@ class Hang(StrEnum):
 
 
 @dataclass(frozen=True, slots=True)
-class Placed:
-    """An element in the tree."""
+class Placement:
+    """An element at its place in the tree."""
 
     element: Element
     depth: int
-    hang: Hang
+    relation: Relation
     is_reference: bool = False
-    """Whether it stands with all that is below it at a place further up."""
+    """Whether it only refers to the same element further up."""
     is_challenged: bool = False
     is_doubtful: bool = False
     """Whether it, or something that it rests on, is challenged."""
 
     @property
     def text(self) -> str:
-        """What is written into it."""
+        """The text in its shape."""
         element = self.element
         return f"{element.name or element.text}: see above" if self.is_reference else element.text
 
     @property
     def state(self) -> str:
-        """`defeated`, `challenged` or `in doubt`; empty where nothing stands against it."""
+        """`defeated`, `challenged` or `in doubt`; empty where there is no counter-evidence."""
         if self.element.defeated:
             return "defeated"
         return "challenged" if self.is_challenged else "in doubt" if self.is_doubtful else ""
@@ -73,13 +75,13 @@ class Shape:
     path: str
     link: str
     arrow: str
-    hang: str
+    relation: str
     is_reference: bool
     letter: tuple[float, float, str] | None
     diamond: str
     cross: str
     state: tuple[float, float, str] | None
-    """Where it says that it is challenged, defeated or in doubt."""
+    """The place and the text of its state."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -94,66 +96,66 @@ class Piece:
     shapes: tuple[Shape, ...]
 
 
-def placed(elements: Sequence[Element]) -> tuple[Placed, ...]:
-    """All elements from the top goal down, where they are referred to first; then by reference."""
-    known = {element.id: element for element in elements}
+def placements(elements: Sequence[Element]) -> tuple[Placement, ...]:
+    """All elements from the top goal down: in full at the first place, then as references."""
+    by_id = {element.id: element for element in elements}
     against = _challengers(elements)
-    doubtful = _above(set(against), known)
-    seen: set[str] = set()
-    found: list[Placed] = []
-    waiting = [(element.id, 0, Hang.SUPPORT) for element in elements[:1]]
+    doubtful = _above(set(against), by_id)
+    drawn: set[str] = set()
+    tree: list[Placement] = []
+    waiting = [(element.id, 0, Relation.SUPPORT) for element in elements[:1]]
     while waiting:
-        id, depth, hang = waiting.pop()
-        element = known[id]
-        found.append(Placed(element, depth, hang, id in seen, id in against, id in doubtful))
-        if id in seen:
+        id, depth, relation = waiting.pop()
+        element = by_id[id]
+        tree.append(Placement(element, depth, relation, id in drawn, id in against, id in doubtful))
+        if id in drawn:
             continue
-        seen.add(id)
+        drawn.add(id)
         below = [
-            *((other, depth + 1, Hang.CONTEXT) for other in element.in_context_of),
-            *((other, depth + 1, Hang.CHALLENGE) for other in against.get(id, ())),
-            *((other, depth + 1, Hang.SUPPORT) for other in element.supported_by),
+            *((other, depth + 1, Relation.CONTEXT) for other in element.in_context_of),
+            *((other, depth + 1, Relation.CHALLENGE) for other in against.get(id, ())),
+            *((other, depth + 1, Relation.SUPPORT) for other in element.supported_by),
         ]
         waiting.extend(reversed(below))
-    return tuple(found)
+    return tuple(tree)
 
 
 def _challengers(elements: Sequence[Element]) -> Mapping[str, Sequence[str]]:
-    """Of each challenged element what stands against it."""
-    found: dict[str, list[str]] = {}
+    """The counter-evidence against each challenged element, by its id."""
+    challengers: dict[str, list[str]] = {}
     for element in elements:
         if element.challenges:
-            found.setdefault(element.challenges, []).append(element.id)
-    return found
+            challengers.setdefault(element.challenges, []).append(element.id)
+    return challengers
 
 
-def _above(ids: Collection[str], known: Mapping[str, Element]) -> set[str]:
-    """These elements, and all that rest on them: a requirement may stand under several hazards."""
+def _above(ids: Collection[str], by_id: Mapping[str, Element]) -> set[str]:
+    """These elements, and all elements that they support, directly or not."""
     above: dict[str, list[str]] = {}
-    for element in known.values():
+    for element in by_id.values():
         for other in element.supported_by:
             above.setdefault(other, []).append(element.id)
-    found, waiting = set(ids), list(ids)
+    above_ids, waiting = set(ids), list(ids)
     while waiting:
         for id in above.get(waiting.pop(), ()):
-            if id not in found:
-                found.add(id)
+            if id not in above_ids:
+                above_ids.add(id)
                 waiting.append(id)
-    return found
+    return above_ids
 
 
 def shortened(elements: Sequence[Element]) -> tuple[Element, ...]:
-    """What is challenged and what is not shown, where all would be too many; the first comes first.
+    """The elements of a drawing: all of them, or those that a reader must see, at most `MOST`.
 
-    A goal is left out where everything below it is developed and nothing stands against it, and
-    whatever is neither a goal, a strategy nor counter-evidence with it.
+    Counter-evidence and the goals above it come first, then undeveloped goals and the goals above
+    them. Goals that are developed and unchallenged are left out, and so are solutions and context.
     """
     if len(elements) <= MOST:
         return tuple(elements)
-    known = {element.id: element for element in elements}
+    by_id = {element.id: element for element in elements}
     against = _challengers(elements)
-    worst = _above(set(against), known) | {each for ids in against.values() for each in ids}
-    open_ = {elements[0].id} | _above({e.id for e in elements if e.undeveloped}, known)
+    worst = _above(set(against), by_id) | {each for ids in against.values() for each in ids}
+    open_ = {elements[0].id} | _above({e.id for e in elements if e.undeveloped}, by_id)
     wanted = [
         *(element.id for element in elements if element.id in worst),
         *(element.id for element in elements if element.id in open_ - worst),
@@ -169,31 +171,31 @@ def shortened(elements: Sequence[Element]) -> tuple[Element, ...]:
 
 
 def grouped(elements: Sequence[Element]) -> tuple[Element, ...]:
-    """Many assumptions of one goal as one, which says how many; the page lists them elsewhere."""
+    """The elements with one in place of many assumptions of a goal; part 6 lists them all."""
     kinds = {element.id: element.kind for element in elements}
-    found: list[Element] = []
-    gone: set[str] = set()
+    kept: list[Element] = []
+    replaced: set[str] = set()
     for element in elements:
         assumed = [id for id in element.in_context_of if kinds[id] is Kind.ASSUMPTION]
         if len(assumed) <= _ASSUMED:
-            found.append(element)
+            kept.append(element)
             continue
-        gone.update(assumed)
+        replaced.update(assumed)
         id = f"{assumed[0]}_and_others"
         around = tuple(each for each in element.in_context_of if each not in assumed)
-        found.append(replace(element, in_context_of=(*around, id)))
-        found.append(Element(id, Kind.ASSUMPTION, f"{len(assumed)} assumptions, listed in part 6"))
-    return tuple(element for element in found if element.id not in gone)
+        kept.append(replace(element, in_context_of=(*around, id)))
+        kept.append(Element(id, Kind.ASSUMPTION, f"{len(assumed)} assumptions, listed in part 6"))
+    return tuple(element for element in kept if element.id not in replaced)
 
 
 # Layout ----------------------------------------------------------------------------------------
 
 
 def pieces(elements: Sequence[Element]) -> tuple[Piece, ...]:
-    """The drawing; where it is longer than a page, in several pieces."""
-    groups: list[list[Placed]] = [[]]
+    """The drawing, in as many pieces as it fills pages."""
+    groups: list[list[Placement]] = [[]]
     height = 0.0
-    for cluster in _clusters(placed(elements)):
+    for cluster in _clusters(placements(elements)):
         tall = sum(map(_height, cluster))
         if groups[-1] and (height + tall > _TALL or _begins(cluster[0], height)):
             groups.append([])
@@ -203,13 +205,13 @@ def pieces(elements: Sequence[Element]) -> tuple[Piece, ...]:
     return tuple(_piece(group, i, len(groups)) for i, group in enumerate(groups, 1) if group)
 
 
-def _clusters(flat: Sequence[Placed]) -> Iterator[list[Placed]]:
-    """What stays on one page: an element with its context and what challenges it."""
-    cluster: list[Placed] = []
+def _clusters(flat: Sequence[Placement]) -> Iterator[list[Placement]]:
+    """The groups that stay on one page: an element with its context and its counter-evidence."""
+    cluster: list[Placement] = []
     height = 0.0
     for each in flat:
         height += _height(each)
-        if cluster and (each.hang is Hang.SUPPORT or height > _TALL):
+        if cluster and (each.relation is Relation.SUPPORT or height > _TALL):
             yield cluster
             cluster, height = [], _height(each)
         cluster.append(each)
@@ -217,12 +219,12 @@ def _clusters(flat: Sequence[Placed]) -> Iterator[list[Placed]]:
         yield cluster
 
 
-def _begins(each: Placed, height: float) -> bool:
-    """A hazard does not begin near the end of a page."""
-    return each.depth <= 2 and each.hang is Hang.SUPPORT and height > 0.75 * _TALL
+def _begins(each: Placement, height: float) -> bool:
+    """Whether a new page begins here: no hazard begins near the end of a page."""
+    return each.depth <= 2 and each.relation is Relation.SUPPORT and height > 0.75 * _TALL
 
 
-def _piece(group: Sequence[Placed], number: int, count: int) -> Piece:
+def _piece(group: Sequence[Placement], number: int, count: int) -> Piece:
     shapes: list[Shape] = []
     above: dict[int, tuple[float, float]] = {}
     y = 6.0
@@ -234,10 +236,10 @@ def _piece(group: Sequence[Placed], number: int, count: int) -> Piece:
     return Piece(f"argument-{number}", f"Assurance argument{part}", text, _WIDTH, y, tuple(shapes))
 
 
-def _shape(each: Placed, y: float, above: dict[int, tuple[float, float]]) -> Shape:
+def _shape(each: Placement, y: float, above: dict[int, tuple[float, float]]) -> Shape:
     element, depth = each.element, each.depth
     x = _MARGIN + _INDENT * depth + 10
-    width = _WIDTH - x - _MARGIN - (0 if each.hang is Hang.CONTEXT else 160)
+    width = _WIDTH - x - _MARGIN - (0 if each.relation is Relation.CONTEXT else 160)
     lines = _lines(each)
     height = _LINE * len(lines) + 2 * _PAD
     inset = x + (26 if element.kind in _ROUND or element.kind is Kind.STRATEGY else 12)
@@ -246,7 +248,7 @@ def _shape(each: Placed, y: float, above: dict[int, tuple[float, float]]) -> Sha
     link = arrow = ""
     if depth:
         from_x, from_y = above.get(depth - 1, (x - _INDENT + 6, 0.0))  # from the piece before
-        link, arrow = _link(each.hang, from_x, from_y, x, middle)
+        link, arrow = _link(each.relation, from_x, from_y, x, middle)
     above[depth] = (x + 6, y + height)
     cross = f"M{x:g} {y:g}L{right:g} {y + height:g}M{right:g} {y:g}L{x:g} {y + height:g}"
     return Shape(
@@ -256,7 +258,7 @@ def _shape(each: Placed, y: float, above: dict[int, tuple[float, float]]) -> Sha
         path=_outline(element.kind, x, y, width, height),
         link=link,
         arrow=arrow,
-        hang=each.hang,
+        relation=each.relation,
         is_reference=each.is_reference,
         letter=_letter(element.kind, right, y + height),
         diamond="" if whole else f"M{x + width / 2:g} {y + height:g}l7 5l-7 5l-7 -5z",
@@ -265,9 +267,9 @@ def _shape(each: Placed, y: float, above: dict[int, tuple[float, float]]) -> Sha
     )
 
 
-def _link(hang: Hang, x: float, y: float, to_x: float, to_y: float) -> tuple[str, str]:
-    """A line and its arrowhead; evidence against an element points at it, all else away."""
-    if hang is Hang.CHALLENGE:
+def _link(relation: Relation, x: float, y: float, to_x: float, to_y: float) -> tuple[str, str]:
+    """A line and its arrowhead: it points at the challenged element, or at the element below."""
+    if relation is Relation.CHALLENGE:
         return f"M{x:g} {y + 1:g}V{to_y:g}H{to_x:g}", f"M{x - 5:g} {y + 9:g}L{x:g} {y + 1:g}l5 8"
     return f"M{x:g} {y:g}V{to_y:g}H{to_x - 7:g}", f"M{to_x:g} {to_y:g}l-8 -4v8z"
 
@@ -301,19 +303,19 @@ def _outline(kind: Kind, x: float, y: float, width: float, height: float) -> str
             )
 
 
-def _height(each: Placed) -> float:
+def _height(each: Placement) -> float:
     return _LINE * len(_lines(each)) + 2 * _PAD + _GAP
 
 
-def _lines(each: Placed) -> list[str]:
-    """The text in at most three lines; what does not fit stands in the list."""
-    aside = 0 if each.hang is Hang.CONTEXT else 160
+def _lines(each: Placement) -> list[str]:
+    """The text in at most three lines; the list beside the drawing has the whole text."""
+    aside = 0 if each.relation is Relation.CONTEXT else 160
     room = _WIDTH - 2 * _MARGIN - 10 - _INDENT * each.depth - 60 - aside
     letters = max(24, int(room / _LETTER))
-    found = list(_wrapped(each.text.replace("`", ""), letters))
-    if len(found) > _LINES:
-        return [*found[: _LINES - 1], f"{found[_LINES - 1][: letters - 1].rstrip()}…"]
-    return found or [""]
+    lines = list(_wrapped(each.text.replace("`", ""), letters))
+    if len(lines) > _LINES:
+        return [*lines[: _LINES - 1], f"{lines[_LINES - 1][: letters - 1].rstrip()}…"]
+    return lines or [""]
 
 
 def _wrapped(text: str, letters: int) -> Iterator[str]:

@@ -1,1 +1,1 @@
-"""What is drawn: plots over time, histograms, timelines."""
+"""The pictures of the report: what they contain, and where each line goes."""

@@ -1,4 +1,4 @@
-"""What all runs together show of a requirement: how often it was asked, how late, how near."""
+"""Histograms over all runs of a requirement: latency of its answers, margin to its thresholds."""
 
 from __future__ import annotations
 
@@ -10,15 +10,16 @@ from statistics import median
 from compiler.formalization.formalized import Formalized
 from fretc.audit.evidence.schema import Result, Threshold
 from fretc.report.model import phrases
-from fretc.report.model.claims import Claim
+from fretc.report.model.assessments import Assessment
 from fretc.report.model.pictures import Bin, Histogram
 from fretish import syntax
 
 _BINS = 20
-"""At most some so many bars."""
+"""The number of bars, about."""
 _MARGINS = 3
-"""Thresholds of a requirement that get a histogram of their own."""
+"""The most thresholds of a requirement with a histogram."""
 _NAMED = 3
+"""The most bars that the text names."""
 
 
 def step(least: float) -> float:
@@ -31,43 +32,43 @@ def step(least: float) -> float:
     return next((power / 10 * n for n in (1, 2, 5) if power / 10 * n >= least), power)
 
 
-def exercise(claim: Claim) -> str:
-    """How often all runs that count have asked for it, in one line."""
-    counted = _counted(claim)
-    if not claim.judged:
+def exercise(assessment: Assessment) -> str:
+    """Runs, triggers, answers and violations of all current results, in one line."""
+    results = _current_results(assessment)
+    if not assessment.audits:
         return ""
-    if not counted:
-        return f"none of {phrases.times(len(claim.judged), 'run')} counts: all are suspect"
-    triggers = sum(len(result.triggers) for result in counted)
-    answers = sum(len(result.latencies) for result in counted)
-    waiting = sum(len(result.open) for result in counted)
-    unanswered = sum(map(_unanswered, counted)) if is_answered(claim.rule) else 0
-    asked = sum(bool(result.triggers) for result in counted)
-    suspect = len(claim.judged) - len(counted)
+    if not results:
+        return f"none of {phrases.times(len(assessment.audits), 'run')} counts: all are suspect"
+    triggers = sum(len(result.triggers) for result in results)
+    answers = sum(len(result.latencies) for result in results)
+    waiting = sum(len(result.open) for result in results)
+    unanswered = sum(map(_unanswered, results)) if is_answered(assessment.rule) else 0
+    asked = sum(bool(result.triggers) for result in results)
+    suspect = len(assessment.audits) - len(results)
     parts = [
-        phrases.times(len(counted), "run"),
+        phrases.times(len(results), "run"),
         phrases.times(triggers, "trigger"),
-        f"triggered in {phrases.whole(asked)} of them" if len(counted) > 1 else "",
+        f"triggered in {phrases.whole(asked)} of them" if len(results) > 1 else "",
         f"{phrases.whole(answers)} answered" if answers else "",
         f"{phrases.whole(unanswered)} without an answer" if unanswered else "",
         f"{phrases.whole(waiting)} open at the end" if waiting else "",
-        phrases.times(sum(len(r.violations) for r in counted), "violation"),
+        phrases.times(sum(len(r.violations) for r in results), "violation"),
         f"{phrases.times(suspect, 'suspect run')} left out" if suspect else "",
     ]
     return ", ".join(filter(None, parts))
 
 
-def histograms(claim: Claim) -> tuple[Histogram, ...]:
-    """Of latency, then of the least margin of each run; none of fewer than two values."""
-    counted = _counted(claim)
-    late = [latency for result in counted for latency in result.latencies]
-    found = [_latency(late, counted, claim.rule)] if len(late) > 1 else []
-    margins = list(_margins(counted)) if len(counted) > 1 else []
-    return (*found, *margins[:_MARGINS])
+def histograms(assessment: Assessment) -> tuple[Histogram, ...]:
+    """One of latency, then one for each threshold; none of fewer than two values."""
+    results = _current_results(assessment)
+    late = [latency for result in results for latency in result.latencies]
+    latency_histogram = [_latency(late, results, assessment.rule)] if len(late) > 1 else []
+    margins = list(_margins(results)) if len(results) > 1 else []
+    return (*latency_histogram, *margins[:_MARGINS])
 
 
-def _counted(claim: Claim) -> list[Result]:
-    return [judged.result for judged in claim.judged if not judged.is_stale]
+def _current_results(assessment: Assessment) -> list[Result]:
+    return [audit.result for audit in assessment.audits if not audit.is_stale]
 
 
 # Latency ---------------------------------------------------------------------------------------
@@ -116,8 +117,8 @@ def _without(unanswered: int, waiting: int) -> str:
         f"{phrases.times(unanswered, 'trigger')} whose time or scope ran out" if unanswered else "",
         f"{phrases.times(waiting, 'trigger')} open at the end of a run" if waiting else "",
     ]
-    told = phrases.joined(list(filter(None, parts)))
-    return f" Without an answer: {told}." if told else ""
+    triggers = phrases.joined(list(filter(None, parts)))
+    return f" Without an answer: {triggers}." if triggers else ""
 
 
 def _seconds_allowed(rule: Formalized | None) -> float | None:
@@ -133,22 +134,22 @@ def _seconds_allowed(rule: Formalized | None) -> float | None:
 
 
 def _margins(results: Sequence[Result]) -> Iterator[Histogram]:
-    """Those that are known of two runs at least, in the order of the propositions."""
+    """One for each threshold with a margin in at least two runs, in the order of propositions."""
     grouped: dict[tuple[str, str, str, float, str], list[Threshold]] = defaultdict(list)
     for result in results:
         for each in result.thresholds:
             name = (each.proposition, each.signal, each.operator, each.bound, each.unit)
             grouped[name].append(each)
-    for (proposition, signal, operator, bound, unit), found in grouped.items():
-        known = [each.margin for each in found if each.margin is not None]
-        if len(known) < 2:
+    for (proposition, signal, operator, bound, unit), thresholds in grouped.items():
+        margins = [each.margin for each in thresholds if each.margin is not None]
+        if len(margins) < 2:
             continue
-        crossed = sum(each.comparison == "crossed" for each in found)
-        bins = _bins(known, [0.0], _above)
+        crossed = sum(each.comparison == "crossed" for each in thresholds)
+        bins = _bins(margins, [0.0], _above)
         comparison = f"{signal} {operator} {phrases.value(bound, unit)}"
         text = (
-            f"{phrases.times(len(known), 'run')} with a margin: least "
-            f"{phrases.value(min(known), unit)}, median {phrases.value(median(known), unit)}; "
+            f"{phrases.times(len(margins), 'run')} with a margin: least "
+            f"{phrases.value(min(margins), unit)}, median {phrases.value(median(margins), unit)}; "
             f"{_crossed(crossed)}. {_in_words(bins, unit, _FROM)}"
         )
         title = f"Least margin of each run to {comparison} ({proposition})"
@@ -167,16 +168,16 @@ def _crossed(runs: int) -> str:
 
 
 def _bins(
-    values: Sequence[float], shown: Sequence[float], place: Callable[[float, float], int]
+    values: Sequence[float], marks: Sequence[float], place: Callable[[float, float], int]
 ) -> tuple[Bin, ...]:
-    """Bars of a round width, from the least to the greatest of the values and what is shown.
+    """Bars of a round width, from the least to the greatest of values and marks.
 
     Args:
-        values: what is counted.
-        shown: what has to be in the picture as well.
+        values: the numbers to count.
+        marks: numbers on the axis that the bars must reach.
         place: the bar of a value, counted from 0, for a width.
     """
-    low, high = min([*values, *shown]), max([*values, *shown])
+    low, high = min([*values, *marks]), max([*values, *marks])
     width = step((high - low) / _BINS) if high > low else 1.0
     first = place(low, width)
     last = max(first, place(high, width))
@@ -205,7 +206,7 @@ _FROM, _UP_TO = "{count} from {low} to below {high}", "{count} {above} {low} up 
 def _in_words(bins: Sequence[Bin], unit: str, form: str) -> str:
     """The fullest bars, in their order."""
     full = [each for each in bins if each.count]
-    told = sorted(sorted(full, key=lambda each: -each.count)[:_NAMED], key=lambda each: each.low)
+    fullest = sorted(sorted(full, key=lambda each: -each.count)[:_NAMED], key=lambda each: each.low)
     parts = [
         form.format(
             count=phrases.whole(each.count),
@@ -213,7 +214,7 @@ def _in_words(bins: Sequence[Bin], unit: str, form: str) -> str:
             above="above" if each.low > 0 else "from",
             high=phrases.value(each.high, unit),
         )
-        for each in told
+        for each in fullest
     ]
-    rest = sum(each.count for each in full) - sum(each.count for each in told)
+    rest = sum(each.count for each in full) - sum(each.count for each in fullest)
     return f"{phrases.joined([*parts, *([f'{phrases.whole(rest)} elsewhere'] if rest else [])])}."

@@ -1,4 +1,4 @@
-"""Timelines and histograms laid out: where each stroke goes, in units of a drawing 720 wide."""
+"""The layout of timelines and histograms, in units of a drawing 720 wide."""
 
 from __future__ import annotations
 
@@ -14,15 +14,16 @@ _ROW, _BAR, _TOP, _AXIS = 22, 12, 6, 26
 _FLAGS = 30
 """Room above the panels for the names of trigger and deadline."""
 _HEAD, _HIGH = 18, 72
-"""Of a panel: its name, and the signal."""
+"""The heights of a panel: its name, and the signal."""
 _TICKS = 8
-"""Labels on the axis, about."""
+"""The number of labels on an axis, about."""
 _THINNEST = 1.5
+"""The least width of a bar, so that no event is invisible."""
 _LETTER = 6
 """Width of a letter of a label, about."""
 
 _Place = Callable[[float], float]
-"""Where a number stands."""
+"""From a number to its place on an axis."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,7 +46,7 @@ class DrawnLane:
 
 @dataclass(frozen=True, slots=True)
 class DrawnLevel:
-    """A threshold: its line, and where its name stands."""
+    """A threshold: the places of its line and of its label."""
 
     y: float
     label: str
@@ -66,12 +67,12 @@ class DrawnPanel:
     unknown: tuple[Bar, ...]
     infinite: tuple[tuple[Bar, float, str], ...]
     marks: tuple[tuple[float, str], ...]
-    """Places on its own axis with their labels."""
+    """The labels of its own axis, with their places."""
 
 
 @dataclass(frozen=True, slots=True)
 class DrawnFlag:
-    """A named instant; `anchor` says on which side of it its name stands."""
+    """An instant with its label; `anchor` is the side on which the label begins."""
 
     kind: str
     x: float
@@ -83,7 +84,7 @@ class DrawnFlag:
 
 @dataclass(frozen=True, slots=True)
 class Drawing:
-    """A timeline laid out; `ticks` are places on the axis with their label in seconds."""
+    """The layout of a timeline; `ticks` are places on the axis with labels in seconds."""
 
     id: str
     title: str
@@ -141,7 +142,7 @@ def drawing(timeline: Timeline, id: str) -> Drawing:
 
 @dataclass(frozen=True, slots=True)
 class _Scale:
-    """Seconds as places from left to right."""
+    """From seconds to places from left to right."""
 
     start: float
     end: float
@@ -157,11 +158,11 @@ class _Scale:
 
 
 def places(start: float, end: float, most: int = _TICKS) -> list[float]:
-    """Round numbers from `start` to `end`, at most some two more than `most` of them."""
+    """Round numbers from `start` to `end`: `most` of them, about."""
     width = step((end - start) / most)
     first = int(-(-start // width))
-    found = [(first + i) * width for i in range(2 * most)]
-    return [place for place in found if place <= end + width * 1e-6]
+    numbers = [(first + i) * width for i in range(2 * most)]
+    return [place for place in numbers if place <= end + width * 1e-6]
 
 
 def _lane(lane: Lane, y: int, scale: _Scale) -> DrawnLane:
@@ -170,7 +171,7 @@ def _lane(lane: Lane, y: int, scale: _Scale) -> DrawnLane:
 
 
 def _flags(flags: Sequence[Flag], scale: _Scale) -> Iterator[DrawnFlag]:
-    """Trigger above, deadline below it: their names never meet."""
+    """Each flag has a row of its own, so that labels never overlap."""
     for row, flag in enumerate(flags):
         x = scale.x(flag.at)
         label = f"{flag.kind} {decimal(flag.at)} s"
@@ -214,7 +215,7 @@ def _level(label: str, y: float, top: int) -> DrawnLevel:
 
 
 def _line(piece: Piece, scale: _Scale, at: _Place) -> str:
-    """A value is held up to the next one: a line of steps."""
+    """A line of steps: each value holds up to the next one."""
     path: list[str] = []
     for seconds, least, greatest in piece.points:
         x, y = scale.x(seconds), at(greatest)
@@ -225,7 +226,7 @@ def _line(piece: Piece, scale: _Scale, at: _Place) -> str:
 
 
 def _bands(piece: Piece, scale: _Scale, at: _Place) -> Iterator[str]:
-    """Where several values fall together: a box from the least to the greatest."""
+    """A box from the least to the greatest value, where several values share one place."""
     ends = [*(point[0] for point in piece.points[1:]), piece.end]
     for (seconds, least, greatest), end in zip(piece.points, ends, strict=True):
         if least != greatest:
@@ -236,12 +237,12 @@ def _bands(piece: Piece, scale: _Scale, at: _Place) -> Iterator[str]:
 # Histograms ------------------------------------------------------------------------------------
 
 _TALL, _BASE, _APART = 90, 116, 46
-"""Room for the bars, their foot, and the width of one that stands apart."""
+"""Height of the bars, their foot, and the width of a separate bar."""
 
 
 @dataclass(frozen=True, slots=True)
 class Column:
-    """One bar of a histogram, with its count above it; one that stands apart has a name below."""
+    """A bar of a histogram with its count; `name` is the label of a separate bar."""
 
     x: float
     y: float
@@ -254,7 +255,7 @@ class Column:
 
 @dataclass(frozen=True, slots=True)
 class DrawnHistogram:
-    """A histogram laid out."""
+    """The layout of a histogram."""
 
     id: str
     title: str
@@ -272,42 +273,42 @@ class DrawnHistogram:
     unit: str
 
 
-def histogram(found: Histogram, id: str) -> DrawnHistogram:
-    """The layout of a histogram; what has no value stands apart.
+def histogram(content: Histogram, id: str) -> DrawnHistogram:
+    """The layout of a histogram; what has no value has a separate bar.
 
-    Runs beyond the bound stand on the left of it, triggers without an answer on the right of all.
+    Runs that crossed the bound are on the left, triggers without an answer on the right.
     """
     late = [
         (count, kind, name)
         for count, kind, name in (
-            (found.unanswered, "unanswered", "none"),
-            (found.open, "open", "open"),
+            (content.unanswered, "unanswered", "none"),
+            (content.open, "open", "open"),
         )
         if count
     ]
-    left = 20 + (_APART if found.crossed else 0)
+    left = 20 + (_APART if content.crossed else 0)
     right = WIDTH - 30 - _APART * len(late)
-    low, high = found.bins[0].low, found.bins[-1].high
-    most = max([*(each.count for each in found.bins), found.crossed, *(n for n, _, _ in late)])
+    low, high = content.bins[0].low, content.bins[-1].high
+    most = max([*(each.count for each in content.bins), content.crossed, *(n for n, _, _ in late)])
     scale = (right - left) / (high - low)
 
     def x(number: float) -> float:
         return round(left + (number - low) * scale, 1)
 
     columns = [
-        _column(x(each.low), x(each.high), each.count, most) for each in found.bins if each.count
+        _column(x(each.low), x(each.high), each.count, most) for each in content.bins if each.count
     ]
-    if found.crossed:
-        columns.append(_column(4, _APART - 6, found.crossed, most, "crossed", "crossed"))
+    if content.crossed:
+        columns.append(_column(4, _APART - 6, content.crossed, most, "crossed", "crossed"))
     columns += [
         _column(right + 14 + _APART * i, right + 6 + _APART * (i + 1), count, most, kind, name)
         for i, (count, kind, name) in enumerate(late)
     ]
-    bound = None if found.bound is None else x(found.bound)
+    bound = None if content.bound is None else x(content.bound)
     return DrawnHistogram(
         id=id,
-        title=found.title,
-        text=found.text,
+        title=content.title,
+        text=content.text,
         width=WIDTH,
         height=_BASE + 34,
         left=left,
@@ -316,9 +317,9 @@ def histogram(found: Histogram, id: str) -> DrawnHistogram:
         columns=tuple(columns),
         ticks=tuple((x(place), decimal(place)) for place in places(low, high)),
         bound=bound,
-        bound_label=found.bound_label,
+        bound_label=content.bound_label,
         bound_anchor="start" if bound is None or bound < WIDTH / 2 else "end",
-        unit=found.unit,
+        unit=content.unit,
     )
 
 

@@ -1,4 +1,4 @@
-"""Intervals of a probability, laid out on a scale beside the bound of the sentence."""
+"""The layout of a probability: its intervals on a scale, and the bound of the sentence."""
 
 from __future__ import annotations
 
@@ -10,8 +10,9 @@ _WIDTH, _LEFT, _RIGHT = 720, 112, 40
 _ROW, _BAR, _TOP, _AXIS = 24, 12, 22, 24
 _THINNEST = 2.0
 _MARGIN = 0.15
-"""Of what is shown, on either side."""
+"""The margin on either side, as a share of the scale."""
 _NARROWEST = 0.004
+"""The least length of the scale."""
 
 
 @dataclass(frozen=True, slots=True)

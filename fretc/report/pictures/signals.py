@@ -14,14 +14,14 @@ from fretc.report.model.pictures import Level, Panel, Piece, SpanMark
 from fretish.bindings.amounts import exact
 
 MOST_PANELS = 4
-"""Signals in one picture; those with a threshold come first."""
+"""The most signals of one picture; signals with a threshold come first."""
 _COLUMNS = 240
-"""Samples that fall together at this resolution are drawn as one stroke, least to greatest."""
+"""The resolution of a panel: samples in one column are one stroke, least to greatest."""
 _THINNED = 2.5
-"""Of thinned samples only so many times their median distance is a gap."""
+"""A gap between thinned samples is at least this many times their median distance."""
 _EMPTY = 1e-9
 _FAR = 1e300
-"""Farther no axis goes: its length is a 64-bit float, too."""
+"""The end of every axis, so that its length is a finite 64-bit float."""
 
 Known = tuple[float, float, float | None]
 """From, to, and the value in force."""
@@ -33,9 +33,9 @@ def panels(
     """A panel for each of the first signals of the window.
 
     Args:
-        violation: without a window it has no panel.
-        result: where it was found.
-        ages: seconds after which a sample no longer counts, by the signal; absent: never.
+        violation: a violation without a window has no panel.
+        result: of the run with the violation.
+        ages: age limit of each signal in seconds; a signal without one has no limit.
         start: of the picture, in seconds from the first tick.
         end: of the picture.
     """
@@ -91,29 +91,28 @@ def _levels(signal: str, bounds: Sequence[Threshold]) -> Iterator[Level]:
 def _stretches(
     samples: Samples, age: float, start: float, end: float, broken: float
 ) -> list[Known]:
-    """The picture's time as stretches, in each of which one value is in force, or none.
+    """The time of the picture as stretches with one value, or none, in force.
 
-    The sample that is the last at `broken` is never one that thinning put there: where it is too
-    old then, it ends when it grows too old.
+    Thinning keeps the last sample up to `broken`: where it is too old then, it ends at its limit.
     """
     longest = _longest(samples, age)
-    found: list[Known] = []
+    stretches: list[Known] = []
     following = (*samples.times[1:], inf)[: len(samples.times)]
     first = samples.times[0] if samples.times else end
     if first > start:
-        found.append((start, min(first, end), None))
+        stretches.append((start, min(first, end), None))
     for begin, after, value in zip(samples.times, following, samples.values, strict=True):
         is_stale = begin <= broken < after and round(broken - begin, 9) > age
         until = min(after, begin + (age if is_stale else longest))
-        found.append((begin, until, value))
+        stretches.append((begin, until, value))
         if until < after:
-            found.append((until, after, None))
-    inside = ((max(a, start), min(b, end), v) for a, b, v in found)
+            stretches.append((until, after, None))
+    inside = ((max(a, start), min(b, end), v) for a, b, v in stretches)
     return [(a, b, v) for a, b, v in inside if b - a > _EMPTY or (b == a and v is not None)]
 
 
 def _longest(samples: Samples, age: float) -> float:
-    """How long a sample is held: of thinned ones the distances are not those of the log."""
+    """How long a sample holds; thinned samples hold longer, to bridge what thinning removed."""
     if len(samples.times) < EVEN_SAMPLES:
         return age
     usual = median(late - early for early, late in pairwise(samples.times))
@@ -149,7 +148,7 @@ def _panel(
 
 
 def _range(values: Sequence[float]) -> tuple[float, float]:
-    """From the least to the greatest, with some room; never empty."""
+    """From the least to the greatest value, with a margin; never empty."""
     low, high = (min(values), max(values)) if values else (0.0, 1.0)
     low, high = (min(max(end, -_FAR), _FAR) for end in (low, high))
     room = (high - low) * 0.08 or abs(high) * 0.1 or 1.0
@@ -157,14 +156,14 @@ def _range(values: Sequence[float]) -> tuple[float, float]:
 
 
 def _merged(stretches: Sequence[Known]) -> list[Known]:
-    """Neighbours with the same value as one."""
-    found: list[Known] = []
+    """The stretches with neighbours of one value joined."""
+    merged: list[Known] = []
     for begin, end, value in stretches:
-        if found and found[-1][2] == value and begin - found[-1][1] <= _EMPTY:
-            found[-1] = (found[-1][0], end, value)
+        if merged and merged[-1][2] == value and begin - merged[-1][1] <= _EMPTY:
+            merged[-1] = (merged[-1][0], end, value)
         else:
-            found.append((begin, end, value))
-    return found
+            merged.append((begin, end, value))
+    return merged
 
 
 def _unknown(stretches: Sequence[Known]) -> Iterator[SpanMark]:
@@ -174,7 +173,7 @@ def _unknown(stretches: Sequence[Known]) -> Iterator[SpanMark]:
 
 
 def _pieces(stretches: Sequence[Known], width: float) -> Iterator[Piece]:
-    """Each run of finite values, as an envelope with few points."""
+    """An envelope with few points for each run of finite values."""
     run: list[tuple[float, float, float]] = []
     for begin, end, value in stretches:
         if value is None or isinf(value):
@@ -193,7 +192,7 @@ def _piece(run: Sequence[tuple[float, float, float]], width: float) -> Piece:
         if points and begin - points[-1][0] < width:
             at, least, greatest = points[-1]
             points[-1] = (at, min(least, value), max(greatest, value))
-            if end - at > width:  # it stays in force when the others no longer are
+            if end - at > width:  # the last value holds beyond the column
                 points.append((_short(at + width), value, value))
         elif not points or points[-1][1:] != (value, value):
             points.append((_short(begin), value, value))

@@ -1,4 +1,4 @@
-"""What happened when, as a picture with few elements, whatever the length of the run."""
+"""The timeline of a result, with few elements whatever the length of the run."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ from fretc.report.model.pictures import Flag, Lane, Panel, SpanMark, Timeline
 from fretc.report.pictures.signals import left_out, panels
 
 DETAIL = 400
-"""Two marks nearer than this part of the picture are drawn as one: that bounds their number."""
+"""Two marks nearer than this fraction of the picture are one, which bounds their number."""
 DRAWN = 6
-"""Violations of one result that get a picture of their own; the others are listed."""
+"""The most violations of one result with a picture; the report lists the others."""
 _AROUND = 10
-"""Ticks to show before and after a violation, at least."""
+"""The least number of ticks before and after a violation."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,12 +32,12 @@ class Stretch:
 def timelines(
     result: Result, tick: float, ages: Mapping[str, float] = MappingProxyType({})
 ) -> tuple[Timeline, ...]:
-    """One for each of the first violations; where there is none, one for the whole run.
+    """A timeline for each of the first violations; without violations, one for the whole run.
 
     Args:
         result: one run, one requirement.
         tick: seconds of a tick; an average where the clock ticks by message.
-        ages: seconds after which a sample of a signal no longer counts; absent: never.
+        ages: age limit of each signal in seconds; a signal without one has no limit.
     """
     if not result.ticks:
         return ()
@@ -54,20 +54,20 @@ def timelines(
 def _explained(
     plain: Timeline, violation: Violation, result: Result, tick: float, ages: Mapping[str, float]
 ) -> Timeline:
-    """With the signals, the trigger, the deadline, the broken stretch, and the cause in words."""
-    drawn = panels(violation, result, ages, plain.start, plain.end)
+    """The timeline with signals, trigger, deadline, the violating stretch, and the cause."""
+    drawings = panels(violation, result, ages, plain.start, plain.end)
     broken = _violated(violation, tick)
     why = cause(violation, result, ages)
-    told = [
+    sentences = [
         why,
         plain.text,
-        *(_panel_in_words(panel) for panel in drawn),
-        _not_drawn(left_out(violation, drawn)),
+        *(_panel_in_words(panel) for panel in drawings),
+        _not_drawn(left_out(violation, drawings)),
     ]
     return replace(
         plain,
-        text=" ".join(filter(None, told)),
-        panels=drawn,
+        text=" ".join(filter(None, sentences)),
+        panels=drawings,
         flags=tuple(_flags(violation)),
         broken=_rounded(SpanMark(broken.start, broken.end, 1)),
         cause=why,
@@ -81,7 +81,7 @@ def _flags(violation: Violation) -> Iterable[Flag]:
 
 
 def cause(violation: Violation, result: Result, ages: Mapping[str, float]) -> str:
-    """Why it is a violation: what did not come, and what the signals were then."""
+    """The cause of a violation: the response that did not come, and the signals then."""
     start, end = violation.first.seconds, violation.last.seconds
     when = f"at {seconds(start)}" if start == end else f"from {seconds(start)} to {seconds(end)}"
     missing = violation.missing or "the response"
@@ -134,13 +134,13 @@ def _around(violation: Violation, tick: float) -> Stretch:
     first = violation.trigger or violation.first
     start, end = min(first.seconds, violation.first.seconds), violation.last.seconds + tick
     margin = max(_AROUND * tick, (end - start) / 8, 1e-3)
-    shown = Stretch(max(0.0, start - margin), max(end, start) + margin)
+    stretch = Stretch(max(0.0, start - margin), max(end, start) + margin)
     window = violation.window
     if window is None or not window.samples:
-        return shown
-    # Of what lies outside the evidence holds no samples: it is not shown as if it were unknown.
-    inside = Stretch(max(shown.start, window.start), min(shown.end, window.end))
-    return inside if inside.end - inside.start > tick / 2 else shown
+        return stretch
+    # The evidence has no samples outside the window, and without samples it would look unknown.
+    inside = Stretch(max(stretch.start, window.start), min(stretch.end, window.end))
+    return inside if inside.end - inside.start > tick / 2 else stretch
 
 
 class _Events:
@@ -161,8 +161,8 @@ class _Events:
 
     def timeline(self, title: str, window: Stretch) -> Timeline:
         lanes = [_lane(name, kind, events, window) for name, kind, events in self.lanes]
-        shown = tuple(lane for lane in lanes if lane.marks or lane.kind == "trigger")
-        return Timeline(title, window.start, window.end, shown, _in_words(shown, window))
+        visible = tuple(lane for lane in lanes if lane.marks or lane.kind == "trigger")
+        return Timeline(title, window.start, window.end, visible, _in_words(visible, window))
 
 
 def _ticks(moments: Iterable[Moment], tick: float) -> list[Stretch]:
@@ -178,7 +178,7 @@ def _waiting(result: Result) -> list[Stretch]:
 
 
 def answered(result: Result) -> list[tuple[Moment, float]]:
-    """Each trigger that was answered with its latency; empty where that cannot be told."""
+    """Each trigger with an answer, and its latency; empty where they do not match up."""
     still_open = {moment.tick for moment in result.open}
     closed = [trigger for trigger in result.triggers if trigger.tick not in still_open]
     if len(closed) != len(result.latencies):
@@ -225,7 +225,7 @@ _WORDS = {
     "open": ("demand open at the end", "demands open at the end"),
 }
 _NAMED = 3
-"""Stretches of a lane that are named one by one."""
+"""The most stretches of a lane that the text names."""
 
 
 def _in_words(lanes: Sequence[Lane], window: Stretch) -> str:

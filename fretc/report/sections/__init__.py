@@ -1,1 +1,1 @@
-"""How each part of the report is worked out."""
+"""The parts of the report: each module makes the views of one part."""

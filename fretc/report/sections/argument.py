@@ -1,9 +1,9 @@
 """The assurance argument: hazards are controlled because requirements hold, as the evidence shows.
 
-An argument never says more than the report. A goal that nothing shows is undeveloped; counter-
-evidence stands in the argument as a solution that challenges its goal, and defeats it where it is
-about what stands there now. A proof supports what it is about: one about the text of the monitor
-supports the monitor.
+The argument claims no more than the report. A goal without evidence is undeveloped. Counter-
+evidence is a solution that challenges its goal; current counter-evidence defeats the goal. A proof
+supports the goal about its own subject: a proof about a monitor supports the monitor.
+
 Source: GSN Community Standard, version 3 (2021), part 1, with its dialectic extension.
 """
 
@@ -46,11 +46,11 @@ class Element:
     in_context_of: tuple[str, ...] = ()
     undeveloped: bool = False
     challenges: str = ""
-    """Of a counter-solution: the goal that it is evidence against."""
+    """The goal that a counter-solution challenges."""
     defeated: bool = False
-    """Of a goal: evidence that is current stands against it."""
+    """Whether current counter-evidence challenges the goal."""
     name: str = ""
-    """What it is called where it is referred to again; empty: its text."""
+    """Its short name in a reference; empty: the text."""
 
 
 _SUBJECTS: Mapping[str, str] = MappingProxyType(
@@ -63,16 +63,16 @@ _SUBJECTS: Mapping[str, str] = MappingProxyType(
         Layer.AJPF: "The agent keeps {id} by the verdict of AJPF",
     }
 )
-"""What the proofs of each layer are about, and no more."""
+"""The goal that the proofs of each layer support."""
 _SHARED_SUBJECTS: Mapping[str, str] = MappingProxyType(
     {
         "interceptor": "The interceptor keeps its contracts",
         "agent": "The agent has the properties of its property file in its model",
     }
 )
-"""The same for proofs that are about no single requirement."""
+"""The goal that proofs about shared parts support."""
 _NAMED = 3
-"""Violating runs that an element names; it counts the others."""
+"""The most violating runs that an element names; it counts the others."""
 
 
 def argument(report: Report) -> tuple[Element, ...]:
@@ -81,22 +81,24 @@ def argument(report: Report) -> tuple[Element, ...]:
 
 
 class _Argument:
+    """Yields the elements of a report, each once."""
+
     def __init__(self, report: Report) -> None:
         self._report = report
         self._views = {view.anchor: view for view in report.requirements}
         self._shared = {
             name: [proof for proof in report.proofs if proof.requirement == name] for name in SHARED
         }
-        self._made: set[str] = set()
+        self._yielded: set[str] = set()
 
     def elements(self) -> Iterator[Element]:
         report = self._report
         hazards = [hazard.id for hazard in report.hazards]
-        loose = [row.anchor for row in report.matrix if not row.hazard]
+        untraced = [row.anchor for row in report.matrix if not row.hazard]
         name = ", ".join(report.components) or report.project
         below = (
             *(["S_hazards"] if hazards else []),
-            *(["S_others"] if loose else []),
+            *(["S_others"] if untraced else []),
             *(_id("G_shared", name) for name, proofs in self._shared.items() if proofs),
         )
         assumed = [f"A_{number}" for number, _ in enumerate(report.assumptions, 1)]
@@ -114,11 +116,11 @@ class _Argument:
             for hazard in report.hazards:
                 anchors = [row.anchor for row in report.matrix if row.hazard == hazard.id]
                 yield from self._hazard(hazard.id, hazard.title, anchors)
-        if loose:
-            goals = tuple(_id("G", anchor) for anchor in dict.fromkeys(loose))
+        if untraced:
+            goals = tuple(_id("G", anchor) for anchor in dict.fromkeys(untraced))
             words = "Argument over the requirements that trace to no hazard"
             yield Element("S_others", Kind.STRATEGY, words, goals)
-            yield from self._requirements(loose)
+            yield from self._requirements(untraced)
         for name, proofs in self._shared.items():
             if proofs:
                 yield from _subject(_id("G_shared", name), _SHARED_SUBJECTS[name], proofs)
@@ -132,21 +134,21 @@ class _Argument:
         yield from self._requirements(anchors)
 
     def _requirements(self, anchors: Sequence[str]) -> Iterator[Element]:
-        """Each once, however many hazards refer to it."""
+        """The elements of each requirement once, however many hazards it has."""
         for anchor in anchors:
-            if anchor not in self._made:
-                self._made.add(anchor)
+            if anchor not in self._yielded:
+                self._yielded.add(anchor)
                 yield from self._requirement(self._views[anchor])
 
     def _requirement(self, view: RequirementView) -> Iterator[Element]:
         goal = _id("G", view.anchor)
-        shown = view.mark.shows
-        against = tuple(_against(view, goal.replace("G_", "CSn_", 1)))
+        is_shown = view.mark.shows
+        counters = tuple(_counter_evidence(view, goal.replace("G_", "CSn_", 1)))
         layers = {proof.layer: _of_layer(view.proofs, proof.layer) for proof in view.proofs}
-        subjects = [f"{goal}_{layer}" for layer in layers] + self._relied_upon(view)
+        subjects = [f"{goal}_{layer}" for layer in layers] + self._shared_goals(view)
         solution, runs = goal.replace("G_", "Sn_", 1), f"{goal}_runs"
-        # A goal is developed or not: where proofs develop it, what no run shows is a goal below it.
-        evidence = [solution] if shown else [runs] if subjects else []
+        # A goal with proofs is developed; where no run shows it, a goal about runs below it is not.
+        evidence = [solution] if is_shown else [runs] if subjects else []
         context, waived = goal.replace("G_", "C_", 1), goal.replace("G_", "J_", 1)
         yield Element(
             goal,
@@ -155,19 +157,19 @@ class _Argument:
             (*evidence, *subjects),
             (*([context] if view.meaning else []), *([waived] if view.waiver else [])),
             undeveloped=not (evidence or subjects),
-            defeated=any(each.is_current for each in against),
+            defeated=any(each.is_current for each in counters),
             name=f"{view.id} holds",
         )
         if view.meaning:
             yield Element(context, Kind.CONTEXT, view.meaning)
         if view.waiver:
-            known = "" if view.waiver.signature.is_good else " (unauthenticated)"
-            by = f"{view.waiver.by}{known}"
+            note = "" if view.waiver.signature.is_good else " (unauthenticated)"
+            by = f"{view.waiver.by}{note}"
             words = f"Waived until {view.waiver.until} by {by}: {view.waiver.reason}"
             yield Element(waived, Kind.JUSTIFICATION, words)
-        for each in against:
+        for each in counters:
             yield Element(each.id, Kind.COUNTER_SOLUTION, each.text, challenges=goal)
-        if shown:
+        if is_shown:
             yield Element(solution, Kind.SOLUTION, _support(view))
         elif subjects:
             yield Element(runs, Kind.GOAL, f"The audited runs show {view.id}", undeveloped=True)
@@ -175,8 +177,8 @@ class _Argument:
             subject = _SUBJECTS[layer].format(id=view.id)
             yield from _subject(f"{goal}_{layer}", subject, proofs)
 
-    def _relied_upon(self, view: RequirementView) -> list[str]:
-        """What all requirements share, where a planned method of this one is shown by it."""
+    def _shared_goals(self, view: RequirementView) -> list[str]:
+        """The goals about shared parts whose proofs are results of methods that this one plans."""
         methods = [plan.method for plan in view.planned if plan.method in METHODS]
         return [
             _id("G_shared", name)
@@ -189,13 +191,13 @@ class _Argument:
 
 
 @dataclass(frozen=True, slots=True)
-class _Counter:
-    """Evidence against a goal."""
+class _CounterEvidence:
+    """Counter-evidence against a goal."""
 
     id: str
     text: str
     is_current: bool
-    """Whether it is about what stands there now."""
+    """Whether it is about the requirement as it is now."""
 
 
 def _support(view: RequirementView) -> str:
@@ -206,30 +208,32 @@ def _support(view: RequirementView) -> str:
     return f"{view.id} is {view.mark.word} in {runs}{limit}"
 
 
-def _against(view: RequirementView, id: str) -> Iterator[_Counter]:
-    """The runs that violate it; those of older texts apart. With a probability, all together."""
-    chance = view.probability
-    if chance is not None:
-        if chance.mark.word == REFUTED:
-            words = f"{view.id} is {REFUTED} over all runs: {chance.reason}"
-            yield _Counter(id, words, not chance.suspicions)
+def _counter_evidence(view: RequirementView, id: str) -> Iterator[_CounterEvidence]:
+    """The runs that violate it, suspect ones apart; or the answer about its probability."""
+    probability = view.probability
+    if probability is not None:
+        if probability.mark.word == REFUTED:
+            words = f"{view.id} is {REFUTED} over all runs: {probability.reason}"
+            yield _CounterEvidence(id, words, not probability.suspicions)
         return
     broken = [result for result in view.results if result.mark.word in BROKEN]
     for old in (False, True):
-        found = [result for result in broken if bool(result.suspicions) is old]
-        if found:
-            yield _Counter(f"{id}_older" if old else id, _violated(view, found, old), not old)
+        results = [result for result in broken if bool(result.suspicions) is old]
+        if results:
+            yield _CounterEvidence(
+                f"{id}_older" if old else id, _violated(view, results, old), not old
+            )
 
 
-def _violated(view: RequirementView, found: Sequence[ResultView], old: bool) -> str:
+def _violated(view: RequirementView, violating: Sequence[ResultView], old: bool) -> str:
     runs = phrases.times(len(view.results), "audited run")
-    worst = sorted(found, key=lambda result: -result.violations_total)[:_NAMED]
-    left = len(found) - len(worst)
+    worst = sorted(violating, key=lambda result: -result.violations_total)[:_NAMED]
+    left = len(violating) - len(worst)
     named = [f"{result.run_label}, {result.run_file}: {result.reason}" for result in worst]
     more = [f"and {phrases.times(left, 'more run')}"] if left else []
-    why = phrases.joined(list(dict.fromkeys(why for each in found for why in each.suspicions)))
+    why = phrases.joined(list(dict.fromkeys(why for each in violating for why in each.suspicions)))
     age = f", before a change ({why})" if old else ""
-    words = f"{view.id} is violated in {phrases.whole(len(found))} of {runs}{age}"
+    words = f"{view.id} is violated in {phrases.whole(len(violating))} of {runs}{age}"
     return "; ".join([f"{words}: {named[0]}", *named[1:], *more])
 
 
@@ -241,7 +245,7 @@ def _of_layer(proofs: Sequence[ProofView], layer: str) -> list[ProofView]:
 
 
 def _subject(goal: str, text: str, proofs: Sequence[ProofView]) -> Iterator[Element]:
-    """What proofs of one layer are about: claims that are proved, refuted, and left open."""
+    """The goal of one layer, with its claims that are proved, refuted, and open."""
     proved = [proof for proof in proofs if is_proved(proof)]
     against = [proof for proof in proofs if proof.mark.word == COUNTEREXAMPLE]
     left = [proof for proof in proofs if proof not in proved and proof not in against]
@@ -273,10 +277,10 @@ def _claims(head: str, proofs: Sequence[ProofView]) -> str:
     """`Proved: it stops; it moves again (by Spot 2.13)`."""
     by = dict.fromkeys(proof.engine for proof in proofs)
     why = dict.fromkeys(why for proof in proofs for why in proof.suspicions)
-    said = "; ".join([f"by {phrases.joined(list(by))}", *why])
-    return f"{head} {'; '.join(proof.claim for proof in proofs)} ({said})"
+    note = "; ".join([f"by {phrases.joined(list(by))}", *why])
+    return f"{head} {'; '.join(proof.claim for proof in proofs)} ({note})"
 
 
 def _id(prefix: str, name: str) -> str:
-    """Different for different names; anchors of requirements begin with `req-`."""
+    """An id of GSN letters; different names have different ids."""
     return f"{prefix}_{re.sub(r'[^A-Za-z0-9]', lambda m: f'_{ord(m[0]):x}_', name)}"

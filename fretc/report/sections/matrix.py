@@ -1,4 +1,4 @@
-"""Hazard by requirement by artefacts by runs, and where the chain has no link."""
+"""The matrix of hazards, requirements, artefacts and runs, and the links that are missing."""
 
 from __future__ import annotations
 
@@ -9,14 +9,14 @@ from compiler.project.folder import Project
 from fretc.audit.evidence.schema import Evidence
 from fretc.audit.evidence.verdicts import RETIRED
 from fretc.report.model import phrases
-from fretc.report.model.claims import Claim
+from fretc.report.model.assessments import Assessment
 from fretc.report.model.views import Cell, HazardView, Orphans, RequirementView, Row
 from fretc.report.sections.results import result_anchor
-from fretc.report.sections.runs import Key, Run, key
+from fretc.report.sections.runs import Run, RunKey, run_key
 from fretish.reading.natural_order import natural
 
 _SINGLE = 6
-"""More runs of one verdict than these share one cell."""
+"""Above this number, the runs of one verdict share one cell."""
 
 
 def hazard_views(project: Project) -> tuple[HazardView, ...]:
@@ -29,76 +29,80 @@ def hazard_views(project: Project) -> tuple[HazardView, ...]:
 
 def matrix(
     project: Project,
-    claims: Sequence[Claim],
+    assessments: Sequence[Assessment],
     sections: Sequence[RequirementView],
-    runs: dict[Key, Run],
+    runs: dict[RunKey, Run],
 ) -> tuple[Row, ...]:
     """A row for each hazard and requirement below it; then the requirements below none."""
-    parents = {claim.id: claim.requirement.parents for claim in claims}
-    chains = [_chains(claim.id, parents, project) for claim in claims]
-    pairs = list(zip(claims, sections, chains, strict=True))
+    parents = {assessment.id: assessment.requirement.parents for assessment in assessments}
+    chains = [_chains(assessment.id, parents, project) for assessment in assessments]
+    pairs = list(zip(assessments, sections, chains, strict=True))
     rows = [
-        _row(hazard, via[hazard], claim, section, project, runs)
+        _row(hazard, via[hazard], assessment, section, project, runs)
         for hazard in sorted(project.hazards)
-        for claim, section, via in pairs
+        for assessment, section, via in pairs
         if hazard in via
     ]
-    rest = [_row("", (), claim, section, project, runs) for claim, section, via in pairs if not via]
+    rest = [
+        _row("", (), assessment, section, project, runs)
+        for assessment, section, via in pairs
+        if not via
+    ]
     return (*rows, *rest)
 
 
 def _chains(
     id: str, parents: dict[str, tuple[str, ...]], project: Project
 ) -> dict[str, tuple[str, ...]]:
-    """Each hazard that a requirement traces to, and the requirements in between."""
-    found: dict[str, tuple[str, ...]] = {}
-    seen = {id}
+    """Each hazard that a requirement traces to → the requirements in between."""
+    chains: dict[str, tuple[str, ...]] = {}
+    visited = {id}
     waiting: list[tuple[str, tuple[str, ...]]] = [(id, ())]
     for requirement, via in waiting:
         for parent in parents.get(requirement, ()):
             if parent in project.hazards:
-                found.setdefault(parent, via)
-            elif parent not in seen:
-                seen.add(parent)
+                chains.setdefault(parent, via)
+            elif parent not in visited:
+                visited.add(parent)
                 waiting.append((parent, (*via, parent)))
-    return found
+    return chains
 
 
 def _row(
     hazard: str,
     via: tuple[str, ...],
-    claim: Claim,
+    assessment: Assessment,
     section: RequirementView,
     project: Project,
-    runs: dict[Key, Run],
+    runs: dict[RunKey, Run],
 ) -> Row:
     return Row(
         hazard=hazard,
         hazard_title=project.hazards[hazard].title if hazard else "",
         via=phrases.joined(via),
-        requirement=claim.id,
+        requirement=assessment.id,
         title=section.title,
         status=section.status,
-        anchor=claim.anchor,
-        mark=claim.mark,
+        anchor=assessment.anchor,
+        mark=assessment.mark,
         limit=section.limit,
         artefacts=section.artefacts,
-        cells=_cells(claim, runs),
+        cells=_cells(assessment, runs),
     )
 
 
-def _cells(claim: Claim, runs: dict[Key, Run]) -> tuple[Cell, ...]:
-    """The worst first, one for each run; many of one verdict share one."""
-    if not claim.judged:
-        return (Cell(claim.mark, "", claim.anchor),)
-    counts = Counter(judged.mark for judged in claim.results)
+def _cells(assessment: Assessment, runs: dict[RunKey, Run]) -> tuple[Cell, ...]:
+    """A cell for each run, the worst first; many runs of one verdict share a cell."""
+    if not assessment.audits:
+        return (Cell(assessment.mark, "", assessment.anchor),)
+    counts = Counter(audit.mark for audit in assessment.reviewed_audits)
     single = [
-        Cell(judged.mark, runs[key(judged.result)].label, result_anchor(claim, number))
-        for number, judged in enumerate(claim.results, 1)
-        if counts[judged.mark] <= _SINGLE
+        Cell(audit.mark, runs[run_key(audit.result)].label, result_anchor(assessment, number))
+        for number, audit in enumerate(assessment.reviewed_audits, 1)
+        if counts[audit.mark] <= _SINGLE
     ]
     shared = [
-        Cell(mark, f"in {phrases.times(count, 'run')}", claim.anchor)
+        Cell(mark, f"in {phrases.times(count, 'run')}", assessment.anchor)
         for mark, count in counts.items()
         if count > _SINGLE
     ]
@@ -108,27 +112,31 @@ def _cells(claim: Claim, runs: dict[Key, Run]) -> tuple[Cell, ...]:
 # Orphans ---------------------------------------------------------------------------------------
 
 
-def orphans(project: Project, claims: Sequence[Claim], evidence: Evidence | None) -> Orphans:
+def orphans(
+    project: Project, assessments: Sequence[Assessment], evidence: Evidence | None
+) -> Orphans:
     """Every place where the chain from hazard to verdict ends too early."""
     return Orphans(
-        hazards=tuple(_uncovered(project, claims)),
+        hazards=tuple(_uncovered(project, assessments)),
         requirements=tuple(
-            f"{claim.id} names no parent" for claim in claims if not claim.requirement.parents
+            f"{assessment.id} names no parent"
+            for assessment in assessments
+            if not assessment.requirement.parents
         ),
-        parents=tuple(_undeclared(project, claims)),
+        parents=tuple(_undeclared(project, assessments)),
         evidence=tuple(
             f"{id} has evidence, but is not among the requirements"
-            for id in strangers(claims, evidence)
+            for id in unknown_ids(assessments, evidence)
         ),
     )
 
 
-def _uncovered(project: Project, claims: Sequence[Claim]) -> Iterable[str]:
-    parents = {claim.id: claim.requirement.parents for claim in claims}
+def _uncovered(project: Project, assessments: Sequence[Assessment]) -> Iterable[str]:
+    parents = {assessment.id: assessment.requirement.parents for assessment in assessments}
     covered: dict[str, set[str]] = {}
-    for claim in claims:
-        for above in _chains(claim.id, parents, project):
-            covered.setdefault(above, set()).add(claim.requirement.status)
+    for assessment in assessments:
+        for above in _chains(assessment.id, parents, project):
+            covered.setdefault(above, set()).add(assessment.requirement.status)
     for id in sorted(project.hazards, key=natural):
         hazard = project.hazards[id]
         if id not in covered:
@@ -137,16 +145,16 @@ def _uncovered(project: Project, claims: Sequence[Claim]) -> Iterable[str]:
             yield f"{id} ({hazard.title}) has only retired requirements"
 
 
-def _undeclared(project: Project, claims: Sequence[Claim]) -> Iterable[str]:
-    known = {*project.hazards, *project.parents, *(claim.id for claim in claims)}
-    for claim in claims:
-        for parent in claim.requirement.parents:
-            if parent not in known:
-                yield f"{claim.id} names {parent}, which is not declared"
+def _undeclared(project: Project, assessments: Sequence[Assessment]) -> Iterable[str]:
+    declared = {*project.hazards, *project.parents, *(assessment.id for assessment in assessments)}
+    for assessment in assessments:
+        for parent in assessment.requirement.parents:
+            if parent not in declared:
+                yield f"{assessment.id} names {parent}, which is not declared"
 
 
-def strangers(claims: Sequence[Claim], evidence: Evidence | None) -> tuple[str, ...]:
-    """Ids that the evidence is about and the project does not have."""
-    known = {claim.id for claim in claims}
+def unknown_ids(assessments: Sequence[Assessment], evidence: Evidence | None) -> tuple[str, ...]:
+    """The ids in the evidence that are not ids of the project."""
+    ids = {assessment.id for assessment in assessments}
     results = evidence.results if evidence else ()
-    return tuple(sorted({result.requirement for result in results} - known, key=natural))
+    return tuple(sorted({result.requirement for result in results} - ids, key=natural))

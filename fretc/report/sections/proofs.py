@@ -1,4 +1,4 @@
-"""What was proved of a requirement, as it is shown, and what that says of its planned methods."""
+"""The proofs in the report, and which of them are results of a planned method."""
 
 from __future__ import annotations
 
@@ -27,21 +27,21 @@ _MARKS: Mapping[str, Mark] = {
     VACUOUS: sign_mark(VACUOUS, signs.EMPTY),
     PROVED: sign_mark(PROVED, signs.GOOD),
 }
-"""The worst first, as for verdicts."""
+"""The worst result first, as for verdicts."""
 _OF_MONITOR = (str(Layer.MONITOR), str(Layer.LOOP), str(Layer.BOUNDS))
-"""Layers whose claims are about the text of the requirement's monitor."""
+"""Layers whose claims are about the text of a monitor."""
 SHARED = ("interceptor", "agent")
-"""Claims that are about no single requirement."""
+"""The subjects of claims that are about no single requirement."""
 
 
-def proof_views(proofs: Iterable[Proof], made: Iterable[Product]) -> tuple[ProofView, ...]:
-    """Each proof as it is shown.
+def proof_views(proofs: Iterable[Proof], products: Iterable[Product]) -> tuple[ProofView, ...]:
+    """The view of each proof.
 
     Args:
-        proofs: of one requirement, or of what all share.
-        made: what the targets make now; a proof about another text is suspect.
+        proofs: about one requirement, or about shared parts.
+        products: what the targets make now; a proof about another text is suspect.
     """
-    now = {product.file: product.sha256 for product in made if product.sha256}
+    now = {product.file: product.sha256 for product in products if product.sha256}
     return tuple(_view(proof, now) for proof in proofs)
 
 
@@ -61,12 +61,12 @@ def _view(proof: Proof, now: Mapping[str, str]) -> ProofView:
 
 
 def _suspicions(proof: Proof, now: Mapping[str, str]) -> Iterator[str]:
-    """Texts that are made otherwise now; what fretc does not make is told by its hash only."""
-    for name, known in proof.artefacts.items():
-        if name in now and now[name] != known:
+    """Why a proof is about other texts than those of now; only texts that fretc makes count."""
+    for name, examined in proof.artefacts.items():
+        if name in now and now[name] != examined:
             what = "is not what it was" if name == ASSUMED else "is not made like that any more"
             yield f"{name} {what}"
-    monitors = {hashed for name, hashed in now.items() if name.endswith("_monitor.py")}
+    monitors = {hash_ for name, hash_ in now.items() if name.endswith("_monitor.py")}
     if proof.layer in _OF_MONITOR and not monitors & {*proof.artefacts.values()}:
         yield "it is about another monitor than the one that is made now"
 
@@ -81,30 +81,30 @@ def covering(method: str, proofs: Sequence[ProofView]) -> list[ProofView]:
 
 
 def worst(proofs: Iterable[ProofView]) -> ProofView:
-    """The one that decides."""
+    """The proof with the worst result; a suspect one comes first."""
     rank = list(_MARKS)
     return min(proofs, key=lambda proof: (rank.index(proof.mark.word), not proof.mark.suspect))
 
 
 def in_words(proofs: Sequence[ProofView]) -> str:
-    """`2 claims proved`; else what is in the way."""
-    found = worst(proofs)
-    if is_proved(found):
+    """`2 claims proved`; else the worst result with its reason."""
+    decisive = worst(proofs)
+    if is_proved(decisive):
         return f"{phrases.times(len(proofs), 'claim')} proved"
-    why = found.suspicions[0] if found.suspicions else found.detail
-    return f"{found.mark.text}: {found.claim} ({why})"
+    why = decisive.suspicions[0] if decisive.suspicions else decisive.detail
+    return f"{decisive.mark.text}: {decisive.claim} ({why})"
 
 
 def is_proved(proof: ProofView) -> bool:
-    """Whether it is proved of what is there now."""
+    """Whether it is proved, and current."""
     return proof.mark.word == PROVED and not proof.mark.suspect
 
 
 def is_refuted(view: RequirementView) -> bool:
-    """Whether verification found a run against it, whatever the audited ones show."""
+    """Whether verification has a counterexample, whatever the audited runs show."""
     return any(plan.refuted for plan in view.planned) or bool(refutations(view))
 
 
 def refutations(view: RequirementView) -> tuple[ProofView, ...]:
-    """The counterexamples to it, suspect ones too."""
+    """Its counterexamples, suspect ones too."""
     return tuple(proof for proof in view.proofs if proof.mark.word == COUNTEREXAMPLE)

@@ -1,4 +1,4 @@
-"""How to make everything again, and the hashes to compare it with."""
+"""The commands that make the report again, and the hashes to compare with."""
 
 from __future__ import annotations
 
@@ -39,10 +39,10 @@ def commands(
     proofs: Proofs | None,
     confidence: float = CONFIDENCE,
 ) -> tuple[Command, ...]:
-    """The commands, in the order in which they are to be run.
+    """The commands, in the order in which a reader runs them.
 
-    Names come from evidence, which anybody may have written: each is quoted, and where one cannot
-    be pasted, a comment stands in the place of its command.
+    Names come from evidence, which anybody may have written. Each name is quoted; a comment stands
+    in place of a command with a name that cannot be quoted.
     """
 
     def audit() -> str:
@@ -51,19 +51,19 @@ def commands(
         return f"fretc audit {logs} {_options(project)}{level} --evidence {_quoted(evidence)}"
 
     def report() -> str:
-        proved = f" --verification {_quoted(proofs.file)}" if proofs else ""
-        return f"fretc report {_options(project)} --evidence {_quoted(evidence)}{proved}"
+        verification = f" --verification {_quoted(proofs.file)}" if proofs else ""
+        return f"fretc report {_options(project)} --evidence {_quoted(evidence)}{verification}"
 
     return (
         Command("Check the version of the tool", f"fretc --version   # fretc {__version__}"),
-        *_made("Check that the runs are those that were audited", lambda: _check(runs)),
-        *_made("Audit the runs", audit),
+        *_command("Check that the runs are those that were audited", lambda: _check(runs)),
+        *_command("Audit the runs", audit),
         *_emissions(sections),
-        *_made("Write this report", report),
+        *_command("Write this report", report),
     )
 
 
-def _made(purpose: str, text: Callable[[], str]) -> Iterator[Command]:
+def _command(purpose: str, text: Callable[[], str]) -> Iterator[Command]:
     """The command; none where its text is empty."""
     try:
         command = text()
@@ -91,13 +91,13 @@ def _options(project: Project) -> str:
 
 
 def folder_of(project: Project) -> str:
-    """Where the requirements are: their folder, or the one file."""
+    """The folder of the requirements, by its first file."""
     files = _files(project)
     return _folder(files[0].name) if files else "requirements"
 
 
 def _folder(path: str) -> str:
-    """The folder of a file, as it may be shown; of an absolute path its name only."""
+    """The folder of a file; of an absolute path only its name."""
     folder = PurePath(path).parent
     return str(folder) if phrases.place(path) == path else folder.name or str(folder)
 
@@ -108,8 +108,10 @@ def _files(project: Project) -> list[Source]:
 
 
 def _check(runs: Sequence[Run]) -> str:
-    known = [run.result for run in runs if "log" in run.result.hashes and _is_file(run.result.run)]
-    return check_of((result.hashes["log"], phrases.place(result.run)) for result in known)
+    results = [
+        run.result for run in runs if "log" in run.result.hashes and _is_file(run.result.run)
+    ]
+    return check_of((result.hashes["log"], phrases.place(result.run)) for result in results)
 
 
 def _is_file(run: str) -> bool:
@@ -118,7 +120,7 @@ def _is_file(run: str) -> bool:
 
 
 def _emissions(sections: Sequence[RequirementView]) -> Iterable[Command]:
-    """One command for all files with the same targets."""
+    """A command for each set of targets, with all files that have it."""
     targets: dict[str, list[str]] = {}
     for section in sections:
         file = section.source.rpartition(":")[0]
@@ -131,7 +133,7 @@ def _emissions(sections: Sequence[RequirementView]) -> Iterable[Command]:
     for kinds, files in groups.items():
         if kinds:
             emits = " ".join(f"--emit {kind}" for kind in kinds)
-            yield from _made("Make the artefacts", partial(_emission, files, emits))
+            yield from _command("Make the artefacts", partial(_emission, files, emits))
 
 
 def _emission(files: Sequence[str], emits: str) -> str:
@@ -139,10 +141,10 @@ def _emission(files: Sequence[str], emits: str) -> str:
 
 
 def _of_bindings(project: Project) -> str:
-    """As it stands in evidence: of what the requirements in force read of the bindings."""
-    known = bases(project)
+    """SHA-256 as in the evidence: of the bindings that requirements in force read."""
+    basis_of = bases(project)
     inforce = [each for each in project.requirements if each.status != "retired"]
-    return of_all({each.id: known[id(each)][BINDINGS] for each in inforce})
+    return of_all({each.id: basis_of[id(each)][BINDINGS] for each in inforce})
 
 
 def manifest(

@@ -1,4 +1,4 @@
-"""One run against one requirement, as it is shown."""
+"""The results of one requirement, run by run, and the reasons why it is not shown."""
 
 from __future__ import annotations
 
@@ -16,8 +16,10 @@ from fretc.audit.evidence.verdicts import (
     severity,
 )
 from fretc.report.model import phrases
-from fretc.report.model.claims import Claim, Judged, Together, since_review
+from fretc.report.model.assessments import Assessment
+from fretc.report.model.audits import ProbabilityAudit, SingleAudit
 from fretc.report.model.first_tick import reading
+from fretc.report.model.suspicions import since_review
 from fretc.report.model.views import (
     Latency,
     Listing,
@@ -26,7 +28,7 @@ from fretc.report.model.views import (
     ViolationView,
 )
 from fretc.report.pictures.timeline import answered, timelines
-from fretc.report.sections.runs import Key, Run, key
+from fretc.report.sections.runs import Run, RunKey, run_key
 from fretish import syntax
 from fretish.bindings.amounts import exact
 from fretish.bindings.declarations import Declarations
@@ -34,44 +36,46 @@ from fretish.clock import Clock
 from fretish.meaning import span
 
 LISTED = 100
-"""Violations, open demands and unknown stretches that are listed; the evidence has them all."""
+"""The most violations, open demands and unknown stretches; the evidence file has them all."""
 _WAITS = 5
-_TOLD = 10
-"""Runs that are named as reasons why a requirement is not shown."""
+"""The most waits of a result."""
+_NAMED = 10
+"""The most runs among the reasons why a requirement is not shown."""
 
 
 def result_views(
-    claim: Claim, runs: dict[Key, Run], declared: Declarations | None
+    assessment: Assessment, runs: dict[RunKey, Run], declared: Declarations | None
 ) -> tuple[ResultView, ...]:
-    """Every audit of a requirement, in the order of the runs."""
+    """The view of each audit of a requirement, in the order of the runs."""
     return tuple(
-        _view(judged, claim, number, runs[key(judged.result)], declared)
-        for number, judged in enumerate(claim.results, 1)
+        _view(audit, assessment, number, runs[run_key(audit.result)], declared)
+        for number, audit in enumerate(assessment.reviewed_audits, 1)
     )
 
 
-def result_anchor(claim: Claim, number: int) -> str:
-    """Where a result of a requirement is shown, numbered from 1."""
-    return f"{claim.anchor.replace('req-', 'result-', 1)}.{number}"
+def result_anchor(assessment: Assessment, number: int) -> str:
+    """The anchor of a result of a requirement; results are numbered from 1."""
+    return f"{assessment.anchor.replace('req-', 'result-', 1)}.{number}"
 
 
 def _view(
-    judged: Judged, claim: Claim, number: int, run: Run, declared: Declarations | None
+    audit: SingleAudit, assessment: Assessment, number: int, run: Run, declared: Declarations | None
 ) -> ResultView:
-    result = judged.result
-    known = None if claim.judged[number - 1].is_stale else declared
-    tick, ages = _tick(result, known.clock if known else None), _ages(known)
+    result = audit.result
+    # A stale result was judged by other bindings: the clock and the ages of now are not its own.
+    bindings = None if assessment.audits[number - 1].is_stale else declared
+    tick, ages = _tick(result, bindings.clock if bindings else None), _ages(bindings)
     return ResultView(
-        anchor=result_anchor(claim, number),
+        anchor=result_anchor(assessment, number),
         run=run.anchor,
         run_label=run.label,
         run_file=phrases.place(result.run),
-        mark=judged.mark,
-        suspicions=judged.suspicions,
+        mark=audit.mark,
+        suspicions=audit.suspicions,
         reason=result.reason,
         triggers=len(result.triggers),
         exercised=_exercised(result),
-        latency=_latency(result, claim.rule),
+        latency=_latency(result, assessment.rule),
         thresholds=tuple(map(_threshold, result.thresholds)),
         violations=tuple(_violation(v, result, ages) for v in result.violations[:LISTED]),
         violations_total=len(result.violations),
@@ -82,7 +86,7 @@ def _view(
 
 
 def _tick(result: Result, clock: Clock | None) -> float:
-    """Seconds of a tick; on average, where the clock ticks by message or is not known."""
+    """Seconds of a tick; the average where the clock ticks by message or is not known."""
     if clock is not None and clock.period:
         return clock.period / 1e9
     if result.start_ns is None or result.end_ns is None or result.end_ns <= result.start_ns:
@@ -91,7 +95,7 @@ def _tick(result: Result, clock: Clock | None) -> float:
 
 
 def _ages(declared: Declarations | None) -> dict[str, float]:
-    """Seconds after which a sample no longer counts, of the signals that have such an age."""
+    """The age limit of each signal that has one, in seconds."""
     signals = declared.signals.values() if declared else ()
     return {signal.name: signal.max_age / 1e9 for signal in signals if signal.max_age}
 
@@ -108,14 +112,14 @@ def _exercised(result: Result) -> str:
 
 
 def _stretches(moments: Iterable[Moment]) -> list[list[Moment]]:
-    """The moments in order, those of neighbouring ticks together."""
-    found: list[list[Moment]] = []
+    """The moments in order, in groups of neighbouring ticks."""
+    groups: list[list[Moment]] = []
     for moment in sorted(moments, key=lambda m: m.tick):
-        if found and moment.tick - found[-1][-1].tick <= 1:
-            found[-1].append(moment)
+        if groups and moment.tick - groups[-1][-1].tick <= 1:
+            groups[-1].append(moment)
         else:
-            found.append([moment])
-    return found
+            groups.append([moment])
+    return groups
 
 
 # Latency ---------------------------------------------------------------------------------------
@@ -145,7 +149,7 @@ def _latency(result: Result, rule: Formalized | None) -> Latency | None:
 
 
 def _bound(rule: Formalized | None) -> str:
-    """What the sentence says about how long the response may take."""
+    """The time that the sentence allows for the response, in words."""
     if rule is None:
         return ""
     if syntax.deadline(rule.sentence.timing):
@@ -161,7 +165,7 @@ def _bound(rule: Formalized | None) -> str:
 
 
 def _waits(result: Result) -> tuple[str, ...]:
-    """The longest waits; triggers that one answer ends are one wait."""
+    """The longest waits; triggers with one answer are one wait."""
     waiting = [(m.seconds, round(m.seconds + late, 6)) for m, late in answered(result) if late > 0]
     ends = groupby(sorted(waiting, key=lambda wait: wait[::-1]), key=lambda wait: wait[1])
     waits = [(end, [start for start, _ in group]) for end, group in ends]
@@ -234,7 +238,7 @@ def _since(stretch: Sequence[Moment], uncertain: Collection[int]) -> str:
 
 
 def _perhaps(count: int, of: int) -> str:
-    """How many may be otherwise, for propositions were unknown."""
+    """How many are uncertain because propositions are unknown; empty where none is."""
     if not count:
         return ""
     some = "" if of == 1 else "all of them " if count == of else f"{count} of them "
@@ -251,41 +255,43 @@ def _unknown(result: Result) -> Listing:
     return Listing(tuple(lines), total)
 
 
-# Why not ---------------------------------------------------------------------------------------
+# Reasons ---------------------------------------------------------------------------------------
 
 
-def reasons(claim: Claim, runs: dict[Key, Run], *, audited: bool) -> tuple[str, ...]:
+def reasons(assessment: Assessment, runs: dict[RunKey, Run], *, audited: bool) -> tuple[str, ...]:
     """Why a requirement is not shown, the worst first; empty where it is, or is retired."""
-    if claim.is_shown or claim.unwaived == RETIRED:
+    if assessment.is_shown or assessment.unwaived == RETIRED:
         return ()
-    lines = [(severity(UNFORMALIZED), text) for text in _unformalized(claim)]
-    if claim.together is not None:
-        lines.append((claim.together.mark.severity, _over_all(claim.together)))
+    lines = [(severity(UNFORMALIZED), text) for text in _unformalized(assessment)]
+    if assessment.probability is not None:
+        probability = assessment.probability
+        lines.append((probability.mark.severity, _probability_reason(probability)))
     else:
-        lines += [(j.mark.severity, _against(j, runs)) for j in claim.judged if not j.mark.shows]
-        if not claim.judged and claim.rule is not None:
+        audits = [audit for audit in assessment.audits if not audit.mark.shows]
+        lines += [(audit.mark.severity, _run_reason(audit, runs)) for audit in audits]
+        if not assessment.audits and assessment.rule is not None:
             why = "the audit did not cover it" if audited else "no run has been audited"
             lines.append((severity(NOT_EXERCISED), why))
-    told = [text for _, text in sorted(lines, key=lambda line: line[0])]
-    left = len(told) - _TOLD
-    few = (*told[:_TOLD], f"and {phrases.times(left, 'more run')}") if left > 0 else tuple(told)
-    return (*few, *since_review(claim.standing))
+    texts = [text for _, text in sorted(lines, key=lambda line: line[0])]
+    left = len(texts) - _NAMED
+    few = (*texts[:_NAMED], f"and {phrases.times(left, 'more run')}") if left > 0 else tuple(texts)
+    return (*few, *since_review(assessment.standing))
 
 
-def _unformalized(claim: Claim) -> Iterator[str]:
-    if claim.diagnostic is not None and claim.rule is None:
-        yield f"{claim.diagnostic.code.number}: {claim.diagnostic.message}"
+def _unformalized(assessment: Assessment) -> Iterator[str]:
+    if assessment.diagnostic is not None and assessment.rule is None:
+        yield f"{assessment.diagnostic.code.number}: {assessment.diagnostic.message}"
 
 
-def _over_all(together: Together) -> str:
-    told = together.told
-    return f"over all runs: {told.answer}, {told.reason}{_because(together.suspicions)}"
+def _probability_reason(probability: ProbabilityAudit) -> str:
+    estimation, why = probability.estimation, _because(probability.suspicions)
+    return f"over all runs: {estimation.answer}, {estimation.reason}{why}"
 
 
-def _against(judged: Judged, runs: dict[Key, Run]) -> str:
-    result = judged.result
-    label = runs[key(result)].label
-    return f"{label}: {judged.verdict}, {result.reason}{_because(judged.suspicions)}"
+def _run_reason(audit: SingleAudit, runs: dict[RunKey, Run]) -> str:
+    result = audit.result
+    label = runs[run_key(result)].label
+    return f"{label}: {audit.verdict}, {result.reason}{_because(audit.suspicions)}"
 
 
 def _because(suspicions: Sequence[str]) -> str:

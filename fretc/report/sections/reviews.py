@@ -1,4 +1,4 @@
-"""Who has accepted what, what has changed since, and what is waived, as it is shown."""
+"""Reviews, changes since a review, and waivers."""
 
 from __future__ import annotations
 
@@ -7,12 +7,12 @@ from collections.abc import Iterator, Sequence
 from fretc.attestation.signatures import Book
 from fretc.audit.evidence.verdicts import SUSPECT
 from fretc.report.model import phrases
-from fretc.report.model.claims import Claim, thing
+from fretc.report.model.assessments import Assessment
 from fretc.report.model.views import Change, Listing, ReviewView, WaiverView, sign_mark
 from fretc.report.sections.signatures import of_review, of_waiver
 from fretc.report.traceability.chain import Suspect
 from fretc.report.traceability.comparison import Difference, difference
-from fretc.report.traceability.lock import Withdrawn
+from fretc.report.traceability.lock import WithdrawnRequirement
 from fretish.diagnostics import signs
 
 _LISTED = 40
@@ -22,54 +22,57 @@ _OPEN = sign_mark("not reviewed", signs.UNUSED)
 _SUSPECT = sign_mark(SUSPECT, signs.SUSPECT)
 
 
-def review(claim: Claim, book: Book) -> ReviewView:
+def review(assessment: Assessment, book: Book) -> ReviewView:
     """The review of a requirement."""
-    found = claim.standing.review
-    if found is None:
+    accepted = assessment.standing.review
+    if accepted is None:
         return ReviewView(_OPEN, "", "", (), None)
-    signature = of_review(book, found)
-    by = f"{found.reviewer}, {found.role}, {found.date}"
-    if not claim.standing.is_suspect:
+    signature = of_review(book, accepted)
+    by = f"{accepted.reviewer}, {accepted.role}, {accepted.date}"
+    if not assessment.standing.is_suspect:
         mark = _ACCEPTED if signature.is_good else _UNSIGNED
-        return ReviewView(mark, by, found.comment, (), signature)
-    causes = dict.fromkeys(cause for s in claim.standing.suspects for cause in s.causes)
-    return ReviewView(_SUSPECT, by, found.comment, tuple(map(thing, causes)), signature)
+        return ReviewView(mark, by, accepted.comment, (), signature)
+    causes = tuple(map(phrases.thing, assessment.standing.causes))
+    return ReviewView(_SUSPECT, by, accepted.comment, causes, signature)
 
 
-def waiver(claim: Claim, book: Book) -> WaiverView | None:
-    """The waiver that counts now."""
-    found = claim.waiver
-    if found is None:
+def waiver(assessment: Assessment, book: Book) -> WaiverView | None:
+    """The waiver that counts today."""
+    granted = assessment.waiver
+    if granted is None:
         return None
-    by = f"{found.by}, {found.role}, {found.granted}"
-    mark = claim.unwaived_mark
-    signature = of_waiver(book, found)
-    return WaiverView(claim.id, claim.anchor, found.reason, by, found.expires, mark, signature)
+    by = f"{granted.by}, {granted.role}, {granted.granted}"
+    mark = assessment.unwaived_mark
+    signature = of_waiver(book, granted)
+    return WaiverView(
+        assessment.id, assessment.anchor, granted.reason, by, granted.expires, mark, signature
+    )
 
 
-def reviewed(claims: Sequence[Claim], book: Book) -> str:
-    """How many have been reviewed, and how many of the reviews are signed, in sentences."""
-    known = [claim.standing for claim in claims if claim.standing.review is not None]
-    if not known:
+def summary(assessments: Sequence[Assessment], book: Book) -> str:
+    """The number of reviews, of those that stand, and of those without a signature."""
+    standings = [each.standing for each in assessments if each.standing.review is not None]
+    if not standings:
         return "No requirement has been reviewed."
-    suspect = sum(standing.is_suspect for standing in known)
+    suspect = sum(standing.is_suspect for standing in standings)
     verb = "stands" if suspect == 1 else "stand"
     stands = f"; {suspect} of these reviews no longer {verb}" if suspect else ", and all stand"
-    signed = [of_review(book, each.review).is_good for each in known if each.review is not None]
-    unsigned = signed.count(False)
+    reviews = [standing.review for standing in standings if standing.review is not None]
+    unsigned = sum(not of_review(book, each).is_good for each in reviews)
     verb = "is" if unsigned == 1 else "are"
-    who = f" {unsigned} of {len(known)} {verb} unauthenticated." if unsigned else ""
-    return f"{len(known)} of {phrases.times(len(claims), 'requirement')} reviewed{stands}.{who}"
+    who = f" {unsigned} of {len(standings)} {verb} unauthenticated." if unsigned else ""
+    count = phrases.times(len(assessments), "requirement")
+    return f"{len(standings)} of {count} reviewed{stands}.{who}"
 
 
-def changes(claims: Sequence[Claim]) -> tuple[Change, ...]:
-    """What is not as it was reviewed; requirements that are as they were are left out."""
-    pairs = [(claim, difference(claim.standing)) for claim in claims if claim.standing.review]
-    return tuple(_change(claim, found) for claim, found in pairs if found.state != "same")
+def changes(assessments: Sequence[Assessment]) -> tuple[Change, ...]:
+    """The changes of each requirement since its review; one without changes is left out."""
+    pairs = [(each, difference(each.standing)) for each in assessments if each.standing.review]
+    return tuple(_change(each, change) for each, change in pairs if change.state != "same")
 
 
-def gone(found: Sequence[Withdrawn]) -> tuple[Change, ...]:
-    """What was reviewed and is not there any more; one that was retired since is a change."""
+def withdrawals(withdrawn: Sequence[WithdrawnRequirement]) -> tuple[Change, ...]:
+    """A change for each requirement that is gone; a retired one is among `changes` already."""
     return tuple(
         Change(
             one.review.requirement,
@@ -79,30 +82,30 @@ def gone(found: Sequence[Withdrawn]) -> tuple[Change, ...]:
             Listing((), 0),
             tuple((run, then, "none") for run, then in sorted(one.review.verdicts.items())),
         )
-        for one in found
+        for one in withdrawn
         if not one.retired
     )
 
 
-def _change(claim: Claim, found: Difference) -> Change:
-    lines = tuple(f"{how}: {thing(node)}" for node, how in found.changes)
-    links = tuple(_link(suspect) for suspect in found.suspects[:_LISTED])
-    verdicts = tuple((run, then or "none", now or "none") for run, then, now in found.verdicts)
-    listing = Listing(links, len(found.suspects))
-    return Change(claim.id, claim.anchor, found.state, lines, listing, verdicts)
+def _change(assessment: Assessment, difference: Difference) -> Change:
+    lines = tuple(f"{how}: {phrases.thing(node)}" for node, how in difference.changes)
+    links = tuple(_link(suspect) for suspect in difference.suspects[:_LISTED])
+    verdicts = tuple((run, then or "none", now or "none") for run, then, now in difference.verdicts)
+    listing = Listing(links, len(difference.suspects))
+    return Change(assessment.id, assessment.anchor, difference.state, lines, listing, verdicts)
 
 
 def _link(suspect: Suspect) -> str:
-    causes = phrases.joined([thing(cause) for cause in suspect.causes])
-    source, target = thing(suspect.link.source), thing(suspect.link.target)
+    causes = phrases.joined([phrases.thing(cause) for cause in suspect.causes])
+    source, target = phrases.thing(suspect.link.source), phrases.thing(suspect.link.target)
     return f"{source} → {target}, because of {causes}"
 
 
-def reservations(claim: Claim) -> Iterator[str]:
-    """What a reader has to know of a review."""
-    if claim.standing.review is None:
+def reservations(assessment: Assessment) -> Iterator[str]:
+    """Sentences that qualify a review."""
+    if assessment.standing.review is None:
         return
-    new = [how for node, how in difference(claim.standing).changes if node.kind == "log"]
-    if "new" in new and not claim.standing.is_suspect:
+    new = [how for node, how in difference(assessment.standing).changes if node.kind == "log"]
+    if "new" in new and not assessment.standing.is_suspect:
         count = phrases.times(new.count("new"), "run")
-        yield f"{claim.id} was audited against {count} after its review."
+        yield f"{assessment.id} was audited against {count} after its review."

@@ -1,4 +1,4 @@
-"""The audited runs: what they are, and whether they can be trusted."""
+"""The audited runs, and the condition of their data."""
 
 from __future__ import annotations
 
@@ -20,14 +20,14 @@ _UNREAD = sign_mark("not readable", signs.UNKNOWN)
 
 @dataclass(frozen=True, slots=True)
 class Run:
-    """One audited file, by its name and hash; `result` is any of its results."""
+    """One audited file; `result` is any of its results."""
 
     number: int
     result: Result
 
     @property
     def anchor(self) -> str:
-        """Where its section is."""
+        """The anchor of its section."""
         return f"run-{self.number}"
 
     @property
@@ -36,37 +36,37 @@ class Run:
         return f"Run {self.number}"
 
 
-Key = tuple[str, str]
+RunKey = tuple[str, str]
 
 
-def key(result: Result) -> Key:
-    """What makes two results those of the same run: the file's name and its hash."""
+def run_key(result: Result) -> RunKey:
+    """Name and hash of the file: results of one run have the same key."""
     return result.run, result.hashes.get("log", "")
 
 
-def runs(evidence: Evidence | None) -> dict[Key, Run]:
+def runs(evidence: Evidence | None) -> dict[RunKey, Run]:
     """The runs of the evidence, numbered from 1 in its order."""
-    found: dict[Key, Run] = {}
+    numbered: dict[RunKey, Run] = {}
     for result in evidence.results if evidence else ():
-        found.setdefault(key(result), Run(len(found) + 1, result))
-    return found
+        numbered.setdefault(run_key(result), Run(len(numbered) + 1, result))
+    return numbered
 
 
-def run_views(found: Iterable[Run], project: Project) -> tuple[RunView, ...]:
-    """Each run as it is shown, those with errors first."""
-    return tuple(_view(run, project) for run in sorted(found, key=_severity))
+def run_views(runs: Iterable[Run], project: Project) -> tuple[RunView, ...]:
+    """The view of each run, runs with errors first."""
+    return tuple(_view(run, project) for run in sorted(runs, key=_severity))
 
 
 def _severity(run: Run) -> tuple[bool, bool, bool, bool]:
-    """By which runs are sorted: errors, damage, other findings, gaps."""
+    """The key that sorts runs: errors, damage, other findings, gaps."""
     health = run.result.health
     return not _errors(run), health.intact, not health.findings, not health.gaps
 
 
 def _errors(run: Run) -> list[str]:
     """The codes of its errors, each once."""
-    found = (f.code for f in run.result.health.findings if f.severity == Severity.ERROR.value)
-    return list(dict.fromkeys(found))
+    codes = (f.code for f in run.result.health.findings if f.severity == Severity.ERROR.value)
+    return list(dict.fromkeys(codes))
 
 
 def _view(run: Run, project: Project) -> RunView:
@@ -98,7 +98,7 @@ def _duration(result: Result) -> str:
 
 
 def _checked(checked: Checked | None, *, hashed: bool) -> str:
-    """What could be checked of the file, and what was not."""
+    """The checks of the file, and what they left out."""
     if checked is None:
         return "not known"
     if not checked.chunks:
@@ -130,7 +130,7 @@ def _gaps(result: Result) -> tuple[str, ...]:
 
 
 def _badness(finding: Finding) -> int:
-    """By which findings are sorted."""
+    """The key that sorts findings."""
     return [str(severity) for severity in Severity].index(finding.severity)
 
 
@@ -171,12 +171,12 @@ def _named(run: Run) -> str:
     return f"{run.label} ({codes})" if codes else run.label
 
 
-def trust(found: Sequence[Run]) -> str:
-    """Whether the runs can be trusted, in one sentence; empty where there are none."""
-    damaged = [_named(run) for run in found if not run.result.health.intact]
-    wrong = [_named(run) for run in found if run.result.health.intact and _errors(run)]
-    told = [run.label for run in found if run.result.health.findings]
-    if not found:
+def trust(runs: Sequence[Run]) -> str:
+    """The condition of the runs, in one sentence; empty where there is no run."""
+    damaged = [_named(run) for run in runs if not run.result.health.intact]
+    wrong = [_named(run) for run in runs if run.result.health.intact and _errors(run)]
+    with_findings = [run.label for run in runs if run.result.health.findings]
+    if not runs:
         return ""
     if damaged or wrong:
         verb = "is" if len(damaged) == 1 else "are"
@@ -186,11 +186,11 @@ def trust(found: Sequence[Run]) -> str:
             f"{phrases.some(wrong)} {had}: read them before the verdicts" if wrong else "",
         ]
         return f"{'; '.join(filter(None, parts))}."
-    if told:
-        verb = "has" if len(told) == 1 else "have"
-        return f"{phrases.some(told)} {verb} findings: read them before the verdicts."
+    if with_findings:
+        verb = "has" if len(with_findings) == 1 else "have"
+        return f"{phrases.some(with_findings)} {verb} findings: read them before the verdicts."
     return (
         "No damage was found in the run."
-        if len(found) == 1
-        else f"No damage was found in any of {len(found)} runs."
+        if len(runs) == 1
+        else f"No damage was found in any of {len(runs)} runs."
     )

@@ -1,4 +1,4 @@
-"""Who signed the evidence, the proofs, each review and each waiver, as it is shown."""
+"""The signatures of the evidence, the proofs, each review and each waiver."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from fretc.attestation.signatures import Book, Signing, State
 from fretc.attestation.statement import Subject
 from fretc.audit.evidence.schema import Evidence
 from fretc.report.model import phrases
-from fretc.report.model.claims import Claim
+from fretc.report.model.assessments import Assessment
 from fretc.report.model.views import Signatures, SignatureView, Signed, sign_mark
 from fretc.report.traceability.lock import Review
 from fretc.report.traceability.waivers import Waiver
@@ -23,12 +23,12 @@ BROKEN = sign_mark("does not verify", signs.BAD)
 
 
 def of_review(book: Book, review: Review) -> SignatureView:
-    """Whether a review is signed by its reviewer."""
+    """The signature of the reviewer."""
     return _view(_review(book, review))
 
 
 def of_waiver(book: Book, waiver: Waiver) -> SignatureView:
-    """Whether a waiver is signed by whoever has granted it."""
+    """The signature of the person who granted the waiver."""
     return _view(_waiver(book, waiver))
 
 
@@ -40,19 +40,19 @@ def _waiver(book: Book, waiver: Waiver) -> Signing:
     return book.of(attestation.waiver(waiver), waiver.by)
 
 
-def _view(found: Signing) -> SignatureView:
-    return SignatureView(_SIGNED if found.is_good else _UNSIGNED, found.text, found.is_good)
+def _view(signing: Signing) -> SignatureView:
+    return SignatureView(_SIGNED if signing.is_good else _UNSIGNED, signing.text, signing.is_good)
 
 
 def signatures(
-    book: Book, claims: Sequence[Claim], evidence: Evidence | None, proofs: Proofs | None
+    book: Book, assessments: Sequence[Assessment], evidence: Evidence | None, proofs: Proofs | None
 ) -> Signatures:
-    """All that could be signed, who signed it, and whose keys count."""
-    listed = book.signers.signers if book.signers else ()
+    """The table of signatures; those that do not verify come first."""
+    signers = book.signers.signers if book.signers else ()
     return Signatures(
         file=phrases.place(book.signers.file) if book.signers else "",
-        signers=tuple(f"{', '.join(one.principals)}: {one.key.text}" for one in listed),
-        signed=(*_broken(book), *_files(book, evidence, proofs), *_people(book, claims)),
+        signers=tuple(f"{', '.join(one.principals)}: {one.key.text}" for one in signers),
+        signed=(*_broken(book), *_files(book, evidence, proofs), *_people(book, assessments)),
     )
 
 
@@ -61,8 +61,8 @@ def _broken(book: Book) -> Iterator[Signed]:
         for signer in one.broken:
             place = one.envelope.place
             where = f"{phrases.place(place.source.name)}:{place.line}"
-            said = f"it is not by {signer.name}, or not about this"
-            yield Signed("signature", where, "", SignatureView(BROKEN, said, False))
+            text = f"it is not by {signer.name}, or not about this"
+            yield Signed("signature", where, "", SignatureView(BROKEN, text, False))
 
 
 def _files(book: Book, evidence: Evidence | None, proofs: Proofs | None) -> Iterator[Signed]:
@@ -73,37 +73,37 @@ def _files(book: Book, evidence: Evidence | None, proofs: Proofs | None) -> Iter
         yield _file(book, Subject(attestation.PROOFS, phrases.place(proofs.file), proofs.sha256))
 
 
-def _file(book: Book, shown: Subject) -> Signed:
+def _file(book: Book, subject: Subject) -> Signed:
     """A file is signed under the last part of its name."""
-    return Signed(shown.kind, shown.name, "", _view(book.of_file(shown.kind, shown.sha256)))
+    return Signed(subject.kind, subject.name, "", _view(book.of_file(subject.kind, subject.sha256)))
 
 
-def _people(book: Book, claims: Sequence[Claim]) -> Iterator[Signed]:
-    for claim in claims:
-        review, waiver = claim.standing.review, claim.waiver
+def _people(book: Book, assessments: Sequence[Assessment]) -> Iterator[Signed]:
+    for assessment in assessments:
+        review, waiver = assessment.standing.review, assessment.waiver
         if review is not None:
-            name = f"{claim.id}, by {review.reviewer}"
-            yield Signed("review", name, claim.anchor, of_review(book, review))
+            name = f"{assessment.id}, by {review.reviewer}"
+            yield Signed("review", name, assessment.anchor, of_review(book, review))
         if waiver is not None:
-            name = f"{claim.id}, by {waiver.by}"
-            yield Signed("waiver", name, claim.anchor, of_waiver(book, waiver))
+            name = f"{assessment.id}, by {waiver.by}"
+            yield Signed("waiver", name, assessment.anchor, of_waiver(book, waiver))
 
 
-def idle(book: Book, claims: Sequence[Claim]) -> Iterator[Diagnostic]:
+def idle_signatures(book: Book, assessments: Sequence[Assessment]) -> Iterator[Diagnostic]:
     """F559 for each review and waiver with a signature that does not count."""
-    for claim in claims:
-        review, waiver = claim.standing.review, claim.waiver
+    for assessment in assessments:
+        review, waiver = assessment.standing.review, assessment.waiver
         if review is not None:
-            yield from _idle(f"the review of {claim.id}", _review(book, review))
+            yield from _idle(f"the review of {assessment.id}", _review(book, review))
         if waiver is not None:
-            yield from _idle(f"the waiver of {claim.id}", _waiver(book, waiver))
+            yield from _idle(f"the waiver of {assessment.id}", _waiver(book, waiver))
 
 
-def _idle(what: str, found: Signing) -> Iterator[Diagnostic]:
-    if found.state in (State.ANOTHER, State.UNKNOWN, State.CHANGED):
+def _idle(what: str, signing: Signing) -> Iterator[Diagnostic]:
+    if signing.state in (State.ANOTHER, State.UNKNOWN, State.CHANGED):
         yield Diagnostic(
             Code.IDLE_SIGNATURE,
-            f"{what} is unauthenticated: {found.text}",
+            f"{what} is unauthenticated: {signing.text}",
             help="have its reviewer sign it: `fretc sign FILE --key KEY`; `allowed_signers` names "
             "whose keys count",
             severity=Severity.WARNING,

@@ -1,1 +1,1 @@
-"""Links from hazard to review, what has changed, what is waived."""
+"""The chain of fingerprints from hazard to review, the lock of reviews, and the waivers."""

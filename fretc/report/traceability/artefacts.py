@@ -1,4 +1,4 @@
-"""What targets make of a requirement, by name and hash."""
+"""The files that targets make of a requirement, by name and hash."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from fretish.bindings.declarations import Declarations
 
 @dataclass(frozen=True, slots=True)
 class Product:
-    """One file that a target makes; `sha256` is empty where it refuses, and `refusal` says why."""
+    """A file that a target makes; where the target refuses, `sha256` is empty."""
 
     target: str
     file: str
@@ -28,10 +28,10 @@ _ALWAYS = ("monitor", "ltl", "ajpf", "json")
 
 
 def products(rule: Formalized | None) -> tuple[Product, ...]:
-    """A product for each file that is made of the requirement; where a target refuses, why.
+    """A product for each file of the requirement, and for each target that refuses it.
 
-    Some targets are always asked, the others where the requirement plans them in its `verify`:
-    to make all of them may take far longer than all the rest of a report.
+    Other targets than `_ALWAYS` count only where `verify` of the requirement names them: all of
+    them may take longer than the rest of the report.
     """
     if rule is None:
         return ()
@@ -41,11 +41,11 @@ def products(rule: Formalized | None) -> tuple[Product, ...]:
 
 
 def _of_target(target: Target, rule: Formalized) -> tuple[Product, ...]:
-    refused = target.refuse(rule)
-    if refused is not None:
-        mend = f"; {refused.help}" if refused.help else ""
-        refusal = f"{refused.code.number} {refused.message}{mend}"
-        return (Product(target.name, "", "", refusal),)
+    refusal = target.refuse(rule)
+    if refusal is not None:
+        mend = f"; {refusal.help}" if refusal.help else ""
+        text = f"{refusal.code.number} {refusal.message}{mend}"
+        return (Product(target.name, "", "", text),)
     return tuple(
         Product(target.name, str(artifact.path), sha256(artifact.text), "")
         for artifact in target.emit([rule])
@@ -53,7 +53,7 @@ def _of_target(target: Target, rule: Formalized) -> tuple[Product, ...]:
 
 
 def shared_products(declarations: Declarations | None) -> tuple[Product, ...]:
-    """What is made of the bindings alone, and looked at together with every requirement."""
+    """The products of the bindings alone: the interceptor, and its declared assumptions."""
     declared = declarations.interceptor if declarations else None
     if declarations is None or declared is None:
         return ()

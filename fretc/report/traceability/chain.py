@@ -1,9 +1,9 @@
 """The chain from hazard to review as a graph: a fingerprint for each thing, a link for each step.
 
-What has changed since a review makes the links downstream of it suspect, and no others: whoever
-reads a suspect link knows what to look at again, and that the rest still stands.
+A change since a review makes the links downstream of it suspect, and no others: a suspect link
+names what to review again, and the rest still stands.
 
-Source of the notion: ISO 26262-8 clause 6 (traceability of safety requirements) asks for links
+Source: ISO 26262-8 clause 6 (traceability of safety requirements) asks for links
 that can be followed both ways; Doorstop and StrictDoc call a link suspect whose parent changed.
 """
 
@@ -24,7 +24,7 @@ from fretc.audit.evidence.reader import by_requirement
 from fretc.audit.evidence.schema import Evidence, Result
 from fretc.audit.plan import bases
 from fretc.report.traceability.artefacts import Product, shared_products
-from fretc.report.traceability.artefacts import products as _made
+from fretc.report.traceability.artefacts import products as products_of
 from fretish.bindings.canonical import described, digest
 from fretish.documents import Requirement
 
@@ -33,9 +33,9 @@ TEXT, WORDS, FORMULAS, ARTEFACT = "text", "words", "formulas", "artefact"
 LOG, VERDICT, REVIEW = "log", "verdict", "review"
 PROOF, SHARED = "proof", "shared"
 _ADDED = (LOG, VERDICT, PROOF, SHARED, PLAN, ARTEFACT, basis.TOPICS)
-"""What may come after a review without changing anything that was reviewed."""
+"""Kinds of nodes that may come after a review without a change of what was reviewed."""
 _READINGS = ("ltl", "json")
-"""Targets that only show what the formulas are: those have fingerprints of their own."""
+"""Targets that only print formulas, which have fingerprints of their own."""
 
 
 @dataclass(frozen=True, slots=True, order=True)
@@ -46,13 +46,13 @@ class Node:
     name: str
 
     def __str__(self) -> str:
-        """As it stands in a lock."""
+        """The text in a lock."""
         return f"{self.kind}:{self.name}"
 
 
 @dataclass(frozen=True, slots=True, order=True)
 class Link:
-    """What the target is made of, or judged by."""
+    """The target depends on the source."""
 
     source: Node
     target: Node
@@ -60,24 +60,24 @@ class Link:
 
 @dataclass(frozen=True, slots=True)
 class Chain:
-    """Everything that bears upon one requirement."""
+    """All nodes and links of one requirement."""
 
     requirement: str
     prints: Mapping[Node, str]
-    """SHA-256 of each thing but the review; white space, comments and order do not count."""
+    """SHA-256 of each node but the review; white space, comments and order do not count."""
     links: tuple[Link, ...]
     verdicts: Mapping[str, str]
     """Run → the word of its verdict."""
     outdated: Mapping[Node, tuple[Node, ...]] = field(default_factory=dict)
-    """Each verdict and proof that is about something else than what is here now → what differs."""
+    """Each verdict and proof that is out of date → the nodes that differ."""
     unhashed: tuple[str, ...] = ()
-    """Runs of whose log nothing is known that tells it from another one."""
+    """Runs without a SHA-256 of their log."""
 
 
 def chains(
     project: Project,
     evidence: Evidence | None,
-    made: Mapping[int, Sequence[Product]] | None = None,
+    artefacts: Mapping[int, Sequence[Product]] | None = None,
     proofs: Sequence[Proof] = (),
 ) -> tuple[Chain, ...]:
     """The chain of each requirement, in the order of the project.
@@ -85,16 +85,18 @@ def chains(
     Args:
         project: with or without errors; a requirement without a rule has a chain that ends early.
         evidence: None where no run has been audited.
-        made: what the targets make of each requirement, by its `id()`; None: it is made here.
-        proofs: what verification has found.
+        artefacts: the products of each requirement, by its `id()`; None: `products` makes them.
+        proofs: the results of verification.
     """
     rules = {id(rule.requirement): rule for rule in project.rules}
     results, common = by_requirement(evidence), _common(project, evidence, proofs)
     return tuple(
-        _Chain(common, requirement).of(
+        _ChainBuilder(common, requirement).build(
             requirement,
             rules.get(id(requirement)),
-            _made(rules.get(id(requirement))) if made is None else made.get(id(requirement), ()),
+            products_of(rules.get(id(requirement)))
+            if artefacts is None
+            else artefacts.get(id(requirement), ()),
             results.get(requirement.id, ()),
             [proof for proof in proofs if proof.requirement == requirement.id],
         )
@@ -104,15 +106,15 @@ def chains(
 
 @dataclass(frozen=True, slots=True)
 class _Common:
-    """What the chains of all requirements are made of."""
+    """What all chains of a project share."""
 
     project: Project
     texts: Mapping[str, Requirement]
     bases: Mapping[int, Basis]
     audited_by: str
-    """The version of fretc that made the evidence."""
+    """The version of fretc that wrote the evidence."""
     shared: Mapping[str, str]
-    """Name of what is made of the bindings alone → its SHA-256; nothing where nothing is proved."""
+    """Name of each shared product → its SHA-256; empty where there is no proof."""
 
 
 def _common(project: Project, evidence: Evidence | None, proofs: Sequence[Proof]) -> _Common:
@@ -126,7 +128,7 @@ def _common(project: Project, evidence: Evidence | None, proofs: Sequence[Proof]
     )
 
 
-class _Chain:
+class _ChainBuilder:
     """Collects nodes and links of one requirement."""
 
     def __init__(self, common: _Common, requirement: Requirement) -> None:
@@ -136,28 +138,28 @@ class _Chain:
         self._links: dict[Link, None] = {}
         self._outdated: dict[Node, tuple[Node, ...]] = {}
 
-    def of(
+    def build(
         self,
         requirement: Requirement,
         rule: Formalized | None,
-        made: Iterable[Product],
+        artefacts: Iterable[Product],
         results: Sequence[Result],
         proofs: Sequence[Proof],
     ) -> Chain:
-        self._above(requirement, {requirement.id})
-        self._beside(requirement)
+        self._add_parents(requirement, {requirement.id})
+        self._add_status_and_plans(requirement)
         sentence = Node(basis.SENTENCE, requirement.id)
         self._add(sentence, self._basis[basis.SENTENCE])
         self._link(Node(TEXT, requirement.id), sentence)
-        artefacts = self._below(rule, sentence, made) if rule is not None else {}
-        sources = self._sources(artefacts.get("monitor"), audited=bool(results))
+        nodes = self._add_artefacts(rule, sentence, artefacts) if rule is not None else {}
+        sources = self._add_sources(nodes.get("monitor"), audited=bool(results))
         for result in results:
-            self._judged(result, sources)
+            self._add_result(result, sources)
         if rule is not None:
-            self._proved(rule, proofs)
+            self._add_proofs(rule, proofs)
         review = Node(REVIEW, requirement.id)
-        sent = {link.source for link in self._links}
-        for node in [node for node in self._prints if node not in sent]:
+        sources_of_links = {link.source for link in self._links}
+        for node in [node for node in self._prints if node not in sources_of_links]:
             self._link(node, review)
         return Chain(
             requirement.id,
@@ -168,17 +170,17 @@ class _Chain:
             tuple(result.run for result in results if not _print_of_log(result)),
         )
 
-    def _beside(self, requirement: Requirement) -> None:
-        """What no log depends on, and a review does: whether it is claimed, and how it is shown."""
+    def _add_status_and_plans(self, requirement: Requirement) -> None:
+        """Add status and planned methods: a review depends on them, and no verdict does."""
         retired = requirement.status == "retired"
         self._add(in_force(self._id), digest("retired") if retired else IN_FORCE)
         for method in requirement.verify:
             self._add(Node(PLAN, f"{self._id} {method}"), digest(method))
 
-    def _above(self, requirement: Requirement, seen: set[str]) -> None:
-        """Hazards and requirements that it traces to, all the way up."""
+    def _add_parents(self, requirement: Requirement, visited: set[str]) -> None:
+        """Add the hazards and requirements that it traces to, all the way up."""
         text = Node(TEXT, requirement.id)
-        self._add(text, digest(_said(requirement)))
+        self._add(text, digest(_wording(requirement)))
         for parent in requirement.parents:
             hazard, above = self._project.hazards.get(parent), self._common.texts.get(parent)
             if hazard is not None:
@@ -186,86 +188,87 @@ class _Chain:
                 self._link(Node(HAZARD, parent), text)
             elif parent in self._project.parents:
                 outside = self._project.parents[parent]
-                told = _normal([outside.title, outside.text])
-                self._add(Node(PARENT, parent), digest(told))
+                content = _normal([outside.title, outside.text])
+                self._add(Node(PARENT, parent), digest(content))
                 self._link(Node(PARENT, parent), text)
-            elif above is not None and parent not in seen:
-                seen.add(parent)
-                self._above(above, seen)
+            elif above is not None and parent not in visited:
+                visited.add(parent)
+                self._add_parents(above, visited)
                 self._link(Node(TEXT, parent), text)
 
-    def _below(
-        self, rule: Formalized, sentence: Node, made: Iterable[Product]
+    def _add_artefacts(
+        self, rule: Formalized, sentence: Node, artefacts: Iterable[Product]
     ) -> Mapping[str, Node]:
-        """Formulas, words and artefacts; gives the artefact of each target."""
+        """Add formulas, words and artefacts; gives the artefact of each target."""
         formulas, words = Node(FORMULAS, rule.id), Node(WORDS, rule.id)
-        clock, fretc = self._clock(), Node(basis.FRETC, _VERSION)
+        clock, fretc = self._add_clock(), Node(basis.FRETC, _VERSION)
         self._add(formulas, _formulas(rule))
         self._add(fretc, digest(__version__))
         self._link(sentence, formulas)
         if rule.ticks is not None:
             self._link(clock, formulas)
-        told = described(self._project.declarations, rule.watched)
-        if told:
-            self._add(words, digest(told))
-        found = {}
-        for product in made:
+        meanings = described(self._project.declarations, rule.watched)
+        if meanings:
+            self._add(words, digest(meanings))
+        nodes = {}
+        for product in artefacts:
             if product.refusal or product.target in _READINGS:
                 continue
-            node = found[product.target] = Node(ARTEFACT, product.file)
+            node = nodes[product.target] = Node(ARTEFACT, product.file)
             self._add(node, product.sha256)
             for source in (formulas, fretc, *([clock] if product.target == "monitor" else ())):
                 self._link(source, node)
-        return found
+        return nodes
 
-    def _clock(self) -> Node:
+    def _add_clock(self) -> Node:
         node = Node(basis.CLOCK, "clock")
         self._add(node, self._basis[basis.CLOCK])
         return node
 
-    def _sources(self, monitor: Node | None, *, audited: bool) -> Mapping[str, Node]:
-        """What a verdict rests on, by its kind."""
-        found = {
+    def _add_sources(self, monitor: Node | None, *, audited: bool) -> Mapping[str, Node]:
+        """Add the nodes that a verdict rests on; gives them by kind."""
+        nodes = {
             basis.FRETC: Node(basis.FRETC, _VERSION),
             basis.SENTENCE: Node(basis.SENTENCE, self._id),
             basis.PARAMS: Node(basis.PARAMS, self._id),
-            basis.CLOCK: self._clock(),
+            basis.CLOCK: self._add_clock(),
             basis.TOPICS: Node(basis.TOPICS, "audited"),
             basis.BINDINGS: Node(basis.BINDINGS, self._id),
             basis.MONITOR: monitor or Node(basis.MONITOR, self._id),
         }
         for kind in (basis.PARAMS, basis.BINDINGS, *([basis.TOPICS] if audited else ())):
-            self._add(found[kind], self._basis[kind])
-        return found
+            self._add(nodes[kind], self._basis[kind])
+        return nodes
 
-    def _judged(self, result: Result, sources: Mapping[str, Node]) -> None:
+    def _add_result(self, result: Result, sources: Mapping[str, Node]) -> None:
+        """Add the verdict of a run; a monitor stands between the sentence and the verdict."""
         verdict, log = Node(VERDICT, f"{result.requirement} {result.run}"), Node(LOG, result.run)
         self._add(log, _print_of_log(result))
         self._add(verdict, digest(_judgement(result)))
-        follows = sources[basis.MONITOR] in self._prints
+        has_monitor = sources[basis.MONITOR] in self._prints
         for kind, source in sources.items():
-            if source in self._prints and not (follows and kind == basis.SENTENCE):
+            if source in self._prints and not (has_monitor and kind == basis.SENTENCE):
                 self._link(source, verdict)
         self._link(log, verdict)
         old = outdated(result, self._common.audited_by, self._basis)
         if old:
             self._outdated[verdict] = tuple(sources[kind] for kind in old)
 
-    def _proved(self, rule: Formalized, proofs: Sequence[Proof]) -> None:
-        """Each claim, with the texts and assumptions that it is about, as they are now."""
+    def _add_proofs(self, rule: Formalized, proofs: Sequence[Proof]) -> None:
+        """Add each proof, with the texts and assumptions that it is about."""
         now = self._common.shared
         for proof in proofs:
             node = Node(PROOF, f"{rule.id} {proof.layer}: {proof.claim}")
             self._add(node, digest([proof.result, sorted(proof.assumptions)]))
             self._link(Node(FORMULAS, rule.id), node)
-            for name, looked_at in proof.artefacts.items():
+            for name, fingerprint in proof.artefacts.items():
                 source = Node(SHARED, name) if name in now else Node(ARTEFACT, name)
                 if name in now:
                     self._add(source, now[name])
                 if source not in self._prints:
                     continue
                 self._link(source, node)
-                if self._prints[source] != looked_at:
+                if self._prints[source] != fingerprint:
                     self._outdated[node] = (*self._outdated.get(node, ()), source)
 
     def _add(self, node: Node, fingerprint: str) -> None:
@@ -288,18 +291,18 @@ def in_force(requirement: str) -> Node:
 
 
 def outdated(result: Result, audited_by: str, now: Basis) -> tuple[str, ...]:
-    """The kinds of what a result rests on that are not as they were when it was audited."""
+    """The kinds of things that a result rests on and that have changed since its audit."""
     recorded = {**result.hashes, basis.FRETC: audited_by}
     return basis.outdated(recorded, {**now, basis.FRETC: __version__})
 
 
 def _print_of_log(result: Result) -> str:
-    """SHA-256 of the log; of its summary, where it was read by its index; "": neither is known."""
+    """SHA-256 of the log, or of its summary where the audit read its index only; or ""."""
     return result.hashes.get("log") or result.hashes.get("log_summary") or ""
 
 
-def _said(requirement: Requirement) -> dict[str, Any]:
-    """What a person says of it; its planned methods and whether it is claimed are no part of it."""
+def _wording(requirement: Requirement) -> dict[str, Any]:
+    """The texts and parents of a requirement, without status and planned methods."""
     texts = (requirement.title, requirement.text, requirement.rationale)
     return {"texts": _normal(list(texts)), "parents": sorted(requirement.parents)}
 
@@ -315,12 +318,12 @@ def _judgement(result: Result) -> dict[str, Any]:
 
 
 def _formulas(rule: Formalized) -> str:
-    told = [rule.ft_infinite, rule.ft_finite, rule.pt]
-    return digest([printing.readable(formula) for formula in told])
+    formulas = [rule.ft_infinite, rule.ft_finite, rule.pt]
+    return digest([printing.readable(formula) for formula in formulas])
 
 
 def _normal(value: Any) -> Any:
-    """Texts without the difference that white space makes."""
+    """The value with white space in texts made uniform."""
     match value:
         case str():
             return " ".join(value.split())
@@ -341,11 +344,11 @@ class Suspect:
 
     link: Link
     causes: tuple[Node, ...]
-    """What has changed, come or gone upstream of it: the first changes, not what follows."""
+    """The first changes upstream of it, without changes that follow from these."""
 
 
 def changed(prints: Mapping[Node, str], locked: Mapping[Node, str]) -> tuple[Node, ...]:
-    """What is not as it was locked: another fingerprint, new, or gone; sorted."""
+    """The nodes with another fingerprint than in the lock, new nodes, and gone ones; sorted."""
     return tuple(
         sorted(node for node in {*prints, *locked} if prints.get(node) != locked.get(node))
     )
@@ -354,59 +357,59 @@ def changed(prints: Mapping[Node, str], locked: Mapping[Node, str]) -> tuple[Nod
 def suspects(chain: Chain, locked: Mapping[Node, str]) -> tuple[Suspect, ...]:
     """The links downstream of what has changed since the lock, those nearest to it first.
 
-    What is about something else than what is here now is suspect too, whatever was locked: a
-    verdict of another binding stays one when the binding of the review has come back.
+    A verdict or proof that is out of date is suspect too, whatever the lock has: a verdict on
+    another binding stays one when the binding of the review has come back.
 
     Args:
         chain: as it is now.
-        locked: the fingerprints that were accepted.
+        locked: the fingerprints in the review.
     """
-    wrong = {
+    changed_nodes = {
         node for node in changed(chain.prints, locked) if node in locked or node.kind not in _ADDED
     }
     upstream = _upstream(chain)
     causes_of: dict[Link, set[Node]] = {}
     for link in chain.links:
         above = {link.source, *upstream[link.source]}
-        causes_of[link] = wrong & above
+        causes_of[link] = changed_nodes & above
         for node in chain.outdated.keys() & above & locked.keys():
             causes_of[link] |= {*chain.outdated[node]}
     for node in chain.outdated.keys() & locked.keys():
         for source in chain.outdated[node]:
             causes_of.setdefault(Link(source, node), set()).add(source)
-    found = [
+    links = [
         Suspect(link, tuple(sorted(_first(causes_of[link], upstream))))
         for link in sorted(causes_of, key=lambda link: (len(upstream.get(link.source, ())), link))
         if causes_of[link]
     ]
     gone = tuple(sorted(node for node in locked if node not in chain.prints))
     review = Node(REVIEW, chain.requirement)
-    found.extend(Suspect(Link(node, review), (node,)) for node in gone)
-    return tuple(found)
+    links.extend(Suspect(Link(node, review), (node,)) for node in gone)
+    return tuple(links)
 
 
 def _first(causes: set[Node], upstream: Mapping[Node, frozenset[Node]]) -> Iterator[Node]:
-    """Those that no other cause explains."""
+    """The causes that do not follow from another cause."""
     return (cause for cause in causes if not upstream.get(cause, frozenset()) & causes)
 
 
 def _upstream(chain: Chain) -> dict[Node, frozenset[Node]]:
-    """Everything from which each thing can be reached."""
+    """Each node → all nodes that lead to it."""
     above: dict[Node, set[Node]] = {node: set() for link in chain.links for node in _ends(link)}
     above |= {node: set() for node in chain.prints if node not in above}
     for link in chain.links:
         above[link.target].add(link.source)
-    found: dict[Node, frozenset[Node]] = {}
+    upstream: dict[Node, frozenset[Node]] = {}
 
     def reach(node: Node) -> frozenset[Node]:
-        if node not in found:
-            found[node] = frozenset()  # a requirement may be its own ancestor
-            found[node] = frozenset(above[node]).union(*(reach(each) for each in above[node]))
-        return found[node]
+        if node not in upstream:
+            upstream[node] = frozenset()  # a requirement may be its own ancestor
+            upstream[node] = frozenset(above[node]).union(*(reach(each) for each in above[node]))
+        return upstream[node]
 
     for node in above:
         reach(node)
-    return found
+    return upstream
 
 
 def _ends(link: Link) -> tuple[Node, Node]:

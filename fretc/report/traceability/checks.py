@@ -1,7 +1,7 @@
-"""What can be said of a project before any run: drift, vacuity, missing links, changes.
+"""Warnings about a whole project before any run: vacuity, plans without result, missing links.
 
-Mistakes are found while the project is read (`compiler.project.folder`). Here is what is no mistake
-of any one file, and yet keeps the whole from showing what it is there to show.
+`compiler.project.folder` reports mistakes of single files while it reads them. These warnings are
+about no single file: with them, the project cannot show all that it should.
 """
 
 from __future__ import annotations
@@ -24,21 +24,21 @@ from fretish.expressions import names
 
 _COMMAND = "command"
 _METHODS = ("audit", *METHODS, *TARGETS)
-"""Those whose results fretc knows, or whose files it makes."""
+"""Methods with results that fretc knows, or with files that it makes."""
 
 
 def checks(project: Project, standings: Sequence[Standing]) -> tuple[Diagnostic, ...]:
-    """Everything, in the order of the project: warnings, no errors.
+    """All warnings, in the order of the project.
 
     Args:
         project: read without errors.
         standings: each requirement beside its review.
     """
     rules = [rule for rule in project.rules if rule.requirement.status != "retired"]
-    found = [d for rule in rules for d in (*_own_triggers(rule, project), *_planned(rule))]
+    diagnostics = [d for rule in rules for d in (*_own_triggers(rule, project), *_planned(rule))]
     options = Options(declarations=project.declarations)
-    told = TARGETS["interceptor"].remarks(options)
-    return (*found, *told, *_links(project), *_changes(project, standings))
+    interceptor = TARGETS["interceptor"].remarks(options)
+    return (*diagnostics, *interceptor, *_links(project), *_changes(project, standings))
 
 
 # Vacuity ---------------------------------------------------------------------------------------
@@ -70,8 +70,8 @@ def _own_triggers(rule: Formalized, project: Project) -> Iterator[Diagnostic]:
 
 def _place(rule: Formalized, name: str) -> Span:
     assert rule.sentence.condition is not None
-    found = (n.span for n in names(rule.sentence.condition.expression) if n.id == name)
-    return next(found, None) or rule.requirement.wording
+    places = (n.span for n in names(rule.sentence.condition.expression) if n.id == name)
+    return next(places, None) or rule.requirement.wording
 
 
 # Planned methods -------------------------------------------------------------------------------
@@ -156,12 +156,11 @@ def _changes(project: Project, standings: Sequence[Standing]) -> Iterator[Diagno
     for standing in standings:
         if not standing.is_suspect or standing.review is None:
             continue
-        causes = dict.fromkeys(cause for s in standing.suspects for cause in s.causes)
         id = standing.chain.requirement
         yield Diagnostic(
             Code.CHANGED_SINCE_REVIEW,
             f"{id} was reviewed on {standing.review.date}, and since then "
-            f"{', '.join(map(_named, causes))} changed",
+            f"{', '.join(map(_named, standing.causes))} changed",
             places.get(id, Source("", "").span()),
             help=f"look at `fretc diff`, then accept it: `fretc lock {quote(id)} ...`",
             severity=Severity.WARNING,

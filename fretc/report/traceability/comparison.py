@@ -1,4 +1,4 @@
-"""What has changed between two states of a project: things, links, verdicts."""
+"""The difference between a project and its lock: nodes, links, verdicts."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from fretc.report.traceability.chain import Node, Suspect
 from fretc.report.traceability.lock import Lock, Standing
 
 _MOST = 6
-"""Links of one requirement that a person is shown."""
+"""The most suspect links of one requirement that `text` prints."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,8 +30,8 @@ class Difference:
 def differences(standings: tuple[Standing, ...], baseline: Lock) -> tuple[Difference, ...]:
     """Every requirement of either state, in the order of the project, then those that are gone."""
     now = tuple(difference(standing) for standing in standings)
-    known = {standing.chain.requirement for standing in standings}
-    return (*now, *(_gone(id, baseline) for id in baseline.reviews if id not in known))
+    ids = {standing.chain.requirement for standing in standings}
+    return (*now, *(_removed(id, baseline) for id in baseline.reviews if id not in ids))
 
 
 def difference(standing: Standing) -> Difference:
@@ -46,7 +46,7 @@ def difference(standing: Standing) -> Difference:
     return Difference(chain.requirement, state, changes, standing.suspects, verdicts)
 
 
-def _gone(id: str, baseline: Lock) -> Difference:
+def _removed(id: str, baseline: Lock) -> Difference:
     return Difference(id, "gone", (), (), _verdicts(baseline.reviews[id].verdicts, {}))
 
 
@@ -85,8 +85,8 @@ def as_record(difference: Difference) -> dict[str, Any]:
 
 def text(difference: Difference) -> Iterator[str]:
     """Lines for a person."""
-    told = {"same": "as it was reviewed", "new": "not reviewed", "gone": "not there any more"}
-    yield f"{difference.requirement}  {told.get(difference.state, difference.state)}"
+    states = {"same": "as it was reviewed", "new": "not reviewed", "gone": "not there any more"}
+    yield f"{difference.requirement}  {states.get(difference.state, difference.state)}"
     for node, how in difference.changes:
         yield f"  {how:<8} {node.kind} {node.name}"
     for run, before, now in difference.verdicts:

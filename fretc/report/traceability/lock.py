@@ -1,8 +1,7 @@
 """`fretc.lock`: what was reviewed, by whom, and the fingerprint of each thing at that time.
 
 Sorted TOML, a table for each requirement, so that two reviews merge like code. A lock is written
-by `fretc lock` only; a person's reason not to have something shown yet is a waiver, in
-`waivers.toml` (`fretc.report.traceability.waivers`).
+by `fretc lock` only; waivers stand in `waivers.toml` (`fretc.report.traceability.waivers`).
 """
 
 from __future__ import annotations
@@ -67,16 +66,16 @@ class Review:
         return self.prints.get(in_force(self.requirement)) == IN_FORCE
 
     @property
-    def shown(self) -> str:
+    def verdict_summary(self) -> str:
         """The verdicts that were accepted, in words."""
         return _in_words(self.verdicts)
 
     @property
     def seal(self) -> str:
         """SHA-256 of all of it: a review that is edited by hand is nobody's."""
-        told = {name: getattr(self, name) for name in ("requirement", *_TEXTS)}
+        texts = {name: getattr(self, name) for name in ("requirement", *_TEXTS)}
         prints = {str(node): sha for node, sha in self.prints.items()}
-        return digest([told, prints, dict(self.verdicts)])
+        return digest([texts, prints, dict(self.verdicts)])
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,17 +86,17 @@ class Lock:
 
 
 def accepted(chain: Chain, reviewer: str, role: str, date: str, comment: str) -> Review:
-    """The present state of a requirement, accepted."""
+    """A review of the present state of a requirement."""
     return Review(chain.requirement, reviewer, role, date, comment, chain.prints, chain.verdicts)
 
 
 def verdicts_of(chain: Chain) -> str:
-    """The verdicts that a review of it would accept, in words, the worst first."""
+    """The verdicts that a review would accept, in words, the worst first."""
     return _in_words(chain.verdicts)
 
 
 def _in_words(verdicts: Mapping[str, str]) -> str:
-    told = []
+    parts = []
     for word in VERDICTS:
         runs = sorted(run for run, verdict in verdicts.items() if verdict == word)
         if not runs:
@@ -105,43 +104,43 @@ def _in_words(verdicts: Mapping[str, str]) -> str:
         named = ", ".join(runs[:_NAMED]) if word == kernel.VIOLATED else ""
         rest = len(runs) - (_NAMED if named else 0)
         more = f"{rest} {'more ' if named else ''}run{'' if rest == 1 else 's'}" if rest > 0 else ""
-        told.append(f"{word} in {' and '.join(part for part in (named, more) if part)}")
-    return "; ".join(told) or "no run of it was audited"
+        parts.append(f"{word} in {' and '.join(part for part in (named, more) if part)}")
+    return "; ".join(parts) or "no run of it was audited"
 
 
 _NAMED = 3
-"""Of so many violated runs the names are told."""
+"""The most violating runs that a summary names."""
 
 
 def unnamed_violations(chosen: Sequence[Chain], refuted: Collection[str]) -> tuple[Diagnostic, ...]:
-    """F529 for each requirement that would be accepted though runs show that it does not hold.
+    """F529 for each requirement to accept though runs show that it does not hold.
 
     Args:
-        chosen: what is to be accepted.
+        chosen: the chains to accept.
         refuted: ids of the requirements with a probability that all runs together refute.
     """
-    wrong = {
+    violations = {
         c.requirement: verdicts_of(c) for c in chosen if kernel.VIOLATED in c.verdicts.values()
     }
-    wrong |= {c.requirement: "refuted by all runs" for c in chosen if c.requirement in refuted}
+    violations |= {c.requirement: "refuted by all runs" for c in chosen if c.requirement in refuted}
     return tuple(
         Diagnostic(
             Code.UNREVIEWED_VIOLATION,
-            f"{id} is {told}",
+            f"{id} is {verdicts}",
             help="mend it, or accept it as it is: add `--accept-violations`",
         )
-        for id, told in wrong.items()
+        for id, verdicts in violations.items()
     )
 
 
 def outdated_results(chosen: Sequence[Chain]) -> tuple[Diagnostic, ...]:
     """F541 for each requirement whose evidence is about something else; F542 for unknown logs."""
-    found = []
+    diagnostics = []
     for chain in chosen:
         causes = dict.fromkeys(cause for nodes in chain.outdated.values() for cause in nodes)
         if causes:
             what = ", ".join(f"{cause.kind} {cause.name}" for cause in causes)
-            found.append(
+            diagnostics.append(
                 Diagnostic(
                     Code.OUTDATED_RESULT,
                     f"what was shown of {chain.requirement} is about something else than what is "
@@ -150,7 +149,7 @@ def outdated_results(chosen: Sequence[Chain]) -> tuple[Diagnostic, ...]:
                 )
             )
         if chain.unhashed:
-            found.append(
+            diagnostics.append(
                 Diagnostic(
                     Code.UNKNOWN_LOG,
                     f"nothing tells the log `{chain.unhashed[0]}` of {chain.requirement} from "
@@ -158,7 +157,7 @@ def outdated_results(chosen: Sequence[Chain]) -> tuple[Diagnostic, ...]:
                     help="audit again where the log can be read, then lock",
                 )
             )
-    return tuple(found)
+    return tuple(diagnostics)
 
 
 def text(lock: Lock) -> str:
@@ -190,7 +189,7 @@ def read(path: str) -> Lock | Diagnostic:
     wrong = next(_mistakes(tables), None)
     if wrong is not None:
         return wrong
-    lock = Lock({id: _review(id, told) for id, told in _reviews(tables)})
+    lock = Lock({id: _review(id, fields) for id, fields in _reviews(tables)})
     return next(_broken(tables, lock), lock)
 
 
@@ -204,8 +203,8 @@ def _none_yet(path: str) -> Diagnostic:
 
 
 def _reviews(tables: Tables) -> Iterable[tuple[str, Any]]:
-    told = tables.data.get(_TABLE, {})
-    return told.items() if isinstance(told, dict) else ()
+    reviews = tables.data.get(_TABLE, {})
+    return reviews.items() if isinstance(reviews, dict) else ()
 
 
 def _mistakes(tables: Tables) -> Iterator[Diagnostic]:
@@ -218,17 +217,17 @@ def _mistakes(tables: Tables) -> Iterator[Diagnostic]:
     for name, value in tables.data.items():
         if name not in ("schema", _TABLE) or (name == _TABLE and not isinstance(value, dict)):
             yield _wrong(tables, f"`{name}` is no part of a lock", name)
-    for id, told in _reviews(tables):
-        if not isinstance(told, dict):
+    for id, fields in _reviews(tables):
+        if not isinstance(fields, dict):
             yield _wrong(tables, f"`{id}` is no review", _TABLE, id)
             continue
         for name in (*_TEXTS, "seal"):
-            if not isinstance(told.get(name), str):
+            if not isinstance(fields.get(name), str):
                 yield _wrong(tables, f"the review of {id} has no `{name}`", _TABLE, id, name)
-        if isinstance(told.get("date"), str) and not is_date(told["date"]):
-            yield _wrong(tables, f"`{told['date']}` is no date", _TABLE, id, "date")
+        if isinstance(fields.get("date"), str) and not is_date(fields["date"]):
+            yield _wrong(tables, f"`{fields['date']}` is no date", _TABLE, id, "date")
         for name in ("fingerprints", "verdicts"):
-            table = told.get(name)
+            table = fields.get(name)
             if not isinstance(table, dict) or not all(isinstance(v, str) for v in table.values()):
                 yield _wrong(tables, f"`{name}` of {id} must be a table of texts", _TABLE, id, name)
             elif name == "fingerprints":
@@ -243,10 +242,10 @@ def _no_prints(tables: Tables, id: str, table: Mapping[str, str]) -> Iterator[Di
 
 
 def _broken(tables: Tables, lock: Lock) -> Iterator[Diagnostic]:
-    """Reviews that nobody can have made."""
+    """A diagnostic for each review that is edited, or dated in the future."""
     for id, review in lock.reviews.items():
-        told = tables.data[_TABLE][id]
-        if told["seal"] != review.seal:
+        fields = tables.data[_TABLE][id]
+        if fields["seal"] != review.seal:
             what = f"the review of {id} is not as `fretc lock` wrote it: somebody has edited it"
             yield _wrong(tables, what, _TABLE, id, "seal")
         elif is_to_come(review.date):
@@ -272,12 +271,12 @@ def _wrong(tables: Tables, what: str, *path: str) -> Diagnostic:
     )
 
 
-def _review(id: str, told: Mapping[str, Any]) -> Review:
+def _review(id: str, fields: Mapping[str, Any]) -> Review:
     return Review(
         requirement=id,
-        **{name: told[name] for name in _TEXTS},
-        prints={_node(name): sha for name, sha in told["fingerprints"].items()},
-        verdicts=told["verdicts"],
+        **{name: fields[name] for name in _TEXTS},
+        prints={_node(name): sha for name, sha in fields["fingerprints"].items()},
+        verdicts=fields["verdicts"],
     )
 
 
@@ -298,14 +297,19 @@ class Standing:
     """None: it has never been reviewed, or the review has been taken back."""
 
     suspects: tuple[Suspect, ...]
-    """The links that no longer stand on what was reviewed; none where nothing was."""
+    """The suspect links; none where there is no review."""
     changes: tuple[Node, ...]
-    """Everything that is not as it was reviewed."""
+    """The nodes that have changed since the review."""
 
     @property
     def is_suspect(self) -> bool:
-        """Whether anything that its review rests on has changed."""
+        """Whether a link to the review is suspect."""
         return any(suspect.link.target.kind == REVIEW for suspect in self.suspects)
+
+    @property
+    def causes(self) -> tuple[Node, ...]:
+        """The changes that make links suspect, each once."""
+        return tuple(dict.fromkeys(cause for each in self.suspects for cause in each.causes))
 
 
 def standings(chains: Sequence[Chain], lock: Lock | None) -> tuple[Standing, ...]:
@@ -317,32 +321,33 @@ def standings(chains: Sequence[Chain], lock: Lock | None) -> tuple[Standing, ...
 def _standing(chain: Chain, review: Review | None) -> Standing:
     if review is None:
         return Standing(chain, None, (), ())
-    known = review.prints
-    return Standing(chain, review, suspects(chain, known), changed(chain.prints, known))
+    prints = review.prints
+    return Standing(chain, review, suspects(chain, prints), changed(chain.prints, prints))
 
 
 @dataclass(frozen=True, slots=True)
-class Withdrawn:
+class WithdrawnRequirement:
     """A requirement that was reviewed when it was claimed, and is claimed no more."""
 
     review: Review
     retired: bool
-    """It is still there, and was retired since; else it is not among the requirements."""
+    """Whether it has been retired; else it is not among the requirements."""
     successor: str = ""
     """The requirement that has its sentence now, and had none when it was reviewed."""
 
     @property
     def text(self) -> str:
-        """In a sentence, with what the runs had shown of it."""
+        """A sentence, with the verdicts of the review."""
         how = "is retired now" if self.retired else "is not among the requirements any more"
         renamed = f"; {self.successor} has its sentence" if self.successor else ""
-        return f"{self.review.requirement} was reviewed ({self.review.shown}) and {how}{renamed}"
+        id, verdicts = self.review.requirement, self.review.verdict_summary
+        return f"{id} was reviewed ({verdicts}) and {how}{renamed}"
 
 
-def withdrawn(
+def withdrawn_requirements(
     requirements: Iterable[Requirement], chains: Iterable[Chain], lock: Lock | None
-) -> tuple[Withdrawn, ...]:
-    """What the lock says was claimed, and is not any more: removed, renamed, split or retired."""
+) -> tuple[WithdrawnRequirement, ...]:
+    """The requirements of the lock that are removed, renamed, split or retired."""
     if lock is None:
         return ()
     status = {requirement.id: requirement.status for requirement in requirements}
@@ -352,7 +357,7 @@ def withdrawn(
         if chain.requirement not in lock.reviews
     }
     return tuple(
-        Withdrawn(
+        WithdrawnRequirement(
             review,
             id in status,
             new.get(review.prints.get(Node(SENTENCE, id)), "") if id not in status else "",
@@ -362,7 +367,9 @@ def withdrawn(
     )
 
 
-def told(found: Sequence[Withdrawn], path: str) -> tuple[Diagnostic, ...]:
+def withdrawal_warnings(
+    withdrawn: Sequence[WithdrawnRequirement], path: str
+) -> tuple[Diagnostic, ...]:
     """F511 or F540 for each requirement that was withdrawn since its review."""
     return tuple(
         Diagnostic(
@@ -372,5 +379,5 @@ def told(found: Sequence[Withdrawn], path: str) -> tuple[Diagnostic, ...]:
             help=f"if that is meant, accept it: `fretc lock {one.review.requirement} ...`",
             severity=Severity.WARNING,
         )
-        for one in found
+        for one in withdrawn
     )

@@ -1,6 +1,6 @@
-"""`waivers.toml`: why a requirement may stand without being shown, who says so, and until when.
+"""`waivers.toml`: requirements that pass without being shown, with reason, person and last day.
 
-A waiver hides nothing: the verdict that it covers is shown beside it. It ends by itself.
+A waiver hides nothing: the report has the verdict that it covers. It ends by itself.
 """
 
 from __future__ import annotations
@@ -32,17 +32,17 @@ VERDICTS = (
     kernel.VACUOUS,
     NOT_EXERCISED,
 )
-"""What a waiver may cover: verdicts that do not show a requirement. That something has changed
-since is none of them: what somebody waived was another thing."""
+"""The verdicts that a waiver may cover: those that do not show a requirement. `suspect` is none of
+them, because the person waived an earlier state."""
 
 
 @dataclass(frozen=True, slots=True)
 class Waiver:
-    """One requirement, and why it need not be shown up to a day."""
+    """The waiver of one verdict of one requirement, up to a day."""
 
     requirement: str
     verdict: str
-    """The one that it covers: one of `VERDICTS`."""
+    """The verdict that it covers: one of `VERDICTS`."""
     reason: str
     by: str
     role: str
@@ -62,14 +62,14 @@ class Waiver:
 
 
 def read(
-    path: str, known: Sequence[str] | None, day: str
+    path: str, ids: Sequence[str] | None, day: str
 ) -> tuple[Mapping[str, Waiver], tuple[Diagnostic, ...]]:
-    """The waivers of a file, and all that there is to say of them.
+    """The waivers of a file, and diagnostics about them.
 
     Args:
         path: the file.
-        known: the ids of the requirements; None: any may be waived.
-        day: on which they are to count; one that does not is told as a warning.
+        ids: the ids of the requirements; None: any may be waived.
+        day: on which they shall count; one that does not is a warning.
     """
     source = read_text(path)
     if isinstance(source, Diagnostic):
@@ -77,11 +77,14 @@ def read(
     tables = read_tables(source.span(), Code.BAD_WAIVER, "the waivers file")
     if isinstance(tables, Diagnostic):
         return {}, (tables,)
-    wrong = tuple(d for id, told in tables.data.items() for d in _mistakes(tables, id, told, known))
+    wrong = tuple(
+        d for id, fields in tables.data.items() for d in _mistakes(tables, id, fields, ids)
+    )
     if wrong:
         return {}, wrong
     waivers = {
-        id: Waiver(id, **told, span=tables.value(id, "verdict")) for id, told in tables.data.items()
+        id: Waiver(id, **fields, span=tables.value(id, "verdict"))
+        for id, fields in tables.data.items()
     }
     return waivers, tuple(
         _ended(tables, waiver) for waiver in waivers.values() if not waiver.covers(day)
@@ -89,20 +92,20 @@ def read(
 
 
 def _mistakes(
-    tables: Tables, id: str, told: Any, known: Sequence[str] | None
+    tables: Tables, id: str, fields: Any, ids: Sequence[str] | None
 ) -> Iterator[Diagnostic]:
-    if not isinstance(told, dict):
+    if not isinstance(fields, dict):
         yield _wrong(tables, f"`{id}` is no waiver", f"write `[{id}]`, then its fields", id)
         return
-    if known is not None and id not in known:
-        near = suggestion(id, known)
+    if ids is not None and id not in ids:
+        near = suggestion(id, ids)
         mend = f"did you mean `{near}`?" if near else "name a requirement of the project"
         yield _wrong(tables, f"{id} is waived, and is not among the requirements", mend, id)
-    for key in told:
+    for key in fields:
         if key not in _FIELDS:
             yield unknown_key(Code.BAD_WAIVER, key, _FIELDS, tables.place(id, key), f"[{id}]")
     for name in _FIELDS:
-        value = told.get(name)
+        value = fields.get(name)
         if name == "verdict" and value not in VERDICTS:
             yield _no_verdict(tables, id, value)
         elif not isinstance(value, str) or not value.strip():
@@ -115,7 +118,7 @@ def _mistakes(
 
 
 def _no_verdict(tables: Tables, id: str, value: object) -> Diagnostic:
-    """A waiver that named none would excuse whatever comes later."""
+    """A waiver without a verdict would cover whatever comes later."""
     listed = ", ".join(f"`{word}`" for word in VERDICTS)
     if value is None:
         what, mend = f"the waiver of {id} does not say which verdict it covers", 'add `verdict = "'
@@ -125,7 +128,7 @@ def _no_verdict(tables: Tables, id: str, value: object) -> Diagnostic:
     return _wrong(tables, f"`{value}` is no verdict that can be waived", mend, id, "verdict")
 
 
-def idle(waiver: Waiver, verdict: str) -> Diagnostic:
+def idle_waiver(waiver: Waiver, verdict: str) -> Diagnostic:
     """F543: the requirement has another verdict than the one that is waived."""
     return Diagnostic(
         Code.IDLE_WAIVER,

@@ -19,7 +19,7 @@ from compiler.files.shell_quoting import (
 )
 from fretc.report.make import make
 from tests.command import Fretc
-from tests.fretc.report.cases import made, project, result, said
+from tests.fretc.report.cases import as_json, project, report_of, result
 
 HOSTILE = (
     "a b.mcap",
@@ -102,8 +102,8 @@ def test_the_commands_of_a_report_execute_nothing_that_evidence_names(
 ) -> None:
     """`fretc` is a stand-in that does nothing: whatever else is executed, a name has done."""
     known = project(tmp_path / "req")
-    made(known, tmp_path, result(known, "satisfied", run=f"{name}.mcap"))
-    commands = said(make(known, str(tmp_path / "evidence.json")))["commands"]
+    report_of(known, tmp_path, result(known, "satisfied", run=f"{name}.mcap"))
+    commands = as_json(make(known, str(tmp_path / "evidence.json")))["commands"]
     place = tmp_path / "run"
     place.mkdir()
     for command in commands:

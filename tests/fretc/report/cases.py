@@ -10,7 +10,7 @@ from compiler.project.folder import Project, load
 from fretc.audit.evidence.basis import BINDINGS as BINDINGS_PART
 from fretc.audit.evidence.basis import KINDS, of_all
 from fretc.audit.plan import bases
-from fretc.report.make import Made, make
+from fretc.report.make import ReportBuild, make
 
 BINDINGS = """\
 [clock]
@@ -164,7 +164,7 @@ def result(
     `changes` replace fields; those of `hashes` and `health` are put into the present ones.
     """
     assert known.declarations is not None
-    made = {"log": LOG, **basis(known, id)}
+    hashes = {"log": LOG, **basis(known, id)}
     health = {
         "intact": True,
         "size": 1234567,
@@ -205,16 +205,16 @@ def result(
         "units": {"clearance": "m", "vx": "m/s"},
         "assumptions": [],
         **changes,
-        "hashes": {**made, **changes.get("hashes", {})},
+        "hashes": {**hashes, **changes.get("hashes", {})},
         "health": {**health, **changes.get("health", {})},
     }
 
 
 def basis(known: Project, name: str) -> Mapping[str, str]:
     """What an audit would record of a requirement now."""
-    found = bases(known)
-    mine = next((each for each in known.requirements if each.id == name), None)
-    return found[id(mine)] if mine is not None else dict.fromkeys(KINDS, "0" * 64)
+    basis_of = bases(known)
+    requirement = next((each for each in known.requirements if each.id == name), None)
+    return basis_of[id(requirement)] if requirement is not None else dict.fromkeys(KINDS, "0" * 64)
 
 
 ODOM = {
@@ -247,14 +247,14 @@ def evidence(known: Project, *results: Mapping[str, Any]) -> dict[str, Any]:
     }
 
 
-def made(known: Project, folder: Path, *results: Mapping[str, Any]) -> Made:
+def report_of(known: Project, folder: Path, *results: Mapping[str, Any]) -> ReportBuild:
     """The report about these results."""
     file = folder / "evidence.json"
     file.write_text(json.dumps(evidence(known, *results)), encoding="utf-8")
     return make(known, str(file))
 
 
-def said(report: Made) -> dict[str, Any]:
+def as_json(report: ReportBuild) -> dict[str, Any]:
     """What the report says, as plain data."""
     assert report.json is not None
     content: dict[str, Any] = json.loads(report.json)

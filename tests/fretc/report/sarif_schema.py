@@ -26,12 +26,12 @@ def many(name: str, *, unique: bool = True) -> dict[str, Any]:
 def kind(required: str = "", any_of: str = "", **fields: Any) -> dict[str, Any]:
     """An object with these fields and a property bag."""
     fields["properties"] = ref("propertyBag")
-    made: dict[str, Any] = {"type": "object", "additionalProperties": False, "properties": fields}
+    schema: dict[str, Any] = {"type": "object", "additionalProperties": False, "properties": fields}
     if required:
-        made["required"] = required.split()
+        schema["required"] = required.split()
     if any_of:
-        made["anyOf"] = [{"required": [name]} for name in any_of.split()]
-    return made
+        schema["anyOf"] = [{"required": [name]} for name in any_of.split()]
+    return schema
 
 
 DEFINITIONS = {

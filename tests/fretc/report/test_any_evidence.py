@@ -21,9 +21,8 @@ from fretc.report.forms.gsn import gsn
 from fretc.report.forms.junit import junit
 from fretc.report.forms.markdown import markdown
 from fretc.report.forms.sarif import sarif
-from fretc.report.make import Made
-from tests.fretc.report.cases import R1, moment, project, requirement, result
-from tests.fretc.report.cases import made as reported
+from fretc.report.make import ReportBuild
+from tests.fretc.report.cases import R1, moment, project, report_of, requirement, result
 from tests.fretc.report.test_make import validate
 
 pytestmark = pytest.mark.filterwarnings("ignore:Generating overly large repr")
@@ -153,7 +152,7 @@ def known(folder: Path) -> Project:
 def test_any_evidence_gives_a_report_that_fits_its_schema(
     drawn: list[dict[str, Any]], known: Project, folder: Path
 ) -> None:
-    report = reported(known, folder, *(result(known, **each) for each in drawn))
+    report = report_of(known, folder, *(result(known, **each) for each in drawn))
     assert report.report is not None
     assert report.json is not None
     validate("report.schema.json", json.loads(report.json))
@@ -163,7 +162,7 @@ def test_any_evidence_gives_a_report_that_fits_its_schema(
 # One model ---------------------------------------------------------------------------------------
 
 
-def told(results: Sequence[Mapping[str, Any]], known: Project, id: str) -> tuple[str, bool]:
+def expected(results: Sequence[Mapping[str, Any]], known: Project, id: str) -> tuple[str, bool]:
     """Verdict and currency of a requirement, written down from what they mean.
 
     Violated if any run violates it, and that is current if any such run is. Else the worst of the
@@ -185,11 +184,11 @@ def is_suspect(one: Mapping[str, Any], known: Project) -> bool:
     return changed or damaged
 
 
-def forms(made: Made, results: Sequence[dict[str, Any]], known: Project) -> dict[str, Any]:
-    assert made.report is not None, made.diagnostics[0].message
-    whole = made.report
+def forms(build: ReportBuild, results: Sequence[dict[str, Any]], known: Project) -> dict[str, Any]:
+    assert build.report is not None, build.diagnostics[0].message
+    whole = build.report
     suite = ElementTree.fromstring(junit(whole))[0]
-    log = json.loads(sarif(whole, made.results, known.rules, []))["runs"][0]["results"]
+    log = json.loads(sarif(whole, build.results, known.rules, []))["runs"][0]["results"]
     return {
         "marks": {v.id: (v.mark.word, v.mark.suspect) for v in whole.requirements},
         "status": _status(whole),
@@ -209,36 +208,36 @@ def test_all_forms_follow_one_model_of_verdict_and_currency(
     drawn: list[dict[str, Any]], known: Project, folder: Path
 ) -> None:
     results = [result(known, **each) for each in drawn]
-    made = reported(known, folder, *results)
-    said = forms(made, results, known)
-    right = {id: told(results, known, id) for id in IDS}
-    shown = {id: mark == ("satisfied", False) for id, mark in right.items()}
+    build = report_of(known, folder, *results)
+    content = forms(build, results, known)
+    right = {id: expected(results, known, id) for id in IDS}
+    is_shown = {id: mark == ("satisfied", False) for id, mark in right.items()}
     red = [id for id, (word, _) in right.items() if word == "violated"]
-    assert said["marks"] == right
+    assert content["marks"] == right
     fails = any(word == "violated" or suspect for word, suspect in right.values())
-    assert said["status"] == (1 if fails else 0 if all(shown.values()) else 3)
-    first = said["markdown"].splitlines()[0]
+    assert content["status"] == (1 if fails else 0 if all(is_shown.values()) else 3)
+    first = content["markdown"].splitlines()[0]
     for id, (word, suspect) in right.items():
-        (kind, *more) = said["junit"][id] or [""]
+        (kind, *more) = content["junit"][id] or [""]
         assert not more
-        assert (kind == "") == shown[id]
+        assert (kind == "") == is_shown[id]
         if word == "violated":
             assert kind == "failure"
             assert id in first
             assert f"{id} is violated" not in first or not suspect
         if word == "no data":
             assert kind == "error"
-        rows = [row for row in said["csv"] if row["requirement"] == id]
+        rows = [row for row in content["csv"] if row["requirement"] == id]
         currency = "suspect" if suspect else "current"
         assert {(row["verdict"], row["currency"]) for row in rows} == {(word, currency)}
-        goal = said["gsn"][f"G_req_2d_{id}"]
-        assert bool(goal.get("undeveloped")) is not shown[id]
+        goal = content["gsn"][f"G_req_2d_{id}"]
+        assert bool(goal.get("undeveloped")) is not is_shown[id]
     assert ("violated" in first) is bool(red)
     levels = {
         (r["requirement"], "error" if r["verdict"] == "violated" else level(r, known))
         for r in results
     }
-    assert set(said["sarif"]) == levels
+    assert set(content["sarif"]) == levels
 
 
 def level(one: Mapping[str, Any], known: Project) -> str:
@@ -253,9 +252,9 @@ def test_reasons_come_by_severity_everywhere(
     drawn: list[dict[str, Any]], known: Project, folder: Path
 ) -> None:
     results = [result(known, **each) for each in drawn]
-    made = reported(known, folder, *results)
-    report = made.report
-    assert report is not None, made.diagnostics[0].message
+    build = report_of(known, folder, *results)
+    report = build.report
+    assert report is not None, build.diagnostics[0].message
     ranks = list(VERDICTS)
     for view in report.requirements:
         words = [
@@ -265,9 +264,9 @@ def test_reasons_come_by_severity_everywhere(
             assert [ranks.index(word) for word in words] == sorted(map(ranks.index, words))
         if view.mark.word == "violated":
             assert "violated" in view.reasons[0]
-            said = forms(made, results, known)
-            assert said["messages"][view.id][0].split(": ", 1)[1] == view.reasons[0]
-            assert "violated" in _row(said["markdown"], view.id)
+            content = forms(build, results, known)
+            assert content["messages"][view.id][0].split(": ", 1)[1] == view.reasons[0]
+            assert "violated" in _row(content["markdown"], view.id)
     order = [ranks.index(each.mark.word) for each in report.not_shown if not each.mark.suspect]
     assert order == sorted(order)
 

@@ -15,13 +15,13 @@ from fretish.diagnostics.diagnostic import Code, Severity
 from tests.fretc.report.cases import (
     BINDINGS,
     R1,
+    as_json,
     evidence,
-    made,
     moment,
     project,
+    report_of,
     requirement,
     result,
-    said,
     violation,
     word,
     words,
@@ -93,8 +93,8 @@ def test_each_verdict_has_its_overall_result(
     sentence: str,
 ) -> None:
     known = project(tmp_path)
-    report = made(known, tmp_path, result(known, verdict, **changes))
-    content = said(report)
+    report = report_of(known, tmp_path, result(known, verdict, **changes))
+    content = as_json(report)
     overall = content["overall"]
     assert (overall["mark"]["word"], overall["headline"]) == (word, headline)
     limit = [UNVIOLABLE] if verdict == "satisfied" else []
@@ -110,10 +110,10 @@ def test_each_verdict_has_its_overall_result(
     assert f"</span>{verdict}</span>" in report.html
 
 
-def test_the_worst_run_decides_and_every_reason_is_told(tmp_path: Path) -> None:
+def test_the_worst_run_decides_and_every_reason_is_reported(tmp_path: Path) -> None:
     known = project(tmp_path)
-    content = said(
-        made(
+    content = as_json(
+        report_of(
             known,
             tmp_path,
             result(known, "satisfied", run="a.mcap"),
@@ -138,8 +138,8 @@ def test_the_worst_run_decides_and_every_reason_is_told(tmp_path: Path) -> None:
 
 def test_several_requirements_are_counted_in_words(tmp_path: Path) -> None:
     known = project(tmp_path, R1, requirement("R2", "the robot shall always satisfy stopped"))
-    overall = said(
-        made(known, tmp_path, result(known, "satisfied"), result(known, "vacuous", "R2"))
+    overall = as_json(
+        report_of(known, tmp_path, result(known, "satisfied"), result(known, "vacuous", "R2"))
     )["overall"]
     assert overall["headline"] == "Not everything that was claimed is shown."
     assert overall["sentences"][0] == "1 of 2 requirements held in the audited run."
@@ -147,8 +147,8 @@ def test_several_requirements_are_counted_in_words(tmp_path: Path) -> None:
 
 def test_a_requirement_that_one_run_left_out_is_not_said_to_hold_in_all(tmp_path: Path) -> None:
     known = project(tmp_path, R1, requirement("R2", "the robot shall always satisfy stopped"))
-    overall = said(
-        made(
+    overall = as_json(
+        report_of(
             known,
             tmp_path,
             result(known, "satisfied"),
@@ -166,7 +166,7 @@ def test_a_requirement_that_one_run_left_out_is_not_said_to_hold_in_all(tmp_path
 
 def test_without_evidence_every_requirement_is_not_exercised(tmp_path: Path) -> None:
     report = make(project(tmp_path), "nowhere/evidence.json")
-    content = said(report)
+    content = as_json(report)
     assert content["overall"]["headline"] == "Nothing that was claimed is shown."
     assert words(content["not_shown"]) == ["not exercised"]
     assert content["not_shown"][0]["reasons"] == ["no run has been audited"]
@@ -180,7 +180,7 @@ def test_without_evidence_every_requirement_is_not_exercised(tmp_path: Path) -> 
 
 def test_a_requirement_that_the_audit_left_out_is_not_exercised(tmp_path: Path) -> None:
     known = project(tmp_path, R1, requirement("R2", "the robot shall always satisfy stopped"))
-    content = said(made(known, tmp_path, result(known, "satisfied")))
+    content = as_json(report_of(known, tmp_path, result(known, "satisfied")))
     assert words(content["requirements"]) == ["satisfied", "not exercised"]
     assert content["not_shown"][0]["reasons"] == ["the audit did not cover it"]
 
@@ -189,7 +189,7 @@ def test_a_project_without_a_requirement_shows_nothing(tmp_path: Path) -> None:
     project(tmp_path)
     known = load([], str(tmp_path / "bindings.toml"), str(tmp_path / "hazards.toml"))
     assert known.requirements == ()
-    content = said(made(known, tmp_path))
+    content = as_json(report_of(known, tmp_path))
     assert content["overall"]["mark"]["word"] == "nothing shown"
     assert content["overall"]["sentences"] == [
         "There is no requirement to show.",
@@ -213,11 +213,11 @@ def test_evidence_of_something_else_is_suspect_and_never_satisfied(
     tmp_path: Path, name: str, why: str
 ) -> None:
     known = project(tmp_path)
-    report = made(known, tmp_path, result(known, "satisfied", hashes={name: "0" * 64}))
-    content = said(report)
-    (shown,) = content["requirements"][0]["results"]
-    assert words([shown]) == ["satisfied, suspect"]
-    assert shown["suspicions"] == content["requirements"][0]["suspicions"] == [why]
+    report = report_of(known, tmp_path, result(known, "satisfied", hashes={name: "0" * 64}))
+    content = as_json(report)
+    (view,) = content["requirements"][0]["results"]
+    assert words([view]) == ["satisfied, suspect"]
+    assert view["suspicions"] == content["requirements"][0]["suspicions"] == [why]
     assert content["overall"]["headline"] == (
         f"Nothing that was claimed is shown: R1 was satisfied, and {why}."
     )
@@ -235,18 +235,20 @@ def test_a_changed_binding_makes_real_evidence_suspect(tmp_path: Path) -> None:
     after = project(tmp_path, R1, bindings=BINDINGS.replace("5 cm", "90 cm"))
     (tmp_path / "evidence.json").write_text(json.dumps(old), encoding="utf-8")
     report = make(after, str(tmp_path / "evidence.json"))
-    assert words(said(report)["requirements"]) == ["satisfied, suspect"]
+    assert words(as_json(report)["requirements"]) == ["satisfied, suspect"]
 
 
 def test_a_damaged_log_never_shows_that_something_held(tmp_path: Path) -> None:
     known = project(tmp_path)
-    content = said(made(known, tmp_path, result(known, "satisfied", health={"intact": False})))
+    content = as_json(
+        report_of(known, tmp_path, result(known, "satisfied", health={"intact": False}))
+    )
     assert words(content["requirements"]) == ["satisfied, suspect"]
     assert content["overall"]["sentences"][-1] == "Run 1 is damaged or could not be read."
 
 
 @pytest.mark.parametrize(
-    ("verdict", "shown"),
+    ("verdict", "mark"),
     [
         ("satisfied", "violated, suspect"),
         ("vacuous", "violated"),
@@ -255,17 +257,19 @@ def test_a_damaged_log_never_shows_that_something_held(tmp_path: Path) -> None:
     ],
 )
 def test_a_violation_that_is_listed_is_one_whatever_the_word_of_the_evidence(
-    tmp_path: Path, verdict: str, shown: str
+    tmp_path: Path, verdict: str, mark: str
 ) -> None:
     known = project(tmp_path)
-    content = said(made(known, tmp_path, result(known, verdict, violations=[violation(1, 2)])))
-    assert words(content["requirements"]) == [shown]
+    content = as_json(
+        report_of(known, tmp_path, result(known, verdict, violations=[violation(1, 2)]))
+    )
+    assert words(content["requirements"]) == [mark]
 
 
 def test_a_violation_on_a_damaged_log_counts(tmp_path: Path) -> None:
     known = project(tmp_path)
     bad = result(known, "violated", violations=[violation(1, 2)], health={"intact": False})
-    assert words(said(made(known, tmp_path, bad))["requirements"]) == ["violated"]
+    assert words(as_json(report_of(known, tmp_path, bad))["requirements"]) == ["violated"]
 
 
 def test_without_bindings_nothing_is_compared_and_nothing_counts(tmp_path: Path) -> None:
@@ -273,16 +277,16 @@ def test_without_bindings_nothing_is_compared_and_nothing_counts(tmp_path: Path)
     old = evidence(before, result(before, "satisfied"))
     (tmp_path / "evidence.json").write_text(json.dumps(old), encoding="utf-8")
     (tmp_path / "bindings.toml").unlink()
-    content = said(make(project(tmp_path, R1, bindings=None), str(tmp_path / "evidence.json")))
-    (shown,) = content["requirements"][0]["results"]
-    assert shown["suspicions"] == ["the bindings have changed since the audit"]
+    content = as_json(make(project(tmp_path, R1, bindings=None), str(tmp_path / "evidence.json")))
+    (view,) = content["requirements"][0]["results"]
+    assert view["suspicions"] == ["the bindings have changed since the audit"]
     assert content["requirements"][0]["propositions"][0]["is_bound"] is False
 
 
 def test_a_sentence_with_an_error_is_listed_as_unformalized(tmp_path: Path) -> None:
     known = project(tmp_path, R1, requirement("R2", "the robot shall alwys satisfy stopped"))
-    report = made(known, tmp_path, result(known, "satisfied"))
-    content = said(report)
+    report = report_of(known, tmp_path, result(known, "satisfied"))
+    content = as_json(report)
     assert words(content["requirements"]) == ["satisfied", "unformalized"]
     assert content["requirements"][1]["error"] == {
         "code": "F107",
@@ -303,7 +307,7 @@ def test_a_retired_requirement_is_neither_claimed_nor_missing(tmp_path: Path) ->
     )
     known = project(tmp_path, R1, retired)
     broken = result(known, "violated", "R2", violations=[violation(1, 2)])
-    content = said(made(known, tmp_path, result(known, "satisfied"), broken))
+    content = as_json(report_of(known, tmp_path, result(known, "satisfied"), broken))
     assert words(content["requirements"]) == ["satisfied", "retired"]
     assert content["not_shown"] == []
     assert content["planned"] == [
@@ -322,14 +326,16 @@ def test_a_retired_requirement_is_neither_claimed_nor_missing(tmp_path: Path) ->
 
 def test_two_requirements_of_one_id_have_sections_of_their_own(tmp_path: Path) -> None:
     known = project(tmp_path, R1, R1.replace("eventually", "always"))
-    content = said(made(known, tmp_path, result(known, "satisfied")))
+    content = as_json(report_of(known, tmp_path, result(known, "satisfied")))
     assert [view["anchor"] for view in content["requirements"]] == ["req-R1", "req-R1--2"]
     assert words(content["requirements"]) == ["satisfied", "satisfied, suspect"]
 
 
 def test_a_project_with_errors_is_never_all_shown(tmp_path: Path) -> None:
     known = project(tmp_path, R1, "+++\nid = 1\n+++\nthe robot shall satisfy stopped\n")
-    overall = said(made(known, tmp_path, result(known, "satisfied", latencies_s=[])))["overall"]
+    overall = as_json(report_of(known, tmp_path, result(known, "satisfied", latencies_s=[])))[
+        "overall"
+    ]
     assert overall["headline"] == "Not everything that was claimed is shown."
     assert overall["sentences"] == [
         "1 of 2 requirements held in the audited run.",
@@ -342,7 +348,7 @@ def test_a_project_with_errors_is_never_all_shown(tmp_path: Path) -> None:
 
 def test_bindings_with_an_error_make_a_report_of_what_is_not_known(tmp_path: Path) -> None:
     report = make(project(tmp_path, R1, bindings="[clock]\ntick = 1\n"), "nowhere/evidence.json")
-    content = said(report)
+    content = as_json(report)
     assert [remark["code"] for remark in content["remarks"]] == ["F303"]
     assert content["requirements"][0]["clock"] == "not declared"
     validate("report.schema.json", content)
@@ -351,10 +357,10 @@ def test_bindings_with_an_error_make_a_report_of_what_is_not_known(tmp_path: Pat
 # What was planned ------------------------------------------------------------------------------
 
 
-def test_a_planned_method_without_a_result_is_told(tmp_path: Path) -> None:
+def test_a_planned_method_without_a_result_is_reported(tmp_path: Path) -> None:
     sentence = "whenever near the robot shall eventually satisfy stopped"
     known = project(tmp_path, requirement("R1", sentence, verify=["audit", "ajpf", "inspection"]))
-    overall = said(made(known, tmp_path, result(known, "satisfied", latencies_s=[0.0])))
+    overall = as_json(report_of(known, tmp_path, result(known, "satisfied", latencies_s=[0.0])))
     assert [(p["method"], p["has_result"], p["result"]) for p in overall["planned"]] == [
         ("audit", True, "1 run audited: satisfied"),
         (
@@ -377,12 +383,12 @@ def test_a_planned_method_without_a_result_is_told(tmp_path: Path) -> None:
 def test_what_a_target_cannot_say_is_not_expressible(tmp_path: Path) -> None:
     sentence = "when near the robot shall within 3 ticks satisfy stopped"
     known = project(tmp_path, requirement("R1", sentence, verify=["ajpf"]))
-    content = said(made(known, tmp_path))
+    content = as_json(report_of(known, tmp_path))
     (section,) = content["requirements"]
-    made_of = {view["target"]: view for view in section["artefacts"]}
-    assert list(made_of) == ["monitor", "ltl", "ajpf", "json"]
-    assert made_of["ajpf"]["sha256"] == ""
-    assert made_of["ajpf"]["refusal"].startswith(
+    artefacts = {view["target"]: view for view in section["artefacts"]}
+    assert list(artefacts) == ["monitor", "ltl", "ajpf", "json"]
+    assert artefacts["ajpf"]["sha256"] == ""
+    assert artefacts["ajpf"]["refusal"].startswith(
         "F601 AJPF cannot express the timing `within 3 ticks`"
     )
     assert content["planned"][0]["result"] == (
@@ -392,7 +398,7 @@ def test_what_a_target_cannot_say_is_not_expressible(tmp_path: Path) -> None:
 
 def test_a_response_without_a_bound_is_shown_with_a_reservation(tmp_path: Path) -> None:
     known = project(tmp_path)
-    content = said(made(known, tmp_path, result(known, "satisfied")))
+    content = as_json(report_of(known, tmp_path, result(known, "satisfied")))
     latency = content["requirements"][0]["results"][0]["latency"]
     assert latency == {
         "answered": 3,
@@ -416,19 +422,19 @@ def test_where_the_end_of_a_log_violates_the_reservation_is_the_missing_bound(
 ) -> None:
     ends = BINDINGS.replace('end = "inconclusive"', 'end = "violated"')
     known = project(tmp_path, bindings=ends)
-    content = said(made(known, tmp_path, result(known, "satisfied")))
+    content = as_json(report_of(known, tmp_path, result(known, "satisfied")))
     assert content["reservations"] == [
         "R1 sets no bound on its response. The longest answer of R1 took 2.5 s, after the "
         "trigger at 1 s, in Run 1."
     ]
 
 
-def test_a_bound_is_told_beside_the_latency(tmp_path: Path) -> None:
+def test_a_bound_is_reported_beside_the_latency(tmp_path: Path) -> None:
     known = project(
         tmp_path,
         requirement("R1", "whenever near the robot shall within 30 ticks satisfy stopped"),
     )
-    content = said(made(known, tmp_path, result(known, "satisfied")))
+    content = as_json(report_of(known, tmp_path, result(known, "satisfied")))
     latency = content["requirements"][0]["results"][0]["latency"]
     assert latency["bound"] == "The sentence allows 30 ticks (3 s)."
     assert content["reservations"] == []
@@ -436,9 +442,9 @@ def test_a_bound_is_told_beside_the_latency(tmp_path: Path) -> None:
 
 def test_each_threshold_is_shown_with_its_values_and_its_margin(tmp_path: Path) -> None:
     known = project(tmp_path)
-    report = made(known, tmp_path, result(known, "satisfied"))
-    (shown,) = said(report)["requirements"][0]["results"]
-    assert shown["thresholds"] == [
+    report = report_of(known, tmp_path, result(known, "satisfied"))
+    (view,) = as_json(report)["requirements"][0]["results"]
+    assert view["thresholds"] == [
         {
             "proposition": "near",
             "comparison": "clearance < 0.05 m",
@@ -467,8 +473,8 @@ def test_violations_open_demands_and_unknown_ticks_are_listed(tmp_path: Path) ->
         open=[moment(tick) for tick in (90, 91, 92, 95)],
         unknown=[[3, 5], [9, 9]],
     )
-    (shown,) = said(made(known, tmp_path, bad))["requirements"][0]["results"]
-    assert shown["violations"][0] == {
+    (view,) = as_json(report_of(known, tmp_path, bad))["requirements"][0]["results"]
+    assert view["violations"][0] == {
         "start": "1.4 s",
         "end": "2 s",
         "ticks": "14 to 20",
@@ -480,18 +486,18 @@ def test_violations_open_demands_and_unknown_ticks_are_listed(tmp_path: Path) ->
             ["vx", "unknown"],
         ],
     }
-    assert (shown["violations"][1]["ticks"], shown["violations"][1]["trigger"]) == ("60", "none")
-    assert shown["open"] == {
+    assert (view["violations"][1]["ticks"], view["violations"][1]["trigger"]) == ("60", "none")
+    assert view["open"] == {
         "lines": [
             "triggered from 9 s to 9.2 s (ticks 90 to 92): 3 demands",
             "triggered at 9.5 s (tick 95)",
         ],
         "total": 4,
     }
-    assert shown["unknown"] == {"lines": ["ticks 3 to 5", "tick 9"], "total": 4}
+    assert view["unknown"] == {"lines": ["ticks 3 to 5", "tick 9"], "total": 4}
 
 
-def test_what_is_uncertain_among_answers_and_open_demands_is_said(tmp_path: Path) -> None:
+def test_what_is_uncertain_among_answers_and_open_demands_is_named(tmp_path: Path) -> None:
     known = project(tmp_path)
     bad = result(
         known,
@@ -499,14 +505,14 @@ def test_what_is_uncertain_among_answers_and_open_demands_is_said(tmp_path: Path
         open=[moment(tick) for tick in (90, 91, 92, 95, 97)],
         uncertain=[10, 40, 91, 92, 95],
     )
-    (shown,) = said(made(known, tmp_path, bad))["requirements"][0]["results"]
-    assert shown["open"]["lines"] == [
+    (view,) = as_json(report_of(known, tmp_path, bad))["requirements"][0]["results"]
+    assert view["open"]["lines"] == [
         "triggered from 9 s to 9.2 s (ticks 90 to 92): 3 demands, 2 of them uncertain for "
         "propositions are unknown",
         "triggered at 9.5 s (tick 95), uncertain for propositions are unknown",
         "triggered at 9.7 s (tick 97)",
     ]
-    assert shown["latency"]["answers"] == (
+    assert view["latency"]["answers"] == (
         "3 triggers, 1 of them at the same tick, 2 of them uncertain for propositions are unknown"
     )
 
@@ -514,9 +520,9 @@ def test_what_is_uncertain_among_answers_and_open_demands_is_said(tmp_path: Path
 def test_thousands_of_violations_keep_the_report_small(tmp_path: Path) -> None:
     known = project(tmp_path)
     many = [violation(tick, tick) for tick in range(5000)]
-    report = made(known, tmp_path, result(known, "violated", ticks=5000, violations=many))
-    (shown,) = said(report)["requirements"][0]["results"]
-    assert (len(shown["violations"]), shown["violations_total"]) == (100, 5000)
+    report = report_of(known, tmp_path, result(known, "violated", ticks=5000, violations=many))
+    (view,) = as_json(report)["requirements"][0]["results"]
+    assert (len(view["violations"]), view["violations_total"]) == (100, 5000)
     assert report.html is not None
     assert "Violations: 5000, of which the first 100 are listed" in report.html
     assert len(report.html) < 150_000
@@ -541,7 +547,7 @@ def test_a_run_is_shown_with_its_health(tmp_path: Path) -> None:
         "gaps": [{"start_ns": 2 * 10**9, "end_ns": 3 * 10**9}],
         "findings": [finding],
     }
-    (run,) = said(made(known, tmp_path, result(known, "no data", health=health)))["runs"]
+    (run,) = as_json(report_of(known, tmp_path, result(known, "no data", health=health)))["runs"]
     assert run == {
         "anchor": "run-1",
         "label": "Run 1",
@@ -595,7 +601,7 @@ def test_a_log_that_could_not_be_read_is_a_run_without_hash(tmp_path: Path) -> N
         health={"intact": False, "size": None, "topics": {}},
     )
     del unread["hashes"]["log"]
-    content = said(made(known, tmp_path, unread))
+    content = as_json(report_of(known, tmp_path, unread))
     assert content["runs"][0]["health"]["word"] == "not readable"
     assert content["runs"][0]["sha256"] == ""
     assert "run" not in [line["kind"] for line in content["manifest"]]
@@ -631,7 +637,7 @@ def test_two_reports_are_the_same_byte_for_byte(
     for place in ("here", "there"):
         (tmp_path / place).mkdir()
         monkeypatch.chdir(tmp_path / place)
-        reports.append(made(*_args(everything(Path("req")), Path())))
+        reports.append(report_of(*_args(everything(Path("req")), Path())))
     first, second = reports
     assert first.html == second.html
     assert first.json == second.json
@@ -643,14 +649,14 @@ def _args(case: tuple[Any, Sequence[dict[str, Any]]], folder: Path) -> tuple[Any
 
 
 def test_a_report_names_no_place_of_this_machine(tmp_path: Path) -> None:
-    report = made(*_args(everything(tmp_path / "a"), tmp_path / "a"))
+    report = report_of(*_args(everything(tmp_path / "a"), tmp_path / "a"))
     assert report.html is not None
     assert str(tmp_path) not in report.html
-    assert str(tmp_path) not in json.dumps(said(report))
+    assert str(tmp_path) not in json.dumps(as_json(report))
 
 
 def test_every_verdict_fits_the_schema(tmp_path: Path) -> None:
-    content = said(made(*_args(everything(tmp_path), tmp_path)))
+    content = as_json(report_of(*_args(everything(tmp_path), tmp_path)))
     assert sorted(words(content["requirements"])) == [
         "inconclusive",
         "no data, suspect",
@@ -663,7 +669,7 @@ def test_every_verdict_fits_the_schema(tmp_path: Path) -> None:
 
 
 def test_a_report_that_says_less_does_not_fit_the_schema(tmp_path: Path) -> None:
-    content = said(made(*_args(everything(tmp_path), tmp_path)))
+    content = as_json(report_of(*_args(everything(tmp_path), tmp_path)))
     del content["requirements"][0]["reasons"]
     with pytest.raises(jsonschema.ValidationError, match="'reasons' is a required property"):
         validate("report.schema.json", content)
@@ -685,18 +691,18 @@ def test_the_evidence_of_the_recorded_run_fits_its_schema_and_is_reported(tmp_pa
     file = tmp_path / "evidence.json"
     file.write_text(audit.evidence, encoding="utf-8")
     report = make(known, str(file))
-    content = said(report)
+    content = as_json(report)
     validate("report.schema.json", content)
     assert words(content["requirements"][0]["results"]) == ["satisfied", "no data"]
     assert [run["health"]["word"] for run in content["runs"]] == ["not readable", "no damage found"]
     assert report.diagnostics == ()
 
 
-def test_a_log_that_was_not_hashed_is_said_not_to_be(tmp_path: Path) -> None:
+def test_a_log_that_was_not_hashed_is_reported_as_such(tmp_path: Path) -> None:
     known = project(tmp_path)
     audited = result(known, "satisfied")
     hashes = {name: value for name, value in audited["hashes"].items() if name != "log"}
     hashes["log_summary"] = "cd" * 32
-    (run,) = said(made(known, tmp_path, {**audited, "hashes": hashes}))["runs"]
+    (run,) = as_json(report_of(known, tmp_path, {**audited, "hashes": hashes}))["runs"]
     assert run["sha256"] == ""
     assert run["checked"].endswith("; not hashed")

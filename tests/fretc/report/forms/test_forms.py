@@ -53,8 +53,8 @@ def form(fretc: Fretc, name: str, *options: str) -> str:
 
 def test_csv_has_a_row_for_each_requirement_and_run(reported: Fretc) -> None:
     rows = list(csv.DictReader(io.StringIO(form(reported, "csv"))))
-    found = [(row["requirement"], row["verdict"], row["run"], row["run_verdict"]) for row in rows]
-    assert found == [
+    cells = [(row["requirement"], row["verdict"], row["run"], row["run_verdict"]) for row in rows]
+    assert cells == [
         ("R1", "satisfied", "logs/a.mcap", "satisfied"),
         ("R1", "satisfied", "logs/b.mcap", "satisfied"),
         ("R2", "violated", "logs/a.mcap", "violated"),
@@ -118,15 +118,15 @@ def test_a_suspect_requirement_fails_whatever_its_verdict(reported: Fretc) -> No
     path = Path("requirements/bindings.toml")
     path.write_text(path.read_text().replace("< 0.01 m/s", "< 0.02 m/s"))
     suite = ElementTree.fromstring(form(reported, "junit"))[0]
-    told = [(child.tag, child.attrib["message"]) for case in suite for child in case]
+    messages = [(child.tag, child.attrib["message"]) for case in suite for child in case]
     why = "reason of R{}; suspect, because the bindings have changed since the audit"
-    assert told[:2] == [
+    assert messages[:2] == [
         ("failure", f"satisfied, suspect: Run 1: satisfied, {why.format(1)}"),
         ("failure", f"violated, suspect: Run 1: violated, {why.format(2)}"),
     ]
 
 
-def test_sarif_tells_suspect_evidence_as_such(reported: Fretc) -> None:
+def test_sarif_marks_suspect_evidence(reported: Fretc) -> None:
     log = json.loads(form(reported, "sarif"))
     jsonschema.validate(log, SARIF)
     levels = [(one["ruleId"], one["level"]) for one in log["runs"][0]["results"]]
@@ -158,44 +158,44 @@ def kind(id: str) -> str:
 
 def complaints(elements: dict[str, dict[str, Any]]) -> list[str]:
     """V01 to V06 and V10 of gsn2x, C01 to C04, and goals that nobody refers to."""
-    found = []
-    known = {"text", "supportedBy", "inContextOf", "undeveloped", "challenges", "defeated"}
+    errors = []
+    attributes = {"text", "supportedBy", "inContextOf", "undeveloped", "challenges", "defeated"}
     challenged = [e["challenges"] for e in elements.values() if "challenges" in e]
     for id, element in elements.items():
         below, around = element.get("supportedBy", []), element.get("inContextOf", [])
-        if not kind(id) or not element["text"] or element.keys() - known:
-            found.append(id)
+        if not kind(id) or not element["text"] or element.keys() - attributes:
+            errors.append(id)
         if (below or around) and kind(id) not in ("S", "G"):
-            found.append(f"{id} refers")
-        found += [f"{id} {n}" for n in below if kind(n) not in SUPPORTS or n not in elements]
-        found += [f"{id} {n}" for n in around if kind(n) not in AROUND or n not in elements]
+            errors.append(f"{id} refers")
+        errors += [f"{id} {n}" for n in below if kind(n) not in SUPPORTS or n not in elements]
+        errors += [f"{id} {n}" for n in around if kind(n) not in AROUND or n not in elements]
         if len({*below, *around}) < len(below) + len(around) or id in (*below, *around):
-            found.append(f"{id} twice")
+            errors.append(f"{id} twice")
         developed = bool(below) or kind(id) not in ("S", "G")
         if developed == element.get("undeveloped", False):
-            found.append(f"{id} undeveloped")
+            errors.append(f"{id} undeveloped")
         if (kind(id) == "CSn") != (element.get("challenges", id) in elements.keys() - {id}):
-            found.append(f"{id} challenges")
+            errors.append(f"{id} challenges")
         if element.get("defeated") and id not in challenged:
-            found.append(f"{id} defeated")
+            errors.append(f"{id} defeated")
     referred = {
         n for e in elements.values() for k in ("supportedBy", "inContextOf") for n in e.get(k, [])
     }
     alone = {id for id in elements if kind(id) != "CSn"} - referred
-    found += [f"{id} alone" for id in alone - {"G_top"}]
+    errors += [f"{id} alone" for id in alone - {"G_top"}]
     below = {id: element.get("supportedBy", []) for id, element in elements.items()}
-    found += [f"{id} in a circle" for id in below if id in _reached(below, id)]
-    return found
+    errors += [f"{id} in a circle" for id in below if id in _reached(below, id)]
+    return errors
 
 
 def _reached(below: dict[str, list[str]], id: str) -> set[str]:
-    seen: set[str] = set()
+    visited: set[str] = set()
     waiting = list(below[id])
     while waiting:
-        if (found := waiting.pop()) not in seen:
-            seen.add(found)
-            waiting += below.get(found, [])
-    return seen
+        if (other := waiting.pop()) not in visited:
+            visited.add(other)
+            waiting += below.get(other, [])
+    return visited
 
 
 @pytest.mark.parametrize(
@@ -235,8 +235,8 @@ def test_gsn_is_an_argument_that_gsn2x_takes(reported: Fretc) -> None:
 
 def test_gsn_claims_no_more_than_is_shown(reported: Fretc) -> None:
     elements = yaml.safe_load(form(reported, "gsn"))
-    shown = {id: element.get("supportedBy") for id, element in elements.items() if "req" in id}
-    goals = {id: below for id, below in shown.items() if id.startswith("G")}
+    support = {id: element.get("supportedBy") for id, element in elements.items() if "req" in id}
+    goals = {id: below for id, below in support.items() if id.startswith("G")}
     assert goals["G_req_2d_R1"] == ["Sn_req_2d_R1"]
     assert [goals[f"G_req_2d_R{n}"] for n in (2, 3, 4, 5)] == [None] * 4
     defeated = [id for id, element in elements.items() if element.get("defeated")]

@@ -18,15 +18,15 @@ from reqif.parser import ReqIFParser
 
 from compiler.files.settings import Settings
 from compiler.project.parents import Parent, parents
-from fretc.report.forms import extras as forms
+from fretc.report.forms import forms
 from fretc.report.forms.reqif import reqif as form
 from fretc.report.model.views import HazardView, Report, verdict_mark
 from tests.command import Fretc, write
 from tests.fretc.report.cases import (
     HAZARDS,
     evidence,
-    made,
     project,
+    report_of,
     requirement,
     result,
     violation,
@@ -61,7 +61,7 @@ def schema() -> xmlschema.XMLSchema:
 
 
 @dataclass(frozen=True)
-class Found:
+class Content:
     """What the library's parser finds: objects by their foreign id, and attributes by name."""
 
     objects: dict[str, dict[str, Any]]
@@ -69,7 +69,7 @@ class Found:
     places: list[tuple[int, str]]
 
 
-def read(text: str) -> Found:
+def read(text: str) -> Content:
     bundle = ReqIFParser.parse_from_string(text)
     assert bundle.exceptions == []
     content = bundle.core_content.req_if_content
@@ -94,7 +94,7 @@ def read(text: str) -> Found:
         names[one.identifier] = values["ReqIF.ForeignID"]
         objects[names[one.identifier]] = values
     assert len(objects) == len(content.spec_objects)
-    return Found(
+    return Content(
         objects,
         [(names[one.source], names[one.target]) for one in content.spec_relations],
         [
@@ -130,7 +130,7 @@ def small(tmp_path_factory: pytest.TempPathFactory) -> Report:
     """One hazard, one requirement, one run."""
     folder = tmp_path_factory.mktemp("small")
     known = project(folder)
-    report = made(known, folder, result(known, "satisfied")).report
+    report = report_of(known, folder, result(known, "satisfied")).report
     assert report is not None
     return report
 
@@ -198,8 +198,8 @@ def test_each_object_has_what_is_known_of_it(exported: Callable[[], str]) -> Non
 
 def test_the_verdicts_are_those_of_the_report(exported: Callable[[], str]) -> None:
     objects = read(exported()).objects
-    found = {id: values["Verdict"] for id, values in objects.items() if "Verdict" in values}
-    assert found == {
+    verdicts = {id: values["Verdict"] for id, values in objects.items() if "Verdict" in values}
+    assert verdicts == {
         "R1": "satisfied",
         "R2": "violated",
         "R3": "waived",
@@ -212,7 +212,7 @@ def test_the_verdicts_are_those_of_the_report(exported: Callable[[], str]) -> No
     assert "F107" in objects["R4"]["Reasons"]
 
 
-def test_suspect_evidence_is_told_as_such(exported: Callable[[], str]) -> None:
+def test_suspect_evidence_is_reported_as_such(exported: Callable[[], str]) -> None:
     path = Path("requirements/bindings.toml")
     path.write_text(path.read_text().replace("< 5 cm", "< 6 cm"))
     values = read(exported()).objects["R1"]
@@ -257,16 +257,16 @@ def test_texts_come_back_as_they_were(exported: Callable[[], str]) -> None:
 def ours(text: str) -> Mapping[str, Parent]:
     """As the parents of another project, which no ReqIF library reads."""
     write("exported/back.reqif", text)
-    found, wrong = parents(Settings(Path("exported"), ("back.reqif",)))
-    assert wrong == ()
-    return found
+    objects, mistakes = parents(Settings(Path("exported"), ("back.reqif",)))
+    assert mistakes == ()
+    return objects
 
 
 def test_it_can_be_the_parents_of_another_project(exported: Callable[[], str]) -> None:
-    found = ours(exported())
-    assert tuple(found) == IDS
-    assert found["R2"] == Parent("R2", "Title of R2", "Stand.", "back.reqif")
-    assert found["R1"].text == TEXT
+    objects = ours(exported())
+    assert tuple(objects) == IDS
+    assert objects["R2"] == Parent("R2", "Title of R2", "Stand.", "back.reqif")
+    assert objects["R1"].text == TEXT
 
 
 def test_the_same_report_gives_the_same_bytes(
@@ -287,11 +287,11 @@ def test_a_project_without_hazards_and_runs_fits_the_schema(
 ) -> None:
     project(Path("requirements"), hazards=None, bindings=None)
     fretc("report", "--reqif", "out.reqif")
-    found = read(Path("out.reqif").read_text("utf-8"))
+    content = read(Path("out.reqif").read_text("utf-8"))
     schema.validate("out.reqif")
-    assert found.places == [(1, "R1")]
-    assert (found.objects["R1"]["Parents"], found.relations) == ("HAZ-1", [])
-    assert "Runs" not in found.objects["R1"]
+    assert content.places == [(1, "R1")]
+    assert (content.objects["R1"]["Parents"], content.relations) == ("HAZ-1", [])
+    assert "Runs" not in content.objects["R1"]
 
 
 def test_a_project_of_nothing_fits_the_schema(small: Report, schema: xmlschema.XMLSchema) -> None:
@@ -302,7 +302,7 @@ def test_requirements_that_share_an_id_are_two_objects(
     tmp_path: Path, schema: xmlschema.XMLSchema
 ) -> None:
     same = requirement("R1", "the robot shall never satisfy near")
-    report = made(project(tmp_path, same, same), tmp_path).report
+    report = report_of(project(tmp_path, same, same), tmp_path).report
     assert report is not None
     text = form(report)
     schema.validate(text)
@@ -330,8 +330,8 @@ def test_any_text_comes_back(small: Report, schema: xmlschema.XMLSchema, text: s
     hazard = HazardView(f"{text}.", text, f".{text}.", "", "")
     exported = form(replace(small, hazards=(hazard,), project=text))
     schema.validate(exported)
-    found = next(iter(read(exported).objects.values()))
-    assert found["ReqIF.Text"] == held(f".{text}.")
+    values = next(iter(read(exported).objects.values()))
+    assert values["ReqIF.Text"] == held(f".{text}.")
 
 
 @pytest.mark.slow
@@ -342,8 +342,8 @@ def test_a_thousand_requirements_are_all_there(small: Report) -> None:
     views = [replace(many, id=f"R{n}", anchor=f"req-R{n}") for n in range(1000)]
     rows = [replace(row, anchor=view.anchor) for view in views]
     text = form(replace(small, requirements=tuple(views), matrix=tuple(rows)))
-    found = read(text)
-    assert (len(found.objects), len(found.relations), len(found.places)) == (1001, 1000, 1001)
+    content = read(text)
+    assert (len(content.objects), len(content.relations), len(content.places)) == (1001, 1000, 1001)
 
 
 def test_of_many_runs_the_worst_are_listed(small: Report) -> None:
@@ -358,7 +358,7 @@ def test_of_many_runs_the_worst_are_listed(small: Report) -> None:
     assert lines[-1] == "… and 11 more runs"
 
 
-def test_without_the_extra_the_line_that_installs_it_is_told(
+def test_without_the_extra_the_line_that_installs_it_is_reported(
     fretc: Fretc, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     project(Path("requirements"))

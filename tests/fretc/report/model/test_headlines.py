@@ -7,7 +7,7 @@ import pytest
 
 from compiler.project.folder import Project
 from tests.fretc.report.cases import BINDINGS as DECLARED
-from tests.fretc.report.cases import R1, made, project, requirement, result, said, violation
+from tests.fretc.report.cases import R1, as_json, project, report_of, requirement, result, violation
 
 ALWAYS = "the robot shall always satisfy stopped"
 OLD = {"bindings": "0" * 64}
@@ -28,8 +28,8 @@ def overall(folder: Path, *cases: tuple[str, dict[str, str]]) -> dict[str, Any]:
         else red(known, f"R{n}", hashes=hashes)
         for n, (word, hashes) in enumerate(cases, 1)
     ]
-    found: dict[str, Any] = said(made(known, folder, *results))["overall"]
-    return found
+    outcome: dict[str, Any] = as_json(report_of(known, folder, *results))["overall"]
+    return outcome
 
 
 BINDINGS = "the bindings have changed since the audit"
@@ -70,21 +70,21 @@ SENTENCE = "the sentence has changed since the audit"
 def test_it_says_what_is_violated_what_is_stale_and_why(
     tmp_path: Path, cases: list[tuple[str, dict[str, str]]], headline: str, suspect: bool
 ) -> None:
-    found = overall(tmp_path, *cases)
-    assert found["headline"] == headline
-    assert found["mark"]["suspect"] is suspect
+    outcome = overall(tmp_path, *cases)
+    assert outcome["headline"] == headline
+    assert outcome["mark"]["suspect"] is suspect
 
 
 def test_beside_a_violation_what_else_is_stale_comes_next(tmp_path: Path) -> None:
-    found = overall(tmp_path, ("violated", {}), ("satisfied", OLD))
-    assert found["sentences"][0] == f"R2 was satisfied, and {BINDINGS}."
+    outcome = overall(tmp_path, ("violated", {}), ("satisfied", OLD))
+    assert outcome["sentences"][0] == f"R2 was satisfied, and {BINDINGS}."
 
 
 def test_red_stays_red_where_the_sentence_cannot_be_read_any_more(tmp_path: Path) -> None:
     before = project(tmp_path)
     broken = red(before, "R1")
     now = project(tmp_path, R1.replace("eventually", "evntually"))
-    content = said(made(now, tmp_path, broken))
+    content = as_json(report_of(now, tmp_path, broken))
     assert content["overall"]["headline"] == (
         "R1 was violated, and the sentence cannot be formalized now."
     )
@@ -95,7 +95,7 @@ def test_red_stays_red_where_the_sentence_cannot_be_read_any_more(tmp_path: Path
 def test_one_current_violation_is_enough_for_a_current_verdict(tmp_path: Path) -> None:
     known = project(tmp_path)
     old = red(known, "R1", run="old.mcap", hashes=OLD)
-    content = said(made(known, tmp_path, old, red(known, "R1", run="new.mcap")))
+    content = as_json(report_of(known, tmp_path, old, red(known, "R1", run="new.mcap")))
     assert content["overall"]["headline"] == "R1 is violated."
     assert [reason.split(",")[0] for reason in content["requirements"][0]["reasons"]] == [
         "Run 2: violated",
@@ -106,7 +106,7 @@ def test_one_current_violation_is_enough_for_a_current_verdict(tmp_path: Path) -
 def test_a_new_good_run_of_another_log_does_not_hide_an_old_violation(tmp_path: Path) -> None:
     known = project(tmp_path)
     old = red(known, "R1", run="old.mcap", hashes=OLD)
-    content = said(made(known, tmp_path, old, result(known, "satisfied", run="new.mcap")))
+    content = as_json(report_of(known, tmp_path, old, result(known, "satisfied", run="new.mcap")))
     assert content["overall"]["headline"] == f"R1 was violated, and {BINDINGS}."
 
 
@@ -120,9 +120,13 @@ def test_runs_with_errors_come_first_and_are_named(tmp_path: Path) -> None:
     ]
     good = result(known, "satisfied", run="a.mcap")
     wrong = result(known, "no data", run="b.mcap", health={"findings": findings})
-    content = said(made(known, tmp_path, good, wrong))
+    content = as_json(report_of(known, tmp_path, good, wrong))
     assert [run["file"] for run in content["runs"]] == ["b.mcap", "a.mcap"]
-    assert [found["code"] for found in content["runs"][0]["findings"]] == ["F405", "F402", "F401"]
+    assert [finding["code"] for finding in content["runs"][0]["findings"]] == [
+        "F405",
+        "F402",
+        "F401",
+    ]
     assert (
         "Run 2 (F405) has an error: read them before the verdicts."
         in (content["overall"]["sentences"])
@@ -133,12 +137,12 @@ def test_values_are_in_the_declared_unit_and_bounds_are_exact(tmp_path: Path) ->
     known = project(tmp_path, bindings=DECLARED.replace('unit = "m/s"', 'unit = "km/h"'))
     broken = red(known, "R1", thresholds=[near(5 / 3.6, 4.99999999 / 3.6)])
     broken["violations"][0]["values"] = {"vx": 4.99999999 / 3.6}
-    content = said(made(known, tmp_path, broken))
+    content = as_json(report_of(known, tmp_path, broken))
     (view,) = content["requirements"][0]["results"]
     assert view["violations"][0]["values"] == [["vx", "4.99999999 km/h"]]
-    (shown,) = view["thresholds"]
-    assert shown["comparison"] == "vx < 5 km/h"
-    assert shown["values"] == "0 km/h to 4.99999999 km/h"
+    (threshold,) = view["thresholds"]
+    assert threshold["comparison"] == "vx < 5 km/h"
+    assert threshold["values"] == "0 km/h to 4.99999999 km/h"
 
 
 def near(bound: float, greatest: float) -> dict[str, Any]:

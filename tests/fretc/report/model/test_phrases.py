@@ -74,7 +74,7 @@ def test_an_instant_is_universal_time() -> None:
 
 
 @pytest.mark.parametrize(
-    ("text", "seen"),
+    ("text", "visible"),
     [
         ("plain – text ✔ שלום", "plain – text ✔ שלום"),  # noqa: RUF001
         ("a\u202eb", "a\\u202eb"),
@@ -84,5 +84,5 @@ def test_an_instant_is_universal_time() -> None:
         ("zero\u200bwidth", "zero\\u200bwidth"),
     ],
 )
-def test_no_character_hides(text: str, seen: str) -> None:
-    assert phrases.visible(text) == seen
+def test_no_character_hides(text: str, visible: str) -> None:
+    assert phrases.visible(text) == visible

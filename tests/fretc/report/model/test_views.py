@@ -27,13 +27,13 @@ def within(view: Any) -> Iterator[Any]:
 
 def reached() -> list[Any]:
     """The report and all that is in it."""
-    found: dict[Any, None] = {views.Report: None}
+    classes: dict[Any, None] = {views.Report: None}
     for view in (waiting := [views.Report]):
         for each in within(view):
-            if each not in found:
-                found[each] = None
+            if each not in classes:
+                classes[each] = None
                 waiting.append(each)
-    return sorted(found, key=lambda view: str(view.__name__))
+    return sorted(classes, key=lambda view: str(view.__name__))
 
 
 VIEWS = reached()
@@ -42,11 +42,11 @@ PLAIN = {str: "string", int: "integer", float: "number", bool: "boolean", NoneTy
 
 @pytest.mark.parametrize("view", VIEWS, ids=lambda view: str(view.__name__))
 def test_the_schema_has_each_field_of_each_view_and_demands_it(view: Any) -> None:
-    told = SCHEMA if view is views.Report else SCHEMA["$defs"][view.__name__]
+    schema = SCHEMA if view is views.Report else SCHEMA["$defs"][view.__name__]
     names = sorted(field.name for field in fields(view))
-    assert sorted(told["properties"]) == names
-    assert sorted(told["required"]) == names
-    assert told["additionalProperties"] is False
+    assert sorted(schema["properties"]) == names
+    assert sorted(schema["required"]) == names
+    assert schema["additionalProperties"] is False
 
 
 def test_the_schema_has_no_more_than_the_views() -> None:
@@ -54,16 +54,18 @@ def test_the_schema_has_no_more_than_the_views() -> None:
     assert SCHEMA["$id"] == SCHEMA["properties"]["schema"]["const"] == views.SCHEMA
 
 
-def shapes(told: Any) -> set[str]:
+def shapes(schema: Any) -> set[str]:
     """What a value may be: a type of JSON, or the name of a view."""
-    if "$ref" in told:
-        return {told["$ref"].removeprefix("#/$defs/")}
-    if "const" in told or "enum" in told:
-        known = [told["const"]] if "const" in told else told["enum"]
+    if "$ref" in schema:
+        return {schema["$ref"].removeprefix("#/$defs/")}
+    if "const" in schema or "enum" in schema:
+        known = [schema["const"]] if "const" in schema else schema["enum"]
         return {PLAIN[type(value)] for value in known}
-    if "anyOf" in told or "oneOf" in told:
-        return {shape for each in told.get("anyOf", told.get("oneOf")) for shape in shapes(each)}
-    types = told["type"]
+    if "anyOf" in schema or "oneOf" in schema:
+        return {
+            shape for each in schema.get("anyOf", schema.get("oneOf")) for shape in shapes(each)
+        }
+    types = schema["type"]
     return set(types) if isinstance(types, list) else {types}
 
 
@@ -81,9 +83,9 @@ def meant(hint: Any) -> set[str]:
 
 @pytest.mark.parametrize("view", VIEWS, ids=lambda view: str(view.__name__))
 def test_the_schema_gives_each_field_its_type(view: Any) -> None:
-    told = SCHEMA if view is views.Report else SCHEMA["$defs"][view.__name__]
+    schema = SCHEMA if view is views.Report else SCHEMA["$defs"][view.__name__]
     for name, hint in get_type_hints(view).items():
-        shape = told["properties"][name]
+        shape = schema["properties"][name]
         assert shapes(shape) == meant(hint), name
         element = next(iter(get_args(hint)), None)
         if get_origin(hint) is tuple and get_args(hint)[1:] == (...,):

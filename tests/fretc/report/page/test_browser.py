@@ -14,9 +14,9 @@ from tests.fretc.report.cases import (
     BINDINGS,
     HAZARDS,
     R1,
-    made,
     moment,
     project,
+    report_of,
     requirement,
     result,
     violation,
@@ -84,7 +84,7 @@ def report(tmp_path_factory: pytest.TempPathFactory) -> Path:
         for id in ("R1", "R2", "R3")
         for run in range(9)
     ]
-    html = made(known, folder, *runs).html
+    html = report_of(known, folder, *runs).html
     assert html is not None
     path = folder / "report.html"
     path.write_text(html, encoding="utf-8")
@@ -94,15 +94,15 @@ def report(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.fixture
 def opened(browser: Browser, report: Path) -> Iterator[Open]:
     """Opens the report; at the end nothing was asked of the network and nothing complained."""
-    said: list[str] = []
+    messages: list[str] = []
     asked: list[str] = []
     contexts = []
 
     def open_it(**options: Any) -> Page:
         contexts.append(browser.new_context(offline=True, **options))
         page = contexts[-1].new_page()
-        page.on("console", lambda message: said.append(message.text))
-        page.on("pageerror", lambda error: said.append(str(error)))
+        page.on("console", lambda message: messages.append(message.text))
+        page.on("pageerror", lambda error: messages.append(str(error)))
         page.on("request", lambda request: asked.append(request.url))
         page.goto(report.as_uri())
         return page
@@ -110,7 +110,7 @@ def opened(browser: Browser, report: Path) -> Iterator[Open]:
     yield open_it
     for context in contexts:
         context.close()
-    assert said == []
+    assert messages == []
     assert set(asked) == {report.as_uri()}
 
 
@@ -178,8 +178,8 @@ def test_without_its_script_all_is_there_and_nothing_offers_to_filter(opened: Op
 def test_axe_finds_nothing_serious(opened: Open, scheme: str, width: int) -> None:
     page = opened(color_scheme=scheme, viewport={"width": width, "height": 900})
     page.evaluate((files("axe_playwright_python") / "axe.min.js").read_text("utf-8"))
-    found = page.evaluate("axe.run({resultTypes: ['violations']})")["violations"]
-    serious = [each for each in found if each["impact"] in ("serious", "critical")]
+    violations = page.evaluate("axe.run({resultTypes: ['violations']})")["violations"]
+    serious = [each for each in violations if each["impact"] in ("serious", "critical")]
     assert [(each["id"], each["nodes"][0]["html"][:200]) for each in serious] == []
 
 

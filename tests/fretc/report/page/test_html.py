@@ -15,9 +15,9 @@ from tests.fretc.report.cases import (
     HAZARDS,
     ODOM,
     R1,
-    made,
     moment,
     project,
+    report_of,
     requirement,
     result,
     violation,
@@ -72,7 +72,7 @@ def page(folder: Path) -> str:
         requirement("R3", "the robot shall alwys satisfy stopped", parents=["HAZ-9"]),
         requirement("R4", "the robot shall always satisfy other", parents=[], verify=["ajpf"]),
     )
-    report = made(
+    report = report_of(
         known,
         folder,
         result(known, "satisfied", unknown=[[3, 4]]),
@@ -151,7 +151,7 @@ def test_the_parts_stand_in_their_order(tmp_path: Path) -> None:
 def test_what_the_bindings_declare_of_unknown_values_is_called_no_default(tmp_path: Path) -> None:
     declared = BINDINGS.replace('agg = "any"', 'agg = "any"\non_unknown = false')
     known = project(tmp_path, bindings=declared)
-    text = Page(made(known, tmp_path, result(known, "satisfied")).html or "").text
+    text = Page(report_of(known, tmp_path, result(known, "satisfied")).html or "").text
     assert "Where the bindings say nothing, a default was taken; what they declare" in text
     assert (
         "proposition near: where its signals are unknown it counts as false, as the bindings "
@@ -161,7 +161,7 @@ def test_what_the_bindings_declare_of_unknown_values_is_called_no_default(tmp_pa
 
 def test_a_requirement_that_no_run_can_violate_says_so_beside_its_verdict(tmp_path: Path) -> None:
     known = project(tmp_path)
-    text = Page(made(known, tmp_path, result(known, "satisfied")).html or "").text
+    text = Page(report_of(known, tmp_path, result(known, "satisfied")).html or "").text
     places = ("headline", "reservations", "section", "argument")
     assert text.count("No run can violate R1: it sets no bound") == len(places)
     assert "no run can violate it" in text
@@ -221,14 +221,14 @@ def test_no_text_leaves_its_place(tmp_path: Path, text: str) -> None:
     hostile, harmless = _everywhere(tmp_path / "a", text), _everywhere(tmp_path / "b", "harmless")
     assert shape(hostile) == shape(harmless)
     assert not re.search("[\u202a-\u202e\u2066-\u2069\u200e\u200f\x00-\x08]", hostile)
-    seen = Page(hostile).text
-    assert seen.count(text if text.isprintable() else "gnp.exe") >= 10
+    text_of_page = Page(hostile).text
+    assert text_of_page.count(text if text.isprintable() else "gnp.exe") >= 10
 
 
 def shape(html: str) -> list[tuple[str, list[str]]]:
     """All elements in their order; a long text of a drawing may have more lines."""
-    found = [(tag, sorted(a)) for tag, a in Page(html).elements]
-    return [each for each in found if each != ("text", ["x", "y"])]
+    elements = [(tag, sorted(a)) for tag, a in Page(html).elements]
+    return [each for each in elements if each != ("text", ["x", "y"])]
 
 
 def _everywhere(folder: Path, text: str) -> str:
@@ -252,7 +252,7 @@ def _everywhere(folder: Path, text: str) -> str:
     )
     finding = {"code": "F404", "severity": "note", "message": text, "help": text}
     place = {"file": text, "line": None, "column": None}
-    report = made(
+    report = report_of(
         known,
         folder,
         result(
@@ -277,7 +277,7 @@ def _everywhere(folder: Path, text: str) -> str:
 
 def test_backticks_set_code_where_they_come_in_pairs(tmp_path: Path) -> None:
     known = project(tmp_path, R1.replace("near", "near`"))
-    report = made(known, tmp_path)
+    report = report_of(known, tmp_path)
     assert report.html is not None
     assert "<code>eventually</code>" in _everywhere(tmp_path, "any")
     assert "near`" in Page(report.html).text
@@ -295,7 +295,7 @@ def test_direction_marks_are_shown_as_escapes(tmp_path: Path) -> None:
 def test_a_hundred_thousand_triggers_fit_into_a_small_page(tmp_path: Path) -> None:
     known = project(tmp_path)
     triggers = [moment(tick) for tick in range(0, 200_000, 2)]
-    report = made(
+    report = report_of(
         known,
         tmp_path,
         result(known, "satisfied", ticks=200_000, triggers=triggers, latencies_s=[]),

@@ -9,18 +9,18 @@ from fretc.report.make import make
 from fretc.report.model.views import Report
 from fretc.report.page import selection as choosing
 from fretc.report.page.selection import DETAILED, PICTURES, selection
-from tests.fretc.report.cases import made, result
 from tests.fretc.report.cases import project as small_project
+from tests.fretc.report.cases import report_of, result
 
 
 def reported(folder: Path, requirements: int, runs: int, share: float) -> tuple[Report, str]:
     known = project(folder, requirements)
     path = folder / "evidence.json"
     path.write_text(json.dumps(evidence(known, runs, share)), encoding="utf-8")
-    made = make(known, str(path))
-    assert made.report is not None
-    assert made.html is not None
-    return made.report, made.html
+    build = make(known, str(path))
+    assert build.report is not None
+    assert build.html is not None
+    return build.report, build.html
 
 
 @pytest.mark.slow
@@ -28,16 +28,16 @@ def test_fifty_requirements_in_twenty_runs_are_at_most_two_megabytes(tmp_path: P
     report, html = reported(tmp_path, 50, 20, 0.05)
     assert len(html.encode()) <= 2_000_000
     chosen = selection(report)
-    assert all(len(shown.rows) == 20 for shown in chosen.by_anchor.values())
+    assert all(len(section.rows) == 20 for section in chosen.by_anchor.values())
     violated = {r.anchor for view in report.requirements for r in view.results if r.violations}
-    assert {r.anchor for shown in chosen.by_anchor.values() for r in shown.details} == violated
+    assert {r.anchor for section in chosen.by_anchor.values() for r in section.details} == violated
 
 
 @pytest.mark.slow
 def test_when_all_is_violated_each_requirement_gets_a_share_of_the_details(tmp_path: Path) -> None:
     report, html = reported(tmp_path, 12, 10, 1.0)
     chosen = selection(report)
-    counts = [len(shown.details) for shown in chosen.by_anchor.values()]
+    counts = [len(section.details) for section in chosen.by_anchor.values()]
     assert sum(counts) == DETAILED
     assert max(counts) - min(counts) <= 1
     pictures = [len(r.timelines) for s in chosen.by_anchor.values() for r in s.details]
@@ -48,7 +48,7 @@ def test_when_all_is_violated_each_requirement_gets_a_share_of_the_details(tmp_p
 def test_a_few_satisfied_runs_can_be_opened_in_the_page(tmp_path: Path) -> None:
     report, html = reported(tmp_path, 2, 3, 0.0)
     chosen = selection(report)
-    assert [len(shown.folded) for shown in chosen.by_anchor.values()] == [3, 3]
+    assert [len(section.folded) for section in chosen.by_anchor.values()] == [3, 3]
     assert html.count("<summary>Details of runs that satisfy") == 2
 
 
@@ -56,11 +56,11 @@ def test_a_compact_page_lists_what_is_not_satisfied_and_says_so(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(choosing, "COMPACT", 50)
-    monkeypatch.setattr(choosing, "_TOLD_RUNS", 9)
+    monkeypatch.setattr(choosing, "_RUN_ROWS", 9)
     report, html = reported(tmp_path, 3, 20, 0.5)
     chosen = selection(report)
     assert chosen.is_compact
-    rows = [row for shown in chosen.by_anchor.values() for row in shown.rows]
+    rows = [row for section in chosen.by_anchor.values() for row in section.rows]
     assert {row.mark.word for row in rows} == {"violated"}
     assert len(rows) < sum(len(view.results) for view in report.requirements)
     assert "This page is compact, because 60 results are more than 50" in html
@@ -86,8 +86,8 @@ def test_the_worst_run_of_a_requirement_gets_its_details_first(
     known = small_project(tmp_path)
     verdicts = ("satisfied", "inconclusive", "violated")
     results = [result(known, word, run=f"{word}.mcap") for word in verdicts]
-    report = made(known, tmp_path, *results).report
+    report = report_of(known, tmp_path, *results).report
     assert report is not None
-    (shown,) = selection(report).by_anchor.values()
-    assert [each.run_file for each in shown.details] == ["violated.mcap"]
-    assert [row.has_details for row in shown.rows] == [True, False, True]
+    (section,) = selection(report).by_anchor.values()
+    assert [each.run_file for each in section.details] == ["violated.mcap"]
+    assert [row.has_details for row in section.rows] == [True, False, True]

@@ -1,4 +1,4 @@
-from fretc.report.page.tree import MOST, grouped, pieces, placed, shortened
+from fretc.report.page.tree import MOST, grouped, pieces, placements, shortened
 from fretc.report.sections.argument import Element, Kind
 
 
@@ -12,9 +12,9 @@ def many(count: int, open_: int) -> list[Element]:
     hazards = [goal(f"H{n}", *names[n : n + 10]) for n in range(0, count, 10)]
     leaves = []
     for n, name in enumerate(names):
-        shown = n >= open_
-        leaves.append(goal(name, *([f"Sn{n}"] if shown else []), open_=not shown))
-        if shown:
+        is_developed = n >= open_
+        leaves.append(goal(name, *([f"Sn{n}"] if is_developed else []), open_=not is_developed))
+        if is_developed:
             leaves.append(Element(f"Sn{n}", Kind.SOLUTION, "held"))
     return [goal("top", *(each.id for each in hazards)), *hazards, *leaves]
 
@@ -22,8 +22,8 @@ def many(count: int, open_: int) -> list[Element]:
 def test_elements_stand_below_what_they_support_contexts_first() -> None:
     top = Element("G", Kind.GOAL, "top", ("S",), ("C",))
     elements = [top, Element("S", Kind.STRATEGY, "over", ("H",)), Element("C", Kind.CONTEXT, "c")]
-    found = placed([*elements, goal("H")])
-    assert [(each.element.id, each.depth, each.hang) for each in found] == [
+    tree = placements([*elements, goal("H")])
+    assert [(each.element.id, each.depth, each.relation) for each in tree] == [
         ("G", 0, "support"),
         ("C", 1, "context"),
         ("S", 1, "support"),
@@ -34,12 +34,12 @@ def test_elements_stand_below_what_they_support_contexts_first() -> None:
 def test_an_element_under_two_goals_is_drawn_once_and_referred_to_below_the_other() -> None:
     named = Element("X", Kind.GOAL, "X holds: p", ("Y",), name="X holds")
     elements = [goal("G", "A", "B"), goal("A", "X"), goal("B", "X"), named, goal("Y")]
-    found = placed(elements)
-    assert [(each.element.id, each.depth) for each in found] == [
+    tree = placements(elements)
+    assert [(each.element.id, each.depth) for each in tree] == [
         ("G", 0), ("A", 1), ("X", 2), ("Y", 3), ("B", 1), ("X", 2),
     ]  # fmt: skip
-    assert [each.is_reference for each in found] == [False] * 5 + [True]
-    assert (found[2].text, found[5].text) == ("X holds: p", "X holds: see above")
+    assert [each.is_reference for each in tree] == [False] * 5 + [True]
+    assert (tree[2].text, tree[5].text) == ("X holds: p", "X holds: see above")
 
 
 def test_what_is_against_a_goal_hangs_on_it_and_all_that_rests_on_the_goal_is_in_doubt() -> None:
@@ -54,8 +54,8 @@ def test_what_is_against_a_goal_hangs_on_it_and_all_that_rests_on_the_goal_is_in
         goal("Z"),
         Element("CSn2", Kind.COUNTER_SOLUTION, "old", challenges="Z"),
     ]
-    found = placed(elements)
-    assert [(each.element.id, each.hang, each.state) for each in found] == [
+    tree = placements(elements)
+    assert [(each.element.id, each.relation, each.state) for each in tree] == [
         ("G", "support", "in doubt"),
         ("A", "support", "in doubt"),
         ("X", "support", "defeated"),
@@ -70,7 +70,7 @@ def test_what_is_against_a_goal_hangs_on_it_and_all_that_rests_on_the_goal_is_in
     (piece,) = pieces(elements)
     assert [shape.name for shape in piece.shapes if shape.cross] == ["Goal", "Goal"]
     assert [shape.state[2] for shape in piece.shapes if shape.state] == [
-        each.state for each in found if each.state
+        each.state for each in tree if each.state
     ]
 
 
@@ -80,10 +80,10 @@ def test_what_is_against_a_goal_stands_on_its_page() -> None:
         Element(f"CSn{n}", Kind.COUNTER_SOLUTION, "broken " * 20, challenges=f"G{n}")
         for n in range(80)
     ]
-    found = pieces([goal("top", *names), *(goal(name) for name in names), *against])
-    assert len(found) > 2
-    for piece in found[1:]:
-        assert [shape.hang for shape in piece.shapes[:2]] == ["support", "challenge"]
+    drawing = pieces([goal("top", *names), *(goal(name) for name in names), *against])
+    assert len(drawing) > 2
+    for piece in drawing[1:]:
+        assert [shape.relation for shape in piece.shapes[:2]] == ["support", "challenge"]
 
 
 def test_each_kind_has_its_shape_and_an_open_goal_its_diamond() -> None:
@@ -103,7 +103,7 @@ def test_each_kind_has_its_shape_and_an_open_goal_its_diamond() -> None:
     letters = {kind: shape.letter[2] for kind, shape in shapes.items() if shape.letter}
     assert letters == {"assumption": "A", "justification": "J"}
     assert [kind for kind, shape in shapes.items() if shape.diamond] == ["goal"]
-    assert {kind for kind, shape in shapes.items() if shape.hang == "context"} == {
+    assert {kind for kind, shape in shapes.items() if shape.relation == "context"} == {
         "context",
         "assumption",
         "justification",
@@ -116,24 +116,24 @@ def test_a_small_argument_is_drawn_as_it_is() -> None:
 
 
 def test_of_a_large_argument_only_what_is_not_shown_is_drawn() -> None:
-    found = shortened(many(200, 15))
-    assert [each.id for each in found] == ["top", "H0", "H10", *(f"G{n}" for n in range(15))]
-    assert found[2].supported_by == tuple(f"G{n}" for n in range(10, 15))
+    kept = shortened(many(200, 15))
+    assert [each.id for each in kept] == ["top", "H0", "H10", *(f"G{n}" for n in range(15))]
+    assert kept[2].supported_by == tuple(f"G{n}" for n in range(10, 15))
 
 
 def test_of_a_large_argument_what_is_challenged_comes_before_what_is_open() -> None:
     last = Element("CSn", Kind.COUNTER_SOLUTION, "against", challenges="G999")
-    found = shortened([*many(1000, 1000), last])
-    assert {"top", "H990", "G999", "CSn"} <= {each.id for each in found}
-    assert len(found) == MOST
-    drawn = [each.element.id for each in placed(found)]
-    assert {"G999", "CSn"} <= set(drawn)
+    kept = shortened([*many(1000, 1000), last])
+    assert {"top", "H990", "G999", "CSn"} <= {each.id for each in kept}
+    assert len(kept) == MOST
+    ids = [each.element.id for each in placements(kept)]
+    assert {"G999", "CSn"} <= set(ids)
 
 
 def test_of_a_large_argument_what_is_challenged_is_drawn_though_it_is_developed() -> None:
     last = Element("CSn", Kind.COUNTER_SOLUTION, "against", challenges="G150")
-    found = shortened([*many(200, 0), last])
-    assert [each.id for each in found] == ["top", "H150", "G150", "CSn"]
+    kept = shortened([*many(200, 0), last])
+    assert [each.id for each in kept] == ["top", "H150", "G150", "CSn"]
 
 
 def test_never_more_elements_are_drawn_than_stated() -> None:
@@ -141,19 +141,19 @@ def test_never_more_elements_are_drawn_than_stated() -> None:
 
 
 def test_a_long_argument_is_drawn_in_pieces_of_a_page() -> None:
-    found = pieces(many(40, 0))
-    assert len(found) > 1
-    assert all(piece.height <= 900 for piece in found)
-    assert sum(len(piece.shapes) for piece in found) == len(many(40, 0))
+    drawing = pieces(many(40, 0))
+    assert len(drawing) > 1
+    assert all(piece.height <= 900 for piece in drawing)
+    assert sum(len(piece.shapes) for piece in drawing) == len(many(40, 0))
 
 
 def test_many_assumptions_are_drawn_as_one() -> None:
     assumed = [Element(f"A_{n}", Kind.ASSUMPTION, "a") for n in range(9)]
     around = ("C", *(each.id for each in assumed))
     top = Element("G", Kind.GOAL, "top", (), around)
-    found = grouped([top, Element("C", Kind.CONTEXT, "c"), *assumed])
-    assert [each.text for each in found] == ["top", "9 assumptions, listed in part 6", "c"]
-    assert len(found[0].in_context_of) == 2
+    elements = grouped([top, Element("C", Kind.CONTEXT, "c"), *assumed])
+    assert [each.text for each in elements] == ["top", "9 assumptions, listed in part 6", "c"]
+    assert len(elements[0].in_context_of) == 2
 
 
 def test_a_long_text_ends_with_an_ellipsis_and_never_leaves_its_shape() -> None:

@@ -7,15 +7,15 @@ import pytest
 from compiler.files.templating import render
 from fretc.report.model.pictures import Bin, Histogram
 from fretc.report.pictures.histograms import step
-from fretc.report.pictures.plots import histogram as drawn
+from fretc.report.pictures.plots import histogram as layout
 from tests.fretc.report.cases import (
     THRESHOLDS,
-    made,
+    as_json,
     moment,
     project,
+    report_of,
     requirement,
     result,
-    said,
 )
 
 WITHIN = requirement("R1", "whenever near the robot shall within 30 ticks satisfy stopped")
@@ -27,8 +27,8 @@ def view(folder: Path, *changes: dict[str, Any], text: str = WITHIN) -> dict[str
         result(known, "satisfied", run=f"{i}.mcap", **{"hashes": {"log": f"{i:064x}"}, **each})
         for i, each in enumerate(changes)
     ]
-    found: dict[str, Any] = said(made(known, folder, *runs))["requirements"][0]
-    return found
+    requirement_view: dict[str, Any] = as_json(report_of(known, folder, *runs))["requirements"][0]
+    return requirement_view
 
 
 def margin(distance: float | None) -> list[dict[str, Any]]:
@@ -66,8 +66,8 @@ def test_no_answer_in_time_stands_beyond_the_bound(
     tmp_path: Path, allowed: int, late: list[float]
 ) -> None:
     text = WITHIN.replace("30 ticks", f"{allowed} ticks")
-    (found,) = view(tmp_path, {"latencies_s": late}, text=text)["histograms"]
-    beyond = [each for each in found["bins"] if each["high"] > found["bound"] + 1e-9]
+    (histogram,) = view(tmp_path, {"latencies_s": late}, text=text)["histograms"]
+    beyond = [each for each in histogram["bins"] if each["high"] > histogram["bound"] + 1e-9]
     assert sum(each["count"] for each in beyond) == 0
     (later,) = view(tmp_path, {"latencies_s": [*late, allowed / 10 + 0.1]}, text=text)["histograms"]
     beyond = [each for each in later["bins"] if each["high"] > later["bound"] + 1e-9]
@@ -81,10 +81,10 @@ def test_each_trigger_is_counted_answered_or_not(tmp_path: Path) -> None:
         tmp_path,
         {"triggers": triggers, "latencies_s": [0.1, 0.2, 0.2], "open": triggers[8:]},
     )
-    (found,) = section["histograms"]
-    assert (found["unanswered"], found["open"]) == (5, 2)
-    assert sum(each["count"] for each in found["bins"]) + 5 + 2 == 10
-    assert found["text"].endswith(
+    (histogram,) = section["histograms"]
+    assert (histogram["unanswered"], histogram["open"]) == (5, 2)
+    assert sum(each["count"] for each in histogram["bins"]) + 5 + 2 == 10
+    assert histogram["text"].endswith(
         " Without an answer: 5 triggers whose time or scope ran out and "
         "2 triggers open at the end of a run."
     )
@@ -101,7 +101,7 @@ def test_what_waits_for_no_answer_lacks_none(tmp_path: Path) -> None:
 
 def test_what_has_no_value_stands_apart_and_no_condition_in_the_colour_of_violations() -> None:
     bins = (Bin(0.0, 1.0, 4), Bin(1.0, 2.0, 1))
-    late = drawn(Histogram("t", "s", bins, 1.0, "bound 1 s", "", unanswered=8, open=2), "h")
+    late = layout(Histogram("t", "s", bins, 1.0, "bound 1 s", "", unanswered=8, open=2), "h")
     kinds = [(each.kind, each.name, each.label) for each in late.columns]
     assert kinds == [
         ("column", "", "4"),
@@ -111,7 +111,7 @@ def test_what_has_no_value_stands_apart_and_no_condition_in_the_colour_of_violat
     ]
     assert all(each.x > late.right for each in late.columns[2:])
     assert max(each.height for each in late.columns) == late.columns[2].height
-    (*_, crossed) = drawn(Histogram("t", "m", bins, 0.0, "", "", crossed=3), "h").columns
+    (*_, crossed) = layout(Histogram("t", "m", bins, 0.0, "", "", crossed=3), "h").columns
     assert (crossed.kind, crossed.label) == ("crossed", "3")
     style = render("report/style.css.j2")
     (rule,) = re.findall(r"svg \.crossed \{ fill: var\((.*?)\)", style)
@@ -130,15 +130,15 @@ def test_the_least_margin_of_each_run_is_counted_and_crossed_ones_apart(tmp_path
         tmp_path,
         *({"thresholds": margin(distance), "latencies_s": []} for distance in (0.1, 0.2, None)),
     )
-    (found,) = section["histograms"]
-    assert (found["unit"], found["bound"], found["crossed"]) == ("m", 0.0, 1)
-    assert sum(each["count"] for each in found["bins"]) == 2
-    assert found["text"].startswith(
+    (histogram,) = section["histograms"]
+    assert (histogram["unit"], histogram["bound"], histogram["crossed"]) == ("m", 0.0, 1)
+    assert sum(each["count"] for each in histogram["bins"]) == 2
+    assert histogram["text"].startswith(
         "2 runs with a margin: least 0.1 m, median 0.15 m; in 1 run the threshold was crossed."
     )
 
 
-def test_suspect_runs_are_left_out_and_told(tmp_path: Path) -> None:
+def test_suspect_runs_are_left_out_and_counted(tmp_path: Path) -> None:
     good = {"latencies_s": [0.1, 0.2], "open": []}
     section = view(tmp_path, good, {**good, "hashes": {"bindings": "0" * 64}})
     assert section["exercise"] == (
@@ -148,7 +148,7 @@ def test_suspect_runs_are_left_out_and_told(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("least", "found"), [(0.0, 1.0), (0.03, 0.05), (0.2, 0.2), (3.0, 5.0), (10.0, 10.0), (11, 20)]
+    ("least", "width"), [(0.0, 1.0), (0.03, 0.05), (0.2, 0.2), (3.0, 5.0), (10.0, 10.0), (11, 20)]
 )
-def test_a_step_is_one_two_or_five_times_a_power_of_ten(least: float, found: float) -> None:
-    assert step(least) == pytest.approx(found)
+def test_a_step_is_one_two_or_five_times_a_power_of_ten(least: float, width: float) -> None:
+    assert step(least) == pytest.approx(width)

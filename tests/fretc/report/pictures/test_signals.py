@@ -7,7 +7,7 @@ from fretc.report.model.pictures import Level, Piece, SpanMark
 from fretc.report.pictures.signals import left_out, panels
 from fretc.report.pictures.timeline import cause, timelines
 from tests.fretc.audit.results import moment
-from tests.fretc.audit.results import violation as made
+from tests.fretc.audit.results import violation as violation_of
 from tests.fretc.report.pictures.test_timeline import EMPTY, at
 
 NEAR = Threshold("near", "clearance", "<", 0.05, "m", 0.01, 2.0, "crossed", None, Instant(0, 0.0))
@@ -16,7 +16,7 @@ RESULT = replace(EMPTY, thresholds=(NEAR, SLOW), units={"clearance": "m", "vx": 
 
 
 def broken(**samples: Samples) -> Violation:
-    return made(
+    return violation_of(
         moment(123, 12.3),
         moment(125, 12.5),
         moment(110, 11.0),
@@ -86,9 +86,9 @@ def test_thinned_samples_are_no_gaps_but_a_long_silence_is() -> None:
 def test_four_signals_are_drawn_those_with_a_threshold_first_and_the_others_named() -> None:
     one = Samples((10.0,), (1.0,))
     violation = broken(a=one, b=one, c=one, d=one, clearance=one)
-    drawn = panels(violation, RESULT, {}, 10.0, 12.0)
-    assert [panel.signal for panel in drawn] == ["clearance", "a", "b", "c"]
-    assert left_out(violation, drawn) == ("d",)
+    drawings = panels(violation, RESULT, {}, 10.0, 12.0)
+    assert [panel.signal for panel in drawings] == ["clearance", "a", "b", "c"]
+    assert left_out(violation, drawings) == ("d",)
 
 
 def test_a_violation_without_samples_has_no_panel() -> None:

@@ -41,15 +41,15 @@ def reported(
         document = {"schema": "fretc-verification-1", "fretc": "0.1.0", "evidence": proofs}
         path.write_text(json.dumps(document), "utf-8")
     waivers = folder / "waivers.toml"
-    made = make(
+    report = make(
         known,
         str(folder / "evidence.json"),
         waivers=str(waivers) if waivers.exists() else None,
         verification=str(path) if proofs is not None else None,
     ).report
-    assert made is not None
-    assert complaints(yaml.safe_load(gsn(made))) == []
-    return made
+    assert report is not None
+    assert complaints(yaml.safe_load(gsn(report))) == []
+    return report
 
 
 def elements(report: Report) -> dict[str, Element]:
@@ -72,8 +72,8 @@ def test_a_violated_goal_is_challenged_by_the_runs_that_violate_it_the_worst_fir
         run(known, 2, "violated", times=1, reason="once"),
         run(known, 3, "violated", times=5, reason="five times"),
     ]
-    found = elements(reported(known, tmp_path, *runs))
-    goal, against = found["G_req_2d_R1"], found["CSn_req_2d_R1"]
+    by_id = elements(reported(known, tmp_path, *runs))
+    goal, against = by_id["G_req_2d_R1"], by_id["CSn_req_2d_R1"]
     assert (goal.defeated, goal.undeveloped, goal.supported_by) == (True, True, ())
     assert against.challenges == goal.id
     assert against.text == (
@@ -92,10 +92,10 @@ def test_of_many_violating_runs_the_others_are_counted(tmp_path: Path) -> None:
 def test_counter_evidence_of_an_older_text_challenges_and_does_not_defeat(tmp_path: Path) -> None:
     known = project(tmp_path, R1)
     old = run(known, 1, "violated", hashes={"bindings": "0" * 64}, reason="once")
-    found = elements(reported(known, tmp_path, old))
-    assert not found["G_req_2d_R1"].defeated
-    assert found["CSn_req_2d_R1_older"].challenges == "G_req_2d_R1"
-    assert found["CSn_req_2d_R1_older"].text == (
+    by_id = elements(reported(known, tmp_path, old))
+    assert not by_id["G_req_2d_R1"].defeated
+    assert by_id["CSn_req_2d_R1_older"].challenges == "G_req_2d_R1"
+    assert by_id["CSn_req_2d_R1_older"].text == (
         "R1 is violated in 1 of 1 audited run, before a change (the bindings have changed since "
         "the audit): Run 1, 1.mcap: once"
     )
@@ -107,29 +107,29 @@ def test_a_waiver_hides_no_counter_evidence(tmp_path: Path) -> None:
         '[R1]\nverdict = "violated"\nreason = "later"\nby = "A"\nrole = "B"\n'
         'granted = "2000-01-01"\nexpires = "2099-01-01"\n'
     )
-    found = elements(reported(known, tmp_path, run(known, 1, "violated")))
-    assert found["G_req_2d_R1"].defeated
-    assert found["G_req_2d_R1"].in_context_of == ("C_req_2d_R1", "J_req_2d_R1")
-    assert "CSn_req_2d_R1" in found
+    by_id = elements(reported(known, tmp_path, run(known, 1, "violated")))
+    assert by_id["G_req_2d_R1"].defeated
+    assert by_id["G_req_2d_R1"].in_context_of == ("C_req_2d_R1", "J_req_2d_R1")
+    assert "CSn_req_2d_R1" in by_id
 
 
 @pytest.mark.parametrize("verdict", ["inconclusive", "vacuous", "no data"])
 def test_what_shows_nothing_is_no_evidence_against(tmp_path: Path, verdict: str) -> None:
     known = project(tmp_path, R1)
-    found = elements(reported(known, tmp_path, run(known, 1, "satisfied"), run(known, 2, verdict)))
-    assert found["G_req_2d_R1"].undeveloped
-    assert not [each for each in found.values() if each.challenges or each.defeated]
-    assert not [id for id in found if id.startswith("Sn")]
+    by_id = elements(reported(known, tmp_path, run(known, 1, "satisfied"), run(known, 2, verdict)))
+    assert by_id["G_req_2d_R1"].undeveloped
+    assert not [each for each in by_id.values() if each.challenges or each.defeated]
+    assert not [id for id in by_id if id.startswith("Sn")]
 
 
 def test_a_requirement_with_two_hazards_stands_under_both(tmp_path: Path) -> None:
     hazards = f'{HAZARDS}\n[HAZ-2]\ntitle = "The robot stays"\ntext = "x"\n'
     text = requirement("R1", SENTENCE, parents=["HAZ-1", "HAZ-2"])
     known = project(tmp_path, text, hazards=hazards)
-    found = elements(reported(known, tmp_path, run(known, 1, "satisfied")))
-    goals = [found[f"G_hazard_HAZ_2d_{number}"] for number in (1, 2)]
+    by_id = elements(reported(known, tmp_path, run(known, 1, "satisfied")))
+    goals = [by_id[f"G_hazard_HAZ_2d_{number}"] for number in (1, 2)]
     assert [goal.supported_by for goal in goals] == [("G_req_2d_R1",)] * 2
-    assert found["G_req_2d_R1"].name == "R1 holds"
+    assert by_id["G_req_2d_R1"].name == "R1 holds"
 
 
 def test_runs_support_the_requirement_and_a_proof_what_it_is_about(tmp_path: Path) -> None:
@@ -140,11 +140,11 @@ def test_runs_support_the_requirement_and_a_proof_what_it_is_about(tmp_path: Pat
         "assumptions": ["a latency of 1 tick"],
     }
     lines = [proof(known), proof(known, **loop)]
-    found = elements(reported(known, tmp_path, run(known, 1, "satisfied"), proofs=lines))
-    goal = found["G_req_2d_R1"]
+    by_id = elements(reported(known, tmp_path, run(known, 1, "satisfied"), proofs=lines))
+    goal = by_id["G_req_2d_R1"]
     assert goal.supported_by == ("Sn_req_2d_R1", "G_req_2d_R1_monitor", "G_req_2d_R1_loop")
-    told = {id: (found[id].text, found[id].supported_by) for id in goal.supported_by}
-    assert told == {
+    support = {id: (by_id[id].text, by_id[id].supported_by) for id in goal.supported_by}
+    assert support == {
         "Sn_req_2d_R1": ("R1 is satisfied in 1 audited run", ()),
         "G_req_2d_R1_monitor": (
             "The monitor of R1 decides it as its sentence means",
@@ -155,18 +155,18 @@ def test_runs_support_the_requirement_and_a_proof_what_it_is_about(tmp_path: Pat
             ("Sn_req_2d_R1_loop",),
         ),
     }
-    assert found["Sn_req_2d_R1_monitor"].text == f"Proved: {CLAIM}"
-    assert found["A_req_2d_R1_loop"].text == "a latency of 1 tick"
-    assert found["G_req_2d_R1_loop"].in_context_of == ("A_req_2d_R1_loop",)
+    assert by_id["Sn_req_2d_R1_monitor"].text == f"Proved: {CLAIM}"
+    assert by_id["A_req_2d_R1_loop"].text == "a latency of 1 tick"
+    assert by_id["G_req_2d_R1_loop"].in_context_of == ("A_req_2d_R1_loop",)
 
 
 def test_a_proof_about_the_monitor_shows_nothing_of_the_robot(tmp_path: Path) -> None:
     known = project(tmp_path, R1)
-    found = elements(reported(known, tmp_path, proofs=[proof(known)]))
-    goal = found["G_req_2d_R1"]
+    by_id = elements(reported(known, tmp_path, proofs=[proof(known)]))
+    goal = by_id["G_req_2d_R1"]
     assert goal.supported_by == ("G_req_2d_R1_runs", "G_req_2d_R1_monitor")
-    assert found["G_req_2d_R1_runs"].text == "The audited runs show R1"
-    assert found["G_req_2d_R1_runs"].undeveloped
+    assert by_id["G_req_2d_R1_runs"].text == "The audited runs show R1"
+    assert by_id["G_req_2d_R1_runs"].undeveloped
 
 
 def test_claims_of_one_layer_are_proved_refuted_and_left_open_apart(tmp_path: Path) -> None:
@@ -176,23 +176,23 @@ def test_claims_of_one_layer_are_proved_refuted_and_left_open_apart(tmp_path: Pa
         proof(known, "counterexample", claim="it is quick"),
         proof(known, "not checked", claim="it is small"),
     ]
-    found = elements(reported(known, tmp_path, run(known, 1, "satisfied"), proofs=lines))
-    goal = found["G_req_2d_R1_monitor"]
+    by_id = elements(reported(known, tmp_path, run(known, 1, "satisfied"), proofs=lines))
+    goal = by_id["G_req_2d_R1_monitor"]
     assert goal.defeated
     assert goal.supported_by == ("Sn_req_2d_R1_monitor", "G_req_2d_R1_monitor_rest")
-    assert found["CSn_req_2d_R1_monitor"].text == "Counterexample to it is quick (by fretc)"
-    assert found["G_req_2d_R1_monitor_rest"].text == "Not shown: it is small (by fretc)"
-    assert found["G_req_2d_R1_monitor_rest"].undeveloped
+    assert by_id["CSn_req_2d_R1_monitor"].text == "Counterexample to it is quick (by fretc)"
+    assert by_id["G_req_2d_R1_monitor_rest"].text == "Not shown: it is small (by fretc)"
+    assert by_id["G_req_2d_R1_monitor_rest"].undeveloped
 
 
 @pytest.mark.parametrize("result", ["proved", "counterexample"])
 def test_a_proof_of_another_text_neither_supports_nor_defeats(tmp_path: Path, result: str) -> None:
     known = project(tmp_path, R1)
     lines = [proof(known, result, artefacts={"r1_monitor.py": "0" * 64})]
-    found = elements(reported(known, tmp_path, run(known, 1, "satisfied"), proofs=lines))
-    goal = found["G_req_2d_R1_monitor"]
+    by_id = elements(reported(known, tmp_path, run(known, 1, "satisfied"), proofs=lines))
+    goal = by_id["G_req_2d_R1_monitor"]
     assert (goal.undeveloped, goal.defeated, goal.supported_by) == (True, False, ())
-    assert ("CSn_req_2d_R1_monitor" in found) is (result == "counterexample")
+    assert ("CSn_req_2d_R1_monitor" in by_id) is (result == "counterexample")
 
 
 def test_what_all_requirements_share_stands_below_the_top_and_those_that_plan_it(
@@ -202,11 +202,11 @@ def test_what_all_requirements_share_stands_below_the_top_and_those_that_plan_it
     line = proof(
         known, requirement="interceptor", layer="interceptor", claim="it stops", artefacts={}
     )
-    found = elements(reported(known, tmp_path, run(known, 1, "satisfied"), proofs=[line]))
-    assert found["G_top"].supported_by == ("S_hazards", "G_shared_interceptor")
-    assert found["G_req_2d_R1"].supported_by == ("Sn_req_2d_R1", "G_shared_interceptor")
-    assert found["G_shared_interceptor"].text == "The interceptor keeps its contracts"
-    assert found["Sn_shared_interceptor"].text == "Proved: it stops (by fretc)"
+    by_id = elements(reported(known, tmp_path, run(known, 1, "satisfied"), proofs=[line]))
+    assert by_id["G_top"].supported_by == ("S_hazards", "G_shared_interceptor")
+    assert by_id["G_req_2d_R1"].supported_by == ("Sn_req_2d_R1", "G_shared_interceptor")
+    assert by_id["G_shared_interceptor"].text == "The interceptor keeps its contracts"
+    assert by_id["Sn_shared_interceptor"].text == "Proved: it stops (by fretc)"
 
 
 UNVIOLABLE = requirement("R1", "whenever near the robot shall eventually satisfy stopped")

@@ -1,14 +1,14 @@
 from pathlib import Path
 
 from fretish.diagnostics.diagnostic import Code, Severity
-from tests.fretc.report.cases import HAZARDS, R1, made, project, requirement, result, said
+from tests.fretc.report.cases import HAZARDS, R1, as_json, project, report_of, requirement, result
 
 ALWAYS = "the robot shall always satisfy stopped"
 
 
 def test_a_row_leads_from_hazard_to_verdict(tmp_path: Path) -> None:
     known = project(tmp_path)
-    (row,) = said(made(known, tmp_path, result(known, "satisfied")))["matrix"]
+    (row,) = as_json(report_of(known, tmp_path, result(known, "satisfied")))["matrix"]
     assert (row["hazard"], row["requirement"], row["via"]) == ("HAZ-1", "R1", "")
     assert [artefact["file"] for artefact in row["artefacts"]] == [
         "r1_monitor.py",
@@ -33,7 +33,7 @@ def test_a_requirement_below_another_traces_to_its_hazard(tmp_path: Path) -> Non
         requirement("R2", ALWAYS, parents=["R1"]),
         requirement("R3", ALWAYS, parents=["R2"]),
     )
-    content = said(made(known, tmp_path))
+    content = as_json(report_of(known, tmp_path))
     assert [(row["requirement"], row["hazard"], row["via"]) for row in content["matrix"]] == [
         ("R1", "HAZ-1", ""),
         ("R2", "HAZ-1", "R1"),
@@ -48,7 +48,7 @@ def test_parents_in_a_circle_end(tmp_path: Path) -> None:
         requirement("R1", ALWAYS, parents=["R2"]),
         requirement("R2", ALWAYS, parents=["R1"]),
     )
-    content = said(made(known, tmp_path))
+    content = as_json(report_of(known, tmp_path))
     assert [(row["requirement"], row["hazard"]) for row in content["matrix"]] == [
         ("R1", ""),
         ("R2", ""),
@@ -66,8 +66,8 @@ def test_every_missing_link_is_listed(tmp_path: Path) -> None:
         hazards=f'{HAZARDS}[HAZ-2]\ntitle = "Fire"\n[HAZ-3]\ntitle = "Flood"\n',
     )
     stranger = result(known, "satisfied", "R9")
-    report = made(known, tmp_path, result(known, "satisfied"), stranger)
-    assert said(report)["orphans"] == {
+    report = report_of(known, tmp_path, result(known, "satisfied"), stranger)
+    assert as_json(report)["orphans"] == {
         "hazards": [
             "HAZ-2 (Fire) has no requirement",
             "HAZ-3 (Flood) has only retired requirements",
@@ -76,7 +76,7 @@ def test_every_missing_link_is_listed(tmp_path: Path) -> None:
         "parents": ["R3 names HAZ-7, which is not declared"],
         "evidence": ["R9 has evidence, but is not among the requirements"],
     }
-    assert "2 hazards have no requirement in force." in said(report)["overall"]["sentences"]
+    assert "2 hazards have no requirement in force." in as_json(report)["overall"]["sentences"]
     (warning,) = report.diagnostics
     assert (warning.code, warning.severity) == (Code.STALE_EVIDENCE, Severity.WARNING)
     assert warning.message == "there is evidence of R9, which is not among the requirements"
@@ -86,7 +86,7 @@ def test_many_satisfied_runs_share_a_cell_so_that_the_others_are_seen(tmp_path: 
     known = project(tmp_path)
     runs = [result(known, "satisfied", run=f"{i}.mcap") for i in range(20)]
     bad = result(known, "vacuous", run="bad.mcap")
-    (row,) = said(made(known, tmp_path, *runs[:10], bad, *runs[10:]))["matrix"]
+    (row,) = as_json(report_of(known, tmp_path, *runs[:10], bad, *runs[10:]))["matrix"]
     assert [(cell["mark"]["word"], cell["label"]) for cell in row["cells"]] == [
         ("vacuous", "Run 11"),
         ("satisfied", "in 20 runs"),
@@ -95,6 +95,6 @@ def test_many_satisfied_runs_share_a_cell_so_that_the_others_are_seen(tmp_path: 
 
 def test_without_hazards_the_requirements_are_still_in_the_matrix(tmp_path: Path) -> None:
     known = project(tmp_path, hazards=None)
-    content = said(made(known, tmp_path))
+    content = as_json(report_of(known, tmp_path))
     assert [(row["hazard"], row["requirement"]) for row in content["matrix"]] == [("", "R1")]
     assert content["orphans"]["parents"] == ["R1 names HAZ-1, which is not declared"]

@@ -11,18 +11,18 @@ from compiler.project.folder import Project
 from compiler.targets.python import monitor
 from fretc.cli import cli
 from fretc.report.forms.junit import junit
-from fretc.report.make import Made, make
+from fretc.report.make import ReportBuild, make
 from fretc.report.sections.argument import Kind, argument
 from fretish.diagnostics.diagnostic import Code
 from tests.command import Fretc, write
 from tests.fretc.report.cases import (
     BINDINGS,
     HAZARDS,
+    as_json,
     evidence,
     project,
     requirement,
     result,
-    said,
     words,
 )
 from tests.fretc.report.test_make import validate
@@ -30,13 +30,13 @@ from tests.fretc.report.test_make import validate
 SENTENCE = "whenever near the robot shall within 30 ticks satisfy stopped"
 
 
-def proof(known: Project, found: str = "proved", **changes: Any) -> dict[str, Any]:
+def proof(known: Project, outcome: str = "proved", **changes: Any) -> dict[str, Any]:
     """A line of `fretc verify` about the monitor of R1 as it is made now."""
     return {
         "requirement": "R1",
         "layer": "monitor",
         "claim": "the monitor means what the sentence says",
-        "result": found,
+        "result": outcome,
         "detail": "12 states",
         "assumptions": [],
         "engine": "fretc",
@@ -45,28 +45,28 @@ def proof(known: Project, found: str = "proved", **changes: Any) -> dict[str, An
     }
 
 
-def reported(folder: Path, *lines: dict[str, Any], verify: list[str]) -> Made:
+def reported(folder: Path, *lines: dict[str, Any], verify: list[str]) -> ReportBuild:
     """The report about R1, satisfied in one run, and what was proved of it."""
     known = project(folder, requirement("R1", SENTENCE, verify=verify))
     path, proofs = folder / "evidence.json", folder / "verification.json"
     audited = evidence(known, result(known, "satisfied", latencies_s=[]))
     path.write_text(json.dumps(audited), encoding="utf-8")
     document = {"schema": "fretc-verification-1", "fretc": "0.1.0"}
-    written = [proof(known, **line) for line in lines]
-    proofs.write_text(json.dumps({**document, "evidence": written}), encoding="utf-8")
+    records = [proof(known, **line) for line in lines]
+    proofs.write_text(json.dumps({**document, "evidence": records}), encoding="utf-8")
     return make(known, str(path), verification=str(proofs))
 
 
-def plan(report: Made) -> tuple[str, bool, bool]:
-    (found,) = said(report)["planned"]
-    return found["result"], found["has_result"], found["refuted"]
+def plan(report: ReportBuild) -> tuple[str, bool, bool]:
+    (method,) = as_json(report)["planned"]
+    return method["result"], method["has_result"], method["refuted"]
 
 
 @pytest.mark.parametrize("method", ["verify", "proof", "monitor"])
 def test_a_proof_is_the_result_of_its_method(tmp_path: Path, method: str) -> None:
     report = reported(tmp_path, {}, verify=[method])
     assert plan(report) == ("1 claim proved", True, False)
-    content = said(report)
+    content = as_json(report)
     assert content["overall"]["headline"] == "Everything that was claimed is shown."
     assert content["manifest"][-2]["kind"] == "verification"
     validate("report.schema.json", content)
@@ -75,10 +75,10 @@ def test_a_proof_is_the_result_of_its_method(tmp_path: Path, method: str) -> Non
 
 
 def test_the_worst_claim_decides(tmp_path: Path) -> None:
-    lines = [{}, {"layer": "loop", "claim": "it keeps R1", "found": "counterexample"}]
+    lines = [{}, {"layer": "loop", "claim": "it keeps R1", "outcome": "counterexample"}]
     report = reported(tmp_path, *lines, verify=["verify"])
     assert plan(report) == ("counterexample: it keeps R1 (12 states)", True, True)
-    overall = said(report)["overall"]
+    overall = as_json(report)["overall"]
     assert overall["mark"]["word"] == "not all shown"
     assert overall["headline"] == "What was audited held; verification found counterexamples."
     assert overall["sentences"][1] == (
@@ -95,7 +95,7 @@ def test_the_argument_rests_on_proofs_and_on_nothing_that_is_refuted(tmp_path: P
         f"Proved: {claim}",
         f"Proved: {claim}",
     ]
-    refuted = reported(tmp_path, {"found": "counterexample"}, verify=[]).report
+    refuted = reported(tmp_path, {"outcome": "counterexample"}, verify=[]).report
     assert refuted is not None
     (goal,) = [each for each in argument(refuted) if each.undeveloped]
     assert goal.text == "The monitor of R1 decides it as its sentence means"
@@ -103,8 +103,8 @@ def test_the_argument_rests_on_proofs_and_on_nothing_that_is_refuted(tmp_path: P
 
 
 def test_a_counterexample_counts_also_where_no_method_was_planned(tmp_path: Path) -> None:
-    report = reported(tmp_path, {"found": "counterexample"}, verify=[])
-    assert said(report)["overall"]["mark"]["word"] == "not all shown"
+    report = reported(tmp_path, {"outcome": "counterexample"}, verify=[])
+    assert as_json(report)["overall"]["mark"]["word"] == "not all shown"
     assert report.report is not None
     (case,) = ElementTree.fromstring(junit(report.report))[0]
     assert [(child.tag, child.get("message")) for child in case] == [
@@ -112,11 +112,11 @@ def test_a_counterexample_counts_also_where_no_method_was_planned(tmp_path: Path
     ]
 
 
-@pytest.mark.parametrize("found", ["vacuous", "not checked"])
-def test_what_says_nothing_is_no_result(tmp_path: Path, found: str) -> None:
-    report = reported(tmp_path, {"found": found}, verify=["monitor"])
+@pytest.mark.parametrize("outcome", ["vacuous", "not checked"])
+def test_what_says_nothing_is_no_result(tmp_path: Path, outcome: str) -> None:
+    report = reported(tmp_path, {"outcome": outcome}, verify=["monitor"])
     assert plan(report)[1:] == (False, False)
-    assert said(report)["overall"]["mark"]["word"] == "not all shown"
+    assert as_json(report)["overall"]["mark"]["word"] == "not all shown"
 
 
 @pytest.mark.parametrize(
@@ -130,9 +130,9 @@ def test_a_proof_of_another_text_is_suspect(
     tmp_path: Path, artefacts: dict[str, str], why: str
 ) -> None:
     report = reported(tmp_path, {"artefacts": artefacts}, verify=["verify"])
-    (shown,) = said(report)["requirements"][0]["proofs"]
-    assert words([shown]) == ["proved, suspect"]
-    assert shown["suspicions"][0] == why
+    (view,) = as_json(report)["requirements"][0]["proofs"]
+    assert words([view]) == ["proved, suspect"]
+    assert view["suspicions"][0] == why
     assert plan(report)[1:] == (False, False)
 
 
@@ -140,18 +140,18 @@ def test_a_prover_is_found_by_its_engine(tmp_path: Path) -> None:
     line = {"engine": "Dafny 4.9", "layer": "interceptor", "requirement": "interceptor"}
     report = reported(tmp_path, line, verify=["dafny"])
     assert plan(report) == ("1 claim proved", True, False)
-    assert [each["layer"] for each in said(report)["proofs"]] == ["interceptor"]
-    assert said(report)["requirements"][0]["proofs"] == []
+    assert [each["layer"] for each in as_json(report)["proofs"]] == ["interceptor"]
+    assert as_json(report)["requirements"][0]["proofs"] == []
 
 
-def test_a_file_that_is_not_there_is_told(tmp_path: Path) -> None:
+def test_a_file_that_is_not_there_is_reported(tmp_path: Path) -> None:
     report = make(project(tmp_path), str(tmp_path / "e"), verification=str(tmp_path / "no.json"))
     assert report.report is None
-    assert [found.code for found in report.diagnostics] == [Code.NO_SUCH_FILE]
+    assert [diagnostic.code for diagnostic in report.diagnostics] == [Code.NO_SUCH_FILE]
 
 
 def test_without_a_file_nothing_was_proved(tmp_path: Path) -> None:
-    content = said(make(project(tmp_path), str(tmp_path / "none.json")))
+    content = as_json(make(project(tmp_path), str(tmp_path / "none.json")))
     assert (content["verification"], content["proofs"]) == ("", [])
 
 
@@ -159,7 +159,7 @@ def test_the_command_takes_the_file_at_its_usual_place_and_exits_as_it_says(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)
-    reported(tmp_path, {"found": "counterexample"}, verify=[])
+    reported(tmp_path, {"outcome": "counterexample"}, verify=[])
     (tmp_path / "build").mkdir()
     command = ["report", "--requirements", str(tmp_path), "--evidence", "evidence.json", "--strict"]
     assert CliRunner().invoke(cli, command).exit_code == 0
@@ -179,7 +179,7 @@ def test_the_command_takes_the_file_at_its_usual_place_and_exits_as_it_says(
         ),
     ],
 )
-def test_a_file_of_another_shape_is_told_and_no_report_is_made(
+def test_a_file_of_another_shape_is_reported_and_no_report_is_made(
     tmp_path: Path, text: str, message: str
 ) -> None:
     (tmp_path / "verification.json").write_text(text, encoding="utf-8")
@@ -187,9 +187,9 @@ def test_a_file_of_another_shape_is_told_and_no_report_is_made(
         project(tmp_path), str(tmp_path / "e"), verification=str(tmp_path / "verification.json")
     )
     assert report.report is None
-    (found,) = report.diagnostics
-    assert found.code is Code.BAD_EVIDENCE
-    assert message in found.message
+    (diagnostic,) = report.diagnostics
+    assert diagnostic.code is Code.BAD_EVIDENCE
+    assert message in diagnostic.message
 
 
 ASSUMING = """

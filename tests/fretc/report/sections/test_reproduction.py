@@ -6,7 +6,7 @@ from compiler.files.text_files import sha256
 from compiler.project.folder import load
 from compiler.targets import ltl
 from fretc.report.make import make
-from tests.fretc.report.cases import LOG, R1, made, project, requirement, result, said
+from tests.fretc.report.cases import LOG, R1, as_json, project, report_of, requirement, result
 
 
 def test_the_commands_can_be_typed_as_they_stand(
@@ -16,8 +16,8 @@ def test_the_commands_can_be_typed_as_they_stand(
     project(tmp_path / "req", R1, bounded)
     monkeypatch.chdir(tmp_path)
     known = load(["req/r1.fret", "req/r2.fret"], "req/bindings.toml", "req/hazards.toml")
-    made(known, tmp_path, result(known, "satisfied", run="logs/a b.mcap"))
-    commands = said(make(known, "evidence.json"))["commands"]
+    report_of(known, tmp_path, result(known, "satisfied", run="logs/a b.mcap"))
+    commands = as_json(make(known, "evidence.json"))["commands"]
     assert [command["text"] for command in commands] == [
         "fretc --version   # fretc 0.1.0",
         f"printf '%s\\n' '{LOG}  logs/a b.mcap' | sha256sum --check",
@@ -30,7 +30,7 @@ def test_the_commands_can_be_typed_as_they_stand(
 
 def test_the_manifest_has_the_hash_of_everything(tmp_path: Path) -> None:
     known = project(tmp_path)
-    manifest = said(made(known, tmp_path, result(known, "satisfied")))["manifest"]
+    manifest = as_json(report_of(known, tmp_path, result(known, "satisfied")))["manifest"]
     assert [(line["kind"], line["name"]) for line in manifest] == [
         ("sentence", "R1"),
         ("bindings", "bindings.toml"),
@@ -47,10 +47,10 @@ def test_the_manifest_has_the_hash_of_everything(tmp_path: Path) -> None:
     assert hashes["run"] == LOG
 
 
-def test_defaults_that_were_taken_are_told(tmp_path: Path) -> None:
+def test_defaults_that_were_taken_are_reported(tmp_path: Path) -> None:
     known = project(tmp_path)
     one = result(known, "satisfied", assumptions=["signal old: something else"])
-    assert said(made(known, tmp_path, one))["assumptions"] == [
+    assert as_json(report_of(known, tmp_path, one))["assumptions"] == [
         "signal clearance: readings that are no measurement are as REP 117 says",
         "signal old: something else (in the audit)",
     ]

@@ -15,11 +15,11 @@ from fretish.diagnostics.diagnostic import Code, Diagnostic
 from tests.fretc.report.cases import (
     BINDINGS,
     R1,
+    as_json,
     evidence,
     project,
     requirement,
     result,
-    said,
     violation,
 )
 
@@ -43,10 +43,10 @@ def lock(known: Project, folder: Path) -> None:
     """Everything as it is now, accepted; the evidence is in the folder."""
     audited = reading.read(str(folder / "evidence.json"))
     assert not isinstance(audited, Diagnostic)
-    found = {
+    reviews = {
         c.requirement: accepted(c, "A", "B", "2026-09-01", "c") for c in chains(known, audited)
     }
-    (folder / "fretc.lock").write_text(text(Lock(found)), encoding="utf-8")
+    (folder / "fretc.lock").write_text(text(Lock(reviews)), encoding="utf-8")
 
 
 def reported(known: Project, folder: Path, *results: dict[str, Any]) -> dict[str, Any]:
@@ -54,13 +54,13 @@ def reported(known: Project, folder: Path, *results: dict[str, Any]) -> dict[str
     (folder / "evidence.json").write_text(json.dumps(evidence(known, *results)), encoding="utf-8")
     paths = [folder / name for name in ("fretc.lock", "waivers.toml")]
     locked, waived = [str(path) if path.exists() else None for path in paths]
-    return said(make(known, str(folder / "evidence.json"), lock=locked, waivers=waived))
+    return as_json(make(known, str(folder / "evidence.json"), lock=locked, waivers=waived))
 
 
 def only(report: dict[str, Any]) -> dict[str, Any]:
-    (found,) = report["requirements"]
-    assert isinstance(found, dict)
-    return found
+    (view,) = report["requirements"]
+    assert isinstance(view, dict)
+    return view
 
 
 def test_a_review_that_stands_is_named(tmp_path: Path) -> None:
@@ -97,14 +97,14 @@ def test_what_changed_since_the_review_makes_the_requirement_suspect(tmp_path: P
     lock(known, tmp_path)
     now = project(tmp_path, bindings=BINDINGS.replace("clearance < 5 cm", "clearance < 90 cm"))
     report = reported(now, tmp_path, result(now, "satisfied"))  # audited again after the change
-    found = only(report)
-    assert (found["mark"]["word"], found["mark"]["suspect"]) == ("satisfied", True)
-    assert found["coverage"] == "suspect"
+    view = only(report)
+    assert (view["mark"]["word"], view["mark"]["suspect"]) == ("satisfied", True)
+    assert view["coverage"] == "suspect"
     why = "bindings R1 changed since the review of 2026-09-01"
-    assert found["suspicions"] == found["results"][0]["suspicions"] == found["reasons"] == [why]
+    assert view["suspicions"] == view["results"][0]["suspicions"] == view["reasons"] == [why]
     assert report["matrix"][0]["cells"][0]["mark"]["suspect"]
     assert [c["results"] for c in report["counts"] if c["mark"]["word"] == "satisfied"] == [1, 0]
-    assert found["review"]["changes"] == ["bindings R1"]
+    assert view["review"]["changes"] == ["bindings R1"]
     (change,) = report["changes"]
     assert change["lines"] == ["changed: bindings R1"]
     assert change["links"]["lines"][0] == (
@@ -113,7 +113,7 @@ def test_what_changed_since_the_review_makes_the_requirement_suspect(tmp_path: P
     assert report["overall"]["mark"]["word"] == "nothing shown"
 
 
-def test_a_run_after_the_review_is_told_and_makes_nothing_suspect(tmp_path: Path) -> None:
+def test_a_run_after_the_review_is_reported_and_makes_nothing_suspect(tmp_path: Path) -> None:
     known = project(tmp_path)
     reported(known, tmp_path, result(known, "satisfied"))
     lock(known, tmp_path)
@@ -123,7 +123,7 @@ def test_a_run_after_the_review_is_told_and_makes_nothing_suspect(tmp_path: Path
     assert "R1 was audited against 1 run after its review." in report["reservations"]
 
 
-def test_a_violation_is_told_whatever_the_review_says(tmp_path: Path) -> None:
+def test_a_violation_is_reported_whatever_the_review_says(tmp_path: Path) -> None:
     known = project(tmp_path)
     reported(known, tmp_path, result(known, "satisfied"))
     lock(known, tmp_path)
@@ -139,11 +139,11 @@ def test_a_waiver_covers_a_verdict_and_does_not_hide_it(tmp_path: Path) -> None:
     (tmp_path / "waivers.toml").write_text(WAIVER)
     broken = result(known, "violated", violations=[violation(14, 20, 11)])
     report = reported(known, tmp_path, broken)
-    found = only(report)
-    assert (found["mark"]["word"], found["coverage"]) == ("waived", "waived")
-    assert found["waiver"]["covers"]["word"] == "violated"
-    assert found["waiver"]["by"] == "A. Meier, safety engineer, 2026-01-01"
-    assert report["waivers"] == [found["waiver"]]
+    view = only(report)
+    assert (view["mark"]["word"], view["coverage"]) == ("waived", "waived")
+    assert view["waiver"]["covers"]["word"] == "violated"
+    assert view["waiver"]["by"] == "A. Meier, safety engineer, 2026-01-01"
+    assert report["waivers"] == [view["waiver"]]
     assert "R1 (violated) is waived, and not shown." in report["overall"]["sentences"]
     assert report["overall"]["mark"]["word"] == "nothing shown"
 
@@ -167,12 +167,12 @@ def test_a_waiver_covers_the_verdict_that_it_names_and_no_other(
     (tmp_path / "evidence.json").write_text(
         json.dumps(evidence(known, result(known, verdict, violations=broken)))
     )
-    made = make(known, str(tmp_path / "evidence.json"), waivers=str(tmp_path / "waivers.toml"))
-    idle = [d.message for d in made.diagnostics if d.code is Code.IDLE_WAIVER]
+    build = make(known, str(tmp_path / "evidence.json"), waivers=str(tmp_path / "waivers.toml"))
+    idle = [d.message for d in build.diagnostics if d.code is Code.IDLE_WAIVER]
     if verdict == waived:
-        assert (only(said(made))["mark"]["word"], idle) == ("waived", [])
+        assert (only(as_json(build))["mark"]["word"], idle) == ("waived", [])
     else:
-        assert only(said(made))["mark"]["word"] == verdict
+        assert only(as_json(build))["mark"]["word"] == verdict
         assert idle == [
             f"the waiver of R1 is for `{waived}`, and the verdict is `{verdict}`: it covers nothing"
         ]

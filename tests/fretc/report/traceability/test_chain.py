@@ -30,8 +30,8 @@ def chain(project: Project, *results: Mapping[str, Any]) -> Chain:
     path.write_text(json.dumps(cases.evidence(project, *results)), encoding="utf-8")
     audited = reading.read(str(path))
     assert not isinstance(audited, Diagnostic), audited
-    (found,) = chains(project, audited)
-    return found
+    (only,) = chains(project, audited)
+    return only
 
 
 @pytest.fixture
@@ -48,8 +48,8 @@ def read(
 
 
 def pairs(before: Chain, after: Chain) -> set[tuple[str, str]]:
-    found = suspects(after, before.prints)
-    return {(str(s.link.source), str(s.link.target)) for s in found}
+    links = suspects(after, before.prints)
+    return {(str(s.link.source), str(s.link.target)) for s in links}
 
 
 RUN = "verdict:R1 logs/a.mcap"
@@ -57,7 +57,7 @@ LAST = {(RUN, "review:R1")}
 
 
 def test_the_chain_leads_from_the_hazard_to_the_review(folder: Path) -> None:
-    told = {f"{link.source} {link.target}" for link in read(folder).links}
+    links = {f"{link.source} {link.target}" for link in read(folder).links}
     assert {
         "hazard:HAZ-1 text:R1",
         "text:R1 sentence:R1",
@@ -70,7 +70,7 @@ def test_the_chain_leads_from_the_hazard_to_the_review(folder: Path) -> None:
         f"clock:clock {RUN}",
         f"log:logs/a.mcap {RUN}",
         f"{RUN} review:R1",
-    } <= told
+    } <= links
 
 
 @pytest.mark.parametrize(
@@ -94,11 +94,11 @@ def test_white_space_in_an_expression_changes_nothing(folder: Path) -> None:
 def test_another_hazard_makes_everything_below_it_suspect(folder: Path) -> None:
     before = read(folder)
     after = read(folder, hazards=cases.HAZARDS.replace("A drum", "A wall"))
-    found = pairs(before, after)
-    assert ("hazard:HAZ-1", "text:R1") in found
-    assert ("text:R1", "sentence:R1") in found
-    assert ("log:logs/a.mcap", RUN) not in found
-    assert ("bindings:R1", RUN) not in found
+    links = pairs(before, after)
+    assert ("hazard:HAZ-1", "text:R1") in links
+    assert ("text:R1", "sentence:R1") in links
+    assert ("log:logs/a.mcap", RUN) not in links
+    assert ("bindings:R1", RUN) not in links
 
 
 def test_another_threshold_makes_the_verdicts_suspect_and_no_formula(folder: Path) -> None:
@@ -130,21 +130,21 @@ def test_another_sentence_makes_formulas_and_artefacts_suspect_and_names_the_cau
 ) -> None:
     before = read(folder)
     after = read(folder, R1.replace("300", "400"))
-    found = {(str(s.link.source), str(s.link.target)): s for s in suspects(after, before.prints)}
-    assert ("sentence:R1", "formulas:R1") in found
-    assert ("formulas:R1", "artefact:r1_monitor.py") in found
-    assert ("hazard:HAZ-1", "text:R1") not in found
-    assert ("text:R1", "sentence:R1") not in found
-    causes = found["artefact:r1_monitor.py", RUN].causes
-    assert list(map(str, causes)) == ["sentence:R1"], "what follows from it is not told again"
+    links = {(str(s.link.source), str(s.link.target)): s for s in suspects(after, before.prints)}
+    assert ("sentence:R1", "formulas:R1") in links
+    assert ("formulas:R1", "artefact:r1_monitor.py") in links
+    assert ("hazard:HAZ-1", "text:R1") not in links
+    assert ("text:R1", "sentence:R1") not in links
+    causes = links["artefact:r1_monitor.py", RUN].causes
+    assert list(map(str, causes)) == ["sentence:R1"], "what follows from it is no cause of its own"
 
 
 def test_a_run_that_is_gone_makes_the_review_suspect(folder: Path) -> None:
     project = cases.project(folder / "requirements", R1)
     before = chain(project, cases.result(project, "satisfied"))
-    found = pairs(before, chain(project))
-    assert (RUN, "review:R1") in found
-    assert ("log:logs/a.mcap", "review:R1") in found
+    links = pairs(before, chain(project))
+    assert (RUN, "review:R1") in links
+    assert ("log:logs/a.mcap", "review:R1") in links
 
 
 def test_requirements_that_name_each_other_as_parents_have_a_chain(folder: Path) -> None:
@@ -152,9 +152,9 @@ def test_requirements_that_name_each_other_as_parents_have_a_chain(folder: Path)
         cases.requirement(id, "the robot shall always satisfy stopped", parents=[other])
         for id, other in (("A", "B"), ("B", "A"))
     ]
-    found = chains(cases.project(folder, *texts), None)
-    assert [c.requirement for c in found] == ["A", "B"]
-    assert suspects(found[0], found[0].prints) == ()
+    both = chains(cases.project(folder, *texts), None)
+    assert [c.requirement for c in both] == ["A", "B"]
+    assert suspects(both[0], both[0].prints) == ()
 
 
 # Against reachability, written down directly ---------------------------------------------------
@@ -175,9 +175,9 @@ def test_a_link_is_suspect_exactly_if_a_change_reaches_its_source(
     reached = set(wrong)
     for _ in NODES:
         reached |= {b for a, b in edges if a in reached}
-    found = suspects(Chain("R1", prints, links, {}), locked)
-    assert {s.link for s in found} == {ln for ln in links if int(ln.source.name) in reached}
-    assert len({s.link for s in found}) == len(found)
-    for suspect in found:
+    suspect_links = suspects(Chain("R1", prints, links, {}), locked)
+    assert {s.link for s in suspect_links} == {ln for ln in links if int(ln.source.name) in reached}
+    assert len({s.link for s in suspect_links}) == len(suspect_links)
+    for suspect in suspect_links:
         assert suspect.causes
         assert {int(cause.name) for cause in suspect.causes} <= wrong

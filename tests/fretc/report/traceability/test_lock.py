@@ -35,9 +35,9 @@ def test_a_lock_is_sorted_whatever_the_order_of_its_reviews() -> None:
 
 
 def test_no_lock_is_a_note() -> None:
-    found = read("fretc.lock")
-    assert isinstance(found, Diagnostic)
-    assert (found.code, found.is_error) == (Code.NO_SUCH_FILE, False)
+    diagnostic = read("fretc.lock")
+    assert isinstance(diagnostic, Diagnostic)
+    assert (diagnostic.code, diagnostic.is_error) == (Code.NO_SUCH_FILE, False)
 
 
 GOOD = text(Lock({"R1": Review("R1", "r", "s", "2026-01-02", "c", {Node("text", "R1"): SHA}, {})}))
@@ -66,13 +66,13 @@ GOOD = text(Lock({"R1": Review("R1", "r", "s", "2026-01-02", "c", {Node("text", 
         ),
     ],
 )
-def test_a_lock_that_was_changed_by_hand_is_told(old: str, new: str, message: str) -> None:
+def test_a_lock_that_was_changed_by_hand_is_reported(old: str, new: str, message: str) -> None:
     assert old in GOOD
-    found = read(write("fretc.lock", GOOD.replace(old, new, 1)))
-    assert isinstance(found, Diagnostic)
-    assert found.code is Code.BAD_LOCK
-    assert found.message == message
-    assert found.span is not None
+    diagnostic = read(write("fretc.lock", GOOD.replace(old, new, 1)))
+    assert isinstance(diagnostic, Diagnostic)
+    assert diagnostic.code is Code.BAD_LOCK
+    assert diagnostic.message == message
+    assert diagnostic.span is not None
 
 
 EDITS = [
@@ -98,10 +98,10 @@ def test_a_review_that_was_edited_by_hand_does_not_count(old: str, new: str) -> 
     assert old in known
     changed = known.replace(old, new)
     changed = changed.replace("[review.R1.", "[review.R2.") if "R2]" in new else changed
-    found = read(write("fretc.lock", changed))
-    assert isinstance(found, Diagnostic)
-    assert found.code is Code.BAD_LOCK
-    assert found.message.endswith("is not as `fretc lock` wrote it: somebody has edited it")
+    diagnostic = read(write("fretc.lock", changed))
+    assert isinstance(diagnostic, Diagnostic)
+    assert diagnostic.code is Code.BAD_LOCK
+    assert diagnostic.message.endswith("is not as `fretc lock` wrote it: somebody has edited it")
 
 
 @pytest.mark.parametrize(
@@ -112,12 +112,12 @@ def test_a_review_of_a_day_to_come_does_not_count(
     monkeypatch: pytest.MonkeyPatch, day: str, counts: bool
 ) -> None:
     monkeypatch.setenv("SOURCE_DATE_EPOCH", "1700000000")  # 2023-11-14, 22:13: the 15th in the east
-    found = read(write("fretc.lock", text(Lock({"R1": Review("R1", "r", "s", day, "c", {}, {})}))))
+    lock = read(write("fretc.lock", text(Lock({"R1": Review("R1", "r", "s", day, "c", {}, {})}))))
     if counts:
-        assert isinstance(found, Lock)
+        assert isinstance(lock, Lock)
     else:
-        assert isinstance(found, Diagnostic)
-        assert found.message == f"the review of R1 is of {day}, a day that is still to come"
+        assert isinstance(lock, Diagnostic)
+        assert lock.message == f"the review of R1 is of {day}, a day that is still to come"
 
 
 @pytest.mark.parametrize("id", ["schema", "review", "fingerprints", "verdicts", "seal", "date"])
@@ -128,14 +128,14 @@ def test_a_requirement_may_have_any_id(id: str) -> None:
 
 
 @pytest.mark.parametrize("first", ['schema = "fretc-lock-1"', "[schema]"])
-def test_a_lock_of_an_earlier_version_is_told_with_what_to_do(first: str) -> None:
+def test_a_lock_of_an_earlier_version_is_reported_with_what_to_do(first: str) -> None:
     """There a review of a requirement called `schema` stood in the place of the form."""
-    found = read(write("fretc.lock", f'{first}\n\n[R1]\nreviewer = "r"\n'))
-    assert isinstance(found, Diagnostic)
-    assert (found.code, found.message) == (
+    diagnostic = read(write("fretc.lock", f'{first}\n\n[R1]\nreviewer = "r"\n'))
+    assert isinstance(diagnostic, Diagnostic)
+    assert (diagnostic.code, diagnostic.message) == (
         Code.BAD_LOCK,
         "the lock was written by an earlier version of fretc, whose fingerprints are others",
     )
-    assert found.help == (
+    assert diagnostic.help == (
         "keep it under another name, look at what was accepted, and review anew: `fretc lock`"
     )

@@ -23,8 +23,8 @@ def _here(tmp_path: object, monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_a_waiver_counts_from_its_first_to_its_last_day() -> None:
-    waivers, said = read(write("waivers.toml", GOOD), ["R1"], "2026-11-22")
-    assert said == ()
+    waivers, diagnostics = read(write("waivers.toml", GOOD), ["R1"], "2026-11-22")
+    assert diagnostics == ()
     assert waivers == {
         "R1": Waiver(
             "R1",
@@ -40,9 +40,9 @@ def test_a_waiver_counts_from_its_first_to_its_last_day() -> None:
     assert [waivers["R1"].covers(day) for day in days] == [False, True, True, False]
 
 
-def test_a_waiver_that_has_ended_is_told() -> None:
-    _, (said,) = read(write("waivers.toml", GOOD), ["R1"], "2027-01-01")
-    assert render(said) == (
+def test_a_waiver_that_has_ended_is_reported() -> None:
+    _, (warning,) = read(write("waivers.toml", GOOD), ["R1"], "2027-01-01")
+    assert render(warning) == (
         "F514 warning: the waiver of R1 counts from 2026-11-01 to 2026-12-31 only\n"
         "  --> waivers.toml:7:11\n"
         '   | expires = "2026-12-31"\n'
@@ -67,9 +67,9 @@ def test_a_waiver_that_has_ended_is_told() -> None:
     ],
 )
 def test_a_waiver_with_a_mistake_waives_nothing(old: str, new: str, message: str) -> None:
-    waivers, said = read(write("waivers.toml", GOOD.replace(old, new)), ["R1"], "2026-11-22")
+    waivers, diagnostics = read(write("waivers.toml", GOOD.replace(old, new)), ["R1"], "2026-11-22")
     assert waivers == {}
-    assert message in [d.message for d in said]
+    assert message in [d.message for d in diagnostics]
 
 
 def test_the_day_is_that_of_source_date_epoch(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -78,11 +78,13 @@ def test_the_day_is_that_of_source_date_epoch(monkeypatch: pytest.MonkeyPatch) -
 
 
 def test_what_a_waiver_may_cover_is_what_does_not_show_a_requirement() -> None:
-    shown = {"satisfied", "supported", "retired", "waived", "suspect"}
-    assert set(VERDICTS) == {word for word in verdicts.VERDICTS if word not in shown}
+    passing = {"satisfied", "supported", "retired", "waived", "suspect"}
+    assert set(VERDICTS) == {word for word in verdicts.VERDICTS if word not in passing}
 
 
-def test_an_older_waiver_is_told_with_its_mend() -> None:
-    _, (said,) = read(write("waivers.toml", GOOD.replace('verdict = "no data"\n', "")), ["R1"], "")
-    assert said.help is not None
-    assert said.help.startswith('add `verdict = "no data"`; it may be `violated`, `refuted`, ')
+def test_an_older_waiver_is_reported_with_its_mend() -> None:
+    _, (mistake,) = read(
+        write("waivers.toml", GOOD.replace('verdict = "no data"\n', "")), ["R1"], ""
+    )
+    assert mistake.help is not None
+    assert mistake.help.startswith('add `verdict = "no data"`; it may be `violated`, `refuted`, ')

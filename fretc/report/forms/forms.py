@@ -1,28 +1,35 @@
-"""The forms of the report, in one table: the option of each, and the text that it makes.
+"""The forms of the report, in one table: the option of each, and the function that writes it.
 
-All are made of the same values. What makes a form is imported when the form is wanted.
+A function imports its form when the form is wanted, so that the table itself costs nothing.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from importlib.util import find_spec
 from typing import TYPE_CHECKING
 
+from fretish.diagnostics.diagnostic import Code, Diagnostic
+
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from compiler.project.folder import Project
-    from fretc.report.make import Made
+    from fretc.audit.evidence.schema import Result
     from fretc.report.model.views import Report
-    from fretish.diagnostics.diagnostic import Diagnostic
 
 
 @dataclass(frozen=True, slots=True)
 class Subject:
-    """What a form is made of."""
+    """What a form is written from."""
 
-    made: Made
     report: Report
     project: Project
+    results: Sequence[Result]
+    """Those of the evidence, in its order."""
+    diagnostics: Sequence[Diagnostic]
+    """Those of the report; the project has its own."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,21 +37,25 @@ class Form:
     """A form of the report."""
 
     name: str
-    """That of its option."""
+    """The name of its option."""
     help: str
     text: Callable[[Subject], str]
     default: str | None = None
-    """Where it goes where no place is given; None: it is not made then."""
+    """The file that it goes to where no file is given; None: then it is not written."""
     missing: Callable[[], Diagnostic | None] = lambda: None
-    """What it needs and is not installed."""
+    """A diagnostic where a library that the form needs is not installed."""
 
 
 def _html(subject: Subject) -> str:
-    return subject.made.html or ""
+    from fretc.report.page.html import html
+
+    return html(subject.report, subject.project.rules)
 
 
 def _json(subject: Subject) -> str:
-    return subject.made.json or ""
+    from fretc.report.forms.json_text import json_text
+
+    return json_text(subject.report)
 
 
 def _csv(subject: Subject) -> str:
@@ -63,9 +74,8 @@ def _sarif(subject: Subject) -> str:
     from fretc.report.forms.sarif import sarif
 
     project = subject.project
-    messages = [*project.diagnostics, *subject.made.diagnostics]
-    results = subject.made.results
-    return sarif(subject.report, results, project.rules, messages, project.without_rule)
+    diagnostics = [*project.diagnostics, *subject.diagnostics]
+    return sarif(subject.report, subject.results, project.rules, diagnostics, project.without_rule)
 
 
 def _markdown(subject: Subject) -> str:
@@ -81,9 +91,15 @@ def _reqif(subject: Subject) -> str:
 
 
 def _missing_reqif() -> Diagnostic | None:
-    from fretc.report.forms.extras import missing_reqif
-
-    return missing_reqif()
+    """F908, where the library that `--reqif` needs is not installed."""
+    if find_spec("reqif") is not None:
+        return None
+    return Diagnostic(
+        Code.MISSING_EXTRA,
+        "a report as ReqIF needs `reqif`",
+        help="install the extra: pip install 'fretc[reqif]' "
+        "(in a checkout: .venv/bin/pip install '.[reqif]')",
+    )
 
 
 def _gsn(subject: Subject) -> str:

@@ -1,4 +1,4 @@
-"""A requirement as its section shows it: what it says, means, is made of and has been shown."""
+"""The section of one requirement: its text, meaning, formulas, proofs, runs and review."""
 
 from __future__ import annotations
 
@@ -15,8 +15,7 @@ from compiler.logic.claims import Proof
 from compiler.project.folder import Project
 from fretc.attestation.signatures import NO_SIGNATURES, Book
 from fretc.report.model import phrases
-from fretc.report.model.claims import Claim
-from fretc.report.model.probabilities import probability_view
+from fretc.report.model.assessments import Assessment
 from fretc.report.model.views import (
     Formula,
     Parent,
@@ -28,10 +27,11 @@ from fretc.report.model.views import (
 )
 from fretc.report.pictures.histograms import exercise, histograms
 from fretc.report.sections.plans import planned
+from fretc.report.sections.probability import probability_view
 from fretc.report.sections.proofs import SHARED, proof_views
 from fretc.report.sections.results import reasons, result_views
 from fretc.report.sections.reviews import review, waiver
-from fretc.report.sections.runs import Key, Run
+from fretc.report.sections.runs import Run, RunKey
 from fretc.report.traceability.artefacts import Product
 from fretish.bindings.declarations import Declarations, Proposition, Signal
 from fretish.clock import Clock
@@ -41,38 +41,38 @@ from fretish.printer import sentence
 
 
 def section(
-    claim: Claim,
+    assessment: Assessment,
     project: Project,
-    runs: dict[Key, Run],
+    runs: dict[RunKey, Run],
     anchors: Mapping[str, str],
     audited: bool,
     proofs: Sequence[Proof] = (),
-    common: Sequence[Product] = (),
+    shared_products: Sequence[Product] = (),
     book: Book = NO_SIGNATURES,
 ) -> RequirementView:
     """The view of one requirement.
 
     Args:
-        claim: the requirement.
-        project: all that was read.
+        assessment: of the requirement.
+        project: with or without errors.
         runs: all runs.
-        anchors: where the section of each requirement is, by its id.
+        anchors: of the section of each requirement, by its id.
         audited: whether there is any evidence.
-        proofs: of all requirements, and of what they share.
-        common: what is made of the bindings alone, which proofs are about too.
+        proofs: about all requirements, and about shared parts.
+        shared_products: what targets make from the bindings alone.
         book: who signed what.
     """
-    requirement, rule = claim.requirement, claim.rule
-    made = (*claim.products, *common)
-    mine = proof_views((p for p in proofs if p.requirement == claim.id), made)
-    shared = proof_views((p for p in proofs if p.requirement in SHARED), common)
+    requirement, rule = assessment.requirement, assessment.rule
+    products = (*assessment.products, *shared_products)
+    own_proofs = proof_views((p for p in proofs if p.requirement == assessment.id), products)
+    shared_proofs = proof_views((p for p in proofs if p.requirement in SHARED), shared_products)
     clock = project.declarations.clock if project.declarations else None
     return RequirementView(
-        id=claim.id,
-        anchor=claim.anchor,
+        id=assessment.id,
+        anchor=assessment.anchor,
         title=requirement.title,
-        mark=claim.mark,
-        suspicions=claim.suspicions,
+        mark=assessment.mark,
+        suspicions=assessment.suspicions,
         status=requirement.status,
         source=f"{phrases.place(requirement.wording.source.name)}:{requirement.wording.line}",
         text=requirement.text,
@@ -80,7 +80,7 @@ def section(
         canonical=sentence(rule.written) if rule else "",
         fingerprint=rule.fingerprint if rule else "",
         meaning=meaning(rule.written, rule.ticks, rule.clock) if rule else "",
-        error=remark(claim.diagnostic) if claim.diagnostic else None,
+        error=remark(assessment.diagnostic) if assessment.diagnostic else None,
         diagram=words(diagram(rule)) if rule else "",
         formulas=_formulas(rule) if rule else (),
         propositions=_propositions(rule, project.declarations) if rule else (),
@@ -88,34 +88,34 @@ def section(
         parents=tuple(_parent(parent, project, anchors) for parent in requirement.parents),
         rationale=requirement.rationale,
         params=dict(requirement.params),
-        planned=planned(claim, (*mine, *shared)),
-        artefacts=claim.products,
-        probability=_probability(claim),
-        proofs=mine,
-        exercise=exercise(claim),
-        histograms=histograms(claim),
-        results=result_views(claim, runs, project.declarations),
-        reasons=reasons(claim, runs, audited=audited),
+        planned=planned(assessment, (*own_proofs, *shared_proofs)),
+        artefacts=assessment.products,
+        probability=_probability(assessment),
+        proofs=own_proofs,
+        exercise=exercise(assessment),
+        histograms=histograms(assessment),
+        results=result_views(assessment, runs, project.declarations),
+        reasons=reasons(assessment, runs, audited=audited),
         limit=_limit(rule),
-        coverage=claim.coverage,
-        review=review(claim, book),
-        waiver=waiver(claim, book),
+        coverage=assessment.coverage,
+        review=review(assessment, book),
+        waiver=waiver(assessment, book),
     )
 
 
 def _limit(rule: Formalized | None) -> str:
-    """Of a probability many runs decide."""
+    """Why no run can violate it; many runs decide about a probability, so it has no limit."""
     return "" if rule is None or rule.sentence.probability is not None else limit(rule)
 
 
-def _probability(claim: Claim) -> ProbabilityView | None:
-    if claim.together is None:
+def _probability(assessment: Assessment) -> ProbabilityView | None:
+    if assessment.probability is None:
         return None
-    return probability_view(claim.together.told, claim.together.suspicions)
+    return probability_view(assessment.probability.estimation, assessment.probability.suspicions)
 
 
 def remark(diagnostic: Diagnostic) -> Remark:
-    """A diagnostic as it is shown."""
+    """The view of a diagnostic."""
     span = diagnostic.span
     place = phrases.place(span.source.name) if span else ""
     where = f":{span.line}:{span.column}" if span and span.source.text else ""
@@ -176,14 +176,14 @@ def _proposition(name: str, declared: Declarations | None) -> PropositionView:
         name=name,
         is_bound=True,
         text=bound.text,
-        expression=_written(declared, name),
+        expression=_expression(declared, name),
         properties=_properties(bound),
         signals=tuple(_signal(declared.signals[each]) for each in bound.signals),
     )
 
 
-def _written(declared: Declarations, name: str) -> str:
-    """The expression as it stands in the bindings."""
+def _expression(declared: Declarations, name: str) -> str:
+    """The expression, as the bindings write it."""
     data: Mapping[str, Any] = tomllib.loads(declared.source.text)
     return str(data["proposition"][name]["expr"])
 

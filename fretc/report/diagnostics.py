@@ -1,0 +1,60 @@
+"""Warnings about evidence that is out of date (F504) and waivers that cover nothing (F543)."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from fretc.audit.evidence.schema import Evidence
+from fretc.audit.evidence.verdicts import WAIVED
+from fretc.report.model import phrases
+from fretc.report.model.assessments import Assessment
+from fretc.report.sections.matrix import unknown_ids
+from fretc.report.traceability.waivers import idle_waiver
+from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
+from fretish.diagnostics.source import Source
+
+
+def stale_evidence(
+    assessments: Sequence[Assessment], evidence: Evidence | None, path: str
+) -> tuple[Diagnostic, ...]:
+    """F504 for each requirement with evidence of something else, and each id that is unknown."""
+    again = f"audit again: `fretc audit LOG... --evidence {path}`"
+    suspect = [
+        Diagnostic(
+            Code.STALE_EVIDENCE,
+            f"the evidence of {assessment.id} is suspect in {phrases.times(count, 'run')}: {why}",
+            assessment.requirement.wording,
+            help=again,
+            severity=Severity.WARNING,
+        )
+        for assessment in assessments
+        for count, why in [_suspicions(assessment)]
+        if count
+    ]
+    strange = [
+        Diagnostic(
+            Code.STALE_EVIDENCE,
+            f"there is evidence of {id}, which is not among the requirements",
+            Source(path, "").span(),
+            help=again,
+            severity=Severity.WARNING,
+        )
+        for id in unknown_ids(assessments, evidence)
+    ]
+    return (*suspect, *strange)
+
+
+def _suspicions(assessment: Assessment) -> tuple[int, str]:
+    """The number of runs in which a requirement is suspect, and why."""
+    stale = [audit for audit in assessment.audits if audit.is_stale]
+    reasons = dict.fromkeys(reason for audit in stale for reason in audit.suspicions)
+    return len(stale), phrases.joined(list(reasons))
+
+
+def idle_waivers(assessments: Sequence[Assessment]) -> tuple[Diagnostic, ...]:
+    """F543 for each waiver of another verdict than the one that is there."""
+    return tuple(
+        idle_waiver(assessment.waiver, assessment.verdict)
+        for assessment in assessments
+        if assessment.waiver is not None and assessment.verdict != WAIVED
+    )

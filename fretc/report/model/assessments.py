@@ -1,0 +1,240 @@
+"""Each requirement with its audits, its review and its waiver, and the verdict that follows."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from types import MappingProxyType
+
+from compiler.formalization.formalized import Formalized, plain
+from compiler.logic.claims import Proof
+from compiler.project.folder import Project
+from compiler.targets.python import monitor
+from fretc.audit.evidence.reader import by_requirement
+from fretc.audit.evidence.schema import Evidence
+from fretc.audit.evidence.verdicts import (
+    BROKEN,
+    NOT_EXERCISED,
+    RETIRED,
+    SHOWN,
+    SUSPECT,
+    UNFORMALIZED,
+    WAIVED,
+    severity,
+)
+from fretc.audit.measurements.trials import NO_TRIALS
+from fretc.audit.plan import bases
+from fretc.report.model.audits import ProbabilityAudit, SingleAudit
+from fretc.report.model.suspicions import about_estimation, about_result, since_review
+from fretc.report.model.views import Mark, verdict_mark
+from fretc.report.traceability.artefacts import Product, products
+from fretc.report.traceability.chain import chains
+from fretc.report.traceability.lock import Lock, Standing, standings
+from fretc.report.traceability.waivers import Waiver
+from fretish.bindings.declarations import Declarations
+from fretish.diagnostics.diagnostic import Diagnostic
+from fretish.documents import Requirement
+
+UNBOUND, NOT_GENERATED = "unbound", "not generated"
+EXERCISED_PASS, EXERCISED_FAIL = "exercised, pass", "exercised, fail"
+EXERCISED_OPEN = "exercised, open"
+COVERAGE = (
+    UNFORMALIZED, UNBOUND, NOT_GENERATED, NOT_EXERCISED, EXERCISED_OPEN, EXERCISED_PASS,
+    EXERCISED_FAIL, SUSPECT, WAIVED, RETIRED,
+)  # fmt: skip
+"""How far a requirement has come; the last three hold whatever else is known of it."""
+
+
+@dataclass(frozen=True, slots=True)
+class Assessment:
+    """One requirement and all that its verdict rests on."""
+
+    requirement: Requirement
+    anchor: str
+    rule: Formalized | None
+    diagnostic: Diagnostic | None
+    """Why there is no rule; None where there is one."""
+    audits: tuple[SingleAudit, ...]
+    """One for each run, without regard to the review."""
+    products: tuple[Product, ...]
+    standing: Standing
+    waiver: Waiver | None
+    """The waiver that counts today."""
+    is_bound: bool
+    probability: ProbabilityAudit | None = None
+    """Of a sentence with a probability: the answer of all runs, in place of their verdicts."""
+
+    @property
+    def id(self) -> str:
+        """The requirement's id."""
+        return self.requirement.id
+
+    @property
+    def reviewed_audits(self) -> tuple[SingleAudit, ...]:
+        """The audits beside the review: none shows a requirement that changed since it."""
+        return tuple(audit.with_review(self.standing) for audit in self.audits)
+
+    @property
+    def verdict(self) -> str:
+        """`waived` where a waiver covers the verdict; else the verdict."""
+        return WAIVED if self._is_waived else self.unwaived
+
+    @property
+    def unwaived(self) -> str:
+        """The verdict without regard to a waiver: the worst of the runs, or why there is none."""
+        if self.requirement.status == RETIRED:
+            return RETIRED
+        words = [word for word, _ in self._verdicts] or [NOT_EXERCISED]
+        unformalized = [] if self.rule is not None else [UNFORMALIZED]
+        return min([*words, *unformalized], key=severity)
+
+    @property
+    def suspicions(self) -> tuple[str, ...]:
+        """Why the verdict is not that of the requirement as it is now and as it was accepted.
+
+        One current run that violates a requirement is enough: then the violation is current. Any
+        other verdict is suspect where one of its runs is, or where the review is.
+        """
+        word = self.unwaived
+        if word == RETIRED:
+            return ()
+        reasons = [why for other, why in self._verdicts if word not in BROKEN or other == word]
+        if word in BROKEN and not all(reasons):
+            return ()
+        distinct = tuple(dict.fromkeys(reason for why in reasons for reason in why))
+        return distinct or since_review(self.standing)
+
+    @property
+    def is_shown(self) -> bool:
+        """Whether the evidence shows that the requirement holds, as it is now."""
+        return self.mark.shows
+
+    @property
+    def is_broken(self) -> bool:
+        """Whether the evidence shows that it does not hold, and no waiver covers that."""
+        return self.verdict in BROKEN
+
+    @property
+    def _is_waived(self) -> bool:
+        return self.waiver is not None and self.unwaived == self.waiver.verdict
+
+    @property
+    def _verdicts(self) -> list[tuple[str, tuple[str, ...]]]:
+        """Each verdict that counts towards the requirement's, with its suspicions."""
+        runs = [(audit.verdict, audit.suspicions) for audit in self.audits]
+        if self.probability is None:
+            return runs
+        answer = (self.probability.estimation.answer, self.probability.suspicions)
+        has_probability = self.rule is not None and self.rule.sentence.probability is not None
+        return [answer] if has_probability else [*runs, answer]
+
+    @property
+    def coverage(self) -> str:
+        """How far along the chain from sentence to passing run it is: one of `COVERAGE`."""
+        verdict = self.verdict
+        if verdict in (RETIRED, WAIVED, UNFORMALIZED):
+            return verdict
+        if verdict in BROKEN:
+            return EXERCISED_FAIL
+        if self.suspicions:
+            return SUSPECT
+        if not self.is_bound:
+            return UNBOUND
+        if self.rule is None or monitor.refuse(plain(self.rule)) is not None:
+            return NOT_GENERATED
+        if verdict in SHOWN:
+            return EXERCISED_PASS
+        triggered = any(audit.result.triggers for audit in self.audits)
+        return EXERCISED_OPEN if triggered else NOT_EXERCISED
+
+    @property
+    def mark(self) -> Mark:
+        """Verdict and currency."""
+        return verdict_mark(WAIVED) if self._is_waived else self.unwaived_mark
+
+    @property
+    def unwaived_mark(self) -> Mark:
+        """Verdict and currency without regard to a waiver."""
+        return verdict_mark(self.unwaived, suspect=bool(self.suspicions))
+
+
+def assessments(
+    project: Project,
+    evidence: Evidence | None,
+    lock: Lock | None = None,
+    waivers: Mapping[str, Waiver] = MappingProxyType({}),
+    proofs: Sequence[Proof] = (),
+) -> tuple[Assessment, ...]:
+    """Every requirement of the project, in its order.
+
+    Args:
+        project: with or without errors.
+        evidence: None where no run has been audited.
+        lock: None where nothing has been reviewed.
+        waivers: those that count today, by the requirement.
+        proofs: the results of verification.
+    """
+    rules = {id(rule.requirement): rule for rule in project.rules}
+    diagnostics = {id(each.requirement): each.diagnostic for each in project.failed}
+    results = by_requirement(evidence)
+    basis_of = bases(project)
+    products_of = {id: products(rule) for id, rule in rules.items()}
+    standing_of_each = standings(chains(project, evidence, products_of, proofs), lock)
+    audited_by = evidence.fretc if evidence else ""
+    anchors: list[str] = []
+    assessed: list[Assessment] = []
+    for requirement, standing in zip(project.requirements, standing_of_each, strict=True):
+        anchors.append(_anchor(requirement.id, anchors))
+        rule = rules.get(id(requirement))
+        basis = basis_of[id(requirement)] if rule is not None else None
+        audits = tuple(
+            SingleAudit(result, tuple(about_result(result, basis, audited_by)))
+            for result in results.get(requirement.id, ())
+        )
+        assessed.append(
+            Assessment(
+                requirement,
+                anchors[-1],
+                rule,
+                diagnostics.get(id(requirement)),
+                audits,
+                products_of.get(id(requirement), ()),
+                standing,
+                waivers.get(requirement.id),
+                rule is not None and _is_bound(rule, project.declarations),
+                _probability(requirement.id, rule, evidence, audits),
+            )
+        )
+    return tuple(assessed)
+
+
+def _probability(
+    id: str, rule: Formalized | None, evidence: Evidence | None, audits: Sequence[SingleAudit]
+) -> ProbabilityAudit | None:
+    estimations = evidence.probabilities if evidence is not None else ()
+    estimation = next((one for one in estimations if one.requirement == id), None)
+    if estimation is None:
+        return None
+    stale = [reason for audit in audits for reason in audit.suspicions]
+    if rule is None or rule.sentence.probability is None:
+        reasons = dict.fromkeys((*stale, "the sentence gives no probability now"))
+        return ProbabilityAudit(estimation, tuple(reasons))
+    results = [audit.result for audit in audits]
+    runs = [(each.content, each.health.intact, each.trials or NO_TRIALS) for each in results]
+    doubts = about_estimation(estimation, rule.sentence.probability, runs)
+    return ProbabilityAudit(estimation, tuple(dict.fromkeys((*stale, *doubts))))
+
+
+def _is_bound(rule: Formalized, declarations: Declarations | None) -> bool:
+    propositions = declarations.propositions if declarations else {}
+    return all(name in propositions for name in rule.watched)
+
+
+def _anchor(id: str, taken: Sequence[str]) -> str:
+    """`req-R1`: letters, digits, `-`, `_` and `.` only, and different from all others."""
+    plain = "".join(c if c.isascii() and (c.isalnum() or c in "-_.") else "-" for c in id)
+    anchor, number = f"req-{plain}", 1
+    while anchor in taken:
+        number += 1
+        anchor = f"req-{plain}--{number}"
+    return anchor

@@ -1,0 +1,54 @@
+"""The audits of one requirement: a result from each run, or a probability from all of them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+from fretc.audit.evidence.probabilities import Estimated
+from fretc.audit.evidence.schema import Result
+from fretc.report.model.suspicions import since_review
+from fretc.report.model.views import Mark, verdict_mark
+from fretc.report.traceability.lock import Standing
+from monitors import kernel
+
+
+@dataclass(frozen=True, slots=True)
+class SingleAudit:
+    """The result of one run, and why it does not count, if it does not."""
+
+    result: Result
+    suspicions: tuple[str, ...]
+
+    @property
+    def verdict(self) -> str:
+        """The verdict of the result; `violated` wherever the result lists a violation."""
+        violations = self.result.violations and self.result.trials is None
+        return kernel.VIOLATED if violations else self.result.verdict
+
+    @property
+    def is_stale(self) -> bool:
+        """Whether the result is evidence of something else."""
+        return bool(self.suspicions)
+
+    @property
+    def mark(self) -> Mark:
+        """Verdict and currency."""
+        return verdict_mark(self.verdict, suspect=self.is_stale)
+
+    def with_review(self, standing: Standing) -> SingleAudit:
+        """The same beside a review: no run shows a requirement that changed since it."""
+        suspicions = since_review(standing) if self.mark.shows else ()
+        return replace(self, suspicions=suspicions) if suspicions else self
+
+
+@dataclass(frozen=True, slots=True)
+class ProbabilityAudit:
+    """The answer of all runs about a probability, and why it does not count, if it does not."""
+
+    estimation: Estimated
+    suspicions: tuple[str, ...]
+
+    @property
+    def mark(self) -> Mark:
+        """Answer and currency."""
+        return verdict_mark(self.estimation.answer, suspect=bool(self.suspicions))

@@ -1,0 +1,186 @@
+"""The overall result in words: a mark, a headline, and sentences about what is not shown."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+
+from compiler.project.folder import Project
+from fretc.audit.evidence.verdicts import RETIRED, WAIVED
+from fretc.report.model import phrases
+from fretc.report.model.assessments import Assessment
+from fretc.report.model.headlines import outdated, violated
+from fretc.report.model.views import Overall, Planned, RequirementView, Signatures, sign_mark
+from fretc.report.sections.matrix import orphans
+from fretc.report.sections.proofs import is_refuted
+from fretc.report.sections.runs import Run, trust
+from fretc.report.sections.signatures import BROKEN
+from fretc.report.traceability.lock import WithdrawnRequirement
+from fretish.diagnostics import signs
+from fretish.diagnostics.diagnostic import has_errors
+
+_ALL = sign_mark("all shown", signs.GOOD)
+_PART = sign_mark("not all shown", signs.OPEN)
+_NONE = sign_mark("nothing shown", signs.UNUSED)
+_VIOLATED = sign_mark("violated", signs.BAD)
+
+
+def overall(
+    project: Project,
+    assessments: Sequence[Assessment],
+    sections: Sequence[RequirementView],
+    runs: Sequence[Run],
+    reservations: Sequence[str],
+    withdrawn: Sequence[WithdrawnRequirement],
+    signatures: Signatures,
+) -> Overall:
+    """Mark, headline and sentences.
+
+    Args:
+        project: with or without errors.
+        assessments: of all requirements.
+        sections: the view of each assessment, in the same order.
+        runs: all audited runs.
+        reservations: about requirements that are shown.
+        withdrawn: requirements that were reviewed and are claimed no more.
+        signatures: all of them.
+    """
+    active = [one for one in assessments if one.verdict != RETIRED]
+    active_views = [view for view in sections if view.status != RETIRED]
+    missing = [plan for view in active_views for plan in view.planned if not plan.has_result]
+    refuted = [view.id for view in active_views if is_refuted(view)]
+    red = [one for one in active if one.is_broken]
+    stale = outdated(active)
+    good = [one for one in active if one.is_shown]
+    has_flaws = has_errors(project.diagnostics)
+    forged = _forged(signatures)
+    sentences = tuple(
+        filter(
+            None,
+            (
+                *((stale,) if red else ()),
+                *_held(active, good, len(runs)),
+                *(f"{one.text}." for one in withdrawn),
+                _refuted(refuted),
+                *_few(reservations),
+                _waived(active),
+                _unsigned(sections),
+                _unplanned(missing),
+                _uncovered(project, assessments),
+                trust(runs),
+                _FLAWED if has_flaws else "",
+                forged if red else "",
+            ),
+        )
+    )
+    if red:
+        mark = replace(_VIOLATED, suspect=all(one.suspicions for one in red))
+        return Overall(mark, violated(red), sentences)
+    if forged:
+        return Overall(BROKEN, forged, sentences)
+    if not good:
+        return Overall(_NONE, _with("Nothing that was claimed is shown", stale), sentences)
+    if len(good) < len(active) or has_flaws or withdrawn:
+        return Overall(_PART, _with("Not everything that was claimed is shown", stale), sentences)
+    if refuted:
+        headline = "What was audited held; verification found counterexamples."
+        return Overall(_PART, headline, sentences)
+    if missing:
+        headline = "What was audited held; not all that was planned is shown."
+        return Overall(_PART, headline, sentences)
+    return Overall(_ALL, "Everything that was claimed is shown.", sentences)
+
+
+def _with(headline: str, stale: str) -> str:
+    """A headline, and what is suspect for which reason."""
+    return f"{headline}: {stale}" if stale else f"{headline}."
+
+
+# The sentences ---------------------------------------------------------------------------------
+
+
+def _held(active: Sequence[Assessment], good: Sequence[Assessment], runs: int) -> Iterator[str]:
+    """How many requirements hold in each run, and how many probabilities over all runs."""
+    single = [one for one in active if one.probability is None]
+    probable = [one for one in active if one.probability is not None]
+    if single or not probable:
+        yield _held_in_runs(single, [one for one in good if one.probability is None], runs)
+    if probable:
+        count = sum(one.is_shown for one in probable)
+        yield (
+            f"{count} of {phrases.times(len(probable), 'probability', 'probabilities')} "
+            f"{'is' if len(probable) == 1 else 'are'} supported, on the average over the triggers "
+            f"of {phrases.times(runs, 'run')}."
+        )
+
+
+def _held_in_runs(active: Sequence[Assessment], good: Sequence[Assessment], runs: int) -> str:
+    if not active:
+        return "There is no requirement to show."
+    if not runs:
+        return "No run has been audited."
+    if len(active) == 1:
+        where = _where(len(active[0].audits))
+        held = f"held in {where}" if good else f"was not shown to hold in {where}"
+        return f"The one requirement, {active[0].id}, {held if where else 'was not audited'}."
+    everywhere = all(len(one.audits) == runs for one in good)
+    where = _where(runs) if everywhere else "each run in which they were audited"
+    return f"{len(good)} of {len(active)} requirements held in {where}."
+
+
+def _where(runs: int) -> str:
+    return ("", "the audited run")[runs] if runs <= 1 else f"every one of the {runs} audited runs"
+
+
+def _refuted(ids: Sequence[str]) -> str:
+    if not ids:
+        return ""
+    return f"Verification found a counterexample to {phrases.some(ids)}; part 4 has the claim."
+
+
+def _waived(active: Sequence[Assessment]) -> str:
+    waived = [one for one in active if one.verdict == WAIVED]
+    if not waived:
+        return ""
+    verb = "is" if len(waived) == 1 else "are"
+    names = phrases.some([f"{one.id} ({one.unwaived_mark.text})" for one in waived])
+    return f"{names} {verb} waived, and not shown."
+
+
+def _unsigned(sections: Sequence[RequirementView]) -> str:
+    """A waiver lets a requirement pass, whoever has written it."""
+    waived = [view for view in sections if view.waiver and view.mark.word == WAIVED]
+    names = [view.id for view in waived if view.waiver and not view.waiver.signature.is_good]
+    return f"Nobody is known to have signed the waiver of {phrases.some(names)}." if names else ""
+
+
+def _forged(signatures: Signatures) -> str:
+    places = [one.name for one in signatures.signed if one.signature.mark == BROKEN]
+    if not places:
+        return ""
+    verb = "does" if len(places) == 1 else "do"
+    count = phrases.times(len(places), "signature")
+    return f"{count} {verb} not verify: {phrases.some(places)}."
+
+
+def _unplanned(missing: Sequence[Planned]) -> str:
+    if not missing:
+        return ""
+    names = phrases.some([f"{plan.method} for {plan.requirement}" for plan in missing])
+    return f"No result is known of {phrases.times(len(missing), 'planned method')}: {names}."
+
+
+def _uncovered(project: Project, assessments: Sequence[Assessment]) -> str:
+    count = len(orphans(project, assessments, None).hazards)
+    verb = "has" if count == 1 else "have"
+    return f"{phrases.times(count, 'hazard')} {verb} no requirement in force." if count else ""
+
+
+_FLAWED = "The requirements or what stands beside them have errors: this report is not complete."
+
+
+def _few(reservations: Sequence[str]) -> Sequence[str]:
+    """The reservations themselves, or a sentence with their number where there are many."""
+    if len(reservations) <= 3:
+        return reservations
+    return (f"There are {len(reservations)} reservations about what is shown; part 2 lists them.",)
