@@ -309,7 +309,9 @@ def _globally(u: Unexpected) -> Diagnostic | None:
 
 def _mode(u: Unexpected) -> Diagnostic | None:
     """`in p & q`."""
-    if u.lexeme.kind not in ("_AMPERSAND", "_BAR", *_COMPARISONS) or not u.wants("MODE"):
+    if u.lexeme.kind not in ("_AMPERSAND", "_BAR", *_COMPARISONS):
+        return None
+    if not u.wants("MODE") or u.wants("NUMBER"):
         return None
     return Diagnostic(
         Code.NOT_FRETISH,
