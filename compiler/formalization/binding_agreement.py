@@ -1,6 +1,6 @@
 """Whether what a requirement states is what its bindings make of it.
 
-A proposition needs a binding, and a number that the requirement states stands in it, too.
+A proposition needs a binding.
 
 `[proposition."(speed <= 1.5)"]` binds a comparison by its text. Nothing else holds the two
 together: a binding that compares with another number would be audited in its place.
@@ -17,12 +17,10 @@ from fretish import expressions as e
 from fretish import units
 from fretish.bindings.canonical import expression as meaning
 from fretish.bindings.comparisons import FUNCTIONS, bound, is_measured
-from fretish.bindings.constants import constants
 from fretish.bindings.declarations import Declarations, Proposition
 from fretish.checking import conditions
-from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
+from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.source import Source, Span
-from fretish.documents import Requirement
 from fretish.parser import parse
 from fretish.reading.toml_text import as_key
 from fretish.syntax import Sentence
@@ -172,38 +170,7 @@ def _drifted(rule: Formalized, name: str, stated: e.Expression, bound: Propositi
     )
 
 
-# What has no binding, and what states another number ------------------------------------------
-
-
-def drift(requirement: Requirement, declarations: Declarations) -> Iterator[Diagnostic]:
-    """F310: a number that the requirement states is not the one its binding compares with."""
-    for name, text in requirement.params.items():
-        place = requirement.place("params", name)
-        proposition = declarations.propositions.get(name)
-        if proposition is None and ("proposition", name) not in declarations.mistakes:
-            yield Diagnostic(
-                Code.UNKNOWN_NAME,
-                f"`params` states a number for `{name}`, which has no binding",
-                place,
-                help="name the proposition that the number belongs to, and bind it",
-            )
-            continue
-        stated = units.quantity(text)
-        if stated is None:
-            yield Diagnostic(
-                Code.BAD_FIELD,
-                f"`{text}` is no quantity",
-                place,
-                help='write a number and a unit: `"5 cm"`',
-            )
-        elif proposition is not None and stated not in constants(proposition.expression):
-            yield Diagnostic(
-                Code.PARAMETER_DRIFT,
-                f"the requirement states {text} for `{name}`, and its binding has another number",
-                proposition.span,
-                help="make the binding or `params` say what is meant",
-                severity=Severity.WARNING,
-            )
+# What has no binding ------------------------------------------
 
 
 def unbound(rule: Formalized, declarations: Declarations) -> Iterator[Diagnostic]:

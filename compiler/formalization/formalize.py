@@ -9,7 +9,7 @@ from functools import partial
 
 from compiler.formalization import predicates
 from compiler.formalization.anticipation import anticipated
-from compiler.formalization.binding_agreement import disagreements, drift, place
+from compiler.formalization.binding_agreement import disagreements, place
 from compiler.formalization.formalized import Formalized
 from compiler.formalization.future import future, probabilistic
 from compiler.formalization.obligation import obligation
@@ -69,7 +69,7 @@ def _formalized(
     bound = resolved(rule, declarations) if declarations else rule
     if isinstance(bound, Diagnostic):
         return None, (bound,)
-    return bound, tuple(_remarks(requirement, sentence, declarations))
+    return bound, tuple(_remarks(sentence, declarations))
 
 
 def clashes(rules: Sequence[Formalized]) -> Iterator[Diagnostic]:
@@ -160,17 +160,13 @@ def _clock(declarations: Declarations | None) -> Clock | None:
     return declarations.clock if declarations and declarations.clock.declared else None
 
 
-def _remarks(
-    requirement: Requirement, sentence: Sentence, declarations: Declarations | None
-) -> Iterator[Diagnostic]:
+def _remarks(sentence: Sentence, declarations: Declarations | None) -> Iterator[Diagnostic]:
     clock = _clock(declarations)
     assumed = assumed_ticks(sentence, clock)
     if assumed is not None:
         yield assumed
     yield from surprises(sentence)
     yield from temporal_predicates(sentence)
-    if declarations is not None:
-        yield from drift(requirement, declarations)
 
 
 def duplicates(requirements: Sequence[Requirement]) -> Mapping[int, Diagnostic]:

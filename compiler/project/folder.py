@@ -17,6 +17,7 @@ from compiler.formalization.resolution import extended
 from compiler.project.ancestry import circles, unknown_parents
 from compiler.project.parents import Parent
 from compiler.project.parents import parents as read_parents
+from compiler.project.stated_numbers import disagreements
 from fretish.bindings.declarations import Declarations
 from fretish.bindings.reader import read_bindings
 from fretish.diagnostics.diagnostic import Code, Diagnostic, has_errors
@@ -159,6 +160,8 @@ def _formalized(
         rule, remarks = None, requirement.mistakes
         if not remarks:
             rule, remarks = formalize(requirement, declarations)
+        if rule is not None and rule.declarations is not None:
+            remarks = (*remarks, *disagreements(rule, rule.declarations))
         said.extend(remark for remark in remarks if remark.code not in unsaid)
         if rule is None:
             failed.append(Failed(requirement, _reason(remarks)))

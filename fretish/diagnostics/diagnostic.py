@@ -84,6 +84,7 @@ class Code(Enum):
     BAD_PHASE = ("F337", "the phase of the clock is not within a tick")
     PLAIN_PERCENT = ("F338", "a plain number stands beside a signal in percent")
     WHICH_UNIT = ("F350", "a bare number stands beside signals in several units")
+    PROSE_DRIFT = ("F351", "title or text state another number than the requirement")
     AMBIGUOUS_UNIT = ("F339", "a part of a unit is the name of a signal too")
 
     UNREADABLE_LOG = ("F401", "the log cannot be read")

@@ -150,8 +150,9 @@ def computed(tree: e.Expression, parts: list[Fraction | None]) -> Fraction | Non
         case e.Arithmetic("/"):
             return numbers[0] / numbers[1] if numbers[1] else None
         case e.Call(name):
-            functions = {"abs": lambda x: abs(x[0]), "max": max, "min": min}
-            return functions[name[:3]](numbers)
+            if name.startswith("abs"):
+                return abs(numbers[0])
+            return max(numbers) if name.startswith("max") else min(numbers)
         case _:
             raise AssertionError(tree)
 

@@ -1,0 +1,143 @@
+"""Numbers that stand in two places: in the sentence and its bindings, and in the words beside it.
+
+A title that says 5 cm beside a binding of 0.9 m misleads everyone who reads only one of them.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from fractions import Fraction
+
+from compiler.formalization.formalized import Formalized
+from fretish import syntax, units
+from fretish.bindings.constants import Exact, constants
+from fretish.bindings.declarations import Declarations, Proposition
+from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
+from fretish.diagnostics.source import Span
+from fretish.syntax import TimeUnit
+
+_WORDS: dict[str, TimeUnit] = {
+    "tick": "tick", "microsecond": "microsecond", "millisecond": "millisecond",
+    "second": "second", "sec": "second", "minute": "minute", "hour": "hour",
+}  # fmt: skip
+_SECONDS: dict[TimeUnit, Fraction] = {
+    "microsecond": Fraction(1, 10**6), "millisecond": Fraction(1, 1000),
+    "second": Fraction(1), "minute": Fraction(60), "hour": Fraction(3600),
+}  # fmt: skip
+_LONG_UNITS = {"percent": "%", "metre": "m", "meter": "m", "degree": "deg"}
+_QUANTITY = re.compile(
+    r"(?<![\w.,/-])(?P<digits>[0-9]{1,12}(?:\.[0-9]{1,12})?)[ \u00a0\u202f]?"
+    r"(?P<unit>%|[A-Za-z]{1,12}(?:/[A-Za-z]{1,12}(?:\^?[0-9])?)?)(?![\w%])"
+)
+
+
+def disagreements(rule: Formalized, declarations: Declarations) -> Iterator[Diagnostic]:
+    """F310 and F351: `params`, title or text state a number, and the bindings have another one."""
+    yield from _parameters(rule, declarations)
+    yield from _prose(rule, declarations)
+
+
+# Parameters
+
+
+def _parameters(rule: Formalized, declarations: Declarations) -> Iterator[Diagnostic]:
+    """F310; a number of `params` belongs to a proposition, or to a signal that is compared."""
+    for name, text in rule.requirement.params.items():
+        place = rule.requirement.place("params", name)
+        known = _propositions(rule, declarations, name)
+        mistaken = {("proposition", name), ("signal", name)} & declarations.mistakes.keys()
+        if not known and not mistaken:
+            yield Diagnostic(
+                Code.UNKNOWN_NAME,
+                f"`params` states a number for `{name}`, which has no binding",
+                place,
+                help="name the proposition or signal that the number belongs to, and bind it",
+            )
+            continue
+        stated = units.quantity(text)
+        if stated is None:
+            yield Diagnostic(
+                Code.BAD_FIELD,
+                f"`{text}` is no quantity",
+                place,
+                help='write a number and a unit: `"5 cm"`',
+            )
+        elif known and not any(stated in constants(each.expression) for each in known):
+            yield Diagnostic(
+                Code.PARAMETER_DRIFT,
+                f"the requirement states {text} for `{name}`, and its binding has another number",
+                known[0].span,
+                help="make the binding or `params` say what is meant",
+                severity=Severity.WARNING,
+            )
+
+
+def _propositions(rule: Formalized, declarations: Declarations, name: str) -> list[Proposition]:
+    """The proposition of that name; for a signal those of the sentence that read it."""
+    if name in declarations.propositions:
+        return [declarations.propositions[name]]
+    own = (declarations.propositions.get(each) for each in rule.watched)
+    return [each for each in own if each is not None and name in each.signals]
+
+
+# Title and text
+
+
+def _prose(rule: Formalized, declarations: Declarations) -> Iterator[Diagnostic]:
+    """F351 for a quantity that is none of those of its dimension that the requirement rests on."""
+    known = _numbers(rule, declarations)
+    for field in ("title", "text"):
+        place = rule.requirement.place(field)
+        for words, stated in _quantities(getattr(rule.requirement, field)):
+            rivals = [(number, span) for number, span in known if number[0] == stated[0]]
+            if not rivals or any(number == stated for number, _ in rivals):
+                continue
+            yield _differs(rule, field, words, place, rivals[0][1])
+
+
+def _numbers(rule: Formalized, declarations: Declarations) -> list[tuple[Exact, Span | None]]:
+    """Every number of the sentence and of what it is bound to, and where it stands."""
+    bound = [declarations.propositions.get(name) for name in rule.watched]
+    found = [
+        (number, each.span)
+        for each in bound
+        if each is not None
+        for number in constants(each.expression)
+    ]
+    duration = syntax.duration(rule.sentence.timing)
+    if duration is not None and duration.unit in _SECONDS:
+        seconds = duration.amount * _SECONDS[duration.unit]
+        found.append(((units.SECOND.dimension, seconds), duration.span))
+    return found
+
+
+def _quantities(text: str) -> Iterator[tuple[str, Exact]]:
+    """The quantities that a text states: `5 cm`, `0.4 m/s`, `20 percent`, `200 milliseconds`."""
+    for match in _QUANTITY.finditer(text):
+        word = match["unit"]
+        single = word[:-1] if word.endswith("s") and len(word) > 2 else word
+        duration = _WORDS.get(single)
+        if duration in _SECONDS:
+            yield match[0], (units.SECOND.dimension, Fraction(match["digits"]) * _SECONDS[duration])
+            continue
+        measure = units.unit(_LONG_UNITS.get(single, word))
+        if measure is not None and word != "1":
+            yield match[0], (measure.dimension, Fraction(match["digits"]) * measure.factor)
+
+
+def _differs(
+    rule: Formalized, field: str, words: str, place: Span, elsewhere: Span | None
+) -> Diagnostic:
+    at = place.text.find(words)
+    where = place.part(at, at + len(words)) if at >= 0 else place
+    other = ""
+    if elsewhere is not None:
+        other = f": {elsewhere.text} ({elsewhere.source.name}:{elsewhere.line}:{elsewhere.column})"
+    return Diagnostic(
+        Code.PROSE_DRIFT,
+        f"the {field} of {rule.id} says {words}, and what is judged has another number{other}",
+        where,
+        help="make the words or the numbers say what is meant",
+        severity=Severity.WARNING,
+    )

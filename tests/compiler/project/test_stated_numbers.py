@@ -1,0 +1,74 @@
+"""A quantity of the words that is not the one that is judged."""
+
+from __future__ import annotations
+
+import pytest
+
+from compiler.formalization.formalize import formalize
+from compiler.project.stated_numbers import disagreements
+from fretish.bindings.reader import read_bindings
+from fretish.diagnostics.diagnostic import Code
+from fretish.diagnostics.source import Source
+from fretish.documents import requirements
+
+BINDINGS = """\
+[clock]
+tick = "100 ms"
+[signal.battery]
+path = "/battery.percentage"
+unit = "%"
+[signal.range]
+path = "/scan.range"
+unit = "m"
+[proposition.near]
+expr = "range < 5 cm"
+"""
+SENTENCE = "whenever near & battery < 20 the agv shall within 5 seconds satisfy range > 1"
+
+
+def codes(title: str = "", text: str = "", params: str = "") -> list[tuple[str, str]]:
+    header = f'+++\nid = "R"\ntitle = "{title}"\ntext = "{text}"\nparams = {{{params}}}\n+++\n'
+    ((requirement,), wrong) = requirements(Source("r.fret", header + SENTENCE))
+    declared, mistakes = read_bindings(Source("bindings.toml", BINDINGS))
+    assert not wrong
+    assert not mistakes
+    rule, _ = formalize(requirement, declared)
+    assert rule is not None
+    assert rule.declarations is not None
+    diagnostics = disagreements(rule, rule.declarations)
+    return [(each.code.name, each.span.text if each.span else "") for each in diagnostics]
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        "Dock below 20 %", "Dock below 20 percent", "within 5 cm", "within 50 mm", "0.05 m", "1 m",
+        "in 5 s", "in 5000 ms", "in 5 seconds", "ISO 3691-4", "R2 of 10", "3 robots at 5 o'clock",
+        "at 4 m/s",  # no number of that kind is judged
+    ],
+)  # fmt: skip
+def test_words_that_agree_are_left_in_peace(words: str) -> None:
+    assert codes(title=words, text=words) == []
+
+
+@pytest.mark.parametrize(
+    ("words", "quantity"),
+    [
+        ("Dock below 15 %", "15 %"),
+        ("Dock below 15 percent.", "15 percent"),
+        ("An obstacle within 6 cm", "6 cm"),
+        ("in 6 s", "6 s"),
+        ("in 5 minutes, at 5 cm", "5 minutes"),
+    ],
+)
+def test_another_number_is_found_at_its_place(words: str, quantity: str) -> None:
+    expected = [(Code.PROSE_DRIFT.name, quantity)]
+    assert codes(title=words) == codes(text=words) == expected
+
+
+def test_a_parameter_belongs_to_a_proposition_or_to_a_signal() -> None:
+    drift = Code.PARAMETER_DRIFT.name
+    assert codes(params='near = "5 cm"') == codes(params='battery = "20 %"') == []
+    assert [code for code, _ in codes(params='near = "6 cm"')] == [drift]
+    assert [code for code, _ in codes(params='battery = "0.3"')] == [drift]
+    assert [code for code, _ in codes(params='speed = "1 m/s"')] == [Code.UNKNOWN_NAME.name]
