@@ -5,8 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Iterable
 
-from compiler.logic.claims import Evidence as Proof
-from compiler.logic.claims import Layer
+from compiler.logic.claims import Layer, Proof
 from compiler.project.folder import Project
 from fretc.api.refusal import Refusal, accepted, bounded
 from fretc.verification.ajpf_results import evidence as ajpf_evidence
@@ -37,7 +36,7 @@ def verify(
         limit: seconds of a processor for each claim.
 
     Returns:
-        A line for each claim, with its result: `Proved`, `Counterexample`, `Vacuous`, `NotChecked`.
+        A proof for each claim: `proved`, `counterexample`, `vacuous` or `not checked`.
 
     Raises:
         Refusal: a requirement has a mistake, or no monitor can express it.

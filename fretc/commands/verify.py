@@ -24,7 +24,7 @@ from fretish.diagnostics.diagnostic import Code, Diagnostic, has_errors
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
-    from compiler.logic.claims import Evidence
+    from compiler.logic.claims import Proof
     from compiler.project.folder import Project
     from fretc.verification.verify import Request
     from fretish.diagnostics.source import Source
@@ -151,7 +151,7 @@ def verify(
     raise SystemExit(_status(found))
 
 
-def _said_by_ajpf(project: Project, results: Sequence[str]) -> Sequence[Evidence]:
+def _said_by_ajpf(project: Project, results: Sequence[str]) -> Sequence[Proof]:
     from fretc.verification.ajpf_results import evidence
 
     lines, said = evidence(project.rules, results)
@@ -196,7 +196,7 @@ def _read(path: str | None) -> Source | None:
     return source
 
 
-def _evidence(project: Project, asked: Request) -> Sequence[Evidence]:
+def _evidence(project: Project, asked: Request) -> Sequence[Proof]:
     from fretc.terminal.progress import at_work
     from fretc.verification.monitor.verifying import NotAMonitorError
     from fretc.verification.verify import evidence
@@ -219,16 +219,16 @@ def _evidence(project: Project, asked: Request) -> Sequence[Evidence]:
 
 
 def _tell(
-    found: Sequence[Evidence], form: str, output: str, traces: str | None, inputs: Iterable[str]
+    found: Sequence[Proof], form: str, output: str, traces: str | None, inputs: Iterable[str]
 ) -> None:
     """Print it, and write the evidence and the runs."""
     from compiler.files.edition import __version__
     from compiler.files.records import plain
     from compiler.files.templating import to_json
-    from compiler.logic.claims import document
+    from compiler.logic.claims import SCHEMA, Document
     from fretc.verification.text_output import lines
 
-    text = f"{to_json(plain(document(__version__, found)))}\n"
+    text = f"{to_json(plain(Document(SCHEMA, __version__, tuple(found))))}\n"
     if output != "-" or form == "json":
         click.echo(text if form == "json" else coloured([*lines(found)]), nl=False)
     files: dict[Path, str | bytes] = {}
@@ -239,9 +239,9 @@ def _tell(
     deliver(files, inputs)
 
 
-def _tables(found: Sequence[Evidence], folder: Path) -> dict[Path, str]:
+def _tables(found: Sequence[Proof], folder: Path) -> dict[Path, str]:
     """Each run that a monitor can step, under the requirement, the layer and a number."""
-    from compiler.logic.claims import Counterexample, Layer
+    from compiler.logic.claims import Layer
     from fretc.verification.loop.replay import EXTRA
     from fretc.verification.text_output import as_csv
 
@@ -249,19 +249,18 @@ def _tables(found: Sequence[Evidence], folder: Path) -> dict[Path, str]:
     for one in found:
         if one.layer not in (Layer.MONITOR, Layer.LOOP, Layer.BOUNDS):
             continue
-        if isinstance(one.result, Counterexample) and one.result.trace is not None:
-            trace = one.result.trace
-            names = trace.names if one.layer is Layer.MONITOR else trace.names[: -len(EXTRA)]
+        if one.run is not None:
+            names = one.run.names if one.layer is Layer.MONITOR else one.run.names[: -len(EXTRA)]
             stem = f"{one.requirement.lower()}_{one.layer}"
             number = sum(path.name.startswith(f"{stem}_") for path in files) + 1
-            files[folder / f"{stem}_{number}.csv"] = as_csv(trace, names)
+            files[folder / f"{stem}_{number}.csv"] = as_csv(one.run, names)
     return files
 
 
-def _status(found: Sequence[Evidence]) -> int:
-    from compiler.logic.claims import Counterexample, Proved
+def _status(found: Sequence[Proof]) -> int:
+    from compiler.logic.claims import Result
     from fretc.verification.loop.layer import RELEASED
 
-    if any(isinstance(one.result, Counterexample) and one.claim != RELEASED for one in found):
+    if any(one.result is Result.COUNTEREXAMPLE and one.claim != RELEASED for one in found):
         return VIOLATION
-    return SHOWN if all(isinstance(one.result, Proved) for one in found) else NOT_SHOWN
+    return SHOWN if all(one.result is Result.PROVED for one in found) else NOT_SHOWN

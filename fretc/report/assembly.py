@@ -8,7 +8,7 @@ from dataclasses import replace
 from types import MappingProxyType
 
 from compiler.files.edition import __version__
-from compiler.logic.claims import Evidence as Line
+from compiler.logic.claims import Proof
 from compiler.project.folder import Project
 from fretc.attestation.signatures import NO_SIGNATURES, Book
 from fretc.audit.evidence.declared_units import in_declared_units
@@ -60,7 +60,7 @@ def report(
     lock: Lock | None = None,
     waivers: Mapping[str, Waiver] = MappingProxyType({}),
     proofs: Proofs | None = None,
-    ajpf: Sequence[Line] = (),
+    ajpf: Sequence[Proof] = (),
     book: Book = NO_SIGNATURES,
 ) -> tuple[Report, tuple[Diagnostic, ...]]:
     """The report, and what there is to say of the evidence.

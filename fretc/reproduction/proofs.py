@@ -13,15 +13,7 @@ from dataclasses import replace
 
 from compiler.files.edition import __version__
 from compiler.files.records import plain
-from compiler.logic.claims import (
-    ALL,
-    COUNTEREXAMPLE,
-    METHODS,
-    NOT_CHECKED,
-    Layer,
-    Proof,
-    proof,
-)
+from compiler.logic.claims import ALL, METHODS, Layer, Proof, Result
 from compiler.project.folder import Project
 from compiler.targets.python import monitor
 from fretc.reproduction.outcome import PROOFS, Finding, Rechecked, differs, unknown
@@ -113,10 +105,7 @@ def _again(
         provers=sorted({_prover(record.engine) for record in told} - {""}),
         ajpf=results_of_ajpf(rules, written())[0] if Layer.AJPF in layers else (),
     )
-    found = evidence(replace(project, rules=tuple(rules)), asked, tell)
-    if isinstance(found, Diagnostic):
-        return found
-    return [proof(one) for one in found]
+    return evidence(replace(project, rules=tuple(rules)), asked, tell)
 
 
 def _key(record: Proof) -> tuple[str, ...]:
@@ -142,10 +131,10 @@ def _compared(told: Proof, made: Sequence[Proof]) -> Rechecked:
     if others:
         why = f"it is about `{min(others)}`, which is not made here"
         return unknown(PROOFS, requirement, why, claim=claim)
-    if now.result == NOT_CHECKED:
+    if now.result is Result.NOT_CHECKED:
         return unknown(PROOFS, requirement, now.detail, claim=claim)
     reasons = tuple(_differences(told, now))
-    if told.result == NOT_CHECKED and now.result != COUNTEREXAMPLE:
+    if told.result is Result.NOT_CHECKED and now.result is not Result.COUNTEREXAMPLE:
         why = f"it was not checked, says the file; it is {now.result} now"
         return unknown(PROOFS, requirement, why, claim=claim)
     if reasons:

@@ -18,17 +18,16 @@ from compiler.files.text_files import content, sha256
 from compiler.files.text_files import read as read_text
 from compiler.formalization.formalized import Formalized
 from compiler.logic.claims import (
-    COUNTEREXAMPLE,
-    Counterexample,
-    Evidence,
     Layer,
-    NotChecked,
+    Outcome,
     Proof,
-    Proved,
     Result,
     Trace,
-    Vacuous,
+    not_checked,
     proof,
+    proved,
+    refuted,
+    vacuous,
 )
 from compiler.targets.ajpf import bundle
 from compiler.targets.ajpf import properties as ajpf
@@ -96,7 +95,7 @@ def written() -> tuple[str, ...]:
 
 def evidence(
     rules: Sequence[Formalized], paths: Sequence[str]
-) -> tuple[tuple[Evidence, ...], tuple[Diagnostic, ...]]:
+) -> tuple[tuple[Proof, ...], tuple[Diagnostic, ...]]:
     """A line for each result, in the order of the paths, and what there is to say of the files.
 
     Args:
@@ -107,7 +106,7 @@ def evidence(
         The evidence; F616 for what cannot be read, F617 for a requirement that is not there.
     """
     known = {rule.id: rule for rule in rules}
-    lines: list[Evidence] = []
+    lines: list[Proof] = []
     said: list[Diagnostic] = []
     for path in paths:
         found = read(path)
@@ -120,7 +119,7 @@ def evidence(
     return tuple(lines), tuple(said)
 
 
-def merged(proofs: Sequence[Proof], lines: Sequence[Evidence]) -> tuple[Proof, ...]:
+def merged(proofs: Sequence[Proof], lines: Sequence[Proof]) -> tuple[Proof, ...]:
     """The proofs of a file, with these lines in place of what it says of AJPF.
 
     What it says of AJPF and no result is there for is kept as not checked, since nothing holds it
@@ -132,23 +131,16 @@ def merged(proofs: Sequence[Proof], lines: Sequence[Evidence]) -> tuple[Proof, .
         for one in proofs
         if one.layer != Layer.AJPF or one.requirement not in fresh
     ]
-    return (*old, *map(proof, lines))
+    return (*old, *lines)
 
 
 def _unheld(one: Proof) -> Proof:
-    if one.result == COUNTEREXAMPLE:
+    if one.result is Result.COUNTEREXAMPLE:
         return one
     reason = "the file of AJPF's result is not there, to be held against what is made now"
+    outcome = not_checked(f"it was {one.result}; {reason}")
     return proof(
-        Evidence(
-            one.requirement,
-            Layer.AJPF,
-            one.claim,
-            NotChecked(f"it was {one.result}; {reason}"),
-            one.engine,
-            one.assumptions,
-            one.artefacts,
-        )
+        one.requirement, Layer.AJPF, one.claim, outcome, one.engine, one.assumptions, one.artefacts
     )
 
 
@@ -241,7 +233,7 @@ def _trace(at: Shape) -> Trace:
 
 
 @deep
-def _line(rule: Formalized, found: AjpfResult) -> Evidence:
+def _line(rule: Formalized, found: AjpfResult) -> Proof:
     options = Options(weaken=True) if found.weakened else DEFAULT
     main = next((c for c in found.checks if c.role == "requirement"), None)
     stated = f": {main.text}" if main else ""
@@ -259,13 +251,13 @@ def _line(rule: Formalized, found: AjpfResult) -> Evidence:
     reason = _reason(rule, found, options)
     said = _concluded(found)
     if reason is not None:
-        was = "it was refuted; " if isinstance(said, Counterexample) else ""
-        said = NotChecked(f"{was}{reason}")
+        was = "it was refuted; " if said.result is Result.COUNTEREXAMPLE else ""
+        said = not_checked(f"{was}{reason}")
     loss = ajpf.weakened(rule, options)
-    if isinstance(said, Proved) and loss is not None:
-        said = NotChecked(f"what AJPF shows is weaker than {rule.id}: {loss}")
+    if said.result is Result.PROVED and loss is not None:
+        said = not_checked(f"what AJPF shows is weaker than {rule.id}: {loss}")
     claim = f"AJPF: every run of the agent of {which} keeps {rule.id}{stated}"
-    return Evidence(rule.id, Layer.AJPF, claim, said, found.engine, _ASSUMED, hashes)
+    return proof(rule.id, Layer.AJPF, claim, said, found.engine, _ASSUMED, hashes)
 
 
 def _reason(rule: Formalized, found: AjpfResult, options: Options) -> str | None:
@@ -329,23 +321,23 @@ def _changed(file: str, hashed: str) -> str | None:
     return None
 
 
-def _concluded(found: AjpfResult) -> Result:
+def _concluded(found: AjpfResult) -> Outcome:
     """What all checks together show; the refuted requirement first, then what is not known."""
     checks = found.checks
     for check in checks:
         if check.role == "requirement" and check.told == VIOLATED:
             length = f" of {len(check.trace.rows)} states" if check.trace else ""
-            return Counterexample(f"AJPF found a run{length} that breaks it", check.trace)
+            return refuted(f"AJPF found a run{length} that breaks it", check.trace)
     for check in checks:
         if check.told == ERROR:
-            return NotChecked(f"{check.jpf}: {check.why}")
+            return not_checked(f"{check.jpf}: {check.why}")
     for check in checks:
         if check.told != check.expected:
             what = "the agent without the response keeps it too" * (check.role == "mutant")
-            return Vacuous(what or f"its control {check.key} holds")
+            return vacuous(what or f"its control {check.key} holds")
     sizes = ", ".join("?" if c.states is None else f"{c.states:,}" for c in checks)
     seconds = sum(check.seconds for check in checks)
-    return Proved(
+    return proved(
         f"AJPF says all that is expected of the property, its controls and the mutant ({sizes} "
         f"states, {seconds:.1f} s)"
     )

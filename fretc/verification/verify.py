@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Callable, Collection, Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import PurePath
 
 from compiler.agents.checking import checked
+from compiler.files import records
 from compiler.files.text_files import sha256
 from compiler.formalization.formalized import Formalized
-from compiler.logic.claims import Evidence, Layer, NotChecked
+from compiler.logic.claims import Layer, Proof, not_checked, proof
 from compiler.project.folder import Project
 from compiler.project.interceptor_options import ASSUMED, assumed, options
 from compiler.targets import dafny
@@ -48,7 +49,7 @@ class Request:
     properties: Source | None = None
     percepts: tuple[str, ...] = ()
     provers: Collection[str] = ()
-    ajpf: Sequence[Evidence] = ()
+    ajpf: Sequence[Proof] = ()
     """What AJPF itself has said."""
 
 
@@ -58,7 +59,7 @@ Tell = Callable[[str], None]
 
 def evidence(
     project: Project, asked: Request, tell: Tell = lambda words: None
-) -> tuple[Evidence, ...] | Diagnostic:
+) -> tuple[Proof, ...] | Diagnostic:
     """All lines: requirement by requirement from the monitor outwards, then what all share.
 
     Args:
@@ -69,7 +70,7 @@ def evidence(
     Raises:
         NotAMonitorError: the given text is no generated monitor.
     """
-    found: list[Evidence] = []
+    found: list[Proof] = []
     for rule in project.rules:
         found.extend(_of_rule(rule, project, asked, tell))
         if DAFNY in asked.provers:
@@ -95,7 +96,7 @@ def refusals(project: Project, asked: Request) -> tuple[Diagnostic, ...]:
     return tuple(diagnostic for diagnostic in found if diagnostic is not None)
 
 
-def _ajpf(project: Project, asked: Request) -> Iterator[Evidence]:
+def _ajpf(project: Project, asked: Request) -> Iterator[Proof]:
     """What AJPF itself has said; where nothing else is asked for, that it has said nothing."""
     yield from asked.ajpf
     if set(asked.layers) == {Layer.AJPF}:
@@ -106,13 +107,13 @@ def _ajpf(project: Project, asked: Request) -> Iterator[Evidence]:
                 yield _unknown(rule.id, Layer.AJPF, claim, "there is no result of AJPF (--ajpf)")
 
 
-def _of_rule(rule: Formalized, project: Project, asked: Request, tell: Tell) -> Iterator[Evidence]:
+def _of_rule(rule: Formalized, project: Project, asked: Request, tell: Tell) -> Iterator[Proof]:
     setup = _setup(rule, project, asked)
     if Layer.MONITOR in asked.layers:
         tell(f"{rule.id}: monitor")
         made = setup.monitor
-        yield proofs.evidence(rule, made.name, made.text, asked.limits, project.rules)
-    found: list[Evidence] = []
+        yield proofs.monitor_proof(rule, made.name, made.text, asked.limits, project.rules)
+    found: list[Proof] = []
     if Layer.LOOP in asked.layers:
         tell(f"{rule.id}: loop")
         found.extend(closedloop.loop(rule, setup, asked.limits))
@@ -120,8 +121,9 @@ def _of_rule(rule: Formalized, project: Project, asked: Request, tell: Tell) -> 
         tell(f"{rule.id}: bounds")
         found.extend(bounds.bounds(rule, setup, asked.limits))
     known = assumed(rule.declarations) if rule.declarations else ""
+    extra = {ASSUMED: known} if known else {}
     for one in found:
-        yield replace(one, artefacts={**one.artefacts, **({ASSUMED: known} if known else {})})
+        yield records.replace(one, artefacts={**one.artefacts, **extra})
 
 
 def _setup(rule: Formalized, project: Project, asked: Request) -> Setup:
@@ -149,7 +151,7 @@ def _gate(project: Project, asked: Request) -> Named | None:
 # Layers of other rooms ------------------------------------------------------------------------
 
 
-def _interceptor(project: Project, asked: Request, tell: Tell) -> Iterator[Evidence]:
+def _interceptor(project: Project, asked: Request, tell: Tell) -> Iterator[Proof]:
     """Its contracts, and what CrossHair finds of them."""
     gate = _gate(project, asked)
     declared = project.declarations.interceptor if project.declarations else None
@@ -168,10 +170,10 @@ def _interceptor(project: Project, asked: Request, tell: Tell) -> Iterator[Evide
         yield from _crosshair(gate, asked.limits, tell)
 
 
-def _contracts(gate: Named, declared: Interception, limits: Limits) -> Iterator[Evidence]:
+def _contracts(gate: Named, declared: Interception, limits: Limits) -> Iterator[Proof]:
     """Of the module that flies: its core may be any, the rest is what fretc writes."""
     wrong = otherwise(gate.text, declared)
-    found: Stopped | tuple[Evidence, ...]
+    found: Stopped | tuple[Proof, ...]
     if wrong is not None:
         found = Stopped(wrong)
     else:
@@ -180,10 +182,10 @@ def _contracts(gate: Named, declared: Interception, limits: Limits) -> Iterator[
         claim = "the interceptor keeps its contracts"
         yield _unknown("interceptor", Layer.INTERCEPTOR, claim, found.reason, gate)
     else:
-        yield from (replace(one, artefacts={gate.name: sha256(gate.text)}) for one in found)
+        yield from (records.replace(one, artefacts={gate.name: sha256(gate.text)}) for one in found)
 
 
-def _crosshair(gate: Named, limits: Limits, tell: Tell) -> Iterator[Evidence]:
+def _crosshair(gate: Named, limits: Limits, tell: Tell) -> Iterator[Proof]:
     """Of the core alone: the node takes commands apart, and CrossHair would execute it."""
     known = head(gate.text)
     if isinstance(known, str):
@@ -200,10 +202,10 @@ def _crosshair(gate: Named, limits: Limits, tell: Tell) -> Iterator[Evidence]:
         seconds=float(limits.seconds),
         tell=lambda name: tell(f"interceptor: CrossHair, `{name}`"),
     )
-    yield from (replace(one, artefacts={gate.name: sha256(gate.text)}) for one in found)
+    yield from (records.replace(one, artefacts={gate.name: sha256(gate.text)}) for one in found)
 
 
-def _dafny(rule: Formalized, project: Project, limits: Limits) -> Iterator[Evidence]:
+def _dafny(rule: Formalized, project: Project, limits: Limits) -> Iterator[Proof]:
     refused = dafny.TARGET.refuse(rule)
     if refused is not None:
         claim = "Dafny verifies the file of the requirement"
@@ -213,7 +215,7 @@ def _dafny(rule: Formalized, project: Project, limits: Limits) -> Iterator[Evide
     yield from with_dafny(rule, text, project.declarations, seconds=float(limits.seconds))
 
 
-def _agent(project: Project, asked: Request) -> tuple[Evidence, ...] | Diagnostic:
+def _agent(project: Project, asked: Request) -> tuple[Proof, ...] | Diagnostic:
     """The agent that is named; else of each requirement the one that its bundle has."""
     claim = "the agent has its properties"
     if asked.agent is None or asked.properties is None:
@@ -225,7 +227,7 @@ def _agent(project: Project, asked: Request) -> tuple[Evidence, ...] | Diagnosti
     return found
 
 
-def _bundle(rule: Formalized, claim: str, limits: Limits) -> tuple[Evidence, ...]:
+def _bundle(rule: Formalized, claim: str, limits: Limits) -> tuple[Proof, ...]:
     refused = ajpf.refusal(rule)
     found = processes.confined(limits, bundle.checked_agent, rule) if refused is None else refused
     if isinstance(found, Diagnostic):
@@ -237,6 +239,6 @@ def _bundle(rule: Formalized, claim: str, limits: Limits) -> tuple[Evidence, ...
 
 def _unknown(
     requirement: str, layer: Layer, claim: str, reason: str, text: Named | None = None
-) -> Evidence:
+) -> Proof:
     artefacts = {text.name: sha256(text.text)} if text else {}
-    return Evidence(requirement, layer, claim, NotChecked(reason), "fretc", (), artefacts)
+    return proof(requirement, layer, claim, not_checked(reason), "fretc", (), artefacts)

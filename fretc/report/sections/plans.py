@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from compiler.emit import TARGETS
-from compiler.logic import claims as verification
-from compiler.logic.claims import METHODS
+from compiler.logic.claims import METHODS, Result
 from fretc.audit.evidence.verdicts import UNFORMALIZED
 from fretc.report.model import phrases
 from fretc.report.model.claims import Claim
@@ -38,7 +37,7 @@ def _planned(claim: Claim, method: str, proofs: Sequence[ProofView]) -> Planned:
 def _proved(claim: Claim, method: str, found: Sequence[ProofView]) -> Planned:
     """The worst of its proofs decides; what was not checked or says nothing is no result."""
     decisive = worst(found)
-    refuted = decisive.mark.word == verification.COUNTEREXAMPLE
+    refuted = decisive.mark.word == Result.COUNTEREXAMPLE
     known = refuted or is_proved(decisive)
     return Planned(claim.id, claim.anchor, method, known, in_words(found), refuted)
 

@@ -5,27 +5,15 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 
-from compiler.logic.claims import (
-    ALL,
-    COUNTEREXAMPLE,
-    NOT_CHECKED,
-    PROVED,
-    PROVERS,
-    VACUOUS,
-    Layer,
-    Proof,
-)
+from compiler.logic.claims import ALL, PROVERS, Layer, Proof, Result
 from compiler.project.interceptor_options import ASSUMED
 from fretc.report.model import phrases
 from fretc.report.model.views import Mark, ProofView, RequirementView, sign_mark
 from fretc.report.traceability.artefacts import Product
-from fretish.diagnostics import signs
+from fretc.verification.text_output import SIGNS
 
 _MARKS: Mapping[str, Mark] = {
-    COUNTEREXAMPLE: sign_mark(COUNTEREXAMPLE, signs.BAD),
-    NOT_CHECKED: sign_mark(NOT_CHECKED, signs.UNKNOWN),
-    VACUOUS: sign_mark(VACUOUS, signs.EMPTY),
-    PROVED: sign_mark(PROVED, signs.GOOD),
+    str(result): sign_mark(str(result), sign) for result, sign in SIGNS.items()
 }
 """The worst first, as for verdicts."""
 _OF_MONITOR = (str(Layer.MONITOR), str(Layer.LOOP), str(Layer.BOUNDS))
@@ -97,7 +85,7 @@ def in_words(proofs: Sequence[ProofView]) -> str:
 
 def is_proved(proof: ProofView) -> bool:
     """Whether it is proved of what is there now."""
-    return proof.mark.word == PROVED and not proof.mark.suspect
+    return proof.mark.word == Result.PROVED and not proof.mark.suspect
 
 
 def is_refuted(view: RequirementView) -> bool:
@@ -107,4 +95,4 @@ def is_refuted(view: RequirementView) -> bool:
 
 def refutations(view: RequirementView) -> tuple[ProofView, ...]:
     """The counterexamples to it, suspect ones too."""
-    return tuple(proof for proof in view.proofs if proof.mark.word == COUNTEREXAMPLE)
+    return tuple(proof for proof in view.proofs if proof.mark.word == Result.COUNTEREXAMPLE)

@@ -17,14 +17,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from compiler.files.text_files import sha256
-from compiler.logic.claims import (
-    Counterexample,
-    Evidence,
-    Layer,
-    NotChecked,
-    Proved,
-    Result,
-)
+from compiler.logic.claims import Layer, Outcome, Proof, not_checked, proof, proved, refuted
 from fretc.verification.engines.programs import MEMORY, STARTED, Ran, run
 
 CROSSHAIR_SECONDS = 60.0
@@ -63,7 +56,7 @@ def with_crosshair(
     *,
     seconds: float = CROSSHAIR_SECONDS,
     tell: Callable[[str], None] = lambda function: None,
-) -> tuple[Evidence, ...]:
+) -> tuple[Proof, ...]:
     """Let CrossHair look for inputs that break the contracts of an interceptor's core.
 
     Numbers of a velocity are whole ones for CrossHair where no function names any of them: it knows
@@ -85,16 +78,16 @@ def with_crosshair(
         engine = ""
     contracts = _contracts(text)
     whole = _with_whole_velocities(text)
-    found: list[tuple[str, Result]] = []
+    found: list[tuple[str, Outcome]] = []
     for name in dict.fromkeys(contract.function for contract in contracts):
         own = [contract for contract in contracts if contract.function == name]
         if engine:
             tell(name)
             found += _explored(whole or text, name, own, seconds)
         else:
-            found += [(_claim(contract), NotChecked(_ABSENT)) for contract in own]
+            found += [(_claim(contract), not_checked(_ABSENT)) for contract in own]
     return tuple(
-        Evidence(
+        proof(
             requirement,
             Layer.INTERCEPTOR,
             claim,
@@ -164,7 +157,7 @@ def _of(node: ast.AST, lines: Sequence[str], prefix: str) -> Iterator[_Contract]
 
 def _explored(
     text: str, function: str, contracts: Sequence[_Contract], seconds: float
-) -> Iterator[tuple[str, Result]]:
+) -> Iterator[tuple[str, Outcome]]:
     """The contracts of one function: claims and what is known of them."""
     command = [
         *(sys.executable, "-m", "crosshair", "check", "--report_all"),
@@ -183,16 +176,16 @@ def _explored(
         yield _claim(contract), _result(told.pop(contract.line, None), ran)
     for kind, message in told.values():
         if kind == "error":
-            yield f"`{function}` raises nothing", Counterexample(message, None)
+            yield f"`{function}` raises nothing", refuted(message, None)
 
 
-def _result(told: tuple[str, str] | None, ran: Ran) -> Result:
+def _result(told: tuple[str, str] | None, ran: Ran) -> Outcome:
     if told is not None and told[0] == "error":
-        return Counterexample(told[1], None)
+        return refuted(told[1], None)
     if ran.status is None:
-        return NotChecked("CrossHair did not finish in time")
+        return not_checked("CrossHair did not finish in time")
     if ran.status not in (0, 1) or told is None:
-        return NotChecked(f"CrossHair says nothing of it (exit status {ran.status})")
+        return not_checked(f"CrossHair says nothing of it (exit status {ran.status})")
     if told == ("info", "Confirmed over all paths."):
-        return Proved("confirmed over all paths")
-    return NotChecked(f"CrossHair: {told[1].rstrip('.').lower()}")
+        return proved("confirmed over all paths")
+    return not_checked(f"CrossHair: {told[1].rstrip('.').lower()}")

@@ -14,12 +14,7 @@ from tempfile import TemporaryDirectory
 
 from compiler.files.text_files import sha256
 from compiler.formalization.formalized import Formalized
-from compiler.logic.claims import (
-    Evidence,
-    NotChecked,
-    Proved,
-    Result,
-)
+from compiler.logic.claims import Outcome, Proof, not_checked, proof, proved
 from compiler.targets import dafny
 from compiler.targets.dafny_claims import claims
 from compiler.targets.target import stem
@@ -47,7 +42,7 @@ def with_dafny(
     declarations: Declarations | None,
     *,
     seconds: float = DAFNY_SECONDS,
-) -> tuple[Evidence, ...]:
+) -> tuple[Proof, ...]:
     """Let Dafny verify the file of a rule: one line for each claim of the file.
 
     Dafny gives one verdict for a file. So either all claims are proved, or none is.
@@ -61,14 +56,14 @@ def with_dafny(
     if text == dafny.text(rule, declarations):
         result, engine = verified(text, seconds=seconds)
     else:
-        result, engine = NotChecked(_OTHER), "Dafny"
+        result, engine = not_checked(_OTHER), "Dafny"
     artefacts = {f"{stem(rule)}.dfy": sha256(text)}
     return tuple(
-        Evidence(
+        proof(
             rule.id,
             claim.layer,
             claim.sentence,
-            result if claim.unshown is None else NotChecked(claim.unshown),
+            result if claim.unshown is None else not_checked(claim.unshown),
             engine,
             claim.assumptions,
             artefacts,
@@ -77,7 +72,7 @@ def with_dafny(
     )
 
 
-def verified(text: str, *, seconds: float = DAFNY_SECONDS) -> tuple[Result, str]:
+def verified(text: str, *, seconds: float = DAFNY_SECONDS) -> tuple[Outcome, str]:
     """What Dafny says of a text, and the name and version of Dafny.
 
     Proved: it verified at least every lemma, method and constructor, and found no error. Else not
@@ -85,18 +80,18 @@ def verified(text: str, *, seconds: float = DAFNY_SECONDS) -> tuple[Result, str]
     """
     program = shutil.which("dafny")
     if program is None:
-        return NotChecked(_ABSENT), "Dafny"
+        return not_checked(_ABSENT), "Dafny"
     with TemporaryDirectory(prefix="fretc-") as name:
         folder = Path(name)
         try:
             known = _version(program, folder)
             if known is None:
-                return NotChecked("`dafny` tells no version: it is not Dafny"), "Dafny"
+                return not_checked("`dafny` tells no version: it is not Dafny"), "Dafny"
             (folder / "text.dfy").write_text(text, encoding="utf-8")
             command = [program, *_options(program, known, folder, seconds), "text.dfy"]
             ran = run(command, folder, seconds=seconds, memory=MEMORY)
         except OSError as error:
-            return NotChecked(f"Dafny cannot be started: {error}"), "Dafny"
+            return not_checked(f"Dafny cannot be started: {error}"), "Dafny"
     return _verdict(text, ran, seconds), f"Dafny {known}"
 
 
@@ -121,9 +116,9 @@ def _options(program: str, known: str, folder: Path, seconds: float) -> list[str
     return ["verify", f"--verification-time-limit={limit}", *allowed]
 
 
-def _verdict(text: str, ran: Ran, seconds: float) -> Result:
+def _verdict(text: str, ran: Ran, seconds: float) -> Outcome:
     if ran.status is None:
-        return NotChecked(f"Dafny did not finish within {seconds:g} s")
+        return not_checked(f"Dafny did not finish within {seconds:g} s")
     lines = ran.text.splitlines()
     unproved = [
         f"`{_member(text, int(found[1]))}` (line {found[1]}): {found[2].strip().rstrip('.')}"
@@ -131,17 +126,17 @@ def _verdict(text: str, ran: Ran, seconds: float) -> Result:
         if (found := _ERROR.match(line))
     ]
     if unproved:
-        return NotChecked(f"Dafny finds no proof of {'; '.join(dict.fromkeys(unproved))}")
+        return not_checked(f"Dafny finds no proof of {'; '.join(dict.fromkeys(unproved))}")
     finished = [found for line in lines if (found := _FINISHED.match(line.strip()))]
     if len(finished) != 1:
-        return NotChecked(f"Dafny ended with exit status {ran.status} and no verdict")
+        return not_checked(f"Dafny ended with exit status {ran.status} and no verdict")
     count, errors = map(int, finished[0].groups())
     if ran.status != 0 or errors:
-        return NotChecked(f"Dafny tells of {errors} errors, and its exit status is {ran.status}")
+        return not_checked(f"Dafny tells of {errors} errors, and its exit status is {ran.status}")
     least = len(_OBLIGATION.findall(text))
     if count < least:
-        return NotChecked(f"Dafny verified {count} parts, and the file has at least {least}")
-    return Proved(f"{count} parts verified, among them all {least} lemmas and methods")
+        return not_checked(f"Dafny verified {count} parts, and the file has at least {least}")
+    return proved(f"{count} parts verified, among them all {least} lemmas and methods")
 
 
 def _member(text: str, line: int) -> str:

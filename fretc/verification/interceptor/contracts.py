@@ -13,15 +13,7 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 
 from compiler.files.text_files import sha256
-from compiler.logic.claims import (
-    Counterexample,
-    Evidence,
-    Layer,
-    NotChecked,
-    Proved,
-    Result,
-    Trace,
-)
+from compiler.logic.claims import Layer, Outcome, Proof, Trace, not_checked, proof, proved, refuted
 from fretc.verification.interceptor.exploration import Search, explored
 from fretc.verification.interceptor.incoming import (
     CHANNELS,
@@ -49,7 +41,7 @@ class Contract:
 
 def contracts(
     text: str, options: Options, requirement: str = "interceptor", most: int = MOST_STATES
-) -> tuple[Evidence, ...]:
+) -> tuple[Proof, ...]:
     """Every contract of an interceptor with the options, each proved, refuted or not checked.
 
     Args:
@@ -61,7 +53,7 @@ def contracts(
     claims = tuple(_contracts(options))
     found = _results(text, options, claims, most)
     return tuple(
-        Evidence(
+        proof(
             requirement,
             Layer.INTERCEPTOR,
             contract.claim,
@@ -194,7 +186,7 @@ def _outside(options: Options) -> Callable[[Moment], bool]:
 # Results -----------------------------------------------------------------------------------
 
 
-def _results(text: str, options: Options, claims: tuple[Contract, ...], most: int) -> list[Result]:
+def _results(text: str, options: Options, claims: tuple[Contract, ...], most: int) -> list[Outcome]:
     """The result of each contract."""
     timed = (options.hold, options.stop_timeout, options.scan_timeout, options.command_timeout)
     if options.event_driven and any(timed):
@@ -204,12 +196,12 @@ def _results(text: str, options: Options, claims: tuple[Contract, ...], most: in
     else:
         found = explored(text, options, [contract.broken for contract in claims], most)
     if isinstance(found, str):
-        return [NotChecked(found) for _ in claims]
+        return [not_checked(found) for _ in claims]
     looked = f"{len(found.came)} states, {found.steps} steps"
     return [
-        Counterexample(f"a run of {len(run)} steps breaks it", _trace(run, options))
+        refuted(f"a run of {len(run)} steps breaks it", _trace(run, options))
         if (run := found.run(i)) is not None
-        else Proved(looked)
+        else proved(looked)
         for i in range(len(claims))
     ]
 

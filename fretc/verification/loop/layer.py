@@ -15,7 +15,7 @@ from math import gcd
 from compiler.files.text_files import sha256
 from compiler.formalization.formalized import Formalized
 from compiler.logic import spot as automata
-from compiler.logic.claims import Evidence, Layer, NotChecked, Result
+from compiler.logic.claims import Layer, Outcome, Proof, not_checked, proof
 from compiler.project.interceptor_options import options, ticks
 from compiler.targets.python import monitor as target
 from fretc.verification.engines import sandbox as processes
@@ -51,7 +51,7 @@ class Setup:
     assumed: Assumed | None
 
 
-def loop(rule: Formalized, setup: Setup, limits: Limits) -> tuple[Evidence, ...]:
+def loop(rule: Formalized, setup: Setup, limits: Limits) -> tuple[Proof, ...]:
     """Both claims: the requirement is kept, and the stop is released."""
     problem = case(rule, setup)
     if isinstance(problem, str):
@@ -59,7 +59,7 @@ def loop(rule: Formalized, setup: Setup, limits: Limits) -> tuple[Evidence, ...]
     else:
         results = processes.confined(limits, search, problem)
     if isinstance(results, Stopped):
-        results = Results(NotChecked(results.reason), NotChecked(results.reason))
+        results = Results(not_checked(results.reason), not_checked(results.reason))
     premises = () if isinstance(problem, str) else tuple(assumptions(rule, setup, problem))
     return (
         _evidence(rule, setup, KEPT, results.kept, premises),
@@ -68,9 +68,9 @@ def loop(rule: Formalized, setup: Setup, limits: Limits) -> tuple[Evidence, ...]
 
 
 def _evidence(
-    rule: Formalized, setup: Setup, claim: str, result: Result, premises: tuple[str, ...]
-) -> Evidence:
-    return Evidence(
+    rule: Formalized, setup: Setup, claim: str, result: Outcome, premises: tuple[str, ...]
+) -> Proof:
+    return proof(
         rule.id,
         Layer.LOOP,
         claim,

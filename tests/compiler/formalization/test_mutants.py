@@ -18,9 +18,9 @@ import pytest
 from compiler.formalization.formalized import Formalized
 from compiler.formalization.past import Watch
 from compiler.logic import formula as f
+from compiler.logic.claims import Result
 from compiler.targets.python import monitor as target
-from fretc.verification.monitor.equivalence import NotChecked, Proved, Refuted
-from fretc.verification.monitor.verifying import Disagreement, NotAMonitorError, verified
+from fretc.verification.monitor.verifying import NotAMonitorError, verified
 from fretish import syntax as s
 from monitors.kernel import Monitor
 from monitors.kernel.stepping import Standing
@@ -236,17 +236,15 @@ class Judge:
 
     def found(self, text: str) -> str:
         try:
-            result = verified(self.rule, text, MOST_STATES).result
+            outcome = verified(self.rule, text, MOST_STATES)
         except NotAMonitorError:
             return REFUSED
-        match result:
-            case Refuted():
-                return REFUTED
-            case Disagreement():
-                return DIFFERS
-            case NotChecked():
+        match outcome.result:
+            case Result.COUNTEREXAMPLE:
+                return REFUTED if "that shows it has" in outcome.detail else DIFFERS
+            case Result.NOT_CHECKED:
                 return REFUSED
-            case Proved():
+            case _:
                 return self._compared(text)
 
     def _compared(self, text: str) -> str:

@@ -14,7 +14,7 @@ import jsonschema  # type: ignore[import-untyped]
 import pytest
 
 from compiler.files.templating import template_root
-from compiler.logic.claims import Evidence
+from compiler.logic.claims import Proof
 from fretc.verification import verify as layers
 from fretc.verification.engines import crosshair
 from fretc.verification.engines import programs as external
@@ -593,7 +593,7 @@ def test_dafny_is_given_the_limit(
 ) -> None:
     seen: list[float] = []
 
-    def dafny(*_: object, seconds: float) -> tuple[Evidence, ...]:
+    def dafny(*_: object, seconds: float) -> tuple[Proof, ...]:
         seen.append(seconds)
         return ()
 

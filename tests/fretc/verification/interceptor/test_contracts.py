@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from compiler.logic.claims import Counterexample, Evidence, Layer, NotChecked, Proved
+from compiler.logic.claims import Layer, Proof, Result, proved
 from compiler.project.interceptor_options import options as counted
 from compiler.targets.python.interceptor import text
 from fretc.verification.interceptor.contracts import contracts
@@ -16,6 +16,7 @@ from fretc.verification.interceptor.machine import Gate, NotAnInterceptorError
 from fretish.bindings.declarations import Form, Interception
 from monitors.interceptor import Options
 from tests.loops import interceptor_options
+from tests.proofs import outcome
 
 MS = 1_000_000
 NODE = Interception(
@@ -65,15 +66,15 @@ def mutant(*changes: tuple[str, str], of: str = EMITTED) -> str:
     return of
 
 
-def refuted(found: tuple[Evidence, ...]) -> set[str]:
-    assert all(isinstance(e.result, Proved | Counterexample) for e in found), found[0].result
-    return {e.claim for e in found if isinstance(e.result, Counterexample)}
+def refuted(found: tuple[Proof, ...]) -> set[str]:
+    assert all(e.result in ("proved", "counterexample") for e in found), found[0].result
+    return {e.claim for e in found if e.result is Result.COUNTEREXAMPLE}
 
 
 def reason(text: str, options: Options = OPTIONS) -> str:
-    (result,) = {e.result for e in contracts(text, options)}
-    assert isinstance(result, NotChecked)
-    return result.reason
+    (result,) = {outcome(e) for e in contracts(text, options)}
+    assert result.result is Result.NOT_CHECKED
+    return result.detail
 
 
 def test_the_emitted_interceptor_keeps_every_contract() -> None:
@@ -83,7 +84,7 @@ def test_the_emitted_interceptor_keeps_every_contract() -> None:
         FIRST, SETS, PASSES, STOPPED, AT_ONCE, HOLD, NO_STOP, NO_SCAN, NO_COMMAND,
         NOTHING_ELSE, SPEAKS, REPEATS, RANGE,
     ]  # fmt: skip
-    assert {e.result for e in found} == {Proved("225 states, 1125 steps")}
+    assert {outcome(e) for e in found} == {proved("225 states, 1125 steps")}
     assert {e.layer for e in found} == {Layer.INTERCEPTOR}
     assert found[0].assumptions == (
         "the ROS node hands every message to the core, one at a time, and publishes what it says",
@@ -234,7 +235,7 @@ def test_equal_numbers_that_add_up_differently_are_not_one_state(
         (OBEYS, f"stop=requested and {sum_} {obeys} 9007199254740992"),
     )
     found = {e.claim: e.result for e in contracts(changed, OPTIONS)}
-    assert not isinstance(found[SETS], Proved)
+    assert found[SETS] is not Result.PROVED
 
 
 def test_zero_in_whole_numbers_is_none() -> None:
@@ -260,15 +261,15 @@ def test_a_latch_that_releases_is_told() -> None:
     assert refuted(contracts(lost, counted(latching))) == {LATCHES, FOR_EVER, PASSES}
 
 
-def replayed(text: str, options: Options, evidence: Evidence) -> list[tuple[str, Any]]:
+def replayed(text: str, options: Options, evidence: Proof) -> list[tuple[str, Any]]:
     """What the text says when the run of a counterexample is given to it with true velocities."""
-    assert isinstance(evidence.result, Counterexample)
-    assert evidence.result.trace is not None
+    assert evidence.result is Result.COUNTEREXAMPLE
+    assert evidence.run is not None
     read = core(text)
     assert isinstance(read, Core)
     module = read.module
     state, out = module.initial(module.OPTIONS), []
-    for i, action in enumerate(evidence.result.trace.actions):
+    for i, action in enumerate(evidence.run.actions):
         heard, _, said = action.partition(": ")
         message = {
             STOP: module.StopHeard(True),
@@ -285,10 +286,10 @@ def replayed(text: str, options: Options, evidence: Evidence) -> list[tuple[str,
 def test_a_counterexample_is_a_shortest_run_that_can_be_replayed() -> None:
     text = mutant(*MUTANTS["forgets the watchdog of the sensor"][0])
     found = next(e for e in contracts(text, OPTIONS) if e.claim == NO_SCAN)
-    assert isinstance(found.result, Counterexample)
-    assert found.result.detail == "a run of 2 steps breaks it"
-    assert found.result.trace is not None
-    assert found.result.trace.names == (
+    assert found.result is Result.COUNTEREXAMPLE
+    assert found.detail == "a run of 2 steps breaks it"
+    assert found.run is not None
+    assert found.run.names == (
         "stop requested",
         "must stand",
         "zero",
@@ -297,7 +298,7 @@ def test_a_counterexample_is_a_shortest_run_that_can_be_replayed() -> None:
         "scan silent",
         "command silent",
     )
-    assert found.result.trace.rows == (
+    assert found.run.rows == (
         (False, True, False, False, False, True, True),
         (False, True, False, True, False, True, False),
     )
@@ -312,7 +313,7 @@ def test_a_counterexample_is_a_shortest_run_that_can_be_replayed() -> None:
 def test_every_counterexample_replays(name: str) -> None:
     changed = mutant(*MUTANTS[name][0])
     for evidence in contracts(changed, OPTIONS):
-        if isinstance(evidence.result, Counterexample):
+        if evidence.result is Result.COUNTEREXAMPLE:
             for said, command in replayed(changed, OPTIONS, evidence):
                 told = {None: "nothing is published", 0.0: "zero is published"}.get(command)
                 assert said == told or (told is None and said.endswith("is published"))
@@ -431,9 +432,9 @@ def test_a_node_that_changes_the_core_is_told(line: str) -> None:
 def test_where_nothing_can_be_said_the_reason_is(
     changes: tuple[tuple[str, str], ...], told: str
 ) -> None:
-    (result,) = {e.result for e in contracts(mutant(*changes), OPTIONS, most=3000)}
-    assert isinstance(result, NotChecked)
-    assert result.reason.startswith(told)
+    (result,) = {outcome(e) for e in contracts(mutant(*changes), OPTIONS, most=3000)}
+    assert result.result is Result.NOT_CHECKED
+    assert result.detail.startswith(told)
 
 
 def test_the_core_ends_where_the_node_begins() -> None:
