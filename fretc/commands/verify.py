@@ -19,6 +19,7 @@ from fretc.terminal.output import (
     say,
     stop,
 )
+from fretc.verification.layers.table import OF_MONITOR, in_words
 from fretish.diagnostics.diagnostic import Code, Diagnostic, has_errors
 
 if TYPE_CHECKING:
@@ -26,7 +27,7 @@ if TYPE_CHECKING:
 
     from compiler.logic.claims import Proof
     from compiler.project.folder import Project
-    from fretc.verification.verify import Request
+    from fretc.verification.layers.request import Request
     from fretish.diagnostics.source import Source
 
 _LAYERS = tuple(map(str, Layer))
@@ -38,9 +39,19 @@ _HEADINGS = {
 }
 
 
+_HELP = f"""Prove that what is made of requirements keeps them, layer by layer.
+
+{in_words()}
+
+Exit status: 0 all proved, 1 a claim about a requirement is refuted, 2 bad use or input, 3 something
+is vacuous, not checked, or stays stopped.
+"""
+
+
 @click.command(
     cls=Grouped,
     headings=_HEADINGS,
+    help=_HELP,
     short_help="Prove that what is made of requirements keeps them.",
 )
 @click.argument("files", nargs=-1, required=True, metavar="FILE...")
@@ -107,20 +118,13 @@ def verify(
     output: str,
     traces: str | None,
 ) -> None:
-    """Prove that what is made of requirements keeps them, layer by layer.
-
-    monitor: the text of a monitor means what its sentence says. interceptor: its text keeps its
-    contracts. loop: both, and any environment, keep the requirement under the assumptions of the
-    bindings. bounds: so they do whatever the times are. agent: its text has its properties.
-    ajpf: what AJPF itself has said of it.
-
-    Exit status: 0 all proved, 1 a claim about a requirement is refuted, 2 bad use or input,
-    3 something is vacuous, not checked, or stays stopped.
-    """
+    """Prove that what is made of requirements keeps them."""
     from compiler.project.folder import companions
+    from fretc.terminal.progress import at_work
     from fretc.verification.ajpf_results import written
     from fretc.verification.engines.sandbox import Limits
-    from fretc.verification.verify import Request, refusals
+    from fretc.verification.layers.request import Request
+    from fretc.verification.verify import refusals
 
     if (agent is None) != (properties is None):
         stop(_half(agent))
@@ -139,6 +143,7 @@ def verify(
         percepts,
         provers,
         _said_by_ajpf(project, results),
+        at_work,
     )
     wrong = refusals(project, asked)
     if wrong:
@@ -197,12 +202,11 @@ def _read(path: str | None) -> Source | None:
 
 
 def _evidence(project: Project, asked: Request) -> Sequence[Proof]:
-    from fretc.terminal.progress import at_work
     from fretc.verification.monitor.verifying import NotAMonitorError
-    from fretc.verification.verify import evidence
+    from fretc.verification.verify import prove
 
     try:
-        found = evidence(project, asked, at_work)
+        found = prove(project, asked)
     except NotAMonitorError as error:
         assert asked.monitor is not None
         stop(
@@ -241,13 +245,12 @@ def _tell(
 
 def _tables(found: Sequence[Proof], folder: Path) -> dict[Path, str]:
     """Each run that a monitor can step, under the requirement, the layer and a number."""
-    from compiler.logic.claims import Layer
     from fretc.verification.loop.replay import EXTRA
     from fretc.verification.text_output import as_csv
 
     files: dict[Path, str] = {}
     for one in found:
-        if one.layer not in (Layer.MONITOR, Layer.LOOP, Layer.BOUNDS):
+        if one.layer not in OF_MONITOR:
             continue
         if one.run is not None:
             names = one.run.names if one.layer is Layer.MONITOR else one.run.names[: -len(EXTRA)]

@@ -5,19 +5,18 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 
-from compiler.logic.claims import ALL, PROVERS, Layer, Proof, Result
+from compiler.logic.claims import ALL, PROVERS, Proof, Result
 from compiler.project.interceptor_options import ASSUMED
 from fretc.report.model import phrases
 from fretc.report.model.views import Mark, ProofView, RequirementView, sign_mark
 from fretc.report.traceability.artefacts import Product
+from fretc.verification.layers.table import OF_MONITOR
 from fretc.verification.text_output import SIGNS
 
 _MARKS: Mapping[str, Mark] = {
     str(result): sign_mark(str(result), sign) for result, sign in SIGNS.items()
 }
 """The worst first, as for verdicts."""
-_OF_MONITOR = (str(Layer.MONITOR), str(Layer.LOOP), str(Layer.BOUNDS))
-"""Layers whose claims are about the text of the requirement's monitor."""
 SHARED = ("interceptor", "agent")
 """Claims that are about no single requirement."""
 
@@ -55,7 +54,7 @@ def _suspicions(proof: Proof, now: Mapping[str, str]) -> Iterator[str]:
             what = "is not what it was" if name == ASSUMED else "is not made like that any more"
             yield f"{name} {what}"
     monitors = {hashed for name, hashed in now.items() if name.endswith("_monitor.py")}
-    if proof.layer in _OF_MONITOR and not monitors & {*proof.artefacts.values()}:
+    if proof.layer in OF_MONITOR and not monitors & {*proof.artefacts.values()}:
         yield "it is about another monitor than the one that is made now"
 
 

@@ -55,7 +55,7 @@ def with_crosshair(
     requirement: str = "interceptor",
     *,
     seconds: float = CROSSHAIR_SECONDS,
-    tell: Callable[[str], None] = lambda function: None,
+    progress: Callable[[str], None] = lambda function: None,
 ) -> tuple[Proof, ...]:
     """Let CrossHair look for inputs that break the contracts of an interceptor's core.
 
@@ -66,7 +66,7 @@ def with_crosshair(
         text: the core, with `post:` lines in its docstrings (PEP 316). It is executed.
         requirement: what the lines of evidence are filed under.
         seconds: for each function; its contracts share them.
-        tell: is called with the name of each function before it is looked at.
+        progress: is called with the name of each function before it is looked at.
 
     Returns:
         One line for each contract: proved if CrossHair has confirmed it over all paths, refuted
@@ -82,7 +82,7 @@ def with_crosshair(
     for name in dict.fromkeys(contract.function for contract in contracts):
         own = [contract for contract in contracts if contract.function == name]
         if engine:
-            tell(name)
+            progress(name)
             found += _explored(whole or text, name, own, seconds)
         else:
             found += [(_claim(contract), not_checked(_ABSENT)) for contract in own]

@@ -101,7 +101,7 @@ def bounds(rule: Formalized, setup: Setup, limits: Limits) -> tuple[Proof, ...]:
     )
     engine = f"z3 {answer.z3}; fretc, explicit states" if answer.z3 else "fretc, explicit states"
     return tuple(
-        proof(rule.id, Layer.BOUNDS, claim, result, engine, assumed, artefacts(setup))
+        proof(rule.id, Layer.BOUNDS, claim, result, engine, assumed, artefacts(rule, setup))
         for claim, result, assumed in (
             (_answered(query), answer.answered, at_any),
             (_enough(rule), answer.enough, at_declared),

@@ -16,7 +16,8 @@ from compiler.files.text_files import sha256
 from compiler.formalization.formalized import Formalized
 from compiler.logic import spot as automata
 from compiler.logic.claims import Layer, Outcome, Proof, not_checked, proof
-from compiler.project.interceptor_options import options, ticks
+from compiler.project.interceptor_options import ASSUMED, options, ticks
+from compiler.project.interceptor_options import assumed as hash_of_assumed
 from compiler.targets.python import monitor as target
 from fretc.verification.engines import sandbox as processes
 from fretc.verification.engines.sandbox import Limits, Stopped
@@ -77,14 +78,16 @@ def _evidence(
         result,
         f"fretc, explicit states; Spot {automata.version()}",
         premises,
-        artefacts(setup),
+        artefacts(rule, setup),
     )
 
 
-def artefacts(setup: Setup) -> dict[str, str]:
-    """SHA-256 of each text."""
+def artefacts(rule: Formalized, setup: Setup) -> dict[str, str]:
+    """SHA-256 of each text, and of what the bindings assume."""
     texts = [setup.monitor, *([setup.interceptor] if setup.interceptor else [])]
-    return {text.name: sha256(text.text) for text in texts}
+    hashes = {text.name: sha256(text.text) for text in texts}
+    digest = hash_of_assumed(rule.declarations) if rule.declarations else ""
+    return {**hashes, ASSUMED: digest} if digest else hashes
 
 
 # The case -------------------------------------------------------------------------------------

@@ -15,11 +15,12 @@ import pytest
 
 from compiler.files.templating import template_root
 from compiler.logic.claims import Proof
-from fretc.verification import verify as layers
 from fretc.verification.engines import crosshair
 from fretc.verification.engines import programs as external
 from fretc.verification.engines import sandbox as confined
 from fretc.verification.engines.programs import Ran
+from fretc.verification.layers import crosshair as layer_crosshair
+from fretc.verification.layers import dafny as layer_dafny
 from tests.command import Fretc, Run, write
 
 R1 = "whenever p the sw shall within 2 ticks satisfy q"
@@ -577,7 +578,7 @@ def test_crosshair_does_not_execute_what_may_not_be_pure(
     new: str,
     reason: str,
 ) -> None:
-    monkeypatch.setattr(layers, "with_crosshair", None)
+    monkeypatch.setattr(layer_crosshair, "with_crosshair", None)
     path, made = node
     edited(made, old, new)
     options = ("--layer", "interceptor", "--with", "crosshair", "--interceptor", made)
@@ -597,7 +598,7 @@ def test_dafny_is_given_the_limit(
         seen.append(seconds)
         return ()
 
-    monkeypatch.setattr(layers, "with_dafny", dafny)
+    monkeypatch.setattr(layer_dafny, "with_dafny", dafny)
     fretc("verify", "--layer", "interceptor", "--with", "dafny", "--limit", "7", node[0])
     assert seen == [7]
 

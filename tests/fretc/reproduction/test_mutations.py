@@ -270,7 +270,7 @@ FOUND = (
 
 
 def test_no_change_to_proofs_is_certified(case: Case, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(reproving, "evidence", lambda *asked: FOUND)
+    monkeypatch.setattr(reproving, "prove", lambda *asked: FOUND)
     content = json.loads(json.dumps(plain(Document(SCHEMA, "0.1.0", FOUND))))
 
     def judged(text: str) -> Sequence[Rechecked] | Diagnostic:

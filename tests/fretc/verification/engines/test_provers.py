@@ -282,7 +282,7 @@ def divided(x: int) -> float:
 @needs_crosshair
 def test_crosshair_confirms_and_refutes_contract_by_contract() -> None:
     said: list[str] = []
-    found = with_crosshair(CORE, "R1", seconds=10, tell=said.append)
+    found = with_crosshair(CORE, "R1", seconds=10, progress=said.append)
     assert said == ["bounded", "divided"]
     kept, broken = found[:2]
     assert (kept.requirement, kept.layer) == ("R1", Layer.INTERCEPTOR)
