@@ -122,7 +122,7 @@ def as_csv(trace: Trace, propositions: Sequence[str]) -> str:
     """The propositions of the run as the monitor's own command line reads them.
 
     Args:
-        trace: of an endless run the part that is told.
+        trace: of an endless run the rows that it has.
         propositions: those of the monitor, all of them columns of the run.
     """
     places = [trace.names.index(name) for name in propositions]

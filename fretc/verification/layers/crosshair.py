@@ -10,7 +10,7 @@ from compiler.files.text_files import sha256
 from compiler.formalization.formalized import Formalized
 from compiler.logic.claims import Layer, Proof
 from compiler.project.folder import Project
-from fretc.verification.engines.crosshair import stated, with_crosshair
+from fretc.verification.engines.crosshair import contract_texts, with_crosshair
 from fretc.verification.interceptor.file import Head, head
 from fretc.verification.layers.request import Request, interceptor_of, unknown
 from monitors.source_text import interceptor as original
@@ -42,6 +42,6 @@ def prove(rules: Sequence[Formalized], project: Project, request: Request) -> It
 def _core(text: str) -> Head | str:
     """The core; or why CrossHair, which executes contracts, must not read it."""
     core = head(text)
-    if isinstance(core, str) or stated(core.text) == stated(original().text):
+    if isinstance(core, str) or contract_texts(core.text) == contract_texts(original().text):
         return core
     return "its `pre:` and `post:` lines are not those of fretc, and CrossHair executes them"

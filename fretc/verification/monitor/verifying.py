@@ -57,7 +57,7 @@ def verified(
     """Compare the text of a monitor with its rule.
 
     Args:
-        rule: one that a monitor can be made of, on its own clock.
+        rule: one that the target accepts, on its own clock.
         text: that of its monitor, maybe with monitors of other rules.
         limit: the most states of the exploration.
         others: further rules that the text may implement.

@@ -18,7 +18,7 @@ from compiler.logic.claims import Proof
 from fretc.verification.engines import crosshair
 from fretc.verification.engines import programs as external
 from fretc.verification.engines import sandbox as confined
-from fretc.verification.engines.programs import Ran
+from fretc.verification.engines.programs import Completion
 from fretc.verification.layers import crosshair as layer_crosshair
 from fretc.verification.layers import dafny as layer_dafny
 from tests.command import Fretc, Run, write
@@ -546,7 +546,7 @@ def test_crosshair_is_given_the_core_and_the_limit(
     limits: list[float] = []
     asked = external.run
 
-    def run(*args: Any, seconds: float, memory: int) -> Ran:
+    def run(*args: Any, seconds: float, memory: int) -> Completion:
         limits.append(seconds)
         return asked(*args, seconds=seconds, memory=memory)
 

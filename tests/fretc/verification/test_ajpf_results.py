@@ -1,4 +1,4 @@
-"""Results of AJPF as evidence: only about what is made now, and never more than AJPF said."""
+"""Results of AJPF as evidence: only about the present texts, and never more than AJPF says."""
 
 import hashlib
 import json
@@ -40,10 +40,10 @@ def ran(tmp_path: Path) -> Mcapl:
     return mcapl
 
 
-def only(mcapl: Mcapl, made: Formalized | None = None) -> Proof:
-    (line,), said = evidence([made or rule(R1)], [str(mcapl.bundle / "result.json")])
-    assert not said
-    return line
+def only(mcapl: Mcapl, other: Formalized | None = None) -> Proof:
+    (proof,), diagnostics = evidence([other or rule(R1)], [str(mcapl.bundle / "result.json")])
+    assert not diagnostics
+    return proof
 
 
 def changed(mcapl: Mcapl, change: Change) -> None:
@@ -78,7 +78,7 @@ def test_what_ajpf_refutes_is_refuted_with_its_run(ran: Mcapl) -> None:
 
 
 @pytest.mark.parametrize(
-    ("said", "expected"),
+    ("outputs", "expected"),
     [
         ({"R1_reach.jpf": (ENDING, 0)}, vacuous("its control R1_reach holds")),
         ({"R1_mutant.jpf": (ENDING, 0)}, vacuous("the agent without the response keeps it too")),
@@ -86,9 +86,9 @@ def test_what_ajpf_refutes_is_refuted_with_its_run(ran: Mcapl) -> None:
     ],
 )
 def test_what_is_not_as_expected_shows_nothing(
-    ran: Mcapl, said: dict[str, tuple[str, int]], expected: Outcome
+    ran: Mcapl, outputs: dict[str, tuple[str, int]], expected: Outcome
 ) -> None:
-    ran.says(said)
+    ran.says(outputs)
     ran.run()
     assert outcome(only(ran)) == expected
 
@@ -165,9 +165,9 @@ def test_a_result_is_held_against_the_logs_that_lie_beside_it(ran: Mcapl, name: 
         check["log_sha256"] = hashlib.sha256(log.read_bytes()).hexdigest()
 
     changed(ran, rehash)
-    found = outcome(only(ran))
-    assert found.result is Result.NOT_CHECKED
-    assert found.detail.endswith(f"and logs/{name}.jpf.txt does not")
+    result = outcome(only(ran))
+    assert result.result is Result.NOT_CHECKED
+    assert result.detail.endswith(f"and logs/{name}.jpf.txt does not")
     log.unlink()
     assert only(ran).result is Result.PROVED
 
@@ -197,10 +197,10 @@ def test_an_agent_of_ones_own_counts_while_it_is_as_it_was(ran: Mcapl) -> None:
 )
 def test_a_file_that_is_no_result_is_refused(tmp_path: Path, text: str, what: str) -> None:
     (tmp_path / "result.json").write_text(text)
-    found = read(str(tmp_path / "result.json"))
-    assert isinstance(found, Diagnostic)
-    assert found.code is Code.BAD_AJPF_RESULT
-    assert what in found.message
+    result = read(str(tmp_path / "result.json"))
+    assert isinstance(result, Diagnostic)
+    assert result.code is Code.BAD_AJPF_RESULT
+    assert what in result.message
 
 
 @pytest.mark.parametrize(
@@ -214,16 +214,16 @@ def test_a_file_that_is_no_result_is_refused(tmp_path: Path, text: str, what: st
 )
 def test_a_wrong_shape_within_is_refused(ran: Mcapl, change: Change) -> None:
     changed(ran, change)
-    found = read(str(ran.bundle / "result.json"))
-    assert isinstance(found, Diagnostic)
-    assert found.code is Code.BAD_AJPF_RESULT
+    result = read(str(ran.bundle / "result.json"))
+    assert isinstance(result, Diagnostic)
+    assert result.code is Code.BAD_AJPF_RESULT
 
 
 def test_a_result_about_another_requirement_is_told_and_does_not_count(ran: Mcapl) -> None:
-    lines, (told,) = evidence([rule(R1, id="R2")], [str(ran.bundle / "result.json")])
+    lines, (diagnostic,) = evidence([rule(R1, id="R2")], [str(ran.bundle / "result.json")])
     assert lines == ()
-    assert told.code is Code.FOREIGN_AJPF_RESULT
-    assert not told.is_error
+    assert diagnostic.code is Code.FOREIGN_AJPF_RESULT
+    assert not diagnostic.is_error
 
 
 def test_what_a_file_of_proofs_says_of_ajpf_gives_way_to_the_result_itself(ran: Mcapl) -> None:
@@ -234,24 +234,24 @@ def test_what_a_file_of_proofs_says_of_ajpf_gives_way_to_the_result_itself(ran: 
         ("monitor", "proved"),
         ("ajpf", "proved"),
     ]
-    shown = replace(old, result=Result.PROVED)
-    (left,) = merged([shown], [])
+    green = replace(old, result=Result.PROVED)
+    (left,) = merged([green], [])
     assert (left.result, left.detail[:11]) == ("not checked", "it was prov")
     red = replace(old, result=Result.COUNTEREXAMPLE)
     assert merged([red], []) == (red,)
 
 
 def test_a_weaker_property_does_not_show_the_requirement(ran: Mcapl) -> None:
-    made = rule("whenever too_close agilex_agent shall within 3 ticks satisfy stopped")
-    for artifact in emit([made], Options(weaken=True)):
+    formalized = rule("whenever too_close agilex_agent shall within 3 ticks satisfy stopped")
+    for artifact in emit([formalized], Options(weaken=True)):
         ran.write(ran.folder / artifact.path, artifact.text)
     assert ran.run().returncode == 0
-    result = outcome(only(ran, made))
+    result = outcome(only(ran, formalized))
     assert result.result is Result.NOT_CHECKED
     assert result.detail.startswith("what AJPF shows is weaker than R1: `within 3 ticks` has lost")
     ran.says({"R1.jpf": (RECORDED, 0)})
     ran.run()
-    assert only(ran, made).result is Result.COUNTEREXAMPLE
+    assert only(ran, formalized).result is Result.COUNTEREXAMPLE
 
 
 # The commands ----------------------------------------------------------------------------------
@@ -263,8 +263,8 @@ def project(folder: Path) -> None:
 
 
 def planned(folder: Path) -> tuple[bool, str]:
-    found = json.loads((folder / "report.json").read_text())
-    (plan,) = (plan for plan in found["planned"] if plan["method"] == "ajpf")
+    report = json.loads((folder / "report.json").read_text())
+    (plan,) = (plan for plan in report["planned"] if plan["method"] == "ajpf")
     return plan["has_result"], plan["result"]
 
 

@@ -12,7 +12,8 @@ from compiler.logic.claims import Layer, Outcome, Result, not_checked, proved
 from compiler.targets.dafny import text
 from fretc.verification.engines import crosshair
 from fretc.verification.engines.crosshair import with_crosshair
-from fretc.verification.engines.dafny import verified, with_dafny
+from fretc.verification.engines.dafny import answer as dafny_answer
+from fretc.verification.engines.dafny import with_dafny
 from tests.compiler.targets.test_dafny import (
     BINDINGS,
     CONDITIONS,
@@ -57,7 +58,7 @@ class Fake:
         path = self.folder / "dafny"
         path.write_text(script)
         path.chmod(0o755)
-        return verified(text, seconds=2)[0]
+        return dafny_answer(text, seconds=2)[0]
 
 
 def test_all_verified_is_proved(dafny: Fake) -> None:
@@ -68,8 +69,8 @@ def test_all_verified_is_proved(dafny: Fake) -> None:
 
 def test_lines_that_debians_z3_adds_do_not_matter(dafny: Fake) -> None:
     noise = "Prover error: line 18 column 28: unknown parameter 'model_compress'"
-    found = dafny.says(f'echo "{noise}"; echo; echo "{FINISHED} 2 verified, 0 errors"')
-    assert found.result is Result.PROVED
+    answer = dafny.says(f'echo "{noise}"; echo; echo "{FINISHED} 2 verified, 0 errors"')
+    assert answer.result is Result.PROVED
 
 
 @pytest.mark.parametrize(
@@ -119,8 +120,8 @@ def test_dafny_4_is_asked_in_its_own_way(dafny: Fake) -> None:
         f'[ "$*" = "verify --verification-time-limit=1 --allow-warnings text.dfy" ] || exit 9\n'
         f'echo; echo "{FINISHED} 5 verified, 0 errors"'
     )
-    found = dafny.says(body, version="4.9.1+abc")
-    assert found == proved("5 parts verified, among them all 2 lemmas and methods")
+    answer = dafny.says(body, version="4.9.1+abc")
+    assert answer == proved("5 parts verified, among them all 2 lemmas and methods")
 
 
 def test_dafny_2_is_asked_in_its_own_way(dafny: Fake) -> None:
@@ -132,15 +133,15 @@ def test_dafny_2_is_asked_in_its_own_way(dafny: Fake) -> None:
 
 
 def test_a_program_without_a_version_is_not_dafny(dafny: Fake) -> None:
-    found = dafny.says(f'echo "{FINISHED} 2 verified, 0 errors"', version="Dafny")
-    assert found == not_checked("`dafny` tells no version: it is not Dafny")
+    answer = dafny.says(f'echo "{FINISHED} 2 verified, 0 errors"', version="Dafny")
+    assert answer == not_checked("`dafny` tells no version: it is not Dafny")
 
 
 def test_without_dafny_nothing_is_known_and_what_to_do_is_said(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("PATH", str(tmp_path))
-    result, engine = verified(LEMMAS)
+    result, engine = dafny_answer(LEMMAS)
     assert engine == "Dafny"
     assert result.result is Result.NOT_CHECKED
     assert result.detail.startswith("Dafny is not installed: put `dafny` on the PATH")
@@ -148,20 +149,20 @@ def test_without_dafny_nothing_is_known_and_what_to_do_is_said(
 
 def test_nothing_is_claimed_of_another_text(dafny: Fake) -> None:
     dafny.says(f'echo "{FINISHED} 99 verified, 0 errors"')
-    made = rule("whenever p robot shall within 5 ticks satisfy q")
-    good = text(made, None)
+    formalized = rule("whenever p robot shall within 5 ticks satisfy q")
+    good = text(formalized, None)
     for other in (good.replace("==>", "==> true ||"), good + "\n"):
-        found = with_dafny(made, other, None)
-        assert {one.result for one in found} == {Result.NOT_CHECKED}
-    assert {one.result for one in with_dafny(made, good, None)} == {Result.PROVED}
+        proofs = with_dafny(formalized, other, None)
+        assert {one.result for one in proofs} == {Result.NOT_CHECKED}
+    assert {one.result for one in with_dafny(formalized, good, None)} == {Result.PROVED}
 
 
 def test_each_part_of_the_file_has_a_line_of_its_own(dafny: Fake) -> None:
     dafny.says(f'echo "{FINISHED} 99 verified, 0 errors"')
     declarations = bound()
-    made = rule("whenever p robot shall within 3 ticks satisfy q", declarations)
-    found = with_dafny(made, text(made, declarations), declarations)
-    assert [(one.layer, one.claim) for one in found] == [
+    formalized = rule("whenever p robot shall within 3 ticks satisfy q", declarations)
+    proofs = with_dafny(formalized, text(formalized, declarations), declarations)
+    assert [(one.layer, one.claim) for one in proofs] == [
         (
             Layer.MONITOR,
             "the counter of `within 3 ticks` is violated exactly where the definition is, "
@@ -179,13 +180,13 @@ def test_each_part_of_the_file_has_a_line_of_its_own(dafny: Fake) -> None:
         ),
         (Layer.BOUNDS, "never violated at the bound of 3 ticks and the declared delay of 4"),
     ]
-    assert [one.result for one in found] == [*["proved"] * 3, "not checked"]
-    assert outcome(found[3]) == not_checked(
+    assert [one.result for one in proofs] == [*["proved"] * 3, "not checked"]
+    assert outcome(proofs[3]) == not_checked(
         "the declared delay of 4 ticks is more than the bound of 3"
     )
-    assert found[0].engine == "Dafny 2.3.0.10506"
-    assert list(found[0].artefacts) == ["r1.dfy"]
-    assert found[3].assumptions[-2:] == (
+    assert proofs[0].engine == "Dafny 2.3.0.10506"
+    assert list(proofs[0].artefacts) == ["r1.dfy"]
+    assert proofs[3].assumptions[-2:] == (
         "reach = 1 ticks ([assume] latency and lost)",
         "braking = 3 ticks ([assume] braking)",
     )
@@ -195,7 +196,7 @@ def test_each_part_of_the_file_has_a_line_of_its_own(dafny: Fake) -> None:
 
 
 def say(text: str) -> Outcome:
-    return verified(text, seconds=120)[0]
+    return dafny_answer(text, seconds=120)[0]
 
 
 @pytest.mark.slow
@@ -215,9 +216,9 @@ def test_dafny_verifies_monitors_at_any_bound() -> None:
 @needs_dafny
 def test_dafny_verifies_the_interceptor_and_the_loop() -> None:
     latching = BINDINGS.replace("[assume]", "latching = true\n\n[assume]")
-    found = emitted("when p robot shall within 20 ticks satisfy q", latching)
-    assert "NeverViolatedAsDeclared" in found
-    assert say(found).result is Result.PROVED
+    file = emitted("when p robot shall within 20 ticks satisfy q", latching)
+    assert "NeverViolatedAsDeclared" in file
+    assert say(file).result is Result.PROVED
 
 
 def replaced(text: str, old: str, new: str) -> str:
@@ -231,10 +232,10 @@ def test_dafny_rejects_mutants_of_the_monitor_and_of_the_plain_interceptor() -> 
     good = emitted("whenever p robot shall within 20 ticks satisfy q", None)
     late = replaced(good, "d.count == n)", "d.count == n + 1)")
     forwarding = replaced(late, "      out := ZERO;", "      out := command;")
-    found = say(forwarding)
-    assert found.result is Result.NOT_CHECKED
-    assert "`InvariantHolds`" in found.detail
-    assert "`CommandCallback`" in found.detail
+    answer = say(forwarding)
+    assert answer.result is Result.NOT_CHECKED
+    assert "`InvariantHolds`" in answer.detail
+    assert "`CommandCallback`" in answer.detail
 
 
 @pytest.mark.slow
@@ -247,11 +248,11 @@ def test_dafny_rejects_an_interceptor_without_hold_and_a_loop_with_too_long_a_de
         "requires 1 <= braking && reach + braking <= n\n  requires 0",
         "requires 1 <= braking && reach + braking <= n + 1\n  requires 0",
     )
-    found = say(late)
-    assert found.result is Result.NOT_CHECKED
-    assert "`HoldLasts`" in found.detail
-    assert "`StopCallback`" in found.detail
-    assert "`NeverViolated`" in found.detail
+    answer = say(late)
+    assert answer.result is Result.NOT_CHECKED
+    assert "`HoldLasts`" in answer.detail
+    assert "`StopCallback`" in answer.detail
+    assert "`NeverViolated`" in answer.detail
 
 
 # CrossHair ------------------------------------------------------------------------------------
@@ -281,10 +282,10 @@ def divided(x: int) -> float:
 @pytest.mark.slow
 @needs_crosshair
 def test_crosshair_confirms_and_refutes_contract_by_contract() -> None:
-    said: list[str] = []
-    found = with_crosshair(CORE, "R1", seconds=10, progress=said.append)
-    assert said == ["bounded", "divided"]
-    kept, broken = found[:2]
+    functions: list[str] = []
+    proofs = with_crosshair(CORE, "R1", seconds=10, progress=functions.append)
+    assert functions == ["bounded", "divided"]
+    kept, broken = proofs[:2]
     assert (kept.requirement, kept.layer) == ("R1", Layer.INTERCEPTOR)
     assert (kept.claim, outcome(kept)) == (
         "`bounded` keeps `0 <= __return__`",
@@ -294,9 +295,9 @@ def test_crosshair_confirms_and_refutes_contract_by_contract() -> None:
     assert broken.claim == "`bounded` keeps `__return__ <= 10`"
     assert broken.result is Result.COUNTEREXAMPLE
     assert "when calling bounded(" in broken.detail
-    raised = [one for one in found[2:] if one.result is Result.COUNTEREXAMPLE]
+    raised = [one for one in proofs[2:] if one.result is Result.COUNTEREXAMPLE]
     assert raised
-    assert not any(one.result is Result.PROVED for one in found[2:])
+    assert not any(one.result is Result.PROVED for one in proofs[2:])
 
 
 @pytest.mark.slow
@@ -307,15 +308,15 @@ def test_what_crosshair_does_not_confirm_is_not_checked() -> None:
         "    pre: x > 2 and y > 2 and z > 2\n    post: __return__\n"
         '    """\n    return x**3 + y**3 != z**3\n'
     )
-    (found,) = with_crosshair(hard, seconds=1)
-    assert found.result is Result.NOT_CHECKED
+    (proof,) = with_crosshair(hard, seconds=1)
+    assert proof.result is Result.NOT_CHECKED
 
 
 def test_a_core_that_is_no_module_is_not_checked() -> None:
     failing = CORE.replace("def bounded", "raise ImportError\n\n\ndef bounded")
-    found = with_crosshair(failing, seconds=1)
-    assert found
-    assert not any(one.result is Result.PROVED for one in found)
+    proofs = with_crosshair(failing, seconds=1)
+    assert proofs
+    assert not any(one.result is Result.PROVED for one in proofs)
 
 
 def test_without_crosshair_each_contract_is_not_checked(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -323,14 +324,14 @@ def test_without_crosshair_each_contract_is_not_checked(monkeypatch: pytest.Monk
         raise PackageNotFoundError(name)
 
     monkeypatch.setattr(crosshair, "version", absent)
-    found = with_crosshair(CORE)
-    assert [one.claim for one in found] == [
+    proofs = with_crosshair(CORE)
+    assert [one.claim for one in proofs] == [
         "`bounded` keeps `0 <= __return__`",
         "`bounded` keeps `__return__ <= 10`",
         "`divided` keeps `True`",
     ]
     reason = "CrossHair is not installed: pip install 'fretc[crosshair]'"
-    assert {outcome(one) for one in found} == {not_checked(reason)}
+    assert {outcome(one) for one in proofs} == {not_checked(reason)}
 
 
 KEEPING = '''\
@@ -357,9 +358,9 @@ def kept(command: Velocity) -> Velocity:
 
 @needs_crosshair
 def test_velocities_that_nobody_looks_into_are_whole_numbers_for_crosshair() -> None:
-    (found,) = with_crosshair(KEEPING, seconds=10)
-    assert outcome(found) == proved("confirmed over all paths")
-    assert found.assumptions == (
+    (proof,) = with_crosshair(KEEPING, seconds=10)
+    assert outcome(proof) == proved("confirmed over all paths")
+    assert proof.assumptions == (
         "the numbers of a velocity are whole; no function names one of them",
     )
 
@@ -388,6 +389,6 @@ def test_crosshair_confirms_a_step_of_the_interceptor() -> None:
     alone = core.replace("    post:", "    told:").replace(
         "told: __return__ == (0", "post: __return__ == (0"
     )
-    (found,) = with_crosshair(alone, seconds=20)
-    assert outcome(found) == proved("confirmed over all paths")
-    assert found.claim == "`expired` keeps `__return__ == (0 < timeout <= age)`"
+    (proof,) = with_crosshair(alone, seconds=20)
+    assert outcome(proof) == proved("confirmed over all paths")
+    assert proof.claim == "`expired` keeps `__return__ == (0 < timeout <= age)`"

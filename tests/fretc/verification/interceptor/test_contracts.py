@@ -66,9 +66,9 @@ def mutant(*changes: tuple[str, str], of: str = EMITTED) -> str:
     return of
 
 
-def refuted(found: tuple[Proof, ...]) -> set[str]:
-    assert all(e.result in ("proved", "counterexample") for e in found), found[0].result
-    return {e.claim for e in found if e.result is Result.COUNTEREXAMPLE}
+def refuted(proofs: tuple[Proof, ...]) -> set[str]:
+    assert all(e.result in ("proved", "counterexample") for e in proofs), proofs[0].result
+    return {e.claim for e in proofs if e.result is Result.COUNTEREXAMPLE}
 
 
 def reason(text: str, options: Options = OPTIONS) -> str:
@@ -79,26 +79,26 @@ def reason(text: str, options: Options = OPTIONS) -> str:
 
 def test_the_emitted_interceptor_keeps_every_contract() -> None:
     assert counted(NODE) == OPTIONS
-    found = contracts(EMITTED, OPTIONS)
-    assert [e.claim for e in found] == [
+    proofs = contracts(EMITTED, OPTIONS)
+    assert [e.claim for e in proofs] == [
         FIRST, SETS, PASSES, STOPPED, AT_ONCE, HOLD, NO_STOP, NO_SCAN, NO_COMMAND,
         NOTHING_ELSE, SPEAKS, REPEATS, RANGE,
     ]  # fmt: skip
-    assert {outcome(e) for e in found} == {proved("225 states, 1125 steps")}
-    assert {e.layer for e in found} == {Layer.INTERCEPTOR}
-    assert found[0].assumptions == (
+    assert {outcome(e) for e in proofs} == {proved("225 states, 1125 steps")}
+    assert {e.layer for e in proofs} == {Layer.INTERCEPTOR}
+    assert proofs[0].assumptions == (
         "the ROS node hands every message to the core, one at a time, and publishes what it says",
         "the timer rings at every period in [interceptor]",
     )
 
 
 def test_the_papers_interceptor_keeps_its_own() -> None:
-    found = contracts(text(PAPER, "bindings.toml"), counted(PAPER))
-    assert [e.claim for e in found] == [
+    proofs = contracts(text(PAPER, "bindings.toml"), counted(PAPER))
+    assert [e.claim for e in proofs] == [
         FIRST, LATCHES, PASSES, STOPPED, FOR_EVER, NOTHING_ELSE, ONLY_THEN, RANGE,
     ]  # fmt: skip
-    assert refuted(found) == set()
-    assert found[0].assumptions[1:] == ("no silence is noticed: form = event in [interceptor]",)
+    assert refuted(proofs) == set()
+    assert proofs[0].assumptions[1:] == ("no silence is noticed: form = event in [interceptor]",)
 
 
 @pytest.mark.parametrize("latching", [False, True])
@@ -234,8 +234,8 @@ def test_equal_numbers_that_add_up_differently_are_not_one_state(
         ),
         (OBEYS, f"stop=requested and {sum_} {obeys} 9007199254740992"),
     )
-    found = {e.claim: e.result for e in contracts(changed, OPTIONS)}
-    assert found[SETS] is not Result.PROVED
+    results = {e.claim: e.result for e in contracts(changed, OPTIONS)}
+    assert results[SETS] is not Result.PROVED
 
 
 def test_zero_in_whole_numbers_is_none() -> None:
@@ -270,26 +270,26 @@ def replayed(text: str, options: Options, evidence: Proof) -> list[tuple[str, An
     module = read.module
     state, out = module.initial(module.OPTIONS), []
     for i, action in enumerate(evidence.run.actions):
-        heard, _, said = action.partition(": ")
+        event, _, output = action.partition(": ")
         message = {
             STOP: module.StopHeard(True),
             RELEASE: module.StopHeard(False),
             COMMAND: module.CommandHeard(module.Velocity(i + 1.0)),
             SCAN: module.ScanHeard(),
             RING: module.TimerRang(),
-        }[heard]
+        }[event]
         state, command = module.step(state, message, module.OPTIONS)
-        out.append((said, None if command is None else command.vx))
+        out.append((output, None if command is None else command.vx))
     return out
 
 
 def test_a_counterexample_is_a_shortest_run_that_can_be_replayed() -> None:
     text = mutant(*MUTANTS["forgets the watchdog of the sensor"][0])
-    found = next(e for e in contracts(text, OPTIONS) if e.claim == NO_SCAN)
-    assert found.result is Result.COUNTEREXAMPLE
-    assert found.detail == "a run of 2 steps breaks it"
-    assert found.run is not None
-    assert found.run.names == (
+    proof = next(e for e in contracts(text, OPTIONS) if e.claim == NO_SCAN)
+    assert proof.result is Result.COUNTEREXAMPLE
+    assert proof.detail == "a run of 2 steps breaks it"
+    assert proof.run is not None
+    assert proof.run.names == (
         "stop requested",
         "must stand",
         "zero",
@@ -298,11 +298,11 @@ def test_a_counterexample_is_a_shortest_run_that_can_be_replayed() -> None:
         "scan silent",
         "command silent",
     )
-    assert found.run.rows == (
+    assert proof.run.rows == (
         (False, True, False, False, False, True, True),
         (False, True, False, True, False, True, False),
     )
-    assert replayed(text, OPTIONS, found) == [
+    assert replayed(text, OPTIONS, proof) == [
         ("nothing is published", None),
         ("the last command is published", 2.0),
     ]
@@ -314,16 +314,16 @@ def test_every_counterexample_replays(name: str) -> None:
     changed = mutant(*MUTANTS[name][0])
     for evidence in contracts(changed, OPTIONS):
         if evidence.result is Result.COUNTEREXAMPLE:
-            for said, command in replayed(changed, OPTIONS, evidence):
-                told = {None: "nothing is published", 0.0: "zero is published"}.get(command)
-                assert said == told or (told is None and said.endswith("is published"))
+            for words, command in replayed(changed, OPTIONS, evidence):
+                why = {None: "nothing is published", 0.0: "zero is published"}.get(command)
+                assert words == why or (why is None and words.endswith("is published"))
 
 
 # What is not checked --------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize(
-    ("old", "new", "told"),
+    ("old", "new", "why"),
     [
         (SCANNED, "    print(state)\n    return state, None", "`print(state)`"),
         (SCANNED, "    state.held = 0\n    return state, None", "`state.held = 0`"),
@@ -360,17 +360,17 @@ def test_every_counterexample_replays(name: str) -> None:
         ("class ScanHeard:", "class ScanHeard(metaclass=type):", "`@dataclass"),
     ],
 )  # fmt: skip
-def test_a_core_that_may_not_be_pure_is_not_executed(old: str, new: str, told: str) -> None:
+def test_a_core_that_may_not_be_pure_is_not_executed(old: str, new: str, why: str) -> None:
     """By none of those that explore it."""
     changed = mutant((old, new))
     if "HOLD" in new:
         changed = mutant((SCANNED, "    return replace(state, held=HOLD.hold), None"), of=changed)
-    found = reason(changed)
-    assert found.startswith("its core is not as fretc can read it: ")
-    assert told in found or not new
+    message = reason(changed)
+    assert message.startswith("its core is not as fretc can read it: ")
+    assert why in message or not new
     with pytest.raises(NotAnInterceptorError) as refused:
         Gate(changed, interceptor_options())
-    assert str(refused.value) == found
+    assert str(refused.value) == message
 
 
 @pytest.mark.parametrize(
@@ -394,7 +394,7 @@ def test_a_node_that_changes_the_core_is_told(line: str) -> None:
 
 
 @pytest.mark.parametrize(
-    ("changes", "told"),
+    ("changes", "why"),
     [
         (
             ((PASSED, "return after, ZERO if command == ZERO else command"),),
@@ -430,19 +430,19 @@ def test_a_node_that_changes_the_core_is_told(line: str) -> None:
     ],
 )
 def test_where_nothing_can_be_said_the_reason_is(
-    changes: tuple[tuple[str, str], ...], told: str
+    changes: tuple[tuple[str, str], ...], why: str
 ) -> None:
     (result,) = {outcome(e) for e in contracts(mutant(*changes), OPTIONS, most=3000)}
     assert result.result is Result.NOT_CHECKED
-    assert result.detail.startswith(told)
+    assert result.detail.startswith(why)
 
 
 def test_the_core_ends_where_the_node_begins() -> None:
-    found = head(EMITTED)
-    assert isinstance(found, Head)
-    assert EMITTED.startswith(found.text)
-    assert found.text.rstrip().endswith("# latching = false\n)")
-    assert head(found.text) == found
+    core = head(EMITTED)
+    assert isinstance(core, Head)
+    assert EMITTED.startswith(core.text)
+    assert core.text.rstrip().endswith("# latching = false\n)")
+    assert head(core.text) == core
 
 
 def test_a_text_that_is_no_interceptor_is_not_checked() -> None:

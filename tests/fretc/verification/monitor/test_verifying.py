@@ -78,8 +78,8 @@ def judged_wrongly(outcome: Outcome) -> bool:
 def test_every_template_is_proved(scope: str) -> None:
     for template in templates((0, 1, 2)):
         if template.scope == scope:
-            found = check(template.sentence)
-            assert sizes(found)[2] > 0, (template, found)
+            outcome = check(template.sentence)
+            assert sizes(outcome)[2] > 0, (template, outcome)
 
 
 @pytest.mark.slow
@@ -100,8 +100,8 @@ def test_templates_are_proved_at_longer_bounds(n: int) -> None:
     ],
 )
 def test_long_bounds_are_proved_as_they_are(sentence: str, least: int) -> None:
-    found = check(sentence)
-    states, _, ticks = sizes(found)
+    outcome = check(sentence)
+    states, _, ticks = sizes(outcome)
     assert states > least
     assert ticks > 4 * least, "the columns are compared on traces that reach the bound"
 
@@ -111,8 +111,8 @@ def test_each_requirement_of_one_text_is_proved() -> None:
     sentences = (WITHIN, FOR, "in m mode the sw shall before s satisfy q")
     text = emitted(*sentences)
     for number, sentence in enumerate(sentences, 1):
-        found = verified(rule(sentence, f"R{number}"), text)
-        assert found.result is Result.PROVED, sentence
+        outcome = verified(rule(sentence, f"R{number}"), text)
+        assert outcome.result is Result.PROVED, sentence
 
 
 def test_of_several_requirements_only_the_wrong_one_is_refuted() -> None:
@@ -134,8 +134,8 @@ def test_names_do_not_confuse_it(name: str) -> None:
 
 @pytest.mark.parametrize("id", ["tick", "doubt", "Monitor", "3", "a-b", "since_1", "self", "first"])
 def test_ids_do_not_confuse_it(id: str) -> None:
-    made = rule(WITHIN, id)
-    assert verified(made, target.text(made)).result is Result.PROVED
+    formalized = rule(WITHIN, id)
+    assert verified(formalized, target.text(formalized)).result is Result.PROVED
 
 
 def test_a_proof_says_how_much_was_looked_at() -> None:
@@ -234,7 +234,7 @@ def test_the_trace_of_a_disagreement_names_the_atoms_in_their_order() -> None:
     trace = disagreement(verified(rule(sentence, "R2"), wrong))
     assert trace.names == ("p", "q", "z")
     *_, last = trace.rows
-    assert last[1] is not True, "an overdue demand is told where q does not come"
+    assert last[1] is not True, "an overdue demand shows where q does not come"
 
 
 # What is not checked --------------------------------------------------------------------------
@@ -258,8 +258,8 @@ def test_more_states_than_the_limit_are_not_checked() -> None:
 
 
 def test_a_monitor_of_other_requirements_is_not_checked() -> None:
-    found = verified(rule(WITHIN, "R2"), emitted(WITHIN))
-    assert reason(found) == "the monitor is of other requirements"
+    outcome = verified(rule(WITHIN, "R2"), emitted(WITHIN))
+    assert reason(outcome) == "the monitor is of other requirements"
 
 
 @pytest.mark.parametrize(
