@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from compiler.files.edition import __version__ as __version__
     from compiler.formalization.formalized import Formalized as Formalized
-    from compiler.logic.claims import Evidence as Proof
+    from compiler.logic.claims import Proof as Proof
     from compiler.project.folder import Project as Project
     from fretc.api.audits import Audit as Audit
     from fretc.api.audits import audit_logs as audit_logs

@@ -22,7 +22,7 @@ fretc.logs.signals  fretc.logs.mcap  fretc.logs.messages  fretc.logs.storage  fr
 fretc.audit.measurements  fretc.audit.phases  fretc.audit.evidence  fretc.audit
 fretc.audit.outputs  fretc.audit.bindings
 fretc.verification.engines  fretc.verification.monitor  fretc.verification.interceptor
-fretc.verification.loop  fretc.verification
+fretc.verification.loop  fretc.verification.layers  fretc.verification
 fretc.report.traceability  fretc.attestation  fretc.reproduction
 fretc.report.model  fretc.report.pictures  fretc.report.sections  fretc.report.page
 fretc.report.forms  fretc.report

@@ -17,19 +17,22 @@ from compiler.agents.model import Model, State, narration
 from compiler.agents.psl import Property
 from compiler.agents.psl_printing import property_text
 from compiler.agents.vacuity import bare, demanded
+from compiler.files import records
 from compiler.files.text_files import sha256
 from compiler.formalization.formalized import Formalized
 from compiler.logic import formula as f
 from compiler.logic import spot as automata
 from compiler.logic.claims import (
-    Counterexample,
-    Evidence,
     Layer,
-    NotChecked,
-    Proved,
+    Outcome,
+    Proof,
     Result,
     Trace,
-    Vacuous,
+    not_checked,
+    proof,
+    proved,
+    refuted,
+    vacuous,
 )
 from compiler.logic.kripke import Explored, Lasso, TooManyStatesError, check
 from fretish.diagnostics.diagnostic import Code, Diagnostic
@@ -47,7 +50,7 @@ _PERCEPT = re.compile(r"[a-z][A-Za-z0-9_]*(?:\([A-Za-z0-9_,. -]+\))?", re.ASCII)
 @deep
 def checked(
     agent: Source, properties: Source, percepts: Sequence[str], limit: int = STATES
-) -> tuple[Evidence, ...] | Diagnostic:
+) -> tuple[Proof, ...] | Diagnostic:
     """Evidence for each property of the file, in its order.
 
     Args:
@@ -66,7 +69,7 @@ def checked(
 @deep
 def agent_evidence(
     rule: Formalized, files: Mapping[str, str], percepts: Sequence[str], limit: int = STATES
-) -> tuple[Evidence, ...]:
+) -> tuple[Proof, ...]:
     """Evidence for the texts of a bundle.
 
     Args:
@@ -82,8 +85,8 @@ def agent_evidence(
     if isinstance(evidence, Diagnostic):
         reason = f"{evidence.code.number} {evidence.message}"
         claim = f"the agent of {rule.id} has its properties"
-        return (Evidence(rule.id, Layer.AGENT, claim, NotChecked(reason), "fretc"),)
-    return tuple(replace(line, requirement=rule.id) for line in evidence)
+        return (proof(rule.id, Layer.AGENT, claim, not_checked(reason), "fretc"),)
+    return tuple(records.replace(line, requirement=rule.id) for line in evidence)
 
 
 def _checked(
@@ -92,7 +95,7 @@ def _checked(
     percepts: Sequence[str],
     limit: int,
     mutant: Source | None,
-) -> tuple[Evidence, ...] | Diagnostic:
+) -> tuple[Proof, ...] | Diagnostic:
     props = psl.read(properties)
     if isinstance(props, Diagnostic):
         return props
@@ -107,7 +110,7 @@ def _checked(
     artefacts = {s.name: sha256(s.text) for s in (agent, properties, mutant) if s is not None}
     if not props:
         claim, reason = "the agent has its properties", f"`{properties.name}` has none"
-        return (Evidence("agent", Layer.AGENT, claim, NotChecked(reason), "fretc", (), artefacts),)
+        return (proof("agent", Layer.AGENT, claim, not_checked(reason), "fretc", (), artefacts),)
     for reading in (read, broken):
         if isinstance(reading, Diagnostic) and reading.code is not Code.BEYOND_MODEL:
             return reading
@@ -156,9 +159,9 @@ def _other_agent(prop: Property, agent: Agent) -> Diagnostic | None:
 
 def _unknown(
     props: Sequence[Property], reason: str, artefacts: Mapping[str, str]
-) -> tuple[Evidence, ...]:
+) -> tuple[Proof, ...]:
     return tuple(
-        Evidence(p.key, Layer.AGENT, _claim(p), NotChecked(reason), "fretc", (), artefacts)
+        proof(p.key, Layer.AGENT, _claim(p), not_checked(reason), "fretc", (), artefacts)
         for p in props
     )
 
@@ -228,20 +231,20 @@ class _Lines:
     artefacts: Mapping[str, str]
     limit: int
 
-    def all(self) -> Iterator[Evidence]:
+    def all(self) -> Iterator[Proof]:
         for prop in self.properties:
             if self._main_of(prop) is not None:
                 yield self._line(prop, _control_claim(prop), self._control(prop))
                 continue
-            result = self._main(prop)
-            yield self._line(prop, _claim(prop), result)
-            if isinstance(result, Proved):
+            outcome = self._main(prop)
+            yield self._line(prop, _claim(prop), outcome)
+            if outcome.result is Result.PROVED:
                 yield from self._of_mutant(prop)
 
-    def _line(self, prop: Property, claim: str, result: Result) -> Evidence:
+    def _line(self, prop: Property, claim: str, outcome: Outcome) -> Proof:
         engine = f"explicit states, Spot {automata.version()}"
         assumed = _assumptions(self.explored.model.percepts)
-        return Evidence(prop.key, Layer.AGENT, claim, result, engine, assumed, self.artefacts)
+        return proof(prop.key, Layer.AGENT, claim, outcome, engine, assumed, self.artefacts)
 
     def _main_of(self, prop: Property) -> Property | None:
         """The property that this one is a control of."""
@@ -250,16 +253,16 @@ class _Lines:
             return None
         return next((p for p in self.properties if p.key == main), None)
 
-    def _main(self, prop: Property) -> Result:
+    def _main(self, prop: Property) -> Outcome:
         if any("_" in re.findall(r"\b_\b", atom) for atom in f.atoms(prop.formula)):
-            return NotChecked("`_`, which matches everything, is not in the model")
+            return not_checked("`_`, which matches everything, is not in the model")
         lasso = self.explored.violation(prop.formula)
         if lasso is not None:
             detail = f"a run of {len(lasso.states)} stages breaks it ({self.explored.size} in all)"
-            return Counterexample(detail, self.explored.trace(prop.formula, lasso))
+            return refuted(detail, self.explored.trace(prop.formula, lasso))
         why = self._vacuous(prop)
         size = self.explored.size
-        return Vacuous(why) if why else Proved(f"all runs through {size} keep it")
+        return vacuous(why) if why else proved(f"all runs through {size} keep it")
 
     def _vacuous(self, prop: Property) -> str | None:
         for conditions, rest in bare(prop.formula):
@@ -275,14 +278,14 @@ class _Lines:
                 return f"its control {other.key} holds{because}"
         return None
 
-    def _control(self, prop: Property) -> Result:
+    def _control(self, prop: Property) -> Outcome:
         lasso = self.explored.violation(prop.formula)
         if lasso is None:
             reasons = "; ".join(self.explored.never(prop.formula)) or "every run keeps it"
-            return Vacuous(f"{prop.key} holds: {reasons}")
-        return Proved(f"a run of {len(lasso.states)} stages violates {prop.key}, as it should")
+            return vacuous(f"{prop.key} holds: {reasons}")
+        return proved(f"a run of {len(lasso.states)} stages violates {prop.key}, as it should")
 
-    def _of_mutant(self, prop: Property) -> Iterator[Evidence]:
+    def _of_mutant(self, prop: Property) -> Iterator[Proof]:
         mutant = self.mutant or _without(self.explored.model.agent, demanded(prop.formula))
         claim = f"the check can fail: an agent without the response breaks {prop.key}"
         if mutant is None:
@@ -290,9 +293,9 @@ class _Lines:
         spoilt = _Explored.of(Model(mutant, self.explored.model.percepts), self.limit)
         if spoilt.violation(prop.formula) is None:
             detail = f"that agent keeps {prop.key} too, so that it says nothing of the response"
-            yield self._line(prop, claim, Vacuous(detail))
+            yield self._line(prop, claim, vacuous(detail))
         else:
-            yield self._line(prop, claim, Proved(f"it does, within {spoilt.size}"))
+            yield self._line(prop, claim, proved(f"it does, within {spoilt.size}"))
 
 
 def _control_claim(prop: Property) -> str:

@@ -1,15 +1,15 @@
-"""The results of `fretc verify`: one line of evidence for each claim, from any engine.
+"""The proofs of `fretc verify`: one for each claim, from any engine, as they are written.
 
-A result comes with the claim in words, the assumptions that it holds under, the engine that found
-it, and the SHA-256 of each text that was examined.
+An engine answers a claim with an `Outcome`. The `Proof` adds the claim in words, the assumptions
+that the outcome holds under, the engine, and the SHA-256 of each text that was examined.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from enum import StrEnum
-from typing import Annotated, Any, Final, Literal, assert_never
+from typing import Annotated, Any, Final, Literal
 
 from compiler.files.records import (
     UNSET,
@@ -76,99 +76,110 @@ class Trace(Record, frozen=True):
             raise ValueError("Expected the number of a row as the cycle")
 
 
-@dataclass(frozen=True, slots=True)
-class Proved:
-    """The claim holds, under the assumptions of its line."""
+class Result(StrEnum):
+    """What is known of a claim; the values are the words of files and of the terminal."""
 
-    detail: str
-    """How much was examined."""
-
-
-@dataclass(frozen=True, slots=True)
-class Counterexample:
-    """The claim is wrong, and this run shows it."""
-
-    detail: str
-    trace: Trace | None
-    """None where the engine gives no run."""
-
-
-@dataclass(frozen=True, slots=True)
-class Vacuous:
+    PROVED = "proved"
+    """The claim holds, under the assumptions of its proof."""
+    COUNTEREXAMPLE = "counterexample"
+    """The claim is wrong."""
+    VACUOUS = "vacuous"
     """The claim holds trivially: its condition cannot occur."""
-
-    detail: str
-
-
-@dataclass(frozen=True, slots=True)
-class NotChecked:
-    """There is no result."""
-
-    reason: str
-
-
-Result = Proved | Counterexample | Vacuous | NotChecked
+    NOT_CHECKED = "not checked"
+    """Nothing is known."""
 
 
 @dataclass(frozen=True, slots=True)
-class Evidence:
-    """One claim and its result."""
+class Outcome:
+    """What an engine answers to a claim."""
 
-    requirement: str
-    layer: Layer
-    claim: str
-    """One sentence without a full stop."""
     result: Result
-    engine: str
-    """The engine of the result, with its version where it is not fretc itself."""
-    assumptions: tuple[str, ...] = ()
-    """Each in words that name its number and where it is declared."""
-    artefacts: Mapping[str, str] = field(default_factory=dict)
-    """Name of a file → SHA-256 of the text that was examined."""
+    detail: str
+    """How much was examined; of a vacuous claim, or one that is not checked, why."""
+    trace: Trace | None = None
+    """The run that refutes the claim; None: the engine gives none."""
+
+    def __post_init__(self) -> None:
+        assert self.trace is None or self.result is Result.COUNTEREXAMPLE
 
 
-PROVED: Final = "proved"
-COUNTEREXAMPLE: Final = "counterexample"
-VACUOUS: Final = "vacuous"
-NOT_CHECKED: Final = "not checked"
-Status = Literal["proved", "counterexample", "vacuous", "not checked"]
-"""What a result is called wherever it is written."""
+def proved(detail: str) -> Outcome:
+    """The claim holds; the detail says how much was examined."""
+    return Outcome(Result.PROVED, detail)
 
 
-def status(result: Result) -> Status:
-    """The name of a result."""
-    match result:
-        case Proved():
-            return PROVED
-        case Counterexample():
-            return COUNTEREXAMPLE
-        case Vacuous():
-            return VACUOUS
-        case NotChecked():
-            return NOT_CHECKED
-        case _:
-            assert_never(result)
+def refuted(detail: str, trace: Trace | None = None) -> Outcome:
+    """The claim is wrong, and the run shows it."""
+    return Outcome(Result.COUNTEREXAMPLE, detail, trace)
+
+
+def vacuous(reason: str) -> Outcome:
+    """The claim holds trivially, for this reason."""
+    return Outcome(Result.VACUOUS, reason)
+
+
+def not_checked(reason: str) -> Outcome:
+    """Nothing is known, for this reason."""
+    return Outcome(Result.NOT_CHECKED, reason)
 
 
 class Proof(Record, frozen=True):
-    """One claim, and what is known of it, as it is written."""
+    """One claim and its outcome, with all that the outcome rests on."""
 
     requirement: Annotated[
         Name, about("its id; or interceptor or agent, where the claim is about those")
     ]
     layer: Layer
-    claim: Name
-    result: Status
+    claim: Annotated[Name, about("one sentence without a full stop")]
+    result: Result
     detail: Annotated[str, about("how much was looked at, or why nothing is known")]
     assumptions: Annotated[
         tuple[str, ...], about("what the result holds under, with where it is declared")
     ]
-    engine: str
+    engine: Annotated[str, about("with its version where it is not fretc itself")]
     artefacts: Annotated[
         dict[str, Sha256],
         about("SHA-256 of each text that was looked at, by the name of its file"),
     ]
     trace: Trace | UnsetType = UNSET
+
+    @property
+    def run(self) -> Trace | None:
+        """The run that refutes the claim, if there is one."""
+        return self.trace if isinstance(self.trace, Trace) else None
+
+
+def proof(
+    requirement: str,
+    layer: Layer,
+    claim: str,
+    outcome: Outcome,
+    engine: str,
+    assumptions: Sequence[str] = (),
+    artefacts: Mapping[str, str] | None = None,
+) -> Proof:
+    """The proof of a claim.
+
+    Args:
+        requirement: its id; or `interceptor` or `agent`, where the claim is about those.
+        layer: the object of the claim.
+        claim: one sentence without a full stop.
+        outcome: the answer of the engine.
+        engine: its name, with its version where it is not fretc itself.
+        assumptions: each in words that name its number and where it is declared.
+        artefacts: name of a file → SHA-256 of the text that was examined.
+    """
+    return Proof(
+        requirement=requirement,
+        layer=layer,
+        claim=claim,
+        result=outcome.result,
+        detail=outcome.detail,
+        assumptions=tuple(assumptions),
+        engine=engine,
+        artefacts=dict(artefacts or {}),
+        trace=UNSET if outcome.trace is None else outcome.trace,
+    )
 
 
 class Document(Record, frozen=True):
@@ -177,33 +188,6 @@ class Document(Record, frozen=True):
     schema: Literal["fretc-verification-1"]
     fretc: Annotated[str, about("version of the tool")]
     evidence: tuple[Proof, ...]
-
-
-def document(fretc: str, evidence: Sequence[Evidence]) -> Document:
-    """What is written of the claims.
-
-    Args:
-        fretc: the version of the tool.
-        evidence: in its order.
-    """
-    return Document(SCHEMA, fretc, tuple(map(proof, evidence)))
-
-
-def proof(evidence: Evidence) -> Proof:
-    """What is written of a claim."""
-    result = evidence.result
-    trace = result.trace if isinstance(result, Counterexample) else None
-    return Proof(
-        requirement=evidence.requirement,
-        layer=evidence.layer,
-        claim=evidence.claim,
-        result=status(result),
-        detail=result.reason if isinstance(result, NotChecked) else result.detail,
-        assumptions=tuple(evidence.assumptions),
-        engine=evidence.engine,
-        artefacts=dict(evidence.artefacts),
-        trace=UNSET if trace is None else trace,
-    )
 
 
 def schema() -> dict[str, Any]:

@@ -5,17 +5,16 @@ from __future__ import annotations
 import os
 from collections.abc import Iterable
 
-from compiler.logic.claims import Evidence as Proof
-from compiler.logic.claims import Layer
+from compiler.logic.claims import PROVERS, Layer, Proof
 from compiler.project.folder import Project
 from fretc.api.refusal import Refusal, accepted, bounded
 from fretc.verification.ajpf_results import evidence as ajpf_evidence
 from fretc.verification.engines.sandbox import Limits
-from fretc.verification.verify import Request, evidence, refusals
+from fretc.verification.layers.request import Request
+from fretc.verification.verify import prove, refusals
 from fretish.diagnostics.diagnostic import Code, Diagnostic, has_errors
 
 Path = str | os.PathLike[str]
-_PROVERS = ("dafny", "crosshair")
 
 
 @bounded
@@ -37,7 +36,7 @@ def verify(
         limit: seconds of a processor for each claim.
 
     Returns:
-        A line for each claim, with its result: `Proved`, `Counterexample`, `Vacuous`, `NotChecked`.
+        A proof for each claim: `proved`, `counterexample`, `vacuous` or `not checked`.
 
     Raises:
         Refusal: a requirement has a mistake, or no monitor can express it.
@@ -45,7 +44,7 @@ def verify(
     if has_errors(project.diagnostics):
         raise Refusal(each for each in project.diagnostics if each.is_error)
     asked = _named("layer", layers, tuple(map(str, Layer)))
-    helpers = _named("prover", provers, _PROVERS)
+    helpers = _named("prover", provers, PROVERS)
     if not project.rules or not asked:
         raise Refusal((Diagnostic(Code.NOTHING_TO_DO, "there is nothing to verify"),))
     if limit < 1:
@@ -59,7 +58,7 @@ def verify(
     wrong = refusals(project, request)
     if wrong:
         raise Refusal(wrong)
-    return accepted(evidence(project, request))
+    return accepted(prove(project, request))
 
 
 def _named(what: str, names: Iterable[str], known: tuple[str, ...]) -> tuple[str, ...]:

@@ -257,13 +257,13 @@ def _proved(path: str) -> Signable:
 
 
 def _said_of_proofs(found: Proofs) -> Iterator[str]:
-    from compiler.logic.claims import COUNTEREXAMPLE
+    from compiler.logic.claims import Result
 
     counts = Counter(proof.result for proof in found.proofs)
     told = ", ".join(f"{count} {result}" for result, count in sorted(counts.items()))
     yield f"proofs {found.file}: {told or 'none'}"
     for proof in found.proofs:
-        if proof.result == COUNTEREXAMPLE:
+        if proof.result is Result.COUNTEREXAMPLE:
             yield f"  {proof.requirement}, {proof.layer}: a counterexample to: {proof.claim}"
 
 

@@ -19,14 +19,15 @@ from fretc.terminal.output import (
     say,
     stop,
 )
+from fretc.verification.layers.table import OF_MONITOR, in_words
 from fretish.diagnostics.diagnostic import Code, Diagnostic, has_errors
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
-    from compiler.logic.claims import Evidence
+    from compiler.logic.claims import Proof
     from compiler.project.folder import Project
-    from fretc.verification.verify import Request
+    from fretc.verification.layers.request import Request
     from fretish.diagnostics.source import Source
 
 _LAYERS = tuple(map(str, Layer))
@@ -38,9 +39,19 @@ _HEADINGS = {
 }
 
 
+_HELP = f"""Prove that what is made of requirements keeps them, layer by layer.
+
+{in_words()}
+
+Exit status: 0 all proved, 1 a claim about a requirement is refuted, 2 bad use or input, 3 something
+is vacuous, not checked, or stays stopped.
+"""
+
+
 @click.command(
     cls=Grouped,
     headings=_HEADINGS,
+    help=_HELP,
     short_help="Prove that what is made of requirements keeps them.",
 )
 @click.argument("files", nargs=-1, required=True, metavar="FILE...")
@@ -107,20 +118,13 @@ def verify(
     output: str,
     traces: str | None,
 ) -> None:
-    """Prove that what is made of requirements keeps them, layer by layer.
-
-    monitor: the text of a monitor means what its sentence says. interceptor: its text keeps its
-    contracts. loop: both, and any environment, keep the requirement under the assumptions of the
-    bindings. bounds: so they do whatever the times are. agent: its text has its properties.
-    ajpf: what AJPF itself has said of it.
-
-    Exit status: 0 all proved, 1 a claim about a requirement is refuted, 2 bad use or input,
-    3 something is vacuous, not checked, or stays stopped.
-    """
+    """Prove that what is made of requirements keeps them."""
     from compiler.project.folder import companions
+    from fretc.terminal.progress import at_work
     from fretc.verification.ajpf_results import written
     from fretc.verification.engines.sandbox import Limits
-    from fretc.verification.verify import Request, refusals
+    from fretc.verification.layers.request import Request
+    from fretc.verification.verify import refusals
 
     if (agent is None) != (properties is None):
         stop(_half(agent))
@@ -139,6 +143,7 @@ def verify(
         percepts,
         provers,
         _said_by_ajpf(project, results),
+        at_work,
     )
     wrong = refusals(project, asked)
     if wrong:
@@ -151,7 +156,7 @@ def verify(
     raise SystemExit(_status(found))
 
 
-def _said_by_ajpf(project: Project, results: Sequence[str]) -> Sequence[Evidence]:
+def _said_by_ajpf(project: Project, results: Sequence[str]) -> Sequence[Proof]:
     from fretc.verification.ajpf_results import evidence
 
     lines, said = evidence(project.rules, results)
@@ -196,13 +201,12 @@ def _read(path: str | None) -> Source | None:
     return source
 
 
-def _evidence(project: Project, asked: Request) -> Sequence[Evidence]:
-    from fretc.terminal.progress import at_work
+def _evidence(project: Project, asked: Request) -> Sequence[Proof]:
     from fretc.verification.monitor.verifying import NotAMonitorError
-    from fretc.verification.verify import evidence
+    from fretc.verification.verify import prove
 
     try:
-        found = evidence(project, asked, at_work)
+        found = prove(project, asked)
     except NotAMonitorError as error:
         assert asked.monitor is not None
         stop(
@@ -219,16 +223,16 @@ def _evidence(project: Project, asked: Request) -> Sequence[Evidence]:
 
 
 def _tell(
-    found: Sequence[Evidence], form: str, output: str, traces: str | None, inputs: Iterable[str]
+    found: Sequence[Proof], form: str, output: str, traces: str | None, inputs: Iterable[str]
 ) -> None:
     """Print it, and write the evidence and the runs."""
     from compiler.files.edition import __version__
     from compiler.files.records import plain
     from compiler.files.templating import to_json
-    from compiler.logic.claims import document
+    from compiler.logic.claims import SCHEMA, Document
     from fretc.verification.text_output import lines
 
-    text = f"{to_json(plain(document(__version__, found)))}\n"
+    text = f"{to_json(plain(Document(SCHEMA, __version__, tuple(found))))}\n"
     if output != "-" or form == "json":
         click.echo(text if form == "json" else coloured([*lines(found)]), nl=False)
     files: dict[Path, str | bytes] = {}
@@ -239,29 +243,27 @@ def _tell(
     deliver(files, inputs)
 
 
-def _tables(found: Sequence[Evidence], folder: Path) -> dict[Path, str]:
+def _tables(found: Sequence[Proof], folder: Path) -> dict[Path, str]:
     """Each run that a monitor can step, under the requirement, the layer and a number."""
-    from compiler.logic.claims import Counterexample, Layer
     from fretc.verification.loop.replay import EXTRA
     from fretc.verification.text_output import as_csv
 
     files: dict[Path, str] = {}
     for one in found:
-        if one.layer not in (Layer.MONITOR, Layer.LOOP, Layer.BOUNDS):
+        if one.layer not in OF_MONITOR:
             continue
-        if isinstance(one.result, Counterexample) and one.result.trace is not None:
-            trace = one.result.trace
-            names = trace.names if one.layer is Layer.MONITOR else trace.names[: -len(EXTRA)]
+        if one.run is not None:
+            names = one.run.names if one.layer is Layer.MONITOR else one.run.names[: -len(EXTRA)]
             stem = f"{one.requirement.lower()}_{one.layer}"
             number = sum(path.name.startswith(f"{stem}_") for path in files) + 1
-            files[folder / f"{stem}_{number}.csv"] = as_csv(trace, names)
+            files[folder / f"{stem}_{number}.csv"] = as_csv(one.run, names)
     return files
 
 
-def _status(found: Sequence[Evidence]) -> int:
-    from compiler.logic.claims import Counterexample, Proved
+def _status(found: Sequence[Proof]) -> int:
+    from compiler.logic.claims import Result
     from fretc.verification.loop.layer import RELEASED
 
-    if any(isinstance(one.result, Counterexample) and one.claim != RELEASED for one in found):
+    if any(one.result is Result.COUNTEREXAMPLE and one.claim != RELEASED for one in found):
         return VIOLATION
-    return SHOWN if all(isinstance(one.result, Proved) for one in found) else NOT_SHOWN
+    return SHOWN if all(one.result is Result.PROVED for one in found) else NOT_SHOWN

@@ -10,7 +10,7 @@ from collections.abc import Mapping, Sequence
 from types import MappingProxyType
 
 from compiler.files.edition import __version__
-from compiler.logic.claims import Evidence as AjpfLine
+from compiler.logic.claims import Proof
 from compiler.project.folder import Project
 from fretc.attestation.signatures import NO_SIGNATURES, Book
 from fretc.audit.evidence.declared_units import in_declared_units
@@ -56,7 +56,7 @@ def report(
     lock: Lock | None = None,
     waivers: Mapping[str, Waiver] = MappingProxyType({}),
     proofs: Proofs | None = None,
-    ajpf: Sequence[AjpfLine] = (),
+    ajpf: Sequence[Proof] = (),
     book: Book = NO_SIGNATURES,
 ) -> tuple[Report, tuple[Diagnostic, ...]]:
     """The report, and diagnostics about its evidence, waivers and signatures.

@@ -13,23 +13,16 @@ from dataclasses import replace
 
 from compiler.files.edition import __version__
 from compiler.files.records import plain
-from compiler.logic.claims import (
-    ALL,
-    COUNTEREXAMPLE,
-    METHODS,
-    NOT_CHECKED,
-    Layer,
-    Proof,
-    proof,
-)
+from compiler.logic.claims import ALL, METHODS, PROVERS, Layer, Proof, Result
 from compiler.project.folder import Project
 from compiler.targets.python import monitor
 from fretc.reproduction.outcome import PROOFS, Finding, Rechecked, differs, unknown
 from fretc.verification.ajpf_results import evidence as results_of_ajpf
 from fretc.verification.ajpf_results import written
 from fretc.verification.engines.sandbox import Limits
+from fretc.verification.layers.request import Progress, Request
 from fretc.verification.reader import Proofs
-from fretc.verification.verify import CROSSHAIR, DAFNY, Request, Tell, evidence
+from fretc.verification.verify import prove
 from fretish.diagnostics.diagnostic import Diagnostic
 
 AGENT = "agent"
@@ -37,7 +30,7 @@ AGENT = "agent"
 
 
 def reproved(
-    project: Project, proofs: Proofs, limits: Limits, claimed: Collection[str], tell: Tell
+    project: Project, proofs: Proofs, limits: Limits, claimed: Collection[str], progress: Progress
 ) -> tuple[Rechecked, ...] | Diagnostic:
     """Prove every claim of a file again.
 
@@ -46,10 +39,10 @@ def reproved(
         proofs: the file.
         limits: of each claim.
         claimed: the requirements that are asked for.
-        tell: is called before each claim that takes its time.
+        progress: is called before each claim that takes its time.
     """
     records = [one for one in proofs.proofs if _asked(one, project, claimed)]
-    made = _again(project, records, limits, tell)
+    made = _again(project, records, limits, progress)
     if isinstance(made, Diagnostic):
         return made
     return (
@@ -85,7 +78,7 @@ def _is_of(proof: Proof, method: str) -> bool:
 def _prover(engine: str) -> str:
     """The one of `--with`; empty where it is none."""
     name = engine.casefold().partition(" ")[0]
-    return name if name in (DAFNY, CROSSHAIR) else ""
+    return name if name in PROVERS else ""
 
 
 def _asked(record: Proof, project: Project, claimed: Collection[str]) -> bool:
@@ -98,7 +91,7 @@ def _asked(record: Proof, project: Project, claimed: Collection[str]) -> bool:
 
 
 def _again(
-    project: Project, told: Sequence[Proof], limits: Limits, tell: Tell
+    project: Project, told: Sequence[Proof], limits: Limits, progress: Progress
 ) -> Sequence[Proof] | Diagnostic:
     """What is found now, of the requirements, in the layers and by the provers that are named."""
     named = {record.requirement for record in told}
@@ -112,11 +105,9 @@ def _again(
         limits,
         provers=sorted({_prover(record.engine) for record in told} - {""}),
         ajpf=results_of_ajpf(rules, written())[0] if Layer.AJPF in layers else (),
+        progress=progress,
     )
-    found = evidence(replace(project, rules=tuple(rules)), asked, tell)
-    if isinstance(found, Diagnostic):
-        return found
-    return [proof(one) for one in found]
+    return prove(replace(project, rules=tuple(rules)), asked)
 
 
 def _key(record: Proof) -> tuple[str, ...]:
@@ -142,10 +133,10 @@ def _compared(told: Proof, made: Sequence[Proof]) -> Rechecked:
     if others:
         why = f"it is about `{min(others)}`, which is not made here"
         return unknown(PROOFS, requirement, why, claim=claim)
-    if now.result == NOT_CHECKED:
+    if now.result is Result.NOT_CHECKED:
         return unknown(PROOFS, requirement, now.detail, claim=claim)
     reasons = tuple(_differences(told, now))
-    if told.result == NOT_CHECKED and now.result != COUNTEREXAMPLE:
+    if told.result is Result.NOT_CHECKED and now.result is not Result.COUNTEREXAMPLE:
         why = f"it was not checked, says the file; it is {now.result} now"
         return unknown(PROOFS, requirement, why, claim=claim)
     if reasons:

@@ -1,8 +1,8 @@
-"""What AJPF itself said of bundles, read from the results that their `run.py` has written.
+"""The results of AJPF itself, as the `run.py` of a bundle writes them.
 
 Nothing in a file is trusted: a wrong shape is F616. A result counts only where it is about the
-texts that fretc makes now; what a result concludes is not read but concluded again, from each of
-its checks, against the checks that a bundle has now, and against the logs where they lie beside it.
+present texts of fretc. Its conclusion is not read: it follows from its single checks, which must be
+those of the present bundle and agree with their logs, where these lie beside it.
 """
 
 from __future__ import annotations
@@ -18,17 +18,16 @@ from compiler.files.text_files import content, sha256
 from compiler.files.text_files import read as read_text
 from compiler.formalization.formalized import Formalized
 from compiler.logic.claims import (
-    COUNTEREXAMPLE,
-    Counterexample,
-    Evidence,
     Layer,
-    NotChecked,
+    Outcome,
     Proof,
-    Proved,
     Result,
     Trace,
-    Vacuous,
+    not_checked,
     proof,
+    proved,
+    refuted,
+    vacuous,
 )
 from compiler.targets.ajpf import bundle
 from compiler.targets.ajpf import properties as ajpf
@@ -41,7 +40,7 @@ from fretish.reading.recursion import deep
 PLACES = "build/*_ajpf/result.json"
 """Where `--emit ajpf-bundle -o build/` and `run.py` leave them."""
 _UNHASHED = ("README.md",)
-"""Of a bundle, what no verdict depends on."""
+"""The files of a bundle that no verdict depends on."""
 _ASSUMED = (
     "the environment shows the triggers freely, anew at the start, at every action and whenever "
     "the agent is idle, for ever (Env.java)",
@@ -60,7 +59,7 @@ class Check:
     text: str
     """The property."""
     expected: str
-    told: str
+    verdict: str
     why: str
     seconds: float
     states: int | None
@@ -71,7 +70,7 @@ class Check:
 
     @property
     def question(self) -> tuple[str, str, str, str, str]:
-        """What was asked, and what AJPF was expected to say."""
+        """The property and its place, and the verdict that is expected."""
         return self.role, self.key, self.jpf, self.text, self.expected
 
 
@@ -83,7 +82,7 @@ class AjpfResult:
     requirement: str
     weakened: bool
     own: tuple[str, str] | None
-    """File and SHA-256 of an agent of the user's own, checked in place of that of the bundle."""
+    """File and SHA-256 of the user's own agent, in the place of the one of the bundle."""
     engine: str
     files: Mapping[str, str]
     checks: tuple[Check, ...]
@@ -96,59 +95,52 @@ def written() -> tuple[str, ...]:
 
 def evidence(
     rules: Sequence[Formalized], paths: Sequence[str]
-) -> tuple[tuple[Evidence, ...], tuple[Diagnostic, ...]]:
-    """A line for each result, in the order of the paths, and what there is to say of the files.
+) -> tuple[tuple[Proof, ...], tuple[Diagnostic, ...]]:
+    """A proof for each result, in the order of the paths, and the diagnostics of the files.
 
     Args:
         rules: the requirements as they are now.
         paths: files of `run.py`.
 
     Returns:
-        The evidence; F616 for what cannot be read, F617 for a requirement that is not there.
+        The proofs; F616 for what cannot be read, F617 for a requirement that is not there.
     """
     known = {rule.id: rule for rule in rules}
-    lines: list[Evidence] = []
-    said: list[Diagnostic] = []
+    proofs: list[Proof] = []
+    diagnostics: list[Diagnostic] = []
     for path in paths:
-        found = read(path)
-        if isinstance(found, Diagnostic):
-            said.append(found)
-        elif found.requirement not in known:
-            said.append(_foreign(found))
+        result = read(path)
+        if isinstance(result, Diagnostic):
+            diagnostics.append(result)
+        elif result.requirement not in known:
+            diagnostics.append(_foreign(result))
         else:
-            lines.append(_line(known[found.requirement], found))
-    return tuple(lines), tuple(said)
+            proofs.append(_proof(known[result.requirement], result))
+    return tuple(proofs), tuple(diagnostics)
 
 
-def merged(proofs: Sequence[Proof], lines: Sequence[Evidence]) -> tuple[Proof, ...]:
-    """The proofs of a file, with these lines in place of what it says of AJPF.
+def merged(proofs: Sequence[Proof], present: Sequence[Proof]) -> tuple[Proof, ...]:
+    """The proofs of a file, with the present ones of AJPF in the place of its own.
 
-    What it says of AJPF and no result is there for is kept as not checked, since nothing holds it
-    against what is made now; a counterexample stays one.
+    A proof of AJPF in the file that has no present result becomes one that is not checked: nothing
+    compares it with the present texts. A counterexample stays one.
     """
-    fresh = {line.requirement for line in lines}
+    fresh = {proof.requirement for proof in present}
     old = [
         _unheld(one) if one.layer == Layer.AJPF else one
         for one in proofs
         if one.layer != Layer.AJPF or one.requirement not in fresh
     ]
-    return (*old, *map(proof, lines))
+    return (*old, *present)
 
 
 def _unheld(one: Proof) -> Proof:
-    if one.result == COUNTEREXAMPLE:
+    if one.result is Result.COUNTEREXAMPLE:
         return one
     reason = "the file of AJPF's result is not there, to be held against what is made now"
+    outcome = not_checked(f"it was {one.result}; {reason}")
     return proof(
-        Evidence(
-            one.requirement,
-            Layer.AJPF,
-            one.claim,
-            NotChecked(f"it was {one.result}; {reason}"),
-            one.engine,
-            one.assumptions,
-            one.artefacts,
-        )
+        one.requirement, Layer.AJPF, one.claim, outcome, one.engine, one.assumptions, one.artefacts
     )
 
 
@@ -177,11 +169,11 @@ def _wrong(source: Source, what: str) -> Diagnostic:
     )
 
 
-def _foreign(found: AjpfResult) -> Diagnostic:
+def _foreign(result: AjpfResult) -> Diagnostic:
     return Diagnostic(
         Code.FOREIGN_AJPF_RESULT,
-        f"`{found.file}` is about {found.requirement}, and there is no such requirement",
-        Source(found.file, "").span(),
+        f"`{result.file}` is about {result.requirement}, and there is no such requirement",
+        Source(result.file, "").span(),
         "it counts for nothing: name the requirement's file, or remove the result",
         Severity.WARNING,
     )
@@ -241,85 +233,85 @@ def _trace(at: Shape) -> Trace:
 
 
 @deep
-def _line(rule: Formalized, found: AjpfResult) -> Evidence:
-    options = Options(weaken=True) if found.weakened else DEFAULT
-    main = next((c for c in found.checks if c.role == "requirement"), None)
+def _proof(rule: Formalized, result: AjpfResult) -> Proof:
+    options = Options(weaken=True) if result.weakened else DEFAULT
+    main = next((c for c in result.checks if c.role == "requirement"), None)
     stated = f": {main.text}" if main else ""
     which = "its bundle"
-    if found.own:
-        which = f"{Path(found.own[0]).name} (SHA-256 {found.own[1][:12]})"
+    if result.own:
+        which = f"{Path(result.own[0]).name} (SHA-256 {result.own[1][:12]})"
     folder = bundle.package(rule)
     hashes = {
         f"{folder}/{name}": hashed
-        for name, hashed in found.files.items()
-        if name not in _UNHASHED and not (found.own and name == "SIF.gwen")
+        for name, hashed in result.files.items()
+        if name not in _UNHASHED and not (result.own and name == "SIF.gwen")
     }
-    if found.own:
-        hashes[Path(found.own[0]).name] = found.own[1]
-    reason = _reason(rule, found, options)
-    said = _concluded(found)
+    if result.own:
+        hashes[Path(result.own[0]).name] = result.own[1]
+    reason = _reason(rule, result, options)
+    outcome = _conclusion(result)
     if reason is not None:
-        was = "it was refuted; " if isinstance(said, Counterexample) else ""
-        said = NotChecked(f"{was}{reason}")
+        was = "it was refuted; " if outcome.result is Result.COUNTEREXAMPLE else ""
+        outcome = not_checked(f"{was}{reason}")
     loss = ajpf.weakened(rule, options)
-    if isinstance(said, Proved) and loss is not None:
-        said = NotChecked(f"what AJPF shows is weaker than {rule.id}: {loss}")
+    if outcome.result is Result.PROVED and loss is not None:
+        outcome = not_checked(f"what AJPF shows is weaker than {rule.id}: {loss}")
     claim = f"AJPF: every run of the agent of {which} keeps {rule.id}{stated}"
-    return Evidence(rule.id, Layer.AJPF, claim, said, found.engine, _ASSUMED, hashes)
+    return proof(rule.id, Layer.AJPF, claim, outcome, result.engine, _ASSUMED, hashes)
 
 
-def _reason(rule: Formalized, found: AjpfResult, options: Options) -> str | None:
-    """Why the result says nothing of what is made now; None: it does."""
+def _reason(rule: Formalized, result: AjpfResult, options: Options) -> str | None:
+    """Why the result is not about the present texts; None: it is."""
     refused = bundle.refusal(rule, options)
     if refused is not None:
         return f"no bundle is made of {rule.id} any more: {refused.code.number} {refused.message}"
     artifacts = bundle.emit([rule], options)
-    made = {artifact.path.name: artifact.text for artifact in artifacts}
-    manifest = json.loads(made.pop("manifest.json"))
-    stale = sorted(_stale(found, {name: sha256(text) for name, text in made.items()}))
+    texts = {artifact.path.name: artifact.text for artifact in artifacts}
+    manifest = json.loads(texts.pop("manifest.json"))
+    stale = sorted(_stale(result, {name: sha256(text) for name, text in texts.items()}))
     if stale:
         verb = "is" if len(stale) == 1 else "are"
         return f"{', '.join(stale)} {verb} not made like that any more: run AJPF again"
     asked = {tuple(map(check.get, _QUESTION)) for check in manifest["checks"]}
-    if asked != {check.question for check in found.checks} or len(asked) != len(found.checks):
+    if asked != {check.question for check in result.checks} or len(asked) != len(result.checks):
         return "it does not tell of what a bundle asks: run AJPF again"
-    other = next(filter(None, (_otherwise(found.file, check) for check in found.checks)), None)
-    if other is not None or found.own is None:
+    other = next(filter(None, (_otherwise(result.file, check) for check in result.checks)), None)
+    if other is not None or result.own is None:
         return other
-    return _changed(*found.own)
+    return _changed(*result.own)
 
 
 def _otherwise(file: str, check: Check) -> str | None:
-    """Why a log does not say what the result tells of it; None: it does, or is not there.
+    """Why a check disagrees with its log; None: they agree, or there is no log.
 
-    A refutation stays one: nothing is asked of its log.
+    A refutation stays one, whatever its log says.
     """
-    if check.role == "requirement" and check.told == VIOLATED:
+    if check.role == "requirement" and check.verdict == VIOLATED:
         return None
     try:
-        told = content(Path(file).parent / "logs" / check.log)
+        log = content(Path(file).parent / "logs" / check.log)
     except (OSError, ValueError):
         return None
-    if hashlib.sha256(told).hexdigest() != check.log_sha256:
+    if hashlib.sha256(log).hexdigest() != check.log_sha256:
         return f"logs/{check.log} is not what AJPF printed then: run AJPF again"
-    said, _ = verdict(told.decode(errors="replace"), 0)
-    if check.told not in (said, ERROR):
-        return f"it tells {check.told} of {check.jpf}, and logs/{check.log} does not"
+    of_log, _ = verdict(log.decode(errors="replace"), 0)
+    if check.verdict not in (of_log, ERROR):
+        return f"it tells {check.verdict} of {check.jpf}, and logs/{check.log} does not"
     return None
 
 
 _QUESTION = ("role", "key", "jpf", "property", "expected")
 
 
-def _stale(found: AjpfResult, now: Mapping[str, str]) -> Iterator[str]:
-    for name in {*now, *found.files}:
-        ours = found.own is not None and name == "SIF.gwen"
-        if name not in _UNHASHED and not ours and found.files.get(name) != now.get(name):
+def _stale(result: AjpfResult, now: Mapping[str, str]) -> Iterator[str]:
+    for name in {*now, *result.files}:
+        ours = result.own is not None and name == "SIF.gwen"
+        if name not in _UNHASHED and not ours and result.files.get(name) != now.get(name):
             yield name
 
 
 def _changed(file: str, hashed: str) -> str | None:
-    """Why one's own agent is not the one that was checked; None: it is."""
+    """Why the user's own agent is another one now; None: it is the same."""
     try:
         own = content(file)
     except (OSError, ValueError):
@@ -329,23 +321,23 @@ def _changed(file: str, hashed: str) -> str | None:
     return None
 
 
-def _concluded(found: AjpfResult) -> Result:
-    """What all checks together show; the refuted requirement first, then what is not known."""
-    checks = found.checks
+def _conclusion(result: AjpfResult) -> Outcome:
+    """The outcome of all checks together: a refutation first, then what is not known."""
+    checks = result.checks
     for check in checks:
-        if check.role == "requirement" and check.told == VIOLATED:
+        if check.role == "requirement" and check.verdict == VIOLATED:
             length = f" of {len(check.trace.rows)} states" if check.trace else ""
-            return Counterexample(f"AJPF found a run{length} that breaks it", check.trace)
+            return refuted(f"AJPF found a run{length} that breaks it", check.trace)
     for check in checks:
-        if check.told == ERROR:
-            return NotChecked(f"{check.jpf}: {check.why}")
+        if check.verdict == ERROR:
+            return not_checked(f"{check.jpf}: {check.why}")
     for check in checks:
-        if check.told != check.expected:
+        if check.verdict != check.expected:
             what = "the agent without the response keeps it too" * (check.role == "mutant")
-            return Vacuous(what or f"its control {check.key} holds")
+            return vacuous(what or f"its control {check.key} holds")
     sizes = ", ".join("?" if c.states is None else f"{c.states:,}" for c in checks)
     seconds = sum(check.seconds for check in checks)
-    return Proved(
+    return proved(
         f"AJPF says all that is expected of the property, its controls and the mutant ({sizes} "
         f"states, {seconds:.1f} s)"
     )

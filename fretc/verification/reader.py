@@ -1,4 +1,4 @@
-"""What `fretc verify` has found, as its file says it.
+"""The proofs in a file of `fretc verify`.
 
 Nothing in the file is trusted: what its types (`compiler.logic.claims`) do not have is F503.
 """
@@ -33,7 +33,7 @@ class Proofs:
 
     @property
     def proofs(self) -> tuple[Proof, ...]:
-        """Each claim, and what is known of it."""
+        """One for each claim."""
         return self.document.evidence
 
 
@@ -47,8 +47,8 @@ def read(path: str) -> Proofs | Diagnostic:
     if isinstance(source, Diagnostic):
         return source
     try:
-        found = decoded(parsed(source.text).value, Document)
-        return Proofs(source.name, sha256(source.text), found)
+        document = decoded(parsed(source.text).value, Document)
+        return Proofs(source.name, sha256(source.text), document)
     except json.JSONDecodeError as error:
         return _wrong(source, f"is not JSON: {error.msg[:1].lower()}{error.msg[1:]}")
     except MisshapenError as error:
@@ -62,10 +62,10 @@ def read(path: str) -> Proofs | Diagnostic:
 def known(path: str | None) -> tuple[Proof, ...] | Diagnostic:
     """The proofs of a file; None: of the one at its usual place, where there is one."""
     place = path or written()
-    found = read(place) if place is not None else None
-    if found is None or isinstance(found, Diagnostic):
-        return found or ()
-    return found.proofs
+    file = read(place) if place is not None else None
+    if file is None or isinstance(file, Diagnostic):
+        return file or ()
+    return file.proofs
 
 
 def written() -> str | None:

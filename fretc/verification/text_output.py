@@ -8,15 +8,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from itertools import groupby
 from typing import assert_never
 
-from compiler.logic.claims import (
-    Counterexample,
-    Evidence,
-    NotChecked,
-    Proved,
-    Result,
-    Trace,
-    Vacuous,
-)
+from compiler.logic.claims import Proof, Result, Trace
 from fretish.diagnostics import signs
 from fretish.diagnostics.signs import Sign
 from monitors.kernel.verdicts import Truth
@@ -25,19 +17,19 @@ Line = tuple[str, str | None]
 """A line and its colour."""
 
 
-def lines(evidence: Sequence[Evidence]) -> Iterator[Line]:
-    """All of it, in the order of the evidence."""
-    numbers = _numbers(evidence)
+def lines(proofs: Sequence[Proof]) -> Iterator[Line]:
+    """All of it, in the order of the proofs."""
+    numbers = _numbers(proofs)
     widths = [
-        max(len(one.requirement) for one in evidence),
-        max(len(one.layer) for one in evidence),
+        max(len(proof.requirement) for proof in proofs),
+        max(len(proof.layer) for proof in proofs),
     ]
-    for one in evidence:
-        sign = _sign(one.result)
-        head = f"{sign.glyph} {one.requirement:<{widths[0]}}  {one.layer:<{widths[1]}}"
-        yield f"{head}  {_result(one, numbers)}", sign.colour
-        if isinstance(one.result, Counterexample) and one.result.trace is not None:
-            for row in table(one.result.trace):
+    for proof in proofs:
+        sign = SIGNS[proof.result]
+        head = f"{sign.glyph} {proof.requirement:<{widths[0]}}  {proof.layer:<{widths[1]}}"
+        yield f"{head}  {_outcome(proof, numbers)}", sign.colour
+        if proof.run is not None:
+            for row in table(proof.run):
                 yield f"    {row}", None
     if numbers:
         yield "assumptions", None
@@ -45,42 +37,37 @@ def lines(evidence: Sequence[Evidence]) -> Iterator[Line]:
         yield f"  {number:>2}  {text}", None
 
 
-def _numbers(evidence: Sequence[Evidence]) -> Mapping[str, int]:
+def _numbers(proofs: Sequence[Proof]) -> Mapping[str, int]:
     """Each assumption with its number, in the order in which they come."""
-    texts = dict.fromkeys(text for one in evidence for text in one.assumptions)
+    texts = dict.fromkeys(text for proof in proofs for text in proof.assumptions)
     return {text: number for number, text in enumerate(texts, 1)}
 
 
-def _sign(result: Result) -> Sign:
-    match result:
-        case Proved():
-            return signs.GOOD
-        case Counterexample():
-            return signs.BAD
-        case Vacuous():
-            return signs.EMPTY
-        case NotChecked():
-            return signs.UNKNOWN
-        case _:
-            assert_never(result)
+SIGNS: Mapping[Result, Sign] = {
+    Result.COUNTEREXAMPLE: signs.BAD,
+    Result.NOT_CHECKED: signs.UNKNOWN,
+    Result.VACUOUS: signs.EMPTY,
+    Result.PROVED: signs.GOOD,
+}
+"""The worst first, as for verdicts."""
 
 
-def _result(one: Evidence, numbers: Mapping[str, int]) -> str:
-    """`proved under (1-4): the claim; what was looked at`."""
+def _outcome(proof: Proof, numbers: Mapping[str, int]) -> str:
+    """`proved under (1-4): the claim; the detail`."""
     under = ""
-    if one.assumptions:
-        under = f" under ({_listed([numbers[text] for text in one.assumptions])})"
-    match one.result:
-        case Proved(detail):
-            return f"proved{under}: {one.claim}; {detail}"
-        case Counterexample(detail):
-            return f"counterexample{under}: not true that {one.claim}; {detail}"
-        case Vacuous(detail):
-            return f"vacuous{under}: {one.claim}, but {detail}"
-        case NotChecked(reason):
-            return f"not checked: {one.claim}; {reason}"
+    if proof.assumptions:
+        under = f" under ({_listed([numbers[text] for text in proof.assumptions])})"
+    match proof.result:
+        case Result.PROVED:
+            return f"proved{under}: {proof.claim}; {proof.detail}"
+        case Result.COUNTEREXAMPLE:
+            return f"counterexample{under}: not true that {proof.claim}; {proof.detail}"
+        case Result.VACUOUS:
+            return f"vacuous{under}: {proof.claim}, but {proof.detail}"
+        case Result.NOT_CHECKED:
+            return f"not checked: {proof.claim}; {proof.detail}"
         case _:
-            assert_never(one.result)
+            assert_never(proof.result)
 
 
 def _listed(numbers: Sequence[int]) -> str:
@@ -135,7 +122,7 @@ def as_csv(trace: Trace, propositions: Sequence[str]) -> str:
     """The propositions of the run as the monitor's own command line reads them.
 
     Args:
-        trace: of an endless run the part that is told.
+        trace: of an endless run the rows that it has.
         propositions: those of the monitor, all of them columns of the run.
     """
     places = [trace.names.index(name) for name in propositions]

@@ -21,7 +21,7 @@ from compiler.files.edition import __version__
 from compiler.files.templating import render, to_json
 from compiler.files.text_files import sha256
 from compiler.formalization.formalized import Formalized
-from compiler.logic.claims import Evidence, NotChecked, Proved
+from compiler.logic.claims import Proof, Result
 from compiler.targets.ajpf import properties as ajpf
 from compiler.targets.ajpf.safety_function import Reaction, Sif, sif
 from compiler.targets.target import DEFAULT, Options, Target, stem
@@ -50,12 +50,12 @@ class CheckedAgent:
     """An agent, and the evidence of the model about its texts."""
 
     sif: Sif
-    evidence: tuple[Evidence, ...]
+    evidence: tuple[Proof, ...]
 
     @property
     def is_proved(self) -> bool:
         """Whether every line of the evidence is proved."""
-        return all(isinstance(line.result, Proved) for line in self.evidence)
+        return all(line.result is Result.PROVED for line in self.evidence)
 
 
 def forms(rule: Formalized) -> tuple[Sif, ...] | Diagnostic:
@@ -98,20 +98,18 @@ def checked_agent(
         )
         if agents[-1].is_proved:
             return agents[-1]
-        if any(isinstance(line.result, NotChecked) for line in agents[-1].evidence):
+        if any(line.result is Result.NOT_CHECKED for line in agents[-1].evidence):
             break  # an agent that responds to more has more states
     return agents[0]
 
 
-def _not_kept(rule: Formalized, evidence: Sequence[Evidence]) -> Diagnostic | None:
+def _not_kept(rule: Formalized, evidence: Sequence[Proof]) -> Diagnostic | None:
     for line in evidence:
-        if isinstance(line.result, Proved):
+        if line.result is Result.PROVED:
             continue
-        result = line.result
-        why = result.reason if isinstance(result, NotChecked) else result.detail
         return Diagnostic(
             Code.NOT_KEPT,
-            f"the agent that would be made of {rule.id} is not shown to keep it: {why}",
+            f"the agent that would be made of {rule.id} is not shown to keep it: {line.detail}",
             rule.requirement.wording,
             help="an agent needs time to react: use `eventually`, no scope or stop condition that "
             "may come first, and few triggers",

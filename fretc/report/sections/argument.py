@@ -15,7 +15,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 from types import MappingProxyType
 
-from compiler.logic.claims import COUNTEREXAMPLE, METHODS, Layer
+from compiler.logic.claims import METHODS, Layer, Result
 from fretc.audit.evidence.verdicts import BROKEN
 from fretc.audit.measurements.confidence_intervals import REFUTED, SUPPORTED
 from fretc.report.model import phrases
@@ -247,7 +247,7 @@ def _of_layer(proofs: Sequence[ProofView], layer: str) -> list[ProofView]:
 def _subject(goal: str, text: str, proofs: Sequence[ProofView]) -> Iterator[Element]:
     """The goal of one layer, with its claims that are proved, refuted, and open."""
     proved = [proof for proof in proofs if is_proved(proof)]
-    against = [proof for proof in proofs if proof.mark.word == COUNTEREXAMPLE]
+    against = [proof for proof in proofs if proof.mark.word == Result.COUNTEREXAMPLE]
     left = [proof for proof in proofs if proof not in proved and proof not in against]
     solution, counter = goal.replace("G_", "Sn_", 1), goal.replace("G_", "CSn_", 1)
     assumption, rest = goal.replace("G_", "A_", 1), f"{goal}_rest"

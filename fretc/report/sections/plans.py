@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from compiler.emit import TARGETS
-from compiler.logic import claims as verification
-from compiler.logic.claims import METHODS
+from compiler.logic.claims import METHODS, Result
 from fretc.audit.evidence.verdicts import UNFORMALIZED
 from fretc.report.model import phrases
 from fretc.report.model.assessments import Assessment
@@ -39,7 +38,7 @@ def _planned(assessment: Assessment, method: str, proofs: Sequence[ProofView]) -
 def _by_proofs(assessment: Assessment, method: str, proofs: Sequence[ProofView]) -> Planned:
     """The worst proof decides; one that is vacuous or not checked is no result."""
     decisive = worst(proofs)
-    refuted = decisive.mark.word == verification.COUNTEREXAMPLE
+    refuted = decisive.mark.word == Result.COUNTEREXAMPLE
     has_result = refuted or is_proved(decisive)
     return Planned(assessment.id, assessment.anchor, method, has_result, in_words(proofs), refuted)
 

@@ -5,31 +5,17 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 
-from compiler.logic.claims import (
-    ALL,
-    COUNTEREXAMPLE,
-    NOT_CHECKED,
-    PROVED,
-    PROVERS,
-    VACUOUS,
-    Layer,
-    Proof,
-)
+from compiler.logic.claims import ALL, PROVERS, Proof, Result
 from compiler.project.interceptor_options import ASSUMED
 from fretc.report.model import phrases
 from fretc.report.model.views import Mark, ProofView, RequirementView, sign_mark
 from fretc.report.traceability.artefacts import Product
-from fretish.diagnostics import signs
+from fretc.verification.text_output import SIGNS
 
 _MARKS: Mapping[str, Mark] = {
-    COUNTEREXAMPLE: sign_mark(COUNTEREXAMPLE, signs.BAD),
-    NOT_CHECKED: sign_mark(NOT_CHECKED, signs.UNKNOWN),
-    VACUOUS: sign_mark(VACUOUS, signs.EMPTY),
-    PROVED: sign_mark(PROVED, signs.GOOD),
+    str(result): sign_mark(str(result), sign) for result, sign in SIGNS.items()
 }
 """The worst result first, as for verdicts."""
-_OF_MONITOR = (str(Layer.MONITOR), str(Layer.LOOP), str(Layer.BOUNDS))
-"""Layers whose claims are about the text of a monitor."""
 SHARED = ("interceptor", "agent")
 """The subjects of claims that are about no single requirement."""
 
@@ -67,7 +53,7 @@ def _suspicions(proof: Proof, now: Mapping[str, str]) -> Iterator[str]:
             what = "is not what it was" if name == ASSUMED else "is not made like that any more"
             yield f"{name} {what}"
     monitors = {hash_ for name, hash_ in now.items() if name.endswith("_monitor.py")}
-    if proof.layer in _OF_MONITOR and not monitors & {*proof.artefacts.values()}:
+    if proof.layer in OF_MONITOR and not monitors & {*proof.artefacts.values()}:
         yield "it is about another monitor than the one that is made now"
 
 
@@ -96,8 +82,8 @@ def in_words(proofs: Sequence[ProofView]) -> str:
 
 
 def is_proved(proof: ProofView) -> bool:
-    """Whether it is proved, and current."""
-    return proof.mark.word == PROVED and not proof.mark.suspect
+    """Whether it is proved of what is there now."""
+    return proof.mark.word == Result.PROVED and not proof.mark.suspect
 
 
 def is_refuted(view: RequirementView) -> bool:
@@ -107,4 +93,4 @@ def is_refuted(view: RequirementView) -> bool:
 
 def refutations(view: RequirementView) -> tuple[ProofView, ...]:
     """Its counterexamples, suspect ones too."""
-    return tuple(proof for proof in view.proofs if proof.mark.word == COUNTEREXAMPLE)
+    return tuple(proof for proof in view.proofs if proof.mark.word == Result.COUNTEREXAMPLE)

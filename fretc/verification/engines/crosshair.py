@@ -1,8 +1,8 @@
 """CrossHair, for the core of the interceptor.
 
-It runs in a process of its own, with limits. A proof is believed only where everything that it
-tells says so: a missing line, another exit status, fewer verified parts than the text has, and the
-claim is not checked. That it finds no proof refutes nothing.
+It runs in a process of its own, with limits. A claim is proved only where the whole output says so:
+with a missing line or another exit status the claim is not checked. Where CrossHair finds no proof,
+nothing is refuted.
 """
 
 from __future__ import annotations
@@ -17,22 +17,15 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from compiler.files.text_files import sha256
-from compiler.logic.claims import (
-    Counterexample,
-    Evidence,
-    Layer,
-    NotChecked,
-    Proved,
-    Result,
-)
-from fretc.verification.engines.programs import MEMORY, STARTED, Ran, run
+from compiler.logic.claims import Layer, Outcome, Proof, not_checked, proof, proved, refuted
+from fretc.verification.engines.programs import MEMORY, STARTED, Completion, run
 
 CROSSHAIR_SECONDS = 60.0
 _ABSENT = "CrossHair is not installed: pip install 'fretc[crosshair]'"
 _MODULE = "interceptor_core"
 _WHOLE = "the numbers of a velocity are whole; no function names one of them"
 _APART = (ast.Subscript, ast.For, ast.Starred, ast.comprehension, ast.MatchSequence)
-_TOLD = re.compile(rf"^.*{_MODULE}\.py:(\d+): (info|error|warning): (.*)$")
+_MESSAGE = re.compile(rf"^.*{_MODULE}\.py:(\d+): (info|error|warning): (.*)$")
 _POST = re.compile(r"^\s*post\s*(?:\[[^\]]*\])?\s*:\s*(.*?)\s*$")
 
 
@@ -43,18 +36,18 @@ class _Contract:
     text: str
 
 
-def stated(text: str) -> dict[str, str]:
+def contract_texts(text: str) -> dict[str, str]:
     """The docstrings of functions and classes with a contract in them: CrossHair executes it."""
-    found = {
+    docstrings = {
         node.name: ast.get_docstring(node) or ""
         for node in ast.walk(ast.parse(text))
         if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef)
     }
-    return {name: told for name, told in found.items() if _STATED.search(told)}
+    return {name: own for name, own in docstrings.items() if _START.search(own)}
 
 
-_STATED = re.compile(r"(pre|post|inv|raises)\s*[\[:]")
-"""Wherever a line might begin for CrossHair."""
+_START = re.compile(r"(pre|post|inv|raises)\s*[\[:]")
+"""The beginning of a contract, wherever CrossHair might read one."""
 
 
 def with_crosshair(
@@ -62,8 +55,8 @@ def with_crosshair(
     requirement: str = "interceptor",
     *,
     seconds: float = CROSSHAIR_SECONDS,
-    tell: Callable[[str], None] = lambda function: None,
-) -> tuple[Evidence, ...]:
+    progress: Callable[[str], None] = lambda function: None,
+) -> tuple[Proof, ...]:
     """Let CrossHair look for inputs that break the contracts of an interceptor's core.
 
     Numbers of a velocity are whole ones for CrossHair where no function names any of them: it knows
@@ -73,7 +66,7 @@ def with_crosshair(
         text: the core, with `post:` lines in its docstrings (PEP 316). It is executed.
         requirement: what the lines of evidence are filed under.
         seconds: for each function; its contracts share them.
-        tell: is called with the name of each function before it is looked at.
+        progress: is called with the name of each function before it is looked at.
 
     Returns:
         One line for each contract: proved if CrossHair has confirmed it over all paths, refuted
@@ -85,25 +78,25 @@ def with_crosshair(
         engine = ""
     contracts = _contracts(text)
     whole = _with_whole_velocities(text)
-    found: list[tuple[str, Result]] = []
+    outcomes: list[tuple[str, Outcome]] = []
     for name in dict.fromkeys(contract.function for contract in contracts):
         own = [contract for contract in contracts if contract.function == name]
         if engine:
-            tell(name)
-            found += _explored(whole or text, name, own, seconds)
+            progress(name)
+            outcomes += _answers(whole or text, name, own, seconds)
         else:
-            found += [(_claim(contract), NotChecked(_ABSENT)) for contract in own]
+            outcomes += [(_claim(contract), not_checked(_ABSENT)) for contract in own]
     return tuple(
-        Evidence(
+        proof(
             requirement,
             Layer.INTERCEPTOR,
             claim,
-            result,
+            outcome,
             engine or "CrossHair",
             (_WHOLE,) if whole else (),
             {"interceptor core": sha256(text)},
         )
-        for claim, result in found
+        for claim, outcome in outcomes
     )
 
 
@@ -114,12 +107,12 @@ def _with_whole_velocities(text: str) -> str | None:
     pattern, or in arguments.
     """
     tree = ast.parse(text)
-    found = [n for n in tree.body if isinstance(n, ast.ClassDef) and n.name == "Velocity"]
-    fields = [f for one in found for f in one.body if isinstance(f, ast.AnnAssign)]
+    classes = [n for n in tree.body if isinstance(n, ast.ClassDef) and n.name == "Velocity"]
+    fields = [f for one in classes for f in one.body if isinstance(f, ast.AnnAssign)]
     if not fields or not all(ast.unparse(f.annotation) == "float" for f in fields):
         return None
     names = {ast.unparse(field.target) for field in fields}
-    others = [node for one in tree.body if one not in found for node in ast.walk(one)]
+    others = [node for one in tree.body if one not in classes for node in ast.walk(one)]
     bodies = [s for node in others if isinstance(node, ast.FunctionDef) for s in node.body]
     if any(_takes_apart(node) for body in bodies for node in ast.walk(body)):
         return None
@@ -156,16 +149,16 @@ def _of(node: ast.AST, lines: Sequence[str], prefix: str) -> Iterator[_Contract]
         if isinstance(child, ast.ClassDef):
             yield from _of(child, lines, f"{prefix}{child.name}.")
         elif isinstance(child, ast.FunctionDef) and ast.get_docstring(child) is not None:
-            told = child.body[0]
-            for number in range(told.lineno, (told.end_lineno or told.lineno) + 1):
-                if found := _POST.match(lines[number - 1]):
-                    yield _Contract(f"{prefix}{child.name}", number, found[1])
+            own = child.body[0]
+            for number in range(own.lineno, (own.end_lineno or own.lineno) + 1):
+                if post := _POST.match(lines[number - 1]):
+                    yield _Contract(f"{prefix}{child.name}", number, post[1])
 
 
-def _explored(
+def _answers(
     text: str, function: str, contracts: Sequence[_Contract], seconds: float
-) -> Iterator[tuple[str, Result]]:
-    """The contracts of one function: claims and what is known of them."""
+) -> Iterator[tuple[str, Outcome]]:
+    """The claims of one function, each with its outcome."""
     command = [
         *(sys.executable, "-m", "crosshair", "check", "--report_all"),
         *("--analysis_kind=PEP316", f"--per_condition_timeout={seconds / len(contracts):g}"),
@@ -174,25 +167,31 @@ def _explored(
     with TemporaryDirectory(prefix="fretc-") as name:
         folder = Path(name)
         (folder / f"{_MODULE}.py").write_text(text, encoding="utf-8")
-        ran = run(command, folder, seconds=seconds + STARTED, memory=MEMORY)
-    told: dict[int, tuple[str, str]] = {}
-    for line in ran.text.splitlines():
-        if found := _TOLD.match(line):
-            told[int(found[1])] = (found[2], found[3])
+        end = run(command, folder, seconds=seconds + STARTED, memory=MEMORY)
+    messages: dict[int, tuple[str, str]] = {}
+    for line in end.text.splitlines():
+        if match := _MESSAGE.match(line):
+            messages[int(match[1])] = (match[2], match[3])
     for contract in contracts:
-        yield _claim(contract), _result(told.pop(contract.line, None), ran)
-    for kind, message in told.values():
+        yield _claim(contract), _outcome(messages.pop(contract.line, None), end)
+    for kind, text in messages.values():
         if kind == "error":
-            yield f"`{function}` raises nothing", Counterexample(message, None)
+            yield f"`{function}` raises nothing", refuted(text)
 
 
-def _result(told: tuple[str, str] | None, ran: Ran) -> Result:
-    if told is not None and told[0] == "error":
-        return Counterexample(told[1], None)
-    if ran.status is None:
-        return NotChecked("CrossHair did not finish in time")
-    if ran.status not in (0, 1) or told is None:
-        return NotChecked(f"CrossHair says nothing of it (exit status {ran.status})")
-    if told == ("info", "Confirmed over all paths."):
-        return Proved("confirmed over all paths")
-    return NotChecked(f"CrossHair: {told[1].rstrip('.').lower()}")
+def _outcome(message: tuple[str, str] | None, end: Completion) -> Outcome:
+    """The outcome of a contract.
+
+    Args:
+        message: its kind and its text; None: CrossHair has none about the contract.
+        end: of CrossHair.
+    """
+    if message is not None and message[0] == "error":
+        return refuted(message[1])
+    if end.status is None:
+        return not_checked("CrossHair did not finish in time")
+    if end.status not in (0, 1) or message is None:
+        return not_checked(f"CrossHair says nothing of it (exit status {end.status})")
+    if message == ("info", "Confirmed over all paths."):
+        return proved("confirmed over all paths")
+    return not_checked(f"CrossHair: {message[1].rstrip('.').lower()}")

@@ -1,8 +1,8 @@
 """Dafny, for the files of `--emit dafny`.
 
-It runs in a process of its own, with limits. A proof is believed only where everything that it
-tells says so: a missing line, another exit status, fewer verified parts than the text has, and the
-claim is not checked. That it finds no proof refutes nothing.
+It runs in a process of its own, with limits. A claim is proved only where the whole output says so:
+with a missing line, another exit status, or fewer verified parts than the text has, the claim is
+not checked. Where Dafny finds no proof, nothing is refuted.
 """
 
 from __future__ import annotations
@@ -14,16 +14,11 @@ from tempfile import TemporaryDirectory
 
 from compiler.files.text_files import sha256
 from compiler.formalization.formalized import Formalized
-from compiler.logic.claims import (
-    Evidence,
-    NotChecked,
-    Proved,
-    Result,
-)
+from compiler.logic.claims import Outcome, Proof, not_checked, proof, proved
 from compiler.targets import dafny
 from compiler.targets.dafny_claims import claims
 from compiler.targets.target import stem
-from fretc.verification.engines.programs import MEMORY, STARTED, Ran, run
+from fretc.verification.engines.programs import MEMORY, STARTED, Completion, run
 from fretish.bindings.declarations import Declarations
 
 DAFNY_SECONDS = 300.0
@@ -47,28 +42,28 @@ def with_dafny(
     declarations: Declarations | None,
     *,
     seconds: float = DAFNY_SECONDS,
-) -> tuple[Evidence, ...]:
+) -> tuple[Proof, ...]:
     """Let Dafny verify the file of a rule: one line for each claim of the file.
 
     Dafny gives one verdict for a file. So either all claims are proved, or none is.
 
     Args:
         rule: one that the target does not refuse.
-        text: what `--emit dafny` made of it; of any other text nothing is claimed.
-        declarations: those that it was made with.
-        seconds: so long Dafny may take.
+        text: the file of `--emit dafny`; with any other text nothing is checked.
+        declarations: those of the file.
+        seconds: the limit of Dafny.
     """
     if text == dafny.text(rule, declarations):
-        result, engine = verified(text, seconds=seconds)
+        outcome, engine = answer(text, seconds=seconds)
     else:
-        result, engine = NotChecked(_OTHER), "Dafny"
+        outcome, engine = not_checked(_OTHER), "Dafny"
     artefacts = {f"{stem(rule)}.dfy": sha256(text)}
     return tuple(
-        Evidence(
+        proof(
             rule.id,
             claim.layer,
             claim.sentence,
-            result if claim.unshown is None else NotChecked(claim.unshown),
+            outcome if claim.unshown is None else not_checked(claim.unshown),
             engine,
             claim.assumptions,
             artefacts,
@@ -77,37 +72,37 @@ def with_dafny(
     )
 
 
-def verified(text: str, *, seconds: float = DAFNY_SECONDS) -> tuple[Result, str]:
-    """What Dafny says of a text, and the name and version of Dafny.
+def answer(text: str, *, seconds: float = DAFNY_SECONDS) -> tuple[Outcome, str]:
+    """The outcome of a text, and the name and version of Dafny.
 
-    Proved: it verified at least every lemma, method and constructor, and found no error. Else not
-    checked, with the places at which it found no proof.
+    Proved: Dafny verifies at least every lemma, method and constructor, and reports no error. Else
+    not checked, with the places without a proof.
     """
     program = shutil.which("dafny")
     if program is None:
-        return NotChecked(_ABSENT), "Dafny"
+        return not_checked(_ABSENT), "Dafny"
     with TemporaryDirectory(prefix="fretc-") as name:
         folder = Path(name)
         try:
             known = _version(program, folder)
             if known is None:
-                return NotChecked("`dafny` tells no version: it is not Dafny"), "Dafny"
+                return not_checked("`dafny` tells no version: it is not Dafny"), "Dafny"
             (folder / "text.dfy").write_text(text, encoding="utf-8")
             command = [program, *_options(program, known, folder, seconds), "text.dfy"]
-            ran = run(command, folder, seconds=seconds, memory=MEMORY)
+            end = run(command, folder, seconds=seconds, memory=MEMORY)
         except OSError as error:
-            return NotChecked(f"Dafny cannot be started: {error}"), "Dafny"
-    return _verdict(text, ran, seconds), f"Dafny {known}"
+            return not_checked(f"Dafny cannot be started: {error}"), "Dafny"
+    return _outcome(text, end, seconds), f"Dafny {known}"
 
 
 def _version(program: str, folder: Path) -> str | None:
-    """As 2.x tells it above a complaint, and 4.x alone."""
+    """2.x prints it above a complaint, 4.x alone."""
     for question in ("--version", "/version"):
-        ran = run([program, question], folder, seconds=STARTED, memory=MEMORY)
-        for line in ran.text.splitlines():
-            found = _VERSION.search(line)
-            if found and (line.startswith("Dafny ") or found.start() == 0):
-                return found.group()
+        end = run([program, question], folder, seconds=STARTED, memory=MEMORY)
+        for line in end.text.splitlines():
+            match = _VERSION.search(line)
+            if match and (line.startswith("Dafny ") or match.start() == 0):
+                return match.group()
     return None
 
 
@@ -116,38 +111,38 @@ def _options(program: str, known: str, folder: Path, seconds: float) -> list[str
     limit = max(int(seconds) - 1, 1)
     if int(known.partition(".")[0]) < 4:
         return ["/compile:0", f"/timeLimit:{limit}"]
-    told = run([program, "verify", "--help"], folder, seconds=STARTED, memory=MEMORY).text
-    allowed = [option for option in ("--allow-warnings",) if option in told]
+    known_options = run([program, "verify", "--help"], folder, seconds=STARTED, memory=MEMORY).text
+    allowed = [option for option in ("--allow-warnings",) if option in known_options]
     return ["verify", f"--verification-time-limit={limit}", *allowed]
 
 
-def _verdict(text: str, ran: Ran, seconds: float) -> Result:
-    if ran.status is None:
-        return NotChecked(f"Dafny did not finish within {seconds:g} s")
-    lines = ran.text.splitlines()
+def _outcome(text: str, end: Completion, seconds: float) -> Outcome:
+    if end.status is None:
+        return not_checked(f"Dafny did not finish within {seconds:g} s")
+    lines = end.text.splitlines()
     unproved = [
-        f"`{_member(text, int(found[1]))}` (line {found[1]}): {found[2].strip().rstrip('.')}"
+        f"`{_member(text, int(match[1]))}` (line {match[1]}): {match[2].strip().rstrip('.')}"
         for line in lines
-        if (found := _ERROR.match(line))
+        if (match := _ERROR.match(line))
     ]
     if unproved:
-        return NotChecked(f"Dafny finds no proof of {'; '.join(dict.fromkeys(unproved))}")
-    finished = [found for line in lines if (found := _FINISHED.match(line.strip()))]
+        return not_checked(f"Dafny finds no proof of {'; '.join(dict.fromkeys(unproved))}")
+    finished = [match for line in lines if (match := _FINISHED.match(line.strip()))]
     if len(finished) != 1:
-        return NotChecked(f"Dafny ended with exit status {ran.status} and no verdict")
+        return not_checked(f"Dafny ended with exit status {end.status} and no verdict")
     count, errors = map(int, finished[0].groups())
-    if ran.status != 0 or errors:
-        return NotChecked(f"Dafny tells of {errors} errors, and its exit status is {ran.status}")
+    if end.status != 0 or errors:
+        return not_checked(f"Dafny tells of {errors} errors, and its exit status is {end.status}")
     least = len(_OBLIGATION.findall(text))
     if count < least:
-        return NotChecked(f"Dafny verified {count} parts, and the file has at least {least}")
-    return Proved(f"{count} parts verified, among them all {least} lemmas and methods")
+        return not_checked(f"Dafny verified {count} parts, and the file has at least {least}")
+    return proved(f"{count} parts verified, among them all {least} lemmas and methods")
 
 
 def _member(text: str, line: int) -> str:
     """What is declared at a line of the text or above it."""
     for above in reversed(text.splitlines()[:line]):
-        found = _MEMBER.match(above)
-        if found:
-            return found[1] or found[2]
+        match = _MEMBER.match(above)
+        if match:
+            return match[1] or match[2]
     return "the file"

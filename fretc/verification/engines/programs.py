@@ -1,4 +1,4 @@
-"""A program of somebody else, run with limits of time and memory, and never left behind."""
+"""A program of others, run with limits of time and memory; it does not outlive the call."""
 
 from __future__ import annotations
 
@@ -21,12 +21,12 @@ never writes does not count."""
 MEMORY = 4 * 2**30
 """Bytes for each process of a prover."""
 STARTED = 30.0
-"""Seconds in which a prover tells its version, or has read its text."""
+"""Seconds in which a prover prints its version, or reads its text."""
 
 
 @dataclass(frozen=True, slots=True)
-class Ran:
-    """What came of a program."""
+class Completion:
+    """The end of a program, and its output."""
 
     status: int | None
     """Its exit status, negative for a signal; None: it was stopped, for it took too long."""
@@ -34,7 +34,7 @@ class Ran:
     """Everything that it wrote, on both streams."""
 
 
-def run(command: Sequence[str], folder: Path, *, seconds: float, memory: int) -> Ran:
+def run(command: Sequence[str], folder: Path, *, seconds: float, memory: int) -> Completion:
     """Run a program to its end, or to the limit; its process group does not outlive the call.
 
     Args:
@@ -47,8 +47,8 @@ def run(command: Sequence[str], folder: Path, *, seconds: float, memory: int) ->
         OSError: the program cannot be started.
     """
     shield()
-    told = folder / "output.txt"
-    with told.open("wb") as output:
+    file = folder / "output.txt"
+    with file.open("wb") as output:
         process = subprocess.Popen(
             ["/bin/sh", "-c", _LIMITED, str(memory // 1024), *command],
             cwd=folder,
@@ -65,4 +65,4 @@ def run(command: Sequence[str], folder: Path, *, seconds: float, memory: int) ->
             with suppress(ProcessLookupError):
                 os.killpg(process.pid, signal.SIGKILL)
             process.wait()
-    return Ran(status, told.read_text(encoding="utf-8", errors="replace"))
+    return Completion(status, file.read_text(encoding="utf-8", errors="replace"))

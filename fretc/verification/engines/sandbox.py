@@ -49,7 +49,7 @@ DEFAULT = Limits()
 
 @dataclass(frozen=True, slots=True)
 class Stopped:
-    """The call gave no result; it says why, in words."""
+    """The call has no result, for this reason."""
 
     reason: str
 
@@ -80,8 +80,8 @@ def confined(
         with _without_main():
             process.start()
         theirs.close()
-        told: R | Stopped = _answer(ours, process, limits)
-        return told
+        answer: R | Stopped = _answer(ours, process, limits)
+        return answer
     finally:
         if process.pid is not None:
             process.kill()
@@ -137,13 +137,13 @@ def _serve(
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
     resource.setrlimit(resource.RLIMIT_CPU, (limits.seconds, limits.seconds + 5))
     resource.setrlimit(resource.RLIMIT_AS, (limits.memory, limits.memory))
-    told: tuple[str, Any]
+    answer: tuple[str, Any]
     try:
-        told = "result", function(*args, **kwargs)
+        answer = "result", function(*args, **kwargs)
     except MemoryError:
-        told = "memory", None
+        answer = "memory", None
     except Exception as error:
         error.add_note(traceback.format_exc())
-        told = "raised", error
+        answer = "raised", error
     with suppress(OSError):
-        connection.send(told)
+        connection.send(answer)

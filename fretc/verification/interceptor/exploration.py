@@ -1,4 +1,4 @@
-"""Walk through all that the core of an interceptor can do, beside what was heard.
+"""Explore all that the core of an interceptor can do, beside the history of its messages.
 
 Every state that it can come to, with every kind of message, breadth first. Commands are opaque
 (`fretc.verification.interceptor.opaque`); states that differ only in which commands they hold are
@@ -18,8 +18,8 @@ from fretc.verification.interceptor.incoming import (
     RING,
     SCAN,
     STOP,
+    History,
     Moment,
-    Seen,
     after,
     first,
 )
@@ -30,30 +30,40 @@ from monitors.interceptor import Options
 Key = tuple[object, ...]
 
 
+class Step(NamedTuple):
+    """A step of the core from a state."""
+
+    origin: Key
+    """The state before it."""
+    event: str
+    output: str
+    history: History
+    """After it."""
+
+
 @dataclass(slots=True)
 class Search:
-    """The states that were found, and on which way."""
+    """The states, with the way to each."""
 
-    came: dict[Key, tuple[Key, str, str, Seen] | None]
-    """From where, by what, what was said, and what is heard by then; None: the first."""
-    broken: dict[int, tuple[Key, str, str, Seen] | None]
+    origins: dict[Key, Step | None]
+    """State → the step to it; None: it is the first state."""
+    breaches: dict[int, Step | None]
     """Contract → the step that breaks it; None: the first state does."""
     steps: int = 0
 
-    def run(self, contract: int) -> list[tuple[str, str, Seen]] | None:
-        """The steps that lead to the first breach and the one that is it; None: there is none."""
-        if contract not in self.broken:
+    def run(self, contract: int) -> list[Step] | None:
+        """The steps to the first breach, the last of them breaks the contract; None: no breach."""
+        if contract not in self.breaches:
             return None
-        run: list[tuple[str, str, Seen]] = []
-        step = self.broken[contract]
+        run: list[Step] = []
+        step = self.breaches[contract]
         while step is not None:
-            key, heard, said, seen = step
-            run.append((heard, said, seen))
-            step = self.came[key]
+            run.append(step)
+            step = self.origins[step.origin]
         return run[::-1]
 
 
-def explored(
+def explore(
     text: str, options: Options, broken: Sequence[Callable[[Moment], bool]], most: int
 ) -> Search | str:
     """Walk until every state is known; or why that cannot be.
@@ -71,16 +81,16 @@ def explored(
 
 
 class _Place(NamedTuple):
-    """A state of the core beside what was heard."""
+    """A state of the core beside a history."""
 
     key: Key
     values: dict[str, Any]
     """Of the state's fields."""
-    seen: Seen
+    history: History
 
 
 class _Walk:
-    """The breadth-first walk through the product of the core and what was heard."""
+    """The breadth-first walk through the product of the core and the history."""
 
     def __init__(
         self, text: str, options: Options, broken: Sequence[Callable[[Moment], bool]], most: int
@@ -93,38 +103,38 @@ class _Walk:
         self.tokens = tuple(Opaque() for _ in range(2 * len(self.core.fields) + 4))
 
     def search(self) -> Search:
-        """Until no new state is found."""
-        seen = first(self.declared)
+        """Walk until no state is new."""
+        history = first(self.declared)
         state = self.core.initial()
-        place = self._normal(state, seen)
-        found = Search({place.key: None}, {})
-        for i in self._wrong(Moment(seen, "", seen, "nothing", state)):
-            found.broken[i] = None
+        place = self._normal(state, history)
+        search = Search({place.key: None}, {})
+        for i in self._breaches(Moment(history, "", history, "nothing", state)):
+            search.breaches[i] = None
         queue = deque([place])
         while queue:
-            if len(found.came) > self.most:
+            if len(search.origins) > self.most:
                 raise NotAnInterceptorError(
                     f"it has more than {self.most} states: make the period in [interceptor] longer"
                 )
-            queue.extend(self._from(queue.popleft(), found))
-        return found
+            queue.extend(self._successors(queue.popleft(), search))
+        return search
 
-    def _from(self, place: _Place, found: Search) -> Iterator[_Place]:
-        """The new ones that one message leads to."""
+    def _successors(self, place: _Place, search: Search) -> Iterator[_Place]:
+        """The new places that one message leads to."""
         state = self.core.module.State(**place.values)
-        kept = {id(place.seen.last), *map(id, place.values.values())}
+        kept = {id(place.history.last), *map(id, place.values.values())}
         command = next(token for token in self.tokens if id(token) not in kept)
-        for heard, message in self._messages(command):
-            found.steps += 1
-            then, said = self.core.step(state, message)
-            now = after(place.seen, heard, command, self.declared)
-            told = self._told(said, now)
-            step = (place.key, heard, told, now)
-            for i in self._wrong(Moment(place.seen, heard, now, told, then)):
-                found.broken.setdefault(i, step)
+        for event, message in self._messages(command):
+            search.steps += 1
+            then, velocity = self.core.step(state, message)
+            now = after(place.history, event, command, self.declared)
+            output = self._output(velocity, now)
+            step = Step(place.key, event, output, now)
+            for i in self._breaches(Moment(place.history, event, now, output, then)):
+                search.breaches.setdefault(i, step)
             target = self._normal(then, now)
-            if target.key not in found.came:
-                found.came[target.key] = step
+            if target.key not in search.origins:
+                search.origins[target.key] = step
                 yield target
 
     def _messages(self, command: object) -> Iterator[tuple[str, Any]]:
@@ -135,7 +145,8 @@ class _Walk:
         yield SCAN, called(module.ScanHeard)
         yield RING, called(module.TimerRang)
 
-    def _wrong(self, moment: Moment) -> Iterator[int]:
+    def _breaches(self, moment: Moment) -> Iterator[int]:
+        """The contracts that a step breaks, by number."""
         for i, broken in enumerate(self.broken):
             try:
                 if broken(moment):
@@ -147,14 +158,15 @@ class _Walk:
             except (AttributeError, TypeError) as error:
                 raise NotAnInterceptorError(f"its state is another one: {error}") from None
 
-    def _told(self, said: Any, now: Seen) -> str:
-        if said is None:
+    def _output(self, velocity: Any, now: History) -> str:
+        """`Moment.output`, of a velocity that the core publishes."""
+        if velocity is None:
             return "nothing"
-        if is_opaque(said):
-            return "last" if said is now.last else "other"
-        return "zero" if self.core.is_zero(said) else "other"
+        if is_opaque(velocity):
+            return "last" if velocity is now.last else "other"
+        return "zero" if self.core.is_zero(velocity) else "other"
 
-    def _normal(self, state: Any, seen: Seen) -> _Place:
+    def _normal(self, state: Any, history: History) -> _Place:
         """One of all states that differ only in which commands they hold."""
         numbers: dict[int, int] = {}
         key: list[object] = []
@@ -176,7 +188,7 @@ class _Walk:
                     f"`{name}` of its state is neither a number nor a command"
                 )
         last = None
-        if seen.last is not None:
-            last = numbers.setdefault(id(seen.last), len(numbers))
-            seen = seen._replace(last=self.tokens[last])
-        return _Place((*key, *seen[:-1], last), values, seen)
+        if history.last is not None:
+            last = numbers.setdefault(id(history.last), len(numbers))
+            history = history._replace(last=self.tokens[last])
+        return _Place((*key, *history[:-1], last), values, history)

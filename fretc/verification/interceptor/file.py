@@ -153,13 +153,13 @@ def _check_whole(text: str, core: ast.Module, node: str) -> None:
 @cache
 def _nodes() -> tuple[str, ...]:
     """Those that fretc writes for each ROS and form, with and without a scan."""
-    made = (
+    interceptions = (
         Interception("/a", "/b", "/c", scan, 10**8, form=form, ros=ros)
         for scan in (None, "/d")
         for form in Form
         for ros in (1, 2)
     )
-    texts = (interceptor.text(one, "bindings.toml") for one in made)
+    texts = (interceptor.text(one, "bindings.toml") for one in interceptions)
     return tuple(each.partition(f"{MARKER}\n")[2] for each in texts)
 
 

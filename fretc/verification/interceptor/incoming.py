@@ -1,6 +1,6 @@
-"""The messages that came in to an interceptor, and what they demand.
+"""The history of the messages to an interceptor, and what it demands.
 
-Nothing here knows how a core keeps them.
+Nothing here knows how a core keeps its own.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ STOP, RELEASE, COMMAND, SCAN, RING = (
     "a scan comes",
     "the timer rings",
 )
-"""What can come in, as the actions of a trace begin."""
+"""The events, as the actions of a trace begin."""
 
 
 CHANNELS = (
@@ -26,16 +26,16 @@ CHANNELS = (
 )
 
 
-class Seen(NamedTuple):
-    """What has come in up to now; durations in ticks."""
+class History(NamedTuple):
+    """The facts about all events up to now; durations in ticks."""
 
     requested: bool
     """By the last message of the safety function."""
     ever: bool
     owed: int
-    """Ticks for which zero must still be said after the last request."""
+    """Ticks for which zero must still be published after the last request."""
     stop: int
-    """Ticks since the safety function was heard, no more than the timeout; the others likewise."""
+    """Ticks since the last message of the safety function, at most the timeout; likewise below."""
     scan: int
     command: int
     last: Any
@@ -43,20 +43,21 @@ class Seen(NamedTuple):
 
 
 class Moment(NamedTuple):
-    """One step, as contracts look at it."""
+    """One step, as contracts judge it."""
 
-    before: Seen
-    heard: str
-    after: Seen
-    said: str
+    before: History
+    event: str
+    """Empty before the first step."""
+    after: History
+    output: str
     """`nothing`, `zero`, `last` (the last command, which may just have come) or `other`."""
     state: Any
     """The core's, after the step."""
 
 
-def first(options: Options) -> Seen:
-    """Nothing was heard: what is watched is silent."""
-    return Seen(
+def first(options: Options) -> History:
+    """Before the first event: each channel with a timeout is silent."""
+    return History(
         requested=False,
         ever=False,
         owed=0,
@@ -67,34 +68,34 @@ def first(options: Options) -> Seen:
     )
 
 
-def after(seen: Seen, heard: str, command: object, options: Options) -> Seen:
-    """The same once one more is heard; `command` is what comes with `COMMAND`."""
-    match heard:
+def after(history: History, event: str, command: object, options: Options) -> History:
+    """The history after one more event; `command` is the one that comes with `COMMAND`."""
+    match event:
         case "a stop is requested":
-            return seen._replace(requested=True, ever=True, owed=options.hold, stop=0)
+            return history._replace(requested=True, ever=True, owed=options.hold, stop=0)
         case "no stop is requested":
-            return seen._replace(requested=False, stop=0)
+            return history._replace(requested=False, stop=0)
         case "a command comes":
-            return seen._replace(command=0, last=command)
+            return history._replace(command=0, last=command)
         case "a scan comes":
-            return seen._replace(scan=0)
+            return history._replace(scan=0)
     if options.event_driven:
-        return seen
-    return seen._replace(
-        owed=max(seen.owed - 1, 0),
-        stop=min(seen.stop + 1, options.stop_timeout),
-        scan=min(seen.scan + 1, options.scan_timeout),
-        command=min(seen.command + 1, options.command_timeout),
+        return history
+    return history._replace(
+        owed=max(history.owed - 1, 0),
+        stop=min(history.stop + 1, options.stop_timeout),
+        scan=min(history.scan + 1, options.scan_timeout),
+        command=min(history.command + 1, options.command_timeout),
     )
 
 
-def stands(seen: Seen, options: Options) -> bool:
-    """Whether there is a reason for zero: of a stop, of one before, of silence."""
+def stands(history: History, options: Options) -> bool:
+    """Whether there is a reason for zero: a stop, an earlier stop, or silence."""
     return (
-        seen.requested
-        or seen.owed > 0
-        or (options.latching and seen.ever)
-        or seen.stop >= options.stop_timeout > 0
-        or seen.scan >= options.scan_timeout > 0
-        or seen.command >= options.command_timeout > 0
+        history.requested
+        or history.owed > 0
+        or (options.latching and history.ever)
+        or history.stop >= options.stop_timeout > 0
+        or history.scan >= options.scan_timeout > 0
+        or history.command >= options.command_timeout > 0
     )

@@ -18,11 +18,11 @@ from monitors.interceptor import Options
 
 
 class NotAnInterceptorError(Exception):
-    """The text cannot be explored as an interceptor; it says why."""
+    """The text cannot be explored as an interceptor; the message says why."""
 
 
-class Heard(Enum):
-    """What an interceptor can hear, as a model tells it apart."""
+class Event(Enum):
+    """The messages to an interceptor, and its timer, as far as a model distinguishes them."""
 
     STOP = "`true` is heard"
     RELEASE = "`false` is heard"
@@ -35,16 +35,16 @@ class Heard(Enum):
 State = tuple[int | bool, ...]
 """The fields of an interceptor's state; of the command whether it moves."""
 
-Said = bool | None
-"""Whether what is published moves the wheels; None: nothing is published."""
+Output = bool | None
+"""Whether the published velocity moves the wheels; None: nothing is published."""
 
 
-_KEPT, _NEW = Opaque(), Opaque()
-"""Velocities that move: the one that a state holds, and the next one that is heard."""
+_LAST, _NEXT = Opaque(), Opaque()
+"""Velocities that move: the one in a state, and the one of the next command."""
 
 
 class Core:
-    """The core of an interceptor's text, executed; what it does wrong is NotAnInterceptorError."""
+    """The core of an interceptor's text, executed; a mistake of it is NotAnInterceptorError."""
 
     def __init__(self, text: str, options: Options) -> None:
         """Execute the definitions of a text that is known to be pure.
@@ -53,10 +53,10 @@ class Core:
             text: with the step.
             options: its own, in ticks of its timer.
         """
-        read = core(text)
-        if isinstance(read, str):
-            raise NotAnInterceptorError(read)
-        self.module = module = read.module
+        executed = core(text)
+        if isinstance(executed, str):
+            raise NotAnInterceptorError(executed)
+        self.module = module = executed.module
         self.fields = tuple(getattr(module.State, "__dataclass_fields__", ()))
         named = {field.name: getattr(options, field.name) for field in fields(options)}
         try:
@@ -70,10 +70,10 @@ class Core:
 
     def step(self, state: Any, message: Any) -> tuple[Any, Any]:
         """The state after a message, and what is published; None: nothing."""
-        given = self.called(self.module.step, state, message, self.options)
-        if type(given) is not tuple or len(given) != 2:
+        pair = self.called(self.module.step, state, message, self.options)
+        if type(pair) is not tuple or len(pair) != 2:
             raise NotAnInterceptorError("a step gives no state and command")
-        return self.is_state(given[0]), given[1]
+        return self.is_state(pair[0]), pair[1]
 
     def is_state(self, state: Any) -> Any:
         """The same, once it is known to be a `State` of the text."""
@@ -115,32 +115,31 @@ class Gate:
         self._options = self._core.options
         if "command" not in self._core.fields:
             raise NotAnInterceptorError("its `State` has no `command`")
-        self._events = {
-            Heard.STOP: self._core.called(module.StopHeard, True),
-            Heard.RELEASE: self._core.called(module.StopHeard, False),
-            Heard.MOVE: self._core.called(module.CommandHeard, _NEW),
-            Heard.STAND: self._core.called(module.CommandHeard, module.ZERO),
-            Heard.SCAN: self._core.called(module.ScanHeard),
-            Heard.RING: self._core.called(module.TimerRang),
+        self._messages = {
+            Event.STOP: self._core.called(module.StopHeard, True),
+            Event.RELEASE: self._core.called(module.StopHeard, False),
+            Event.MOVE: self._core.called(module.CommandHeard, _NEXT),
+            Event.STAND: self._core.called(module.CommandHeard, module.ZERO),
+            Event.SCAN: self._core.called(module.ScanHeard),
+            Event.RING: self._core.called(module.TimerRang),
         }
-        self._known: dict[tuple[State, Heard], tuple[State, Said]] = {}
+        self._steps: dict[tuple[State, Event], tuple[State, Output]] = {}
         self._objects: dict[State, Any] = {}
         self.initial = self._encoded(self._core.initial())
 
-    def hear(self, state: State, heard: Heard) -> tuple[State, Said]:
-        """The state after it, and what is published."""
-        found = self._known.get((state, heard))
-        if found is None:
-            event = self._events[heard]
-            after, said = self._core.step(self._objects[state], event)
-            found = self._known[state, heard] = self._encoded(after), self._said(said)
-        return found
+    def step(self, state: State, event: Event) -> tuple[State, Output]:
+        """The state after an event, and the output."""
+        pair = self._steps.get((state, event))
+        if pair is None:
+            after, velocity = self._core.step(self._objects[state], self._messages[event])
+            pair = self._steps[state, event] = self._encoded(after), self._output(velocity)
+        return pair
 
     def stopping(self, state: State) -> bool:
-        """Whether it hands no command on, although sensor and planner have just been heard."""
-        scanned, _ = self.hear(state, Heard.SCAN)
-        _, said = self.hear(scanned, Heard.MOVE)
-        return not said
+        """Whether it hands on no command, not even one that comes right after a scan."""
+        scanned, _ = self.step(state, Event.SCAN)
+        _, output = self.step(scanned, Event.MOVE)
+        return not output
 
     def halts(self, state: Any) -> bool:
         """`halted`, of a state as the text has it."""
@@ -150,27 +149,27 @@ class Gate:
         """The state at first as the text has it, for a replay."""
         return self._module.initial(self._options)
 
-    def replayed(self, state: Any, heard: Heard) -> tuple[Any, Said]:
+    def replayed(self, state: Any, event: Event) -> tuple[Any, Output]:
         """One step of the text itself, nothing encoded and nothing remembered."""
-        after, said = self._module.step(state, self._events[heard], self._options)
-        return after, self._said(said)
+        after, velocity = self._module.step(state, self._messages[event], self._options)
+        return after, self._output(velocity)
 
     def _encoded(self, state: Any) -> State:
         values = {name: getattr(state, name) for name in self._core.fields}
-        moves = self._said(values["command"])
+        moves = self._output(values["command"])
         if moves is None or not all(
             type(value) in (bool, int) for name, value in values.items() if name != "command"
         ):
             raise NotAnInterceptorError("its State holds something else than it declares")
         encoded = tuple({**values, "command": moves}.values())
         if encoded not in self._objects:
-            kept = _KEPT if moves else self._module.ZERO
-            self._objects[encoded] = self._module.State(**{**values, "command": kept})
+            command = _LAST if moves else self._module.ZERO
+            self._objects[encoded] = self._module.State(**{**values, "command": command})
         if len(self._objects) > self._most:
             raise NotAnInterceptorError(f"its State takes more than {self._most} values")
         return encoded
 
-    def _said(self, velocity: Any) -> Said:
+    def _output(self, velocity: Any) -> Output:
         if velocity is None:
             return None
         if is_opaque(velocity):

@@ -1,6 +1,6 @@
-"""A command that nothing can be done with but to keep it, hand it on or drop it.
+"""A command that a core can keep, hand on or drop, and nothing else.
 
-What is shown with one in the place of a velocity holds for every velocity.
+A proof with such a command in the place of a velocity holds for every velocity.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ def _inspected(*_: object, **__: object) -> NoReturn:
 
 
 class Opaque:
-    """Two of them are told apart by `is` alone, which no pure core uses."""
+    """Only `is` distinguishes two of them, and no pure core uses it."""
 
     __slots__ = ()
 
@@ -33,12 +33,12 @@ for _name in (
 
 
 def is_opaque(value: Any) -> bool:
-    """Whether it is one; asks nothing of it."""
+    """Whether it is one; it is not inspected."""
     return type(value) is Opaque
 
 
 def is_zero(value: Any, velocity: type[tuple[Any, ...]]) -> bool:
-    """Whether it is a velocity of that class with nothing but zeros; asks no opaque one.
+    """Whether it is a velocity of that class with nothing but zeros; no opaque one is inspected.
 
     Zeros are floats: ROS 2 takes no other numbers, and whole ones add up differently beyond 2^53.
     """

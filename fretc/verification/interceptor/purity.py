@@ -3,7 +3,7 @@
 What the tree may consist of is listed here, and all else is refused, before anything is executed.
 There is no loop and no recursion, so every step ends; no attribute is written, no name bound twice,
 nothing called but the core's own functions and constructors, `min`, `max` and `replace`, and no
-function is a value. No object is told from another that is equal to it, and no constant is read but
+function is a value. No statement distinguishes equal objects, and no constant is read but
 `ZERO`, so that a state is the values of its fields. Annotations are types and nothing else: other
 programs evaluate them.
 """
@@ -67,8 +67,8 @@ def _line(node: ast.AST) -> str:
 @cache
 def _velocity() -> str:
     """The class of that name as fretc writes it: six numbers, all of them 0.0 by default."""
-    (found,) = (n for n in ast.parse(original().text).body if _is_class(n, "Velocity"))
-    return ast.dump(_bare(found))
+    (velocity,) = (n for n in ast.parse(original().text).body if _is_class(n, "Velocity"))
+    return ast.dump(_bare(velocity))
 
 
 def _is_class(node: ast.AST, name: str) -> bool:
@@ -205,17 +205,17 @@ class _Module:
         """No function comes to call itself."""
         ends: set[str] = set()
         rest = set(self.functions)
-        while found := {name for name in rest if self.functions[name] <= ends}:
-            ends |= found
-            rest -= found
+        while free := {name for name in rest if self.functions[name] <= ends}:
+            ends |= free
+            rest -= free
         if rest:
             raise StrangeError(f"`{self._in_a_circle(min(rest), rest)}` calls itself")
 
     def _in_a_circle(self, name: str, rest: set[str]) -> str:
         """One that calls itself; each of `rest` calls another one of them."""
-        seen: set[str] = set()
-        while name not in seen:
-            seen.add(name)
+        visited: set[str] = set()
+        while name not in visited:
+            visited.add(name)
             name = min(self.functions[name] & rest)
         return name
 

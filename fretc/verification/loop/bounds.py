@@ -19,14 +19,7 @@ from typing import Any
 from compiler.formalization.formalize import formalize
 from compiler.formalization.formalized import Formalized
 from compiler.formalization.letters import atoms_of, meanings
-from compiler.logic.claims import (
-    Counterexample,
-    Evidence,
-    Layer,
-    NotChecked,
-    Proved,
-    Result,
-)
+from compiler.logic.claims import Layer, Outcome, Proof, not_checked, proof, proved, refuted
 from compiler.logic.kripke import TooManyStatesError
 from compiler.targets.python import monitor as target
 from fretc.verification.engines import sandbox as processes
@@ -90,25 +83,25 @@ class Question:
 class Answer:
     """The results of both claims, and the version of z3."""
 
-    answered: Result
-    enough: Result
+    answered: Outcome
+    enough: Outcome
     z3: str = ""
 
 
-def bounds(rule: Formalized, setup: Setup, limits: Limits) -> tuple[Evidence, ...]:
+def bounds(rule: Formalized, setup: Setup, limits: Limits) -> tuple[Proof, ...]:
     """Both claims: an answer comes in time, whatever the times are; and the bound is enough."""
     query = question(rule, setup)
     answer: Answer | Stopped
     answer = Stopped(query) if isinstance(query, str) else processes.confined(limits, search, query)
     if isinstance(answer, Stopped):
-        answer = Answer(NotChecked(answer.reason), NotChecked(answer.reason))
+        answer = Answer(not_checked(answer.reason), not_checked(answer.reason))
     at_declared, at_any = (
         () if isinstance(query, str) else tuple(assumptions(rule, setup, query.case, any_time=any_))
         for any_ in (False, True)
     )
     engine = f"z3 {answer.z3}; fretc, explicit states" if answer.z3 else "fretc, explicit states"
     return tuple(
-        Evidence(rule.id, Layer.BOUNDS, claim, result, engine, assumed, artefacts(setup))
+        proof(rule.id, Layer.BOUNDS, claim, result, engine, assumed, artefacts(rule, setup))
         for claim, result, assumed in (
             (_answered(query), answer.answered, at_any),
             (_enough(rule), answer.enough, at_declared),
@@ -173,20 +166,20 @@ def _answers(sentence: s.Sentence, stands: str) -> bool:
 def search(query: Question) -> Answer:
     """Prove the invariant, compare the twin with the texts, and look for the least bound."""
     if find_spec("z3") is None:
-        return Answer(NotChecked(INSTALL), NotChecked(INSTALL))
+        return Answer(not_checked(INSTALL), not_checked(INSTALL))
     try:
         steps, loops = _covered(query)
         obstacle, version = _proved(times_of(query.case.channel))
         if obstacle is not None:
-            return Answer(NotChecked(obstacle), NotChecked(obstacle), version)
-        answered: Result = Proved(
+            return Answer(not_checked(obstacle), not_checked(obstacle), version)
+        answered: Outcome = proved(
             f"by an inductive invariant; {steps:,} steps of {loops} loops are steps of its model"
         )
         if query.unknown is not None:
-            answered = NotChecked(query.unknown)
+            answered = not_checked(query.unknown)
         return Answer(answered, _least(query), version)
     except (NotALoopError, NotAnInterceptorError, TooManyStatesError) as error:
-        return Answer(NotChecked(str(error)), NotChecked(str(error)))
+        return Answer(not_checked(str(error)), not_checked(str(error)))
 
 
 def _covered(query: Question) -> tuple[int, int]:
@@ -257,24 +250,24 @@ def _with(query: Question, timing: s.Timing) -> Case:
     return replace(query.case, safety=monitor, observer=monitor, formula=rule.ft_infinite)
 
 
-def _least(query: Question) -> Result:
+def _least(query: Question) -> Outcome:
     """Whether the bound is enough, with the least bound that is."""
     endless = _endless(query)
     coverage = covered(Parts.of(endless).loop, endless.limit, longest=_formula(endless.channel) + 1)
     least = coverage.longest + 1
     if least == 0:
-        return NotChecked("no demand is ever open")
+        return not_checked("no demand is ever open")
     detail = f"the least that is kept is {_ticks(least)} ({in_words(least * query.tick)})"
     before = _with(query, _bound(least - 1))
     parts = Parts.of(before)
     violation = reach(parts.loop, before.limit).violation
     assert violation is not None, "a demand is open for longer than it can be"
     if query.ticks is None:
-        return Proved(detail)
+        return proved(detail)
     if query.ticks >= least:
-        return Proved(f"{detail}; with one tick less a run of {_ticks(len(violation))} violates it")
+        return proved(f"{detail}; with one tick less a run of {_ticks(len(violation))} violates it")
     trace = _violating(query)
-    return Counterexample(detail, trace)
+    return refuted(detail, trace)
 
 
 def _bound(ticks: int) -> s.Timing:

@@ -15,8 +15,9 @@ from math import gcd
 from compiler.files.text_files import sha256
 from compiler.formalization.formalized import Formalized
 from compiler.logic import spot as automata
-from compiler.logic.claims import Evidence, Layer, NotChecked, Result
-from compiler.project.interceptor_options import options, ticks
+from compiler.logic.claims import Layer, Outcome, Proof, not_checked, proof
+from compiler.project.interceptor_options import ASSUMED, options, ticks
+from compiler.project.interceptor_options import assumed as hash_of_assumed
 from compiler.targets.python import monitor as target
 from fretc.verification.engines import sandbox as processes
 from fretc.verification.engines.sandbox import Limits, Stopped
@@ -51,7 +52,7 @@ class Setup:
     assumed: Assumed | None
 
 
-def loop(rule: Formalized, setup: Setup, limits: Limits) -> tuple[Evidence, ...]:
+def loop(rule: Formalized, setup: Setup, limits: Limits) -> tuple[Proof, ...]:
     """Both claims: the requirement is kept, and the stop is released."""
     problem = case(rule, setup)
     if isinstance(problem, str):
@@ -59,7 +60,7 @@ def loop(rule: Formalized, setup: Setup, limits: Limits) -> tuple[Evidence, ...]
     else:
         results = processes.confined(limits, search, problem)
     if isinstance(results, Stopped):
-        results = Results(NotChecked(results.reason), NotChecked(results.reason))
+        results = Results(not_checked(results.reason), not_checked(results.reason))
     premises = () if isinstance(problem, str) else tuple(assumptions(rule, setup, problem))
     return (
         _evidence(rule, setup, KEPT, results.kept, premises),
@@ -68,23 +69,25 @@ def loop(rule: Formalized, setup: Setup, limits: Limits) -> tuple[Evidence, ...]
 
 
 def _evidence(
-    rule: Formalized, setup: Setup, claim: str, result: Result, premises: tuple[str, ...]
-) -> Evidence:
-    return Evidence(
+    rule: Formalized, setup: Setup, claim: str, result: Outcome, premises: tuple[str, ...]
+) -> Proof:
+    return proof(
         rule.id,
         Layer.LOOP,
         claim,
         result,
         f"fretc, explicit states; Spot {automata.version()}",
         premises,
-        artefacts(setup),
+        artefacts(rule, setup),
     )
 
 
-def artefacts(setup: Setup) -> dict[str, str]:
-    """SHA-256 of each text."""
+def artefacts(rule: Formalized, setup: Setup) -> dict[str, str]:
+    """SHA-256 of each text, and of what the bindings assume."""
     texts = [setup.monitor, *([setup.interceptor] if setup.interceptor else [])]
-    return {text.name: sha256(text.text) for text in texts}
+    hashes = {text.name: sha256(text.text) for text in texts}
+    digest = hash_of_assumed(rule.declarations) if rule.declarations else ""
+    return {**hashes, ASSUMED: digest} if digest else hashes
 
 
 # The case -------------------------------------------------------------------------------------

@@ -26,7 +26,7 @@ from itertools import product
 from typing import NamedTuple
 
 from compiler.formalization.letters import Valuation
-from fretc.verification.interceptor.machine import Gate, Heard, State
+from fretc.verification.interceptor.machine import Event, Gate, State
 from fretc.verification.monitor.machine import Stepped
 
 Queue = tuple[tuple[bool, int], ...]
@@ -48,7 +48,7 @@ class Channel:
     """At least one command comes in every tick."""
     braking: int = 0
     scans: bool = False
-    """The interceptor hears scans."""
+    """The interceptor takes scans."""
     heartbeat: int = 0
     """With `edge`, in ticks: a request is repeated after such a silence, or earlier; 0: never."""
 
@@ -101,7 +101,7 @@ class Tick(NamedTuple):
     violated: bool
 
 
-Word = tuple[Heard | None, "Word | None"]
+Word = tuple[Event | None, "Word | None"]
 """The last event, and all events before it; None: a cell ends."""
 
 
@@ -143,7 +143,7 @@ class Loop:
         self.environment = environment
         self._place = environment.atoms.index(environment.stands)
         self._letters = {stands: environment.letters(stands) for stands in (False, True)}
-        self._inputs = [Heard.MOVE, Heard.STAND, *([Heard.SCAN] if channel.scans else [])]
+        self._inputs = [Event.MOVE, Event.STAND, *([Event.SCAN] if channel.scans else [])]
         self._passages: dict[Wheels, dict[Wheels, Word]] = {}
         self._judgements: dict[tuple[Hashable, Hashable, Valuation], tuple[Hashable, ...]] = {}
         watching = observer.save() if observer else None
@@ -190,11 +190,11 @@ class Loop:
         sent = ((tick.requested, 0),) if tick.sent else ()
         return Wheels(wheels.gate, still, wheels.queue + sent)
 
-    def word(self, before: Node, tick: Tick, after: Node) -> tuple[Heard | None, ...]:
+    def word(self, before: Node, tick: Tick, after: Node) -> tuple[Event | None, ...]:
         """The events from one end of a tick to the next; None: a cell ends."""
         stands = self.channel.stands if tick.letter[self._place] else before.wheels.still
         rest: Word | None = self._passed(self._begun(before.wheels, tick, stands))[after.wheels]
-        events: list[Heard | None] = []
+        events: list[Event | None] = []
         while rest is not None:
             events.append(rest[0])
             rest = rest[1]
@@ -256,7 +256,7 @@ class Loop:
         for _ in range(self.channel.cells):
             layer = self._closed(layer)
             layer = {
-                (self._take(wheels, Heard.RING), enough): (Heard.RING, word)
+                (self._take(wheels, Event.RING), enough): (Event.RING, word)
                 for (wheels, enough), word in layer.items()
             }
             layer = self._older(self._closed(layer))
@@ -280,16 +280,16 @@ class Loop:
             wheels, enough = key
             queued = [_message(wheels.queue)] if wheels.queue else []
             for event in (*queued, *self._inputs):
-                commanded = event in (Heard.MOVE, Heard.STAND)
+                commanded = event in (Event.MOVE, Event.STAND)
                 after = self._take(wheels, event), enough or commanded
                 if after not in closure:
                     closure[after] = (event, closure[key])
                     waiting.append(after)
         return closure
 
-    def _take(self, wheels: Wheels, event: Heard) -> Wheels:
-        gate, output = self.gate.hear(wheels.gate, event)
-        queue = wheels.queue[1:] if event in (Heard.STOP, Heard.RELEASE) else wheels.queue
+    def _take(self, wheels: Wheels, event: Event) -> Wheels:
+        gate, output = self.gate.step(wheels.gate, event)
+        queue = wheels.queue[1:] if event in (Event.STOP, Event.RELEASE) else wheels.queue
         if output is None:
             return Wheels(gate, wheels.still, queue)
         return Wheels(gate, -1 if output else max(wheels.still, 0), queue)
@@ -306,5 +306,5 @@ class Loop:
         return result
 
 
-def _message(queue: Queue) -> Heard:
-    return Heard.STOP if queue[0][0] else Heard.RELEASE
+def _message(queue: Queue) -> Event:
+    return Event.STOP if queue[0][0] else Event.RELEASE

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 from compiler.logic.claims import Trace
-from fretc.verification.interceptor.machine import Gate, Heard
+from fretc.verification.interceptor.machine import Event, Gate
 from fretc.verification.loop.model import Loop, Node, Tick
 from monitors.kernel import Monitor
 from monitors.kernel.verdicts import VIOLATED, Truth
@@ -26,7 +26,7 @@ class Moment(NamedTuple):
     """A tick, and the events before the next one."""
 
     tick: Tick
-    events: tuple[Heard | None, ...]
+    events: tuple[Event | None, ...]
     """None: a cell ends."""
 
 
@@ -96,10 +96,10 @@ class _Again:
         self._send(tick)
         delivered = None
         for event in moment.events:
-            if event in (Heard.STOP, Heard.RELEASE):
-                assert self._flying.pop(0)[0] == (event is Heard.STOP)
-                delivered = event is Heard.STOP
-            self._hear(event)
+            if event in (Event.STOP, Event.RELEASE):
+                assert self._flying.pop(0)[0] == (event is Event.STOP)
+                delivered = event is Event.STOP
+            self._take(event)
         halted = self._gate.halts(self._state)
         return (*tick.letter, tick.requested, delivered, halted, self._still < 0)
 
@@ -126,13 +126,13 @@ class _Again:
         if tick.sent:
             self._flying.append((tick.requested, 0))
 
-    def _hear(self, event: Heard | None) -> None:
+    def _take(self, event: Event | None) -> None:
         if event is None:
             self._still += 1 if 0 <= self._still < self._channel.stands else 0
             self._flying = [(requested, age + 1) for requested, age in self._flying]
             assert all(age < self._channel.latency for _, age in self._flying)
             return
-        instant = event in (Heard.STOP, Heard.RELEASE) and self._channel.latency == 0
+        instant = event in (Event.STOP, Event.RELEASE) and self._channel.latency == 0
         self._state, output = self._gate.replayed(self._state, event)
         if output is not None:
             self._still = -1 if output else self._still if self._still >= 0 else int(instant)
@@ -157,6 +157,6 @@ def _message(tick: Tick) -> Iterator[str]:
         yield f"{request}, and the message is{' sent again, and' if tick.again else ''} lost"
 
 
-def _deliveries(events: Sequence[Heard | None]) -> Iterator[str]:
+def _deliveries(events: Sequence[Event | None]) -> Iterator[str]:
     """The events without rings of the timer, which are as many in each tick."""
-    yield from (event.value for event in events if event is not None and event is not Heard.RING)
+    yield from (event.value for event in events if event is not None and event is not Event.RING)

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from typing import assert_never
 
 from compiler.logic import formula as f
-from compiler.logic.claims import Counterexample, NotChecked, Proved, Result, Trace, Vacuous
+from compiler.logic.claims import Outcome, Trace, not_checked, proved, refuted, vacuous
 from compiler.logic.kripke import Explored, TooManyStatesError, check, explore
 from fretc.verification.interceptor.machine import Gate, NotAnInterceptorError
 from fretc.verification.loop.model import Channel, Environment, Loop, Node, Tick
@@ -55,8 +55,8 @@ class Case:
 class Results:
     """The results of both claims."""
 
-    kept: Result
-    released: Result
+    kept: Outcome
+    released: Outcome
 
 
 class NotALoopError(Exception):
@@ -74,9 +74,9 @@ def search(case: Case) -> Results:
             _requirement_result(case, parts, reached, runs), _release_result(parts, runs)
         )
     except (NotALoopError, NotAnInterceptorError) as error:
-        return Results(NotChecked(str(error)), NotChecked(str(error)))
+        return Results(not_checked(str(error)), not_checked(str(error)))
     except TooManyStatesError as error:
-        return Results(NotChecked(str(error)), NotChecked(str(error)))
+        return Results(not_checked(str(error)), not_checked(str(error)))
 
 
 # Parts ----------------------------------------------------------------------------------------
@@ -178,34 +178,34 @@ def _way(came: dict[Node, tuple[Node, Tick] | None], node: Node) -> tuple[tuple[
     return tuple(reversed(way))
 
 
-def _requirement_result(case: Case, parts: Parts, reached: Reached, runs: Runs) -> Result:
+def _requirement_result(case: Case, parts: Parts, reached: Reached, runs: Runs) -> Outcome:
     if reached.violation is not None:
         trace, violated = as_table(parts, reached.violation)
         assert violated, "the texts do not violate what the model violates"
         ticks = len(trace.rows)
-        return Counterexample(f"violated at tick {ticks - 1}; no shorter run shows it", trace)
+        return refuted(f"violated at tick {ticks - 1}; no shorter run shows it", trace)
     looked = f"{reached.states:,} states, {reached.steps:,} steps"
     if not reached.triggered:
-        return Vacuous(f"no demand ever begins ({looked})")
+        return vacuous(f"no demand ever begins ({looked})")
     if not reached.moved:
-        return Vacuous(f"the robot never moves ({looked})")
+        return vacuous(f"the robot never moves ({looked})")
     if is_safety(case.formula):
-        return Proved(looked)
+        return proved(looked)
     if f.longest_bound(case.formula) > LONGEST:
-        return NotChecked(f"no finite run violates it; Spot is not asked above {LONGEST} ticks")
+        return not_checked(f"no finite run violates it; Spot is not asked above {LONGEST} ticks")
     lasso = _lasso(parts, runs, case.formula)
     if lasso is None:
-        return Proved(f"{looked}; Spot finds no endless run that violates it")
-    return Counterexample("what is owed never comes: the last ticks are repeated for ever", lasso)
+        return proved(f"{looked}; Spot finds no endless run that violates it")
+    return refuted("what is owed never comes: the last ticks are repeated for ever", lasso)
 
 
-def _release_result(parts: Parts, runs: Runs) -> Result:
+def _release_result(parts: Parts, runs: Runs) -> Outcome:
     lasso = _lasso(parts, runs, RELEASE)
     if lasso is None:
         if not any(_HALT.name in label for label in runs.explored.kripke.labels):
-            return Vacuous("no stop is ever in force")
-        return Proved("Spot finds no endless run that violates it")
-    return Counterexample("the stop stays: the last ticks are repeated for ever", lasso)
+            return vacuous("no stop is ever in force")
+        return proved("Spot finds no endless run that violates it")
+    return refuted("the stop stays: the last ticks are repeated for ever", lasso)
 
 
 def as_table(

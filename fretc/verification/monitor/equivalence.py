@@ -47,7 +47,7 @@ class Machine(Protocol):
 
 
 @dataclass(frozen=True, slots=True)
-class Proved:
+class Equivalence:
     """Both judge every tick of every trace alike, up to the first violation."""
 
     states: int
@@ -57,7 +57,7 @@ class Proved:
 
 
 @dataclass(frozen=True, slots=True)
-class Refuted:
+class Difference:
     """A trace at whose last tick they differ."""
 
     word: tuple[Valuation, ...]
@@ -67,21 +67,14 @@ class Refuted:
     """Whether no shorter trace shows the difference; False where there were too many pairs."""
 
 
-@dataclass(frozen=True, slots=True)
-class NotChecked:
-    """There is no result."""
-
-    reason: str
-
-
-def prove(
+def compare(
     machine: Machine,
     sentence: s.Sentence,
     ticks: int,
     atoms: Sequence[str],
     limit: int = 10**6,
-) -> Proved | Refuted | NotChecked:
-    """Compare a monitor with the reference automaton of its sentence.
+) -> Equivalence | Difference | str:
+    """Compare a monitor with the reference automaton of its sentence; or why they cannot be.
 
     After a violation nothing is compared: a monitor's verdict is then final.
 
@@ -98,14 +91,14 @@ def prove(
     """
     predicate = temporal_predicate(sentence)
     if predicate is not None:
-        return NotChecked(f"`{predicate}` speaks of other ticks, and the automaton knows one")
+        return f"`{predicate}` speaks of other ticks, and the automaton knows one"
     if len(atoms) > MOST_ATOMS:
-        return NotChecked(f"{len(atoms)} propositions, more than {MOST_ATOMS}")
+        return f"{len(atoms)} propositions, more than {MOST_ATOMS}"
     letters = meanings(sentence, atoms)
     try:
         automaton = explore(template(sentence, ticks), letters.values(), limit)
     except TooManyStatesError:
-        return NotChecked(f"the automaton has more than {limit} states")
+        return f"the automaton has more than {limit} states"
     return _compared(machine, _Reference.of(automaton, letters), limit)
 
 
@@ -140,15 +133,17 @@ class _Reference:
         )
 
 
-def _compared(machine: Machine, reference: _Reference, limit: int) -> Proved | Refuted | NotChecked:
+def _compared(
+    machine: Machine, reference: _Reference, limit: int
+) -> Equivalence | Difference | str:
     """Whether they are equal, by classes of states; if not, a shortest word, by all pairs."""
     start = machine.save()
     result = _in_lock_step(machine, reference, _Classes(len(reference.moves)), limit)
-    if not isinstance(result, Refuted):
+    if not isinstance(result, Difference):
         return result
     machine.load(start)
     shortest = _in_lock_step(machine, reference, _Pairs(), limit)
-    return shortest if isinstance(shortest, Refuted) else replace(result, shortest=False)
+    return shortest if isinstance(shortest, Difference) else replace(result, shortest=False)
 
 
 class _Visited(Protocol):
@@ -201,7 +196,7 @@ class _Classes:
 
 def _in_lock_step(
     machine: Machine, reference: _Reference, visited: _Visited, limit: int
-) -> Proved | Refuted | NotChecked:
+) -> Equivalence | Difference | str:
     """Breadth first through the pairs that are new, from the present state of the machine."""
     start = (0, machine.save())
     visited.add(*start)
@@ -217,7 +212,7 @@ def _in_lock_step(
             after = row[letter]
             expected = reference.judgements[after]
             if judgement != expected:
-                return Refuted((*_word(origins, place), valuation), expected, judgement)
+                return Difference((*_word(origins, place), valuation), expected, judgement)
             if expected[0] == "violated":
                 continue
             reached = machine.save()
@@ -225,8 +220,8 @@ def _in_lock_step(
                 pairs.append((after, reached))
                 origins.append((place, valuation))
         if len(pairs) > limit:
-            return NotChecked(f"the automaton and the monitor have more than {limit} states")
-    return Proved(len(pairs), steps)
+            return f"the automaton and the monitor have more than {limit} states"
+    return Equivalence(len(pairs), steps)
 
 
 def _word(origins: Sequence[tuple[int, Valuation] | None], place: int) -> tuple[Valuation, ...]:

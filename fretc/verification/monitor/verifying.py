@@ -17,14 +17,14 @@ from __future__ import annotations
 import ast
 import random
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 
 from compiler.formalization.formalized import Formalized
 from compiler.formalization.letters import atoms_of
+from compiler.logic.claims import Outcome, Trace, not_checked, proved, refuted
 from compiler.targets.python import monitor as target
 from fretc.verification.monitor import rails
 from fretc.verification.monitor.column_terms import Terms
-from fretc.verification.monitor.equivalence import NotChecked, Proved, Refuted, prove
+from fretc.verification.monitor.equivalence import Difference, Equivalence, Judgement, compare
 from fretc.verification.monitor.machine import Stepped
 from fretc.verification.monitor.text_check import own, strange
 from monitors.kernel import Column, Monitor
@@ -47,36 +47,17 @@ class NotAMonitorError(Exception):
     """The text cannot be executed as a generated monitor; the message says why."""
 
 
-@dataclass(frozen=True, slots=True)
-class Disagreement:
-    """A trace at whose last tick the signals of the monitor are wrong."""
-
-    word: tuple[tuple[Truth, ...], ...]
-    """The values of `atoms`; None: unknown."""
-    fault: str = "its column program and its steps differ"
-
-
-@dataclass(frozen=True, slots=True)
-class Verified:
-    """The result for one requirement's monitor."""
-
-    requirement: str
-    atoms: tuple[str, ...]
-    """The propositions, in the order of the values of a word."""
-    result: Proved | Refuted | NotChecked | Disagreement
-    compared: int = 0
-    """Ticks of drawn traces on which the column program agreed with the steps."""
-    compared_states: int = 0
-    """States in which it was compared with the text that fretc writes; 0: it is that text."""
+Word = tuple[tuple[Truth, ...], ...]
+"""The values of the propositions at each tick; None: unknown."""
 
 
 def verified(
     rule: Formalized, text: str, limit: int = MOST_STATES, others: Sequence[Formalized] = ()
-) -> Verified:
+) -> Outcome:
     """Compare the text of a monitor with its rule.
 
     Args:
-        rule: one that a monitor can be made of, on its own clock.
+        rule: one that the target accepts, on its own clock.
         text: that of its monitor, maybe with monitors of other rules.
         limit: the most states of the exploration.
         others: further rules that the text may implement.
@@ -87,43 +68,85 @@ def verified(
     _demand_monitor(text)
     reason = strange(text)  # nothing else is executed
     if reason is not None:
-        return Verified(rule.id, (), NotChecked(reason))
+        return not_checked(reason)
     try:
         monitor = load(f"{rule.id}_monitor", text)
     except Exception as error:
-        reason = f"it cannot be executed: {type(error).__name__}: {error}"
-        return Verified(rule.id, (), NotChecked(reason))
+        return not_checked(f"it cannot be executed: {type(error).__name__}: {error}")
     return _compared(rule, text, monitor, limit, others)
 
 
 def _compared(
     rule: Formalized, text: str, monitor: Monitor, limit: int, others: Sequence[Formalized]
-) -> Verified:
-    """The result for a text that is safe to execute."""
+) -> Outcome:
+    """The outcome for a text that is safe to execute."""
     places = [i for i, each in enumerate(monitor.REQUIREMENTS) if each.id == rule.id]
     if not places:
-        return Verified(rule.id, (), NotChecked("the monitor is of other requirements"))
+        return not_checked("the monitor is of other requirements")
     place = places[0]
     atoms = tuple(dict.fromkeys((*atoms_of(rule.sentence), *monitor.PROPOSITIONS)))
     machine = Stepped(monitor, place, atoms)
-    result = prove(machine, rule.sentence, rule.ticks or 0, atoms, limit)
-    if not isinstance(result, Proved):
-        return Verified(rule.id, atoms, result)
-    written = target.text(rule)
-    if text != written:
-        (expected,) = load("written", written).REQUIREMENTS
+    result = compare(machine, rule.sentence, rule.ticks or 0, atoms, limit)
+    if isinstance(result, str):
+        return not_checked(result)
+    if isinstance(result, Difference):
+        return _refuted(result, atoms)
+    generated = target.text(rule)
+    if text != generated:
+        (expected,) = load("generated", generated).REQUIREMENTS
         if tuple(monitor.REQUIREMENTS[place]) != tuple(expected):
-            reason = "it decides the same, but states another sentence or deadline"
-            return Verified(rule.id, atoms, NotChecked(reason))
-    compared, word = _columns_compared(monitor, place, atoms, rule.ticks or 0)
+            return not_checked("it decides the same, but states another sentence or deadline")
+    ticks, word = _columns_compared(monitor, place, atoms, rule.ticks or 0)
     if word is not None:
-        return Verified(rule.id, atoms, Disagreement(word), compared)
-    if text == written or _is_generated(text, monitor, (*others, rule)):
-        return Verified(rule.id, atoms, result, compared)
-    compared_states = _compared_with_generated(written, text, monitor, place, atoms, limit)
-    if isinstance(compared_states, int):
-        return Verified(rule.id, atoms, result, compared, compared_states)
-    return Verified(rule.id, atoms, compared_states, compared)
+        return _disagreement(atoms, word)
+    if text == generated or _is_generated(text, monitor, (*others, rule)):
+        return _proved(result, ticks)
+    states = _compared_with_generated(generated, text, monitor, place, atoms, limit)
+    return _proved(result, ticks, states) if isinstance(states, int) else states
+
+
+def _proved(same: Equivalence, ticks: int, states: int = 0) -> Outcome:
+    """The monitor means what the sentence means.
+
+    Args:
+        same: the comparison with the automaton.
+        ticks: of drawn traces on which the column program agrees with the steps.
+        states: in which the text was compared with the one that fretc writes; 0: it is that one.
+    """
+    further = ""
+    if states:
+        further = (
+            "; triggers, answers, open demands and unknown values as in the text that fretc writes "
+            f"({states} states)"
+        )
+    return proved(
+        f"the same at every tick of every trace ({same.states} states, {same.steps} steps); "
+        f"columns agree on {ticks} drawn ticks{further}"
+    )
+
+
+def _refuted(difference: Difference, atoms: tuple[str, ...]) -> Outcome:
+    """The steps of the monitor judge a trace wrongly."""
+    count = len(difference.word)
+    length = f"{count} tick{'' if count == 1 else 's'}"
+    kind = "the shortest trace" if difference.shortest else "a trace"
+    return refuted(
+        f"{kind} that shows it has {length}; after it, {_in_words(difference.actual)}, and should "
+        f"be {_in_words(difference.expected)}",
+        Trace(atoms, difference.word),
+    )
+
+
+def _in_words(judgement: Judgement) -> str:
+    verdict, finite = judgement
+    return f"{verdict} ({'true' if finite else 'false'} if it ended there)"
+
+
+def _disagreement(
+    atoms: Sequence[str], word: Word, fault: str = "its column program and its steps differ"
+) -> Outcome:
+    """The signals of the monitor are wrong at the last tick of a trace."""
+    return refuted(f"{fault} on a trace", Trace(tuple(atoms), word))
 
 
 def _is_generated(text: str, monitor: Monitor, rules: Sequence[Formalized]) -> bool:
@@ -137,27 +160,27 @@ def _is_generated(text: str, monitor: Monitor, rules: Sequence[Formalized]) -> b
 
 
 def _compared_with_generated(
-    written: str, text: str, monitor: Monitor, place: int, atoms: Sequence[str], limit: int
-) -> int | Disagreement | NotChecked:
+    generated: str, text: str, monitor: Monitor, place: int, atoms: Sequence[str], limit: int
+) -> int | Outcome:
     """In how many states it agrees with the text that fretc writes for the rule."""
     if len(atoms) > rails.MOST_PROPOSITIONS:
         most = rails.MOST_PROPOSITIONS
-        return NotChecked(
+        return not_checked(
             f"it is not the text that fretc writes, and {len(atoms)} propositions, more than "
             f"{most}, are too many to compare both with unknown values"
         )
-    comparison = rails.compared(monitor, place, load("written", written), atoms, limit)
+    comparison = rails.compared(monitor, place, load("generated", generated), atoms, limit)
     match comparison:
         case None:
-            return NotChecked(f"with unknown values there are more than {limit} states")
+            return not_checked(f"with unknown values there are more than {limit} states")
         case rails.Apart(word, signal):
             fault = f"the text that fretc writes tells another {signal}"
-            return Disagreement(word, fault)
+            return _disagreement(atoms, word, fault)
         case rails.Same(states):
             terms = Terms()
-            if terms.of(text, place) == terms.of(written, 0):
+            if terms.of(text, place) == terms.of(generated, 0):
                 return states
-            return NotChecked(
+            return not_checked(
                 "its column program is not the one that fretc writes: it agrees with the steps on "
                 "drawn traces, and nothing is known of others"
             )
@@ -180,7 +203,7 @@ def _demand_monitor(text: str) -> None:
 
 def _columns_compared(
     monitor: Monitor, place: int, atoms: Sequence[str], bound: int
-) -> tuple[int, tuple[tuple[Truth, ...], ...] | None]:
+) -> tuple[int, Word | None]:
     """The ticks on which both programs agree; and a trace on which they do not."""
     choose = random.Random(bound)
     length = 4 * bound + 50

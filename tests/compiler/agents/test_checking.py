@@ -5,20 +5,12 @@ from collections.abc import Sequence
 import pytest
 
 from compiler.agents.checking import checked
-from compiler.logic.claims import (
-    Counterexample,
-    Evidence,
-    Layer,
-    NotChecked,
-    Proved,
-    Vacuous,
-    proof,
-    status,
-)
+from compiler.logic.claims import Layer, Proof, Result, not_checked, proved, vacuous
 from compiler.targets.ajpf import properties as ajpf
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.source import Source
 from tests.compiler.targets.ajpf.test_bundle import rule
+from tests.proofs import outcome
 
 PAPER = """GWENDOLEN
 :name: agilex_agent
@@ -39,7 +31,7 @@ CONTROLS = "1a_reach: [] (~(B(agilex_agent,too_close)))\n1a_resp: [] (~(B(agilex
 
 def lines(
     properties: str, percepts: Sequence[str], agent: str = PAPER, limit: int = 10_000
-) -> tuple[Evidence, ...]:
+) -> tuple[Proof, ...]:
     found = checked(Source("sif.gwen", agent), Source("sif.psl", properties), percepts, limit)
     assert not isinstance(found, Diagnostic), found.message
     return found
@@ -51,8 +43,8 @@ def refused(properties: str, percepts: Sequence[str], agent: str = PAPER) -> Dia
     return found
 
 
-def statuses(found: tuple[Evidence, ...]) -> list[tuple[str, str]]:
-    return [(line.requirement, status(line.result)) for line in found]
+def statuses(found: tuple[Proof, ...]) -> list[tuple[str, str]]:
+    return [(line.requirement, line.result) for line in found]
 
 
 def test_the_papers_agent_is_proved_where_its_trigger_comes_and_the_check_can_fail() -> None:
@@ -62,7 +54,7 @@ def test_the_papers_agent_is_proved_where_its_trigger_comes_and_the_check_can_fa
         "every run of the agent keeps 1a: "
         "[] ((B(agilex_agent,too_close)) -> (<> (B(agilex_agent,stopped))))"
     )
-    assert main.result == Proved("all runs through 121 states keep it")
+    assert outcome(main) == proved("all runs through 121 states keep it")
     assert main.assumptions == (
         "the environment shows exactly too_close, each freely, anew at the start, at every action "
         "and whenever the agent is idle, for ever (--percept)",
@@ -72,12 +64,12 @@ def test_the_papers_agent_is_proved_where_its_trigger_comes_and_the_check_can_fa
     )
     assert set(main.artefacts) == {"sif.gwen", "sif.psl"}
     assert mutant.claim == "the check can fail: an agent without the response breaks 1a"
-    assert isinstance(mutant.result, Proved)
+    assert mutant.result is Result.PROVED
 
 
 def test_the_papers_environment_makes_the_papers_property_vacuous() -> None:
     (main,) = lines(f"1a: {R1}", ["stopped"])
-    assert main.result == Vacuous(
+    assert outcome(main) == vacuous(
         "never true where it counts: `B(agilex_agent,too_close)`: "
         "no environment shows `too_close`, and no plan adds it"
     )
@@ -86,7 +78,7 @@ def test_the_papers_environment_makes_the_papers_property_vacuous() -> None:
 @pytest.mark.parametrize("percept", ["stopped", "too_close"])
 def test_the_published_property_is_vacuous_in_any_environment(percept: str) -> None:
     (main,) = lines(f"1: {PUBLISHED}", [percept])
-    assert main.result == Vacuous(
+    assert outcome(main) == vacuous(
         "never true where it counts: `B(agilex_agent,stop_moving)`: "
         "`stop_moving` is an action, and actions are not believed"
     )
@@ -112,21 +104,21 @@ def test_controls_are_to_be_violated() -> None:
 
 def test_a_property_whose_own_control_holds_is_vacuous_whatever_its_shape() -> None:
     main, control = lines("x: [] (~B(agilex_agent,a))\nx_reach: [] (~B(agilex_agent,b))", [])
-    assert main.result == Vacuous(
+    assert outcome(main) == vacuous(
         "its control x_reach holds: no environment shows `b`, and no plan adds it"
     )
-    assert isinstance(control.result, Vacuous)
+    assert control.result is Result.VACUOUS
 
 
 def test_a_key_that_only_looks_like_a_control_is_a_property() -> None:
     (main,) = lines("a_reach: [] (~B(agilex_agent,too_close))", ["too_close"])
-    assert isinstance(main.result, Counterexample)
+    assert main.result is Result.COUNTEREXAMPLE
 
 
 def test_a_counterexample_is_a_table_of_stages() -> None:
     (main,) = lines(f"now: {R1.replace('<> ', '')}", ["too_close"])
-    assert isinstance(main.result, Counterexample)
-    trace = main.result.trace
+    assert main.result is Result.COUNTEREXAMPLE
+    trace = main.run
     assert trace is not None
     assert trace.names == ("B(agilex_agent,too_close)", "B(agilex_agent,stopped)")
     assert trace.actions[:3] == (
@@ -136,25 +128,24 @@ def test_a_counterexample_is_a_table_of_stages() -> None:
     )
     assert trace.rows[:3] == ((False, False), (False, False), (True, False))
     assert trace.cycle is not None
-    assert proof(main).result == "counterexample"
 
 
 def test_an_agent_that_does_nothing_keeps_no_response() -> None:
     idle = PAPER.replace("stop_moving,\n    +stopped", "drive_on")
     (main,) = lines(f"1a: {R1}", ["too_close"], idle)
-    assert isinstance(main.result, Counterexample)
+    assert main.result is Result.COUNTEREXAMPLE
 
 
 def test_what_the_environment_does_cannot_be_taken_away_from_the_agent() -> None:
     """Its response comes in any case, so that the agent without it keeps the property too."""
     always = "a: [] (B(agilex_agent,too_close) -> <> B(agilex_agent,too_close))"
     (main,) = lines(always, ["too_close"])
-    assert isinstance(main.result, Proved)
+    assert main.result is Result.PROVED
     two = PAPER.replace("+stopped;", "+stopped;\n+stopped: {True} <- +stopped;")
     doubled = two.replace(":Initial Beliefs:", ":Initial Beliefs: stopped")
     main, mutant = lines(f"1a: {R1}", ["too_close"], doubled)
-    assert isinstance(main.result, Proved)
-    assert mutant.result == Vacuous(
+    assert main.result is Result.PROVED
+    assert outcome(mutant) == vacuous(
         "that agent keeps 1a too, so that it says nothing of the response"
     )
 
@@ -162,13 +153,13 @@ def test_what_the_environment_does_cannot_be_taken_away_from_the_agent() -> None
 def test_beyond_the_model_or_its_limit_nothing_is_known() -> None:
     waiting = PAPER.replace("+stopped;", "*stopped;")
     (line,) = lines(f"1a: {R1}", ["too_close"], waiting)
-    assert line.result == NotChecked(
+    assert outcome(line) == not_checked(
         "waiting for a belief is Gwendolen, but not in the model of fretc (sif.gwen, line 11)"
     )
     (line,) = lines(f"1a: {R1}", ["too_close"], limit=49)
-    assert line.result == NotChecked("the agent has more than 49 states")
+    assert outcome(line) == not_checked("the agent has more than 49 states")
     (line,) = lines("1a: [] (~B(agilex_agent,near(_)))", ["too_close"])
-    assert line.result == NotChecked("`_`, which matches everything, is not in the model")
+    assert outcome(line) == not_checked("`_`, which matches everything, is not in the model")
 
 
 @pytest.mark.parametrize(
@@ -196,13 +187,13 @@ def test_a_percept_is_spelt_as_the_agent_spells_it() -> None:
     near = PAPER.replace("too_close", "near(1, lidar)")
     (main, _) = lines("x: [] (B(agilex_agent,near(1,lidar)) -> <> B(agilex_agent,stopped))",
                       ["near(1.0, lidar)"], near)  # fmt: skip
-    assert isinstance(main.result, Proved)
+    assert main.result is Result.PROVED
 
 
 @pytest.mark.parametrize("properties", ["", "# nothing yet\n"])
 def test_a_file_without_properties_shows_nothing(properties: str) -> None:
     (line,) = lines(properties, ["too_close"])
-    assert line.result == NotChecked("`sif.psl` has none")
+    assert outcome(line) == not_checked("`sif.psl` has none")
 
 
 def test_in_an_only_scope_an_agent_that_never_responds_keeps_the_prohibition() -> None:

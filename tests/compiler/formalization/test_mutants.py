@@ -18,9 +18,9 @@ import pytest
 from compiler.formalization.formalized import Formalized
 from compiler.formalization.past import Watch
 from compiler.logic import formula as f
+from compiler.logic.claims import Result
 from compiler.targets.python import monitor as target
-from fretc.verification.monitor.equivalence import NotChecked, Proved, Refuted
-from fretc.verification.monitor.verifying import Disagreement, NotAMonitorError, verified
+from fretc.verification.monitor.verifying import NotAMonitorError, verified
 from fretish import syntax as s
 from monitors.kernel import Monitor
 from monitors.kernel.stepping import Standing
@@ -234,19 +234,17 @@ class Judge:
         }
         return {name: choose.choices(values, weights[name], k=16) for name in weights}
 
-    def found(self, text: str) -> str:
+    def kind(self, text: str) -> str:
         try:
-            result = verified(self.rule, text, MOST_STATES).result
+            outcome = verified(self.rule, text, MOST_STATES)
         except NotAMonitorError:
             return REFUSED
-        match result:
-            case Refuted():
-                return REFUTED
-            case Disagreement():
-                return DIFFERS
-            case NotChecked():
+        match outcome.result:
+            case Result.COUNTEREXAMPLE:
+                return REFUTED if "that shows it has" in outcome.detail else DIFFERS
+            case Result.NOT_CHECKED:
                 return REFUSED
-            case Proved():
+            case _:
                 return self._compared(text)
 
     def _compared(self, text: str) -> str:
@@ -294,11 +292,11 @@ def test_a_mistake_in_a_text_is_found_or_changes_nothing(sentence: str) -> None:
     judge = Judge(made)
     found: Counter[str] = Counter()
     for kind, text in of_text(target.text(made)):
-        result = judge.found(text)
+        result = judge.kind(text)
         found[result] += 1
         if result == SAME:
             assert kind in HARMLESS, text[text.index(MARK) :]
-    assert judge.found(target.text(made)) == SAME
+    assert judge.kind(target.text(made)) == SAME
     assert found[TOLD] == 0, "what is proved tells the same as the right one"
     assert found[SAME] <= 0.17 * found.total(), found
     assert found[REFUTED] >= 5, found
@@ -313,7 +311,7 @@ def test_a_mistake_in_a_formula_is_found_or_proved_to_change_nothing(sentence: s
     judge = Judge(made)
     found: Counter[str] = Counter()
     for kind, watch in of_watch(made.watch):
-        result = judge.found(target.text(replace(made, watch=watch)))
+        result = judge.kind(target.text(replace(made, watch=watch)))
         assert result in (REFUTED, DIFFERS, REFUSED, SAME), (kind, watch)
         found[result] += 1
         if result in (REFUSED, SAME):

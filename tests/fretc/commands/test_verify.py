@@ -14,12 +14,13 @@ import jsonschema  # type: ignore[import-untyped]
 import pytest
 
 from compiler.files.templating import template_root
-from compiler.logic.claims import Evidence
-from fretc.verification import verify as layers
+from compiler.logic.claims import Proof
 from fretc.verification.engines import crosshair
 from fretc.verification.engines import programs as external
 from fretc.verification.engines import sandbox as confined
-from fretc.verification.engines.programs import Ran
+from fretc.verification.engines.programs import Completion
+from fretc.verification.layers import crosshair as layer_crosshair
+from fretc.verification.layers import dafny as layer_dafny
 from tests.command import Fretc, Run, write
 
 R1 = "whenever p the sw shall within 2 ticks satisfy q"
@@ -545,7 +546,7 @@ def test_crosshair_is_given_the_core_and_the_limit(
     limits: list[float] = []
     asked = external.run
 
-    def run(*args: Any, seconds: float, memory: int) -> Ran:
+    def run(*args: Any, seconds: float, memory: int) -> Completion:
         limits.append(seconds)
         return asked(*args, seconds=seconds, memory=memory)
 
@@ -577,7 +578,7 @@ def test_crosshair_does_not_execute_what_may_not_be_pure(
     new: str,
     reason: str,
 ) -> None:
-    monkeypatch.setattr(layers, "with_crosshair", None)
+    monkeypatch.setattr(layer_crosshair, "with_crosshair", None)
     path, made = node
     edited(made, old, new)
     options = ("--layer", "interceptor", "--with", "crosshair", "--interceptor", made)
@@ -593,11 +594,11 @@ def test_dafny_is_given_the_limit(
 ) -> None:
     seen: list[float] = []
 
-    def dafny(*_: object, seconds: float) -> tuple[Evidence, ...]:
+    def dafny(*_: object, seconds: float) -> tuple[Proof, ...]:
         seen.append(seconds)
         return ()
 
-    monkeypatch.setattr(layers, "with_dafny", dafny)
+    monkeypatch.setattr(layer_dafny, "with_dafny", dafny)
     fretc("verify", "--layer", "interceptor", "--with", "dafny", "--limit", "7", node[0])
     assert seen == [7]
 

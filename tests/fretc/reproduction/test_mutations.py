@@ -7,21 +7,22 @@ import json
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import closing
 from pathlib import Path
-from typing import Any, get_args
+from typing import Any
 
 import pytest
 
 from compiler.files.records import plain
 from compiler.logic.claims import (
-    Counterexample,
-    Evidence,
+    SCHEMA,
+    Document,
     Layer,
-    Proved,
-    Status,
+    Result,
     Trace,
-    Vacuous,
+    proof,
+    proved,
+    refuted,
+    vacuous,
 )
-from compiler.logic.claims import document as proofs_document
 from compiler.project.folder import Project, whole
 from fretc.audit.evidence.reader import read, required
 from fretc.audit.many_logs import IN_TURN, Audited, Found, audit_logs
@@ -260,17 +261,17 @@ def test_nothing_is_left_out(case: Case, name: str, named: bool) -> None:
 
 TRACE = Trace(("p", "q"), ((True, False), (None, False)), ("it starts", "it ends"), 0)
 FOUND = (
-    Evidence("r1", Layer.MONITOR, "it means it", Proved("9 states"), "fretc", (), {"m": "a" * 64}),
-    Evidence("r1", Layer.LOOP, "it is kept", Counterexample("at 1", TRACE), "fretc", ("(1) so",)),
-    Evidence("r2", Layer.MONITOR, "it means it", Vacuous("never"), "fretc", (), {"n": "b" * 64}),
-    Evidence("r2", Layer.LOOP, "it is kept", Proved("all"), "Dafny 4.9", ("(1) so",)),
+    proof("r1", Layer.MONITOR, "it means it", proved("9 states"), "fretc", (), {"m": "a" * 64}),
+    proof("r1", Layer.LOOP, "it is kept", refuted("at 1", TRACE), "fretc", ("(1) so",)),
+    proof("r2", Layer.MONITOR, "it means it", vacuous("never"), "fretc", (), {"n": "b" * 64}),
+    proof("r2", Layer.LOOP, "it is kept", proved("all"), "Dafny 4.9", ("(1) so",)),
 )
 """What is found again, whatever is asked for."""
 
 
 def test_no_change_to_proofs_is_certified(case: Case, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(reproving, "evidence", lambda *asked: FOUND)
-    content = json.loads(json.dumps(plain(proofs_document("0.1.0", FOUND))))
+    monkeypatch.setattr(reproving, "prove", lambda *asked: FOUND)
+    content = json.loads(json.dumps(plain(Document(SCHEMA, "0.1.0", FOUND))))
 
     def judged(text: str) -> Sequence[Rechecked] | Diagnostic:
         found = proven.read(write("build/changed.json", text))
@@ -285,7 +286,7 @@ def test_no_change_to_proofs_is_certified(case: Case, monkeypatch: pytest.Monkey
     assert stands(judged(json.dumps(content)))
     texts = [(what, at, text) for what, at, text in changes(content)]
     for i, record in enumerate(content["evidence"]):
-        for result in {*get_args(Status)} - {record["result"]}:
+        for result in {*map(str, Result)} - {record["result"]}:
             at = ("evidence", i, "result")
             texts.append((result, at, put(content, at, result)))
         for layer in {*map(str, Layer)} - {record["layer"]}:

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from fretc.terminal.progress import progress
-from fretc.verification import verify as layers
+from fretc.verification.layers import dafny as layer_dafny
 from tests.command import Fretc, write
 
 ROOT = Path(__file__).parents[3]
@@ -61,7 +61,7 @@ def test_a_proof_tells_what_it_is_at(fretc: Fretc, monkeypatch: pytest.MonkeyPat
     terminal = Terminal()
     monkeypatch.setattr(sys, "stderr", terminal)
     options = ("--layer", "loop", "--layer", "agent", "--layer", "bounds", "--with", "dafny")
-    monkeypatch.setattr(layers, "with_dafny", lambda *_, **__: ())
+    monkeypatch.setattr(layer_dafny, "with_dafny", lambda *_, **__: ())
     fretc("verify", path, *options, "-o", "-")
     assert terminal.getvalue().splitlines() == [
         "r1: loop",

@@ -1,4 +1,4 @@
-"""Results of AJPF as evidence: only about what is made now, and never more than AJPF said."""
+"""Results of AJPF as evidence: only about the present texts, and never more than AJPF says."""
 
 import hashlib
 import json
@@ -8,16 +8,9 @@ from typing import Any
 
 import pytest
 
+from compiler.files.records import replace
 from compiler.formalization.formalized import Formalized
-from compiler.logic.claims import (
-    Counterexample,
-    Evidence,
-    Layer,
-    NotChecked,
-    Proof,
-    Proved,
-    Vacuous,
-)
+from compiler.logic.claims import Layer, Outcome, Proof, Result, not_checked, vacuous
 from compiler.targets.ajpf.bundle import emit
 from compiler.targets.target import Options
 from fretc.verification.ajpf_results import evidence, merged, read
@@ -25,6 +18,7 @@ from fretish.diagnostics.diagnostic import Code, Diagnostic
 from tests.command import Fretc
 from tests.compiler.targets.ajpf.test_bundle import R1, rule
 from tests.compiler.targets.ajpf.test_runner import ENDING, RECORDED, Mcapl
+from tests.proofs import outcome
 
 FILE = f"""+++
 id = "R1"
@@ -46,10 +40,10 @@ def ran(tmp_path: Path) -> Mcapl:
     return mcapl
 
 
-def only(mcapl: Mcapl, made: Formalized | None = None) -> Evidence:
-    (line,), said = evidence([made or rule(R1)], [str(mcapl.bundle / "result.json")])
-    assert not said
-    return line
+def only(mcapl: Mcapl, other: Formalized | None = None) -> Proof:
+    (proof,), diagnostics = evidence([other or rule(R1)], [str(mcapl.bundle / "result.json")])
+    assert not diagnostics
+    return proof
 
 
 def changed(mcapl: Mcapl, change: Change) -> None:
@@ -61,8 +55,8 @@ def changed(mcapl: Mcapl, change: Change) -> None:
 def test_what_ajpf_shows_of_what_is_made_now_is_shown(ran: Mcapl) -> None:
     line = only(ran)
     assert (line.requirement, line.layer) == ("R1", Layer.AJPF)
-    assert isinstance(line.result, Proved)
-    assert "(303, 303, 303, 303 states, " in line.result.detail
+    assert line.result is Result.PROVED
+    assert "(303, 303, 303, 303 states, " in line.detail
     assert line.claim == (
         "AJPF: every run of the agent of its bundle keeps R1: "
         "[] ((B(agilex_agent,too_close)) -> (<> (B(agilex_agent,stopped))))"
@@ -75,8 +69,8 @@ def test_what_ajpf_shows_of_what_is_made_now_is_shown(ran: Mcapl) -> None:
 def test_what_ajpf_refutes_is_refuted_with_its_run(ran: Mcapl) -> None:
     ran.says({"R1.jpf": (RECORDED, 0)})
     ran.run()
-    result = only(ran).result
-    assert isinstance(result, Counterexample)
+    result = outcome(only(ran))
+    assert result.result is Result.COUNTEREXAMPLE
     assert result.detail == "AJPF found a run of 5 states that breaks it"
     assert result.trace is not None
     assert result.trace.actions == ("", "", "", "drive_on", "")
@@ -84,19 +78,19 @@ def test_what_ajpf_refutes_is_refuted_with_its_run(ran: Mcapl) -> None:
 
 
 @pytest.mark.parametrize(
-    ("said", "expected"),
+    ("outputs", "expected"),
     [
-        ({"R1_reach.jpf": (ENDING, 0)}, Vacuous("its control R1_reach holds")),
-        ({"R1_mutant.jpf": (ENDING, 0)}, Vacuous("the agent without the response keeps it too")),
-        ({"R1.jpf": ("", 0)}, NotChecked("R1.jpf: no verdict in the output, exit status 0")),
+        ({"R1_reach.jpf": (ENDING, 0)}, vacuous("its control R1_reach holds")),
+        ({"R1_mutant.jpf": (ENDING, 0)}, vacuous("the agent without the response keeps it too")),
+        ({"R1.jpf": ("", 0)}, not_checked("R1.jpf: no verdict in the output, exit status 0")),
     ],
 )
 def test_what_is_not_as_expected_shows_nothing(
-    ran: Mcapl, said: dict[str, tuple[str, int]], expected: Vacuous | NotChecked
+    ran: Mcapl, outputs: dict[str, tuple[str, int]], expected: Outcome
 ) -> None:
-    ran.says(said)
+    ran.says(outputs)
     ran.run()
-    assert only(ran).result == expected
+    assert outcome(only(ran)) == expected
 
 
 @pytest.mark.slow
@@ -105,29 +99,30 @@ def test_what_is_not_as_expected_shows_nothing(
 )
 def test_a_result_about_other_texts_is_stale(ran: Mcapl, name: str) -> None:
     changed(ran, lambda content: content["files"].update({name: "0" * 64}))
-    assert only(ran).result == NotChecked(f"{name} is not made like that any more: run AJPF again")
+    reason = f"{name} is not made like that any more: run AJPF again"
+    assert outcome(only(ran)) == not_checked(reason)
     changed(ran, lambda content: content["files"].pop(name))
-    assert isinstance(only(ran).result, NotChecked)
+    assert only(ran).result is Result.NOT_CHECKED
 
 
 def test_a_result_of_the_requirement_as_it_was_is_stale(ran: Mcapl) -> None:
     now = rule(R1.replace("whenever", "upon"))
-    result = only(ran, now).result
-    assert isinstance(result, NotChecked)
-    assert "SIF.psl" in result.reason
+    result = outcome(only(ran, now))
+    assert result.result is Result.NOT_CHECKED
+    assert "SIF.psl" in result.detail
     gone = rule(R1.replace("eventually", "always"))
-    result = only(ran, gone).result
-    assert isinstance(result, NotChecked)
-    assert result.reason.startswith("no bundle is made of R1 any more: F614 ")
+    result = outcome(only(ran, gone))
+    assert result.result is Result.NOT_CHECKED
+    assert result.detail.startswith("no bundle is made of R1 any more: F614 ")
 
 
 def test_a_stale_refutation_is_told_as_one(ran: Mcapl) -> None:
     ran.says({"R1.jpf": (RECORDED, 0)})
     ran.run()
     changed(ran, lambda content: content["files"].update({"SIF.gwen": "0" * 64}))
-    result = only(ran).result
-    assert isinstance(result, NotChecked)
-    assert result.reason.startswith("it was refuted; SIF.gwen is not made like that")
+    result = outcome(only(ran))
+    assert result.result is Result.NOT_CHECKED
+    assert result.detail.startswith("it was refuted; SIF.gwen is not made like that")
 
 
 @pytest.mark.parametrize(
@@ -142,7 +137,7 @@ def test_a_stale_refutation_is_told_as_one(ran: Mcapl) -> None:
 def test_a_result_without_its_controls_shows_nothing(ran: Mcapl, change: Change) -> None:
     changed(ran, change)
     line = only(ran)
-    assert line.result == NotChecked("it does not tell of what a bundle asks: run AJPF again")
+    assert outcome(line) == not_checked("it does not tell of what a bundle asks: run AJPF again")
 
 
 def test_the_conclusion_of_the_file_is_not_believed(ran: Mcapl) -> None:
@@ -151,7 +146,7 @@ def test_the_conclusion_of_the_file_is_not_believed(ran: Mcapl) -> None:
         content["checks"][0]["told"] = "VIOLATED"
 
     changed(ran, lie)
-    assert isinstance(only(ran).result, Counterexample)
+    assert only(ran).result is Result.COUNTEREXAMPLE
 
 
 @pytest.mark.parametrize("name", ["R1", "R1_reach", "R1_resp", "R1_mutant"])
@@ -159,7 +154,7 @@ def test_a_result_is_held_against_the_logs_that_lie_beside_it(ran: Mcapl, name: 
     log = ran.bundle / f"logs/{name}.jpf.txt"
     printed = log.read_bytes()
     log.write_bytes(printed + b"\n")
-    assert only(ran).result == NotChecked(
+    assert outcome(only(ran)) == not_checked(
         f"logs/{name}.jpf.txt is not what AJPF printed then: run AJPF again"
     )
     other = RECORDED if name == "R1" else ENDING
@@ -170,11 +165,11 @@ def test_a_result_is_held_against_the_logs_that_lie_beside_it(ran: Mcapl, name: 
         check["log_sha256"] = hashlib.sha256(log.read_bytes()).hexdigest()
 
     changed(ran, rehash)
-    found = only(ran).result
-    assert isinstance(found, NotChecked)
-    assert found.reason.endswith(f"and logs/{name}.jpf.txt does not")
+    result = outcome(only(ran))
+    assert result.result is Result.NOT_CHECKED
+    assert result.detail.endswith(f"and logs/{name}.jpf.txt does not")
     log.unlink()
-    assert isinstance(only(ran).result, Proved)
+    assert only(ran).result is Result.PROVED
 
 
 def test_an_agent_of_ones_own_counts_while_it_is_as_it_was(ran: Mcapl) -> None:
@@ -182,14 +177,14 @@ def test_an_agent_of_ones_own_counts_while_it_is_as_it_was(ran: Mcapl) -> None:
     own.write_text((ran.bundle / "SIF.gwen").read_text().replace("do_stopped", "brake"))
     assert ran.run("--agent", str(own)).returncode == 0
     line = only(ran)
-    assert isinstance(line.result, Proved)
+    assert line.result is Result.PROVED
     assert line.claim.startswith("AJPF: every run of the agent of mine.gwen (SHA-256 ")
     assert "mine.gwen" in line.artefacts
     assert "r1_ajpf/SIF.gwen" not in line.artefacts
     own.write_text("GWENDOLEN")
-    assert only(ran).result == NotChecked(f"the agent {own} was changed since: run AJPF again")
+    assert outcome(only(ran)) == not_checked(f"the agent {own} was changed since: run AJPF again")
     own.unlink()
-    assert isinstance(only(ran).result, NotChecked)
+    assert only(ran).result is Result.NOT_CHECKED
 
 
 @pytest.mark.parametrize(
@@ -202,10 +197,10 @@ def test_an_agent_of_ones_own_counts_while_it_is_as_it_was(ran: Mcapl) -> None:
 )
 def test_a_file_that_is_no_result_is_refused(tmp_path: Path, text: str, what: str) -> None:
     (tmp_path / "result.json").write_text(text)
-    found = read(str(tmp_path / "result.json"))
-    assert isinstance(found, Diagnostic)
-    assert found.code is Code.BAD_AJPF_RESULT
-    assert what in found.message
+    result = read(str(tmp_path / "result.json"))
+    assert isinstance(result, Diagnostic)
+    assert result.code is Code.BAD_AJPF_RESULT
+    assert what in result.message
 
 
 @pytest.mark.parametrize(
@@ -219,45 +214,44 @@ def test_a_file_that_is_no_result_is_refused(tmp_path: Path, text: str, what: st
 )
 def test_a_wrong_shape_within_is_refused(ran: Mcapl, change: Change) -> None:
     changed(ran, change)
-    found = read(str(ran.bundle / "result.json"))
-    assert isinstance(found, Diagnostic)
-    assert found.code is Code.BAD_AJPF_RESULT
+    result = read(str(ran.bundle / "result.json"))
+    assert isinstance(result, Diagnostic)
+    assert result.code is Code.BAD_AJPF_RESULT
 
 
 def test_a_result_about_another_requirement_is_told_and_does_not_count(ran: Mcapl) -> None:
-    lines, (told,) = evidence([rule(R1, id="R2")], [str(ran.bundle / "result.json")])
+    lines, (diagnostic,) = evidence([rule(R1, id="R2")], [str(ran.bundle / "result.json")])
     assert lines == ()
-    assert told.code is Code.FOREIGN_AJPF_RESULT
-    assert not told.is_error
+    assert diagnostic.code is Code.FOREIGN_AJPF_RESULT
+    assert not diagnostic.is_error
 
 
 def test_what_a_file_of_proofs_says_of_ajpf_gives_way_to_the_result_itself(ran: Mcapl) -> None:
     line = only(ran)
-    hashes = dict(line.artefacts)
-    old = Proof("R1", Layer.AJPF, line.claim, "vacuous", "before", (), line.engine, hashes)
-    other = Proof("R1", Layer.MONITOR, "c", "proved", "d", (), "e", {})
+    old = replace(line, result=Result.VACUOUS, detail="before")
+    other = replace(old, layer=Layer.MONITOR, result=Result.PROVED)
     assert [(p.layer, p.result) for p in merged([old, other], [line])] == [
         ("monitor", "proved"),
         ("ajpf", "proved"),
     ]
-    shown = Proof("R1", Layer.AJPF, line.claim, "proved", "before", (), line.engine, hashes)
-    (left,) = merged([shown], [])
+    green = replace(old, result=Result.PROVED)
+    (left,) = merged([green], [])
     assert (left.result, left.detail[:11]) == ("not checked", "it was prov")
-    red = Proof("R1", Layer.AJPF, line.claim, "counterexample", "before", (), line.engine, hashes)
+    red = replace(old, result=Result.COUNTEREXAMPLE)
     assert merged([red], []) == (red,)
 
 
 def test_a_weaker_property_does_not_show_the_requirement(ran: Mcapl) -> None:
-    made = rule("whenever too_close agilex_agent shall within 3 ticks satisfy stopped")
-    for artifact in emit([made], Options(weaken=True)):
+    formalized = rule("whenever too_close agilex_agent shall within 3 ticks satisfy stopped")
+    for artifact in emit([formalized], Options(weaken=True)):
         ran.write(ran.folder / artifact.path, artifact.text)
     assert ran.run().returncode == 0
-    result = only(ran, made).result
-    assert isinstance(result, NotChecked)
-    assert result.reason.startswith("what AJPF shows is weaker than R1: `within 3 ticks` has lost")
+    result = outcome(only(ran, formalized))
+    assert result.result is Result.NOT_CHECKED
+    assert result.detail.startswith("what AJPF shows is weaker than R1: `within 3 ticks` has lost")
     ran.says({"R1.jpf": (RECORDED, 0)})
     ran.run()
-    assert isinstance(only(ran, made).result, Counterexample)
+    assert only(ran, formalized).result is Result.COUNTEREXAMPLE
 
 
 # The commands ----------------------------------------------------------------------------------
@@ -269,8 +263,8 @@ def project(folder: Path) -> None:
 
 
 def planned(folder: Path) -> tuple[bool, str]:
-    found = json.loads((folder / "report.json").read_text())
-    (plan,) = (plan for plan in found["planned"] if plan["method"] == "ajpf")
+    report = json.loads((folder / "report.json").read_text())
+    (plan,) = (plan for plan in report["planned"] if plan["method"] == "ajpf")
     return plan["has_result"], plan["result"]
 
 

@@ -8,11 +8,12 @@ from pathlib import Path
 
 import pytest
 
-from compiler.logic.claims import Counterexample, Layer, NotChecked, Proved, Result
+from compiler.logic.claims import Layer, Outcome, Result, not_checked, proved
 from compiler.targets.dafny import text
 from fretc.verification.engines import crosshair
 from fretc.verification.engines.crosshair import with_crosshair
-from fretc.verification.engines.dafny import verified, with_dafny
+from fretc.verification.engines.dafny import answer as dafny_answer
+from fretc.verification.engines.dafny import with_dafny
 from tests.compiler.targets.test_dafny import (
     BINDINGS,
     CONDITIONS,
@@ -21,6 +22,7 @@ from tests.compiler.targets.test_dafny import (
     emitted,
     rule,
 )
+from tests.proofs import outcome
 
 needs_dafny = pytest.mark.skipif(shutil.which("dafny") is None, reason="Dafny is not installed")
 needs_crosshair = pytest.mark.skipif(
@@ -45,7 +47,7 @@ class Fake:
         self.folder = folder
         monkeypatch.setenv("PATH", f"{folder}:/usr/bin:/bin")
 
-    def says(self, body: str, version: str = "Dafny 2.3.0.10506", text: str = LEMMAS) -> Result:
+    def says(self, body: str, version: str = "Dafny 2.3.0.10506", text: str = LEMMAS) -> Outcome:
         old = version.startswith("Dafny")
         newer = "Dafny: Error: unknown switch: --version" if old else version
         script = (
@@ -56,19 +58,19 @@ class Fake:
         path = self.folder / "dafny"
         path.write_text(script)
         path.chmod(0o755)
-        return verified(text, seconds=2)[0]
+        return dafny_answer(text, seconds=2)[0]
 
 
 def test_all_verified_is_proved(dafny: Fake) -> None:
-    assert dafny.says(f'echo "{FINISHED} 2 verified, 0 errors"') == Proved(
+    assert dafny.says(f'echo "{FINISHED} 2 verified, 0 errors"') == proved(
         "2 parts verified, among them all 2 lemmas and methods"
     )
 
 
 def test_lines_that_debians_z3_adds_do_not_matter(dafny: Fake) -> None:
     noise = "Prover error: line 18 column 28: unknown parameter 'model_compress'"
-    found = dafny.says(f'echo "{noise}"; echo; echo "{FINISHED} 2 verified, 0 errors"')
-    assert isinstance(found, Proved)
+    answer = dafny.says(f'echo "{noise}"; echo; echo "{FINISHED} 2 verified, 0 errors"')
+    assert answer.result is Result.PROVED
 
 
 @pytest.mark.parametrize(
@@ -109,7 +111,7 @@ def test_lines_that_debians_z3_adds_do_not_matter(dafny: Fake) -> None:
     ],
 )
 def test_anything_else_is_not_checked(dafny: Fake, body: str, reason: str) -> None:
-    assert dafny.says(body) == NotChecked(reason)
+    assert dafny.says(body) == not_checked(reason)
 
 
 def test_dafny_4_is_asked_in_its_own_way(dafny: Fake) -> None:
@@ -118,8 +120,8 @@ def test_dafny_4_is_asked_in_its_own_way(dafny: Fake) -> None:
         f'[ "$*" = "verify --verification-time-limit=1 --allow-warnings text.dfy" ] || exit 9\n'
         f'echo; echo "{FINISHED} 5 verified, 0 errors"'
     )
-    found = dafny.says(body, version="4.9.1+abc")
-    assert found == Proved("5 parts verified, among them all 2 lemmas and methods")
+    answer = dafny.says(body, version="4.9.1+abc")
+    assert answer == proved("5 parts verified, among them all 2 lemmas and methods")
 
 
 def test_dafny_2_is_asked_in_its_own_way(dafny: Fake) -> None:
@@ -127,40 +129,40 @@ def test_dafny_2_is_asked_in_its_own_way(dafny: Fake) -> None:
         '[ "$*" = "/compile:0 /timeLimit:1 text.dfy" ] || exit 9\n'
         f'grep -q "lemma B" text.dfy && echo "{FINISHED} 2 verified, 0 errors"'
     )
-    assert isinstance(dafny.says(body), Proved)
+    assert dafny.says(body).result is Result.PROVED
 
 
 def test_a_program_without_a_version_is_not_dafny(dafny: Fake) -> None:
-    found = dafny.says(f'echo "{FINISHED} 2 verified, 0 errors"', version="Dafny")
-    assert found == NotChecked("`dafny` tells no version: it is not Dafny")
+    answer = dafny.says(f'echo "{FINISHED} 2 verified, 0 errors"', version="Dafny")
+    assert answer == not_checked("`dafny` tells no version: it is not Dafny")
 
 
 def test_without_dafny_nothing_is_known_and_what_to_do_is_said(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("PATH", str(tmp_path))
-    result, engine = verified(LEMMAS)
+    result, engine = dafny_answer(LEMMAS)
     assert engine == "Dafny"
-    assert isinstance(result, NotChecked)
-    assert result.reason.startswith("Dafny is not installed: put `dafny` on the PATH")
+    assert result.result is Result.NOT_CHECKED
+    assert result.detail.startswith("Dafny is not installed: put `dafny` on the PATH")
 
 
 def test_nothing_is_claimed_of_another_text(dafny: Fake) -> None:
     dafny.says(f'echo "{FINISHED} 99 verified, 0 errors"')
-    made = rule("whenever p robot shall within 5 ticks satisfy q")
-    good = text(made, None)
+    formalized = rule("whenever p robot shall within 5 ticks satisfy q")
+    good = text(formalized, None)
     for other in (good.replace("==>", "==> true ||"), good + "\n"):
-        found = with_dafny(made, other, None)
-        assert {type(one.result) for one in found} == {NotChecked}
-    assert {type(one.result) for one in with_dafny(made, good, None)} == {Proved}
+        proofs = with_dafny(formalized, other, None)
+        assert {one.result for one in proofs} == {Result.NOT_CHECKED}
+    assert {one.result for one in with_dafny(formalized, good, None)} == {Result.PROVED}
 
 
 def test_each_part_of_the_file_has_a_line_of_its_own(dafny: Fake) -> None:
     dafny.says(f'echo "{FINISHED} 99 verified, 0 errors"')
     declarations = bound()
-    made = rule("whenever p robot shall within 3 ticks satisfy q", declarations)
-    found = with_dafny(made, text(made, declarations), declarations)
-    assert [(one.layer, one.claim) for one in found] == [
+    formalized = rule("whenever p robot shall within 3 ticks satisfy q", declarations)
+    proofs = with_dafny(formalized, text(formalized, declarations), declarations)
+    assert [(one.layer, one.claim) for one in proofs] == [
         (
             Layer.MONITOR,
             "the counter of `within 3 ticks` is violated exactly where the definition is, "
@@ -178,13 +180,13 @@ def test_each_part_of_the_file_has_a_line_of_its_own(dafny: Fake) -> None:
         ),
         (Layer.BOUNDS, "never violated at the bound of 3 ticks and the declared delay of 4"),
     ]
-    assert [type(one.result) for one in found] == [Proved, Proved, Proved, NotChecked]
-    assert found[3].result == NotChecked(
+    assert [one.result for one in proofs] == [*["proved"] * 3, "not checked"]
+    assert outcome(proofs[3]) == not_checked(
         "the declared delay of 4 ticks is more than the bound of 3"
     )
-    assert found[0].engine == "Dafny 2.3.0.10506"
-    assert list(found[0].artefacts) == ["r1.dfy"]
-    assert found[3].assumptions[-2:] == (
+    assert proofs[0].engine == "Dafny 2.3.0.10506"
+    assert list(proofs[0].artefacts) == ["r1.dfy"]
+    assert proofs[3].assumptions[-2:] == (
         "reach = 1 ticks ([assume] latency and lost)",
         "braking = 3 ticks ([assume] braking)",
     )
@@ -193,8 +195,8 @@ def test_each_part_of_the_file_has_a_line_of_its_own(dafny: Fake) -> None:
 # Dafny ----------------------------------------------------------------------------------------
 
 
-def say(text: str) -> Result:
-    return verified(text, seconds=120)[0]
+def say(text: str) -> Outcome:
+    return dafny_answer(text, seconds=120)[0]
 
 
 @pytest.mark.slow
@@ -207,16 +209,16 @@ def test_dafny_verifies_monitors_at_any_bound() -> None:
     monitors = [emitted(one, None).partition("// Interceptor -")[0] for one in sentences]
     assert len(set(monitors)) == 7
     modules = [f"module M{i} {{\n{one}}}\n" for i, one in enumerate(monitors)]
-    assert isinstance(say("\n".join(modules)), Proved)
+    assert say("\n".join(modules)).result is Result.PROVED
 
 
 @pytest.mark.slow
 @needs_dafny
 def test_dafny_verifies_the_interceptor_and_the_loop() -> None:
     latching = BINDINGS.replace("[assume]", "latching = true\n\n[assume]")
-    found = emitted("when p robot shall within 20 ticks satisfy q", latching)
-    assert "NeverViolatedAsDeclared" in found
-    assert isinstance(say(found), Proved)
+    file = emitted("when p robot shall within 20 ticks satisfy q", latching)
+    assert "NeverViolatedAsDeclared" in file
+    assert say(file).result is Result.PROVED
 
 
 def replaced(text: str, old: str, new: str) -> str:
@@ -230,10 +232,10 @@ def test_dafny_rejects_mutants_of_the_monitor_and_of_the_plain_interceptor() -> 
     good = emitted("whenever p robot shall within 20 ticks satisfy q", None)
     late = replaced(good, "d.count == n)", "d.count == n + 1)")
     forwarding = replaced(late, "      out := ZERO;", "      out := command;")
-    found = say(forwarding)
-    assert isinstance(found, NotChecked)
-    assert "`InvariantHolds`" in found.reason
-    assert "`CommandCallback`" in found.reason
+    answer = say(forwarding)
+    assert answer.result is Result.NOT_CHECKED
+    assert "`InvariantHolds`" in answer.detail
+    assert "`CommandCallback`" in answer.detail
 
 
 @pytest.mark.slow
@@ -246,11 +248,11 @@ def test_dafny_rejects_an_interceptor_without_hold_and_a_loop_with_too_long_a_de
         "requires 1 <= braking && reach + braking <= n\n  requires 0",
         "requires 1 <= braking && reach + braking <= n + 1\n  requires 0",
     )
-    found = say(late)
-    assert isinstance(found, NotChecked)
-    assert "`HoldLasts`" in found.reason
-    assert "`StopCallback`" in found.reason
-    assert "`NeverViolated`" in found.reason
+    answer = say(late)
+    assert answer.result is Result.NOT_CHECKED
+    assert "`HoldLasts`" in answer.detail
+    assert "`StopCallback`" in answer.detail
+    assert "`NeverViolated`" in answer.detail
 
 
 # CrossHair ------------------------------------------------------------------------------------
@@ -280,22 +282,22 @@ def divided(x: int) -> float:
 @pytest.mark.slow
 @needs_crosshair
 def test_crosshair_confirms_and_refutes_contract_by_contract() -> None:
-    said: list[str] = []
-    found = with_crosshair(CORE, "R1", seconds=10, tell=said.append)
-    assert said == ["bounded", "divided"]
-    kept, broken = found[:2]
+    functions: list[str] = []
+    proofs = with_crosshair(CORE, "R1", seconds=10, progress=functions.append)
+    assert functions == ["bounded", "divided"]
+    kept, broken = proofs[:2]
     assert (kept.requirement, kept.layer) == ("R1", Layer.INTERCEPTOR)
-    assert (kept.claim, kept.result) == (
+    assert (kept.claim, outcome(kept)) == (
         "`bounded` keeps `0 <= __return__`",
-        Proved("confirmed over all paths"),
+        proved("confirmed over all paths"),
     )
     assert kept.engine.startswith("CrossHair 0.0.")
     assert broken.claim == "`bounded` keeps `__return__ <= 10`"
-    assert isinstance(broken.result, Counterexample)
-    assert "when calling bounded(" in broken.result.detail
-    raised = [one for one in found[2:] if isinstance(one.result, Counterexample)]
+    assert broken.result is Result.COUNTEREXAMPLE
+    assert "when calling bounded(" in broken.detail
+    raised = [one for one in proofs[2:] if one.result is Result.COUNTEREXAMPLE]
     assert raised
-    assert not any(isinstance(one.result, Proved) for one in found[2:])
+    assert not any(one.result is Result.PROVED for one in proofs[2:])
 
 
 @pytest.mark.slow
@@ -306,15 +308,15 @@ def test_what_crosshair_does_not_confirm_is_not_checked() -> None:
         "    pre: x > 2 and y > 2 and z > 2\n    post: __return__\n"
         '    """\n    return x**3 + y**3 != z**3\n'
     )
-    (found,) = with_crosshair(hard, seconds=1)
-    assert isinstance(found.result, NotChecked)
+    (proof,) = with_crosshair(hard, seconds=1)
+    assert proof.result is Result.NOT_CHECKED
 
 
 def test_a_core_that_is_no_module_is_not_checked() -> None:
     failing = CORE.replace("def bounded", "raise ImportError\n\n\ndef bounded")
-    found = with_crosshair(failing, seconds=1)
-    assert found
-    assert not any(isinstance(one.result, Proved) for one in found)
+    proofs = with_crosshair(failing, seconds=1)
+    assert proofs
+    assert not any(one.result is Result.PROVED for one in proofs)
 
 
 def test_without_crosshair_each_contract_is_not_checked(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -322,14 +324,14 @@ def test_without_crosshair_each_contract_is_not_checked(monkeypatch: pytest.Monk
         raise PackageNotFoundError(name)
 
     monkeypatch.setattr(crosshair, "version", absent)
-    found = with_crosshair(CORE)
-    assert [one.claim for one in found] == [
+    proofs = with_crosshair(CORE)
+    assert [one.claim for one in proofs] == [
         "`bounded` keeps `0 <= __return__`",
         "`bounded` keeps `__return__ <= 10`",
         "`divided` keeps `True`",
     ]
     reason = "CrossHair is not installed: pip install 'fretc[crosshair]'"
-    assert {one.result for one in found} == {NotChecked(reason)}
+    assert {outcome(one) for one in proofs} == {not_checked(reason)}
 
 
 KEEPING = '''\
@@ -356,9 +358,9 @@ def kept(command: Velocity) -> Velocity:
 
 @needs_crosshair
 def test_velocities_that_nobody_looks_into_are_whole_numbers_for_crosshair() -> None:
-    (found,) = with_crosshair(KEEPING, seconds=10)
-    assert found.result == Proved("confirmed over all paths")
-    assert found.assumptions == (
+    (proof,) = with_crosshair(KEEPING, seconds=10)
+    assert outcome(proof) == proved("confirmed over all paths")
+    assert proof.assumptions == (
         "the numbers of a velocity are whole; no function names one of them",
     )
 
@@ -387,6 +389,6 @@ def test_crosshair_confirms_a_step_of_the_interceptor() -> None:
     alone = core.replace("    post:", "    told:").replace(
         "told: __return__ == (0", "post: __return__ == (0"
     )
-    (found,) = with_crosshair(alone, seconds=20)
-    assert found.result == Proved("confirmed over all paths")
-    assert found.claim == "`expired` keeps `__return__ == (0 < timeout <= age)`"
+    (proof,) = with_crosshair(alone, seconds=20)
+    assert outcome(proof) == proved("confirmed over all paths")
+    assert proof.claim == "`expired` keeps `__return__ == (0 < timeout <= age)`"

@@ -64,8 +64,8 @@ def test_memory_is_limited() -> None:
 
 
 def test_a_crash_is_told() -> None:
-    found = confined(DEFAULT, die)
-    assert found == Stopped("the process crashed (signal 11); it may have had too little memory")
+    answer = confined(DEFAULT, die)
+    assert answer == Stopped("the process crashed (signal 11); it may have had too little memory")
 
 
 def test_the_program_itself_is_not_executed_once_more(tmp_path: Path) -> None:

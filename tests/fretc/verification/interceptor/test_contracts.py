@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from compiler.logic.claims import Counterexample, Evidence, Layer, NotChecked, Proved
+from compiler.logic.claims import Layer, Proof, Result, proved
 from compiler.project.interceptor_options import options as counted
 from compiler.targets.python.interceptor import text
 from fretc.verification.interceptor.contracts import contracts
@@ -16,6 +16,7 @@ from fretc.verification.interceptor.machine import Gate, NotAnInterceptorError
 from fretish.bindings.declarations import Form, Interception
 from monitors.interceptor import Options
 from tests.loops import interceptor_options
+from tests.proofs import outcome
 
 MS = 1_000_000
 NODE = Interception(
@@ -65,39 +66,39 @@ def mutant(*changes: tuple[str, str], of: str = EMITTED) -> str:
     return of
 
 
-def refuted(found: tuple[Evidence, ...]) -> set[str]:
-    assert all(isinstance(e.result, Proved | Counterexample) for e in found), found[0].result
-    return {e.claim for e in found if isinstance(e.result, Counterexample)}
+def refuted(proofs: tuple[Proof, ...]) -> set[str]:
+    assert all(e.result in ("proved", "counterexample") for e in proofs), proofs[0].result
+    return {e.claim for e in proofs if e.result is Result.COUNTEREXAMPLE}
 
 
 def reason(text: str, options: Options = OPTIONS) -> str:
-    (result,) = {e.result for e in contracts(text, options)}
-    assert isinstance(result, NotChecked)
-    return result.reason
+    (result,) = {outcome(e) for e in contracts(text, options)}
+    assert result.result is Result.NOT_CHECKED
+    return result.detail
 
 
 def test_the_emitted_interceptor_keeps_every_contract() -> None:
     assert counted(NODE) == OPTIONS
-    found = contracts(EMITTED, OPTIONS)
-    assert [e.claim for e in found] == [
+    proofs = contracts(EMITTED, OPTIONS)
+    assert [e.claim for e in proofs] == [
         FIRST, SETS, PASSES, STOPPED, AT_ONCE, HOLD, NO_STOP, NO_SCAN, NO_COMMAND,
         NOTHING_ELSE, SPEAKS, REPEATS, RANGE,
     ]  # fmt: skip
-    assert {e.result for e in found} == {Proved("225 states, 1125 steps")}
-    assert {e.layer for e in found} == {Layer.INTERCEPTOR}
-    assert found[0].assumptions == (
+    assert {outcome(e) for e in proofs} == {proved("225 states, 1125 steps")}
+    assert {e.layer for e in proofs} == {Layer.INTERCEPTOR}
+    assert proofs[0].assumptions == (
         "the ROS node hands every message to the core, one at a time, and publishes what it says",
         "the timer rings at every period in [interceptor]",
     )
 
 
 def test_the_papers_interceptor_keeps_its_own() -> None:
-    found = contracts(text(PAPER, "bindings.toml"), counted(PAPER))
-    assert [e.claim for e in found] == [
+    proofs = contracts(text(PAPER, "bindings.toml"), counted(PAPER))
+    assert [e.claim for e in proofs] == [
         FIRST, LATCHES, PASSES, STOPPED, FOR_EVER, NOTHING_ELSE, ONLY_THEN, RANGE,
     ]  # fmt: skip
-    assert refuted(found) == set()
-    assert found[0].assumptions[1:] == ("no silence is noticed: form = event in [interceptor]",)
+    assert refuted(proofs) == set()
+    assert proofs[0].assumptions[1:] == ("no silence is noticed: form = event in [interceptor]",)
 
 
 @pytest.mark.parametrize("latching", [False, True])
@@ -233,8 +234,8 @@ def test_equal_numbers_that_add_up_differently_are_not_one_state(
         ),
         (OBEYS, f"stop=requested and {sum_} {obeys} 9007199254740992"),
     )
-    found = {e.claim: e.result for e in contracts(changed, OPTIONS)}
-    assert not isinstance(found[SETS], Proved)
+    results = {e.claim: e.result for e in contracts(changed, OPTIONS)}
+    assert results[SETS] is not Result.PROVED
 
 
 def test_zero_in_whole_numbers_is_none() -> None:
@@ -260,35 +261,35 @@ def test_a_latch_that_releases_is_told() -> None:
     assert refuted(contracts(lost, counted(latching))) == {LATCHES, FOR_EVER, PASSES}
 
 
-def replayed(text: str, options: Options, evidence: Evidence) -> list[tuple[str, Any]]:
+def replayed(text: str, options: Options, evidence: Proof) -> list[tuple[str, Any]]:
     """What the text says when the run of a counterexample is given to it with true velocities."""
-    assert isinstance(evidence.result, Counterexample)
-    assert evidence.result.trace is not None
+    assert evidence.result is Result.COUNTEREXAMPLE
+    assert evidence.run is not None
     read = core(text)
     assert isinstance(read, Core)
     module = read.module
     state, out = module.initial(module.OPTIONS), []
-    for i, action in enumerate(evidence.result.trace.actions):
-        heard, _, said = action.partition(": ")
+    for i, action in enumerate(evidence.run.actions):
+        event, _, output = action.partition(": ")
         message = {
             STOP: module.StopHeard(True),
             RELEASE: module.StopHeard(False),
             COMMAND: module.CommandHeard(module.Velocity(i + 1.0)),
             SCAN: module.ScanHeard(),
             RING: module.TimerRang(),
-        }[heard]
+        }[event]
         state, command = module.step(state, message, module.OPTIONS)
-        out.append((said, None if command is None else command.vx))
+        out.append((output, None if command is None else command.vx))
     return out
 
 
 def test_a_counterexample_is_a_shortest_run_that_can_be_replayed() -> None:
     text = mutant(*MUTANTS["forgets the watchdog of the sensor"][0])
-    found = next(e for e in contracts(text, OPTIONS) if e.claim == NO_SCAN)
-    assert isinstance(found.result, Counterexample)
-    assert found.result.detail == "a run of 2 steps breaks it"
-    assert found.result.trace is not None
-    assert found.result.trace.names == (
+    proof = next(e for e in contracts(text, OPTIONS) if e.claim == NO_SCAN)
+    assert proof.result is Result.COUNTEREXAMPLE
+    assert proof.detail == "a run of 2 steps breaks it"
+    assert proof.run is not None
+    assert proof.run.names == (
         "stop requested",
         "must stand",
         "zero",
@@ -297,11 +298,11 @@ def test_a_counterexample_is_a_shortest_run_that_can_be_replayed() -> None:
         "scan silent",
         "command silent",
     )
-    assert found.result.trace.rows == (
+    assert proof.run.rows == (
         (False, True, False, False, False, True, True),
         (False, True, False, True, False, True, False),
     )
-    assert replayed(text, OPTIONS, found) == [
+    assert replayed(text, OPTIONS, proof) == [
         ("nothing is published", None),
         ("the last command is published", 2.0),
     ]
@@ -312,17 +313,17 @@ def test_a_counterexample_is_a_shortest_run_that_can_be_replayed() -> None:
 def test_every_counterexample_replays(name: str) -> None:
     changed = mutant(*MUTANTS[name][0])
     for evidence in contracts(changed, OPTIONS):
-        if isinstance(evidence.result, Counterexample):
-            for said, command in replayed(changed, OPTIONS, evidence):
-                told = {None: "nothing is published", 0.0: "zero is published"}.get(command)
-                assert said == told or (told is None and said.endswith("is published"))
+        if evidence.result is Result.COUNTEREXAMPLE:
+            for words, command in replayed(changed, OPTIONS, evidence):
+                why = {None: "nothing is published", 0.0: "zero is published"}.get(command)
+                assert words == why or (why is None and words.endswith("is published"))
 
 
 # What is not checked --------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize(
-    ("old", "new", "told"),
+    ("old", "new", "why"),
     [
         (SCANNED, "    print(state)\n    return state, None", "`print(state)`"),
         (SCANNED, "    state.held = 0\n    return state, None", "`state.held = 0`"),
@@ -359,17 +360,17 @@ def test_every_counterexample_replays(name: str) -> None:
         ("class ScanHeard:", "class ScanHeard(metaclass=type):", "`@dataclass"),
     ],
 )  # fmt: skip
-def test_a_core_that_may_not_be_pure_is_not_executed(old: str, new: str, told: str) -> None:
+def test_a_core_that_may_not_be_pure_is_not_executed(old: str, new: str, why: str) -> None:
     """By none of those that explore it."""
     changed = mutant((old, new))
     if "HOLD" in new:
         changed = mutant((SCANNED, "    return replace(state, held=HOLD.hold), None"), of=changed)
-    found = reason(changed)
-    assert found.startswith("its core is not as fretc can read it: ")
-    assert told in found or not new
+    message = reason(changed)
+    assert message.startswith("its core is not as fretc can read it: ")
+    assert why in message or not new
     with pytest.raises(NotAnInterceptorError) as refused:
         Gate(changed, interceptor_options())
-    assert str(refused.value) == found
+    assert str(refused.value) == message
 
 
 @pytest.mark.parametrize(
@@ -393,7 +394,7 @@ def test_a_node_that_changes_the_core_is_told(line: str) -> None:
 
 
 @pytest.mark.parametrize(
-    ("changes", "told"),
+    ("changes", "why"),
     [
         (
             ((PASSED, "return after, ZERO if command == ZERO else command"),),
@@ -429,19 +430,19 @@ def test_a_node_that_changes_the_core_is_told(line: str) -> None:
     ],
 )
 def test_where_nothing_can_be_said_the_reason_is(
-    changes: tuple[tuple[str, str], ...], told: str
+    changes: tuple[tuple[str, str], ...], why: str
 ) -> None:
-    (result,) = {e.result for e in contracts(mutant(*changes), OPTIONS, most=3000)}
-    assert isinstance(result, NotChecked)
-    assert result.reason.startswith(told)
+    (result,) = {outcome(e) for e in contracts(mutant(*changes), OPTIONS, most=3000)}
+    assert result.result is Result.NOT_CHECKED
+    assert result.detail.startswith(why)
 
 
 def test_the_core_ends_where_the_node_begins() -> None:
-    found = head(EMITTED)
-    assert isinstance(found, Head)
-    assert EMITTED.startswith(found.text)
-    assert found.text.rstrip().endswith("# latching = false\n)")
-    assert head(found.text) == found
+    core = head(EMITTED)
+    assert isinstance(core, Head)
+    assert EMITTED.startswith(core.text)
+    assert core.text.rstrip().endswith("# latching = false\n)")
+    assert head(core.text) == core
 
 
 def test_a_text_that_is_no_interceptor_is_not_checked() -> None:

@@ -1,7 +1,7 @@
 # ruff: noqa: E501, RUF001
 """Interceptors that fly otherwise than what is explored of them, or run code while they are looked at.
 
-None of them may be proved, or executed before it is shown to be pure.
+None of them may be proved, or executed before a proof that it is pure.
 """
 
 import builtins
@@ -14,14 +14,14 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from compiler.logic.claims import Proved
+from compiler.logic.claims import Result
 from compiler.targets.python import interceptor
-from fretc.verification.engines.crosshair import stated
+from fretc.verification.engines.crosshair import contract_texts
 from fretc.verification.interceptor.contracts import contracts
 from fretc.verification.interceptor.file import Head, core, head, otherwise
 from fretc.verification.interceptor.machine import (
+    Event,
     Gate,
-    Heard,
     NotAnInterceptorError,
 )
 from fretish.bindings.declarations import Form, Interception
@@ -181,8 +181,8 @@ def test_the_loop_does_not_take_it(name: str) -> None:
         gate = Gate(TEXTS[name], SETTINGS)
         states = [gate.initial]
         for state in states:  # grows while it is read
-            found = (gate.hear(state, heard)[0] for heard in Heard)
-            states += [after for after in dict.fromkeys(found) if after not in states]
+            reached = (gate.step(state, event)[0] for event in Event)
+            states += [after for after in dict.fromkeys(reached) if after not in states]
     except NotAnInterceptorError:
         taken = False
     assert not Path("PWNED").exists(), "it was executed"
@@ -191,9 +191,9 @@ def test_the_loop_does_not_take_it(name: str) -> None:
 
 @pytest.mark.parametrize("name", TEXTS)
 def test_the_contracts_are_not_proved_of_it(name: str) -> None:
-    found = contracts(TEXTS[name], OPTIONS)
+    proofs = contracts(TEXTS[name], OPTIONS)
     assert not Path("PWNED").exists(), "it was executed"
-    assert not all(isinstance(one.result, Proved) for one in found)
+    assert not all(one.result is Result.PROVED for one in proofs)
 
 
 @pytest.mark.parametrize(
@@ -231,14 +231,14 @@ def bound_by_node(text: str) -> set[str]:
 def with_helper(name: str, text: str = BASE) -> str:
     """A core whose `halted` asks a helper of that name, and is right as long as it is its own."""
     helper = f"def {name}(stop: bool) -> bool:\n    return not stop\n\n\n"
-    told = sub(
+    changed = sub(
         "        state.stop\n        or", f"        not {name}(state.stop)\n        or", text
     )
-    return sub("def halted(", f"{helper}def halted(", told)
+    return sub("def halted(", f"{helper}def halted(", changed)
 
 
 def all_proved(text: str) -> bool:
-    return all(isinstance(one.result, Proved) for one in contracts(text, OPTIONS))
+    return all(one.result is Result.PROVED for one in contracts(text, OPTIONS))
 
 
 def test_a_helper_with_a_name_of_its_own_changes_nothing() -> None:
@@ -252,14 +252,14 @@ def test_a_core_binds_no_name_that_its_node_binds_or_calls(name: str) -> None:
 
 
 def test_the_names_of_nodes_are_those_that_a_core_is_tempted_by() -> None:
-    found = set().union(*map(bound_by_node, NODES))
-    assert {"isfinite", "twist", "velocity", "main", "Gate", "Node", "PERIOD", "sys"} <= found
+    names = set().union(*map(bound_by_node, NODES))
+    assert {"isfinite", "twist", "velocity", "main", "Gate", "Node", "PERIOD", "sys"} <= names
 
 
 @pytest.mark.parametrize("name", ["isfinite", "twist", "velocity", "Node", "all", "print"])
 def test_neither_engine_takes_a_core_that_shadows_its_node(name: str) -> None:
     text = with_helper(name)
-    assert not any(isinstance(one.result, Proved) for one in contracts(text, OPTIONS))
+    assert not any(one.result is Result.PROVED for one in contracts(text, OPTIONS))
     with pytest.raises(NotAnInterceptorError):
         Gate(text, SETTINGS)
 
@@ -285,7 +285,7 @@ def test_a_velocity_has_its_six_numbers_and_no_others(old: str, new: str) -> Non
     """The node makes one of six numbers and takes it apart by their places."""
     text = sub(old, new)
     assert isinstance(head(text), str)
-    assert not any(isinstance(one.result, Proved) for one in contracts(text, OPTIONS))
+    assert not any(one.result is Result.PROVED for one in contracts(text, OPTIONS))
 
 
 @pytest.mark.parametrize(
@@ -305,8 +305,8 @@ def test_a_velocity_has_its_six_numbers_and_no_others(old: str, new: str) -> Non
 def test_a_node_that_differs_in_anything_is_not_the_one_that_is_declared(
     old: str, new: str
 ) -> None:
-    told = otherwise(sub(old, new), DECLARED)
-    assert told == "its node is not one that fretc writes for these bindings: emit it again"
+    deviation = otherwise(sub(old, new), DECLARED)
+    assert deviation == "its node is not one that fretc writes for these bindings: emit it again"
 
 
 def test_the_core_and_comments_may_differ() -> None:
@@ -517,4 +517,4 @@ def test_a_contract_that_is_not_of_fretc_is_seen(name: str, line: str) -> None:
     quoted = after.partition('"""')
     changed = f'{before}{name}{quoted[0]}"""{line}\n\n    {quoted[2]}'
     assert isinstance(head(changed), Head), "it is pure all the same"
-    assert stated(changed) != stated(BASE)
+    assert contract_texts(changed) != contract_texts(BASE)

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import pytest
 
-from compiler.logic.claims import Counterexample, NotChecked, Proved
+from compiler.logic.claims import Result, not_checked, proved
 from fretc.verification.loop import abstraction as looptwin
 from fretc.verification.loop import bounds
 from fretc.verification.loop.abstraction import Numbers, Plain, Times, covered
@@ -31,10 +31,10 @@ def question(
 
 @pytest.mark.slow
 def test_a_bound_that_is_long_enough() -> None:
-    found = search(question(WITHIN.format(4)))
-    assert isinstance(found.answered, Proved)
-    assert found.answered.detail.startswith("by an inductive invariant; ")
-    assert found.enough == Proved(
+    answer = search(question(WITHIN.format(4)))
+    assert answer.answered.result is Result.PROVED
+    assert answer.answered.detail.startswith("by an inductive invariant; ")
+    assert answer.enough == proved(
         "the least that is kept is 4 ticks (400 ms); with one tick less a run of 5 ticks "
         "violates it"
     )
@@ -42,18 +42,18 @@ def test_a_bound_that_is_long_enough() -> None:
 
 @pytest.mark.slow
 def test_a_bound_that_is_a_tick_too_short_is_shown_by_a_run() -> None:
-    found = search(question(WITHIN.format(3)))
-    assert isinstance(found.answered, Proved), "the law holds all the same"
-    assert isinstance(found.enough, Counterexample)
-    assert found.enough.detail == "the least that is kept is 4 ticks (400 ms)"
-    assert found.enough.trace is not None
-    assert len(found.enough.trace.rows) == 5
+    answer = search(question(WITHIN.format(3)))
+    assert answer.answered.result is Result.PROVED, "the law holds all the same"
+    assert answer.enough.result is Result.COUNTEREXAMPLE
+    assert answer.enough.detail == "the least that is kept is 4 ticks (400 ms)"
+    assert answer.enough.trace is not None
+    assert len(answer.enough.trace.rows) == 5
 
 
 @pytest.mark.slow
 def test_without_a_bound_the_least_is_told() -> None:
-    found = search(question(EVENTUALLY))
-    assert found.enough == Proved("the least that is kept is 4 ticks (400 ms)")
+    answer = search(question(EVENTUALLY))
+    assert answer.enough == proved("the least that is kept is 4 ticks (400 ms)")
 
 
 @pytest.mark.slow
@@ -69,16 +69,16 @@ def test_without_a_bound_the_least_is_told() -> None:
     ],
 )
 def test_the_least_bound_is_the_one_that_is_proved(channel: Channel, least: int) -> None:
-    found = search(question(EVENTUALLY, interceptor_options(), channel))
-    assert isinstance(found.enough, Proved)
-    assert found.enough.detail.startswith(f"the least that is kept is {least} tick")
+    answer = search(question(EVENTUALLY, interceptor_options(), channel))
+    assert answer.enough.result is Result.PROVED
+    assert answer.enough.detail.startswith(f"the least that is kept is {least} tick")
 
 
 def test_a_loop_that_does_something_else_is_not_checked() -> None:
     wrong = edited(
         CORE, "return after, ZERO if halted(after, options) else command", "return after, command"
     )
-    reason = NotChecked("the loop does what its model in whole numbers does not")
+    reason = not_checked("the loop does what its model in whole numbers does not")
     assert search(question(WITHIN.format(4), core=wrong)) == Answer(reason, reason)
 
 
@@ -100,13 +100,12 @@ def test_small_times_say_nothing_of_long_ones_where_the_core_is_another() -> Non
     for old, new in FORGETS:
         core = edited(core, old, new)
     small = search(question(WITHIN.format(4), interceptor_options(hold=1), core=core))
-    assert isinstance(small.enough, Proved), "under the declared times it is as good as any"
-    assert isinstance(small.answered, NotChecked)
-    assert small.answered.reason.startswith("the interceptor's core is not the one that fretc")
+    assert small.enough.result is Result.PROVED, "under the declared times it is as good as any"
+    assert small.answered.result is Result.NOT_CHECKED
+    assert small.answered.detail.startswith("the interceptor's core is not the one that fretc")
     large = Channel(1, latency=2, lost=40, braking=4)
-    assert not isinstance(
-        search(question(EVENTUALLY, interceptor_options(hold=1), large, core)).enough, Proved
-    )
+    answer = search(question(EVENTUALLY, interceptor_options(hold=1), large, core))
+    assert answer.enough.result is not Result.PROVED
 
 
 def test_a_twin_that_promises_too_much_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -139,11 +138,11 @@ def test_an_invariant_that_is_too_strong_is_not_proved(monkeypatch: pytest.Monke
 
     real = bounds._invariant
     monkeypatch.setattr(bounds, "_invariant", too_strong)
-    found = search(question(EVENTUALLY, interceptor_options(), Channel(1)))
-    assert found.answered == NotChecked("of the invariant: a step does not keep it")
+    answer = search(question(EVENTUALLY, interceptor_options(), Channel(1)))
+    assert answer.answered == not_checked("of the invariant: a step does not keep it")
 
 
 def test_without_z3_it_is_told_how_to_get_it(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(bounds, "find_spec", lambda _: None)
-    reason = NotChecked("z3 is not installed: pip install 'fretc[bounds]'")
+    reason = not_checked("z3 is not installed: pip install 'fretc[bounds]'")
     assert search(question(EVENTUALLY)) == Answer(reason, reason)

@@ -5,7 +5,7 @@ from typing import Any, NamedTuple
 
 import pytest
 
-from fretc.verification.interceptor.machine import Heard
+from fretc.verification.interceptor.machine import Event
 from fretc.verification.loop.model import Channel, Node, Wheels
 from fretc.verification.loop.search import Case, Parts
 from monitors.interceptor import Options
@@ -44,7 +44,7 @@ class Simulation:
         self.phase = self.choose.randint(1, PERIOD)
         self.since: int | None = -(10**6)
         self.flying: list[tuple[int, bool]] = []
-        self.losses, self.said, self.now = 0, False, 0
+        self.losses, self.last, self.now = 0, False, 0
         self.ticks, self.spoke = 0, 0
         self.regular = seed % 2 == 0
 
@@ -75,9 +75,9 @@ class Simulation:
 
     def _send(self, request: bool) -> None:
         tick, self.ticks = self.ticks, self.ticks + 1
-        if self.channel.edge and request == self.said and not self._beats(tick):
+        if self.channel.edge and request == self.last and not self._beats(tick):
             return
-        self.said, self.spoke = request, tick
+        self.last, self.spoke = request, tick
         if self.losses < self.channel.lost and self.choose.random() < 0.5:
             self.losses += 1
             return
@@ -87,7 +87,7 @@ class Simulation:
         self.flying.append((self.choose.randint(min(earliest, latest), latest), request))
 
     def _beats(self, tick: int) -> bool:
-        """At its own times, whatever was said between; or counted from what was said last."""
+        """At its own times, whatever the messages between; or counted from the last message."""
         beat = self.channel.heartbeat
         if not beat:
             return False
@@ -187,8 +187,8 @@ def test_a_run_says_what_is_heard_in_its_order() -> None:
         if after.wheels.still < 0 and tick.letter == (False, True)
     )
     assert loop.word(loop.initial, tick, after) == (
-        Heard.RELEASE,
-        Heard.MOVE,
-        Heard.RING,
+        Event.RELEASE,
+        Event.MOVE,
+        Event.RING,
         None,
     )

@@ -5,14 +5,7 @@ from dataclasses import replace
 import pytest
 
 from compiler.logic import formula as f
-from compiler.logic.claims import (
-    Counterexample,
-    NotChecked,
-    Proved,
-    Result,
-    Vacuous,
-    status,
-)
+from compiler.logic.claims import Outcome, Result, not_checked, vacuous
 from fretc.verification.loop.model import Channel
 from fretc.verification.loop.search import is_safety, search
 from monitors.interceptor import Options
@@ -31,12 +24,12 @@ from tests.loops import (
 EDGE = Channel(1, edge=True)
 
 
-def trace(result: Result) -> list[str]:
+def trace(outcome: Outcome) -> list[str]:
     """The rows of a run as digits, each with what happened."""
-    assert isinstance(result, Counterexample)
-    assert result.trace is not None
-    digits = ("".join("-" if v is None else str(int(v)) for v in row) for row in result.trace.rows)
-    return [f"{row} {action}" for row, action in zip(digits, result.trace.actions, strict=True)]
+    assert outcome.result is Result.COUNTEREXAMPLE
+    assert outcome.trace is not None
+    rows = ["".join("-" if v is None else str(int(v)) for v in row) for row in outcome.trace.rows]
+    return [f"{row} {action}" for row, action in zip(rows, outcome.trace.actions, strict=True)]
 
 
 # The loops of the paper and their mends -------------------------------------------------------
@@ -56,26 +49,26 @@ def trace(result: Result) -> list[str]:
 def test_what_each_loop_keeps_within_two_ticks(
     settings: Options, channel: Channel, kept: str, released: str
 ) -> None:
-    found = search(case(WITHIN.format(2), settings, channel))
-    assert (status(found.kept), status(found.released)) == (kept, released)
+    results = search(case(WITHIN.format(2), settings, channel))
+    assert (results.kept.result, results.released.result) == (kept, released)
 
 
 def test_without_a_bound_only_what_is_sent_once_is_lost() -> None:
-    found = {
-        lost: status(search(case(EVENTUALLY, TIMER, Channel(1, lost=2, edge=edge))).kept)
+    results = {
+        lost: search(case(EVENTUALLY, TIMER, Channel(1, lost=2, edge=edge))).kept.result
         for lost, edge in (("level", False), ("edge", True))
     }
-    assert found == {"level": "proved", "edge": "counterexample"}
+    assert results == {"level": "proved", "edge": "counterexample"}
 
 
 def test_a_heartbeat_mends_what_is_lost_on_change_only() -> None:
     """Two messages may be lost, three ticks apart: after six ticks the third one is heard."""
     lossy = Channel(1, lost=2, edge=True, heartbeat=3)
-    found = {n: search(case(WITHIN.format(n), TIMER, lossy)) for n in (6, 7)}
-    assert (status(found[6].kept), status(found[7].kept)) == ("counterexample", "proved")
-    assert status(found[7].released) == "proved"
-    assert status(search(case(EVENTUALLY, TIMER, lossy)).kept) == "proved"
-    assert trace(found[6].kept)[1:] == [
+    results = {n: search(case(WITHIN.format(n), TIMER, lossy)) for n in (6, 7)}
+    assert (results[6].kept.result, results[7].kept.result) == ("counterexample", "proved")
+    assert results[7].released.result == "proved"
+    assert search(case(EVENTUALLY, TIMER, lossy)).kept.result == "proved"
+    assert trace(results[6].kept)[1:] == [
         "101-01 a stop is requested, and the message is lost",
         "001-01 a stop is requested, and no message is sent",
         "001-01 a stop is requested, and no message is sent",
@@ -90,8 +83,8 @@ def test_a_heartbeat_mends_what_is_lost_on_change_only() -> None:
 def test_a_watchdog_lets_go_where_the_heartbeat_is_faster(timeout: int, released: str) -> None:
     """Two cells to a tick: three ticks of silence, and no more."""
     beating = Channel(2, edge=True, heartbeat=3)
-    found = search(case(WITHIN.format(3), interceptor_options(stop_timeout=timeout), beating))
-    assert (status(found.kept), status(found.released)) == ("proved", released)
+    results = search(case(WITHIN.format(3), interceptor_options(stop_timeout=timeout), beating))
+    assert (results.kept.result, results.released.result) == ("proved", released)
 
 
 def test_a_heartbeat_of_one_tick_speaks_at_every_tick() -> None:
@@ -99,13 +92,13 @@ def test_a_heartbeat_of_one_tick_speaks_at_every_tick() -> None:
         search(case(WITHIN.format(3), TIMER, channel)).kept
         for channel in (Channel(1, lost=2), Channel(1, lost=2, edge=True, heartbeat=1))
     }
-    (result,) = {status(one) for one in traces}
+    (result,) = {one.result for one in traces}
     assert result == "proved"
 
 
 def test_the_latch_of_the_paper_lets_the_wheels_turn_where_the_planner_falls_silent() -> None:
-    found = search(case(WITHIN.format(2), LATCH, EDGE))
-    assert trace(found.kept) == [
+    results = search(case(WITHIN.format(2), LATCH, EDGE))
+    assert trace(results.kept) == [
         "010-01 no stop is requested; a command to move is heard",
         "101111 a stop is requested, and the message is sent; `true` is heard",
         "001-11 a stop is requested, and no message is sent",
@@ -114,15 +107,15 @@ def test_the_latch_of_the_paper_lets_the_wheels_turn_where_the_planner_falls_sil
 
 
 def test_without_a_bound_that_run_has_no_end() -> None:
-    found = search(case(EVENTUALLY, LATCH, EDGE)).kept
-    assert trace(found) == [
+    kept = search(case(EVENTUALLY, LATCH, EDGE)).kept
+    assert trace(kept) == [
         "010-01 no stop is requested; a command to move is heard",
         "101111 a stop is requested, and the message is sent; `true` is heard",
         "001-11 a stop is requested, and no message is sent",
     ]
-    assert isinstance(found, Counterexample)
-    assert found.trace is not None
-    assert (found.trace.names, found.trace.cycle) == (
+    assert kept.result is Result.COUNTEREXAMPLE
+    assert kept.trace is not None
+    assert (kept.trace.names, kept.trace.cycle) == (
         ("near", "stopped", "request", "delivered", "halt", "wheels"),
         2,
     )
@@ -130,8 +123,8 @@ def test_without_a_bound_that_run_has_no_end() -> None:
 
 def test_a_loop_that_loses_two_messages_keeps_a_bound_of_three() -> None:
     lossy = Channel(1, lost=2)
-    found = {n: status(search(case(WITHIN.format(n), TIMER, lossy)).kept) for n in (2, 3)}
-    assert found == {2: "counterexample", 3: "proved"}
+    results = {n: search(case(WITHIN.format(n), TIMER, lossy)).kept.result for n in (2, 3)}
+    assert results == {2: "counterexample", 3: "proved"}
     assert trace(search(case(WITHIN.format(2), TIMER, lossy)).kept)[1:] == [
         "101-01 a stop is requested, and the message is lost",
         "001-01 a stop is requested, and the message is lost",
@@ -150,10 +143,10 @@ def test_a_loop_that_loses_two_messages_keeps_a_bound_of_three() -> None:
 )
 def test_latency_losses_and_braking_add_up(channel: Channel, least: int) -> None:
     settings = interceptor_options(hold=4, stop_timeout=24)
-    kept = status(search(case(WITHIN.format(least), settings, channel)).kept)
+    kept = search(case(WITHIN.format(least), settings, channel)).kept.result
     short = "immediately" if least == 1 else f"within {least - 1} ticks"
     sentence = f"whenever near the sw shall {short} satisfy stopped"
-    assert (kept, status(search(case(sentence, settings, channel)).kept)) == (
+    assert (kept, search(case(sentence, settings, channel)).kept.result) == (
         "proved",
         "counterexample",
     )
@@ -162,13 +155,13 @@ def test_latency_losses_and_braking_add_up(channel: Channel, least: int) -> None
 def test_a_robot_may_stand_earlier_than_it_must() -> None:
     """Else nobody could refute that it moves on for three ticks after the trigger."""
     sentence = "upon near the sw shall after 3 ticks satisfy stopped"
-    found = search(case(sentence, TIMER, Channel(1, braking=3)))
-    assert status(found.kept) == "counterexample"
+    results = search(case(sentence, TIMER, Channel(1, braking=3)))
+    assert results.kept.result == "counterexample"
 
 
 def test_a_watchdog_stops_a_robot_for_good_where_silence_is_normal() -> None:
-    found = search(case(WITHIN.format(2), interceptor_options(stop_timeout=3), EDGE))
-    assert (status(found.kept), status(found.released)) == ("proved", "counterexample")
+    results = search(case(WITHIN.format(2), interceptor_options(stop_timeout=3), EDGE))
+    assert (results.kept.result, results.released.result) == ("proved", "counterexample")
 
 
 # Texts that are wrong -------------------------------------------------------------------------
@@ -179,18 +172,18 @@ FORWARDS = "return after, ZERO if halted(after, options) else command"
 
 def test_an_interceptor_that_forwards_while_it_is_stopped_is_refuted() -> None:
     wrong = edited(CORE, FORWARDS, "return after, command")
-    found = search(case(WITHIN.format(2), core=wrong)).kept
-    assert status(found) == "counterexample"
-    assert "`true` is heard" in trace(found)[1]
+    kept = search(case(WITHIN.format(2), core=wrong)).kept
+    assert kept.result == "counterexample"
+    assert "`true` is heard" in trace(kept)[1]
 
 
 def test_a_safety_function_that_is_a_tick_late_is_refuted() -> None:
     """The observer is the monitor that fretc makes, not the one that is late."""
     known = case(WITHIN.format(2), TIMER, Channel(1, lost=1))
-    assert isinstance(search(known).kept, Proved)
+    assert search(known).kept.result is Result.PROVED
     late = edited(known.safety, "self.r1_owed = since_2", "self.r1_owed = since_1")
     late = edited(late, "self.r1_trigger = near", "self.r1_trigger = False")
-    assert status(search(with_safety(known, late)).kept) == "counterexample"
+    assert search(with_safety(known, late)).kept.result == "counterexample"
 
 
 @pytest.mark.parametrize(
@@ -246,10 +239,10 @@ def test_a_safety_function_that_is_a_tick_late_is_refuted() -> None:
     ],
 )
 def test_what_is_no_pure_interceptor_is_not_checked(old: str, new: str, reason: str) -> None:
-    found = search(
+    results = search(
         case(WITHIN.format(2), channel=Channel(1, scans=True), core=edited(CORE, old, new))
     )
-    assert found.kept == found.released == NotChecked(reason)
+    assert results.kept == results.released == not_checked(reason)
 
 
 def test_an_interceptor_whose_numbers_grow_for_ever_is_not_checked() -> None:
@@ -260,34 +253,34 @@ def test_an_interceptor_whose_numbers_grow_for_ever_is_not_checked() -> None:
     )
     known = case(WITHIN.format(2), channel=Channel(1, scans=True), core=grows)
     reason = "its State takes more than 500 values"
-    assert search(replace(known, limit=500)).kept == NotChecked(reason)
+    assert search(replace(known, limit=500)).kept == not_checked(reason)
 
 
 # Vacuity and limits ---------------------------------------------------------------------------
 
 
 def test_a_demand_that_never_begins_is_vacuous() -> None:
-    found = search(case("whenever near & !near the sw shall within 2 ticks satisfy stopped"))
-    assert isinstance(found.kept, Vacuous)
-    assert found.kept.detail.startswith("no demand ever begins")
+    results = search(case("whenever near & !near the sw shall within 2 ticks satisfy stopped"))
+    assert results.kept.result is Result.VACUOUS
+    assert results.kept.detail.startswith("no demand ever begins")
 
 
 def test_a_robot_that_never_moves_is_vacuous() -> None:
     frozen = edited(CORE, "        stop=False,\n", "        stop=True,\n")
-    found = search(case(WITHIN.format(2), interceptor_options(latching=True), core=frozen))
-    assert isinstance(found.kept, Vacuous)
-    assert found.kept.detail.startswith("the robot never moves")
+    results = search(case(WITHIN.format(2), interceptor_options(latching=True), core=frozen))
+    assert results.kept.result is Result.VACUOUS
+    assert results.kept.detail.startswith("the robot never moves")
 
 
 def test_a_stop_that_is_never_in_force_is_vacuous() -> None:
     deaf = edited(CORE, "stop=requested or", "stop=False and requested or")
-    found = search(case(WITHIN.format(2), core=deaf))
-    assert found.released == Vacuous("no stop is ever in force")
+    results = search(case(WITHIN.format(2), core=deaf))
+    assert results.released == vacuous("no stop is ever in force")
 
 
 def test_too_many_states_are_not_checked() -> None:
     known = replace(case(WITHIN.format(2), TIMER, Channel(1, lost=2)), limit=3)
-    assert search(known).kept == NotChecked("more than 3 states")
+    assert search(known).kept == not_checked("more than 3 states")
 
 
 @pytest.mark.parametrize(
@@ -319,8 +312,8 @@ def test_what_a_core_says_of_itself_does_not_release_a_stop() -> None:
     lying = edited(lying, "def kept_back(state: State, options: Options) -> bool:", HALTED)
     for settings, channel in ((LATCH, EDGE), (TIMER, Channel(1, lost=2, edge=True))):
         known = case(WITHIN.format(9), settings, channel)
-        assert status(search(known).released) == "counterexample"
-        assert status(search(replace(known, interceptor=lying)).released) == "counterexample"
+        assert search(known).released.result == "counterexample"
+        assert search(replace(known, interceptor=lying)).released.result == "counterexample"
 
 
 @pytest.mark.parametrize(
@@ -352,6 +345,6 @@ def test_a_safety_function_that_remembers_more_than_is_put_back_is_not_stepped(
         ("elif near and not_stopped:", f"elif near and not_stopped and not ({ignored}):"),
     ):
         text = edited(text, old, new)
-    found = search(with_safety(known, text)).kept
-    assert isinstance(found, NotChecked)
-    assert "it is not laid out as fretc writes it" in found.reason
+    kept = search(with_safety(known, text)).kept
+    assert kept.result is Result.NOT_CHECKED
+    assert "it is not laid out as fretc writes it" in kept.detail

@@ -12,11 +12,10 @@ from compiler.formalization.obligation import Uninterpreted, boolean
 from compiler.logic import formula as f
 from compiler.logic.definition import holds
 from fretc.verification.monitor.equivalence import (
+    Difference,
+    Equivalence,
     Judgement,
-    NotChecked,
-    Proved,
-    Refuted,
-    prove,
+    compare,
 )
 from fretish import expressions as e
 from fretish import syntax as s
@@ -91,15 +90,15 @@ def sentence_within(n: int) -> s.Sentence:
 @pytest.mark.parametrize("n", [0, 1, 3, 10_000])
 def test_a_right_monitor_is_proved_at_its_own_bound(n: int) -> None:
     pairs = n + 2  # before tick 0; nothing waits; something has waited for 1..n ticks
-    assert prove(within(n), sentence_within(n), n, ("p", "q")) == Proved(pairs, 4 * pairs)
+    assert compare(within(n), sentence_within(n), n, ("p", "q")) == Equivalence(pairs, 4 * pairs)
 
 
 def test_the_order_of_the_atoms_is_the_callers() -> None:
     def swapped(monitor: Monitor) -> Monitor:
         return Monitor(0, lambda state, letter: monitor.transition(state, (letter[1], letter[0])))
 
-    assert isinstance(prove(swapped(within(3)), sentence_within(3), 3, ("q", "p")), Proved)
-    assert prove(swapped(within(3)), sentence_within(3), 3, ("p", "q")) == Refuted(
+    assert isinstance(compare(swapped(within(3)), sentence_within(3), 3, ("q", "p")), Equivalence)
+    assert compare(swapped(within(3)), sentence_within(3), 3, ("p", "q")) == Difference(
         valuations("q - - -"), expected=PENDING, actual=VIOLATED
     )
 
@@ -108,8 +107,8 @@ def test_a_monitor_may_read_more_than_the_sentence_says() -> None:
     def step(waited: int, letter: Valuation) -> tuple[int, Judgement]:
         return within(3).transition(waited, letter[1:])
 
-    found = prove(Monitor(0, step), sentence_within(3), 3, ("other", "p", "q"))
-    assert found == Proved(states=5, steps=5 * 8)
+    result = compare(Monitor(0, step), sentence_within(3), 3, ("other", "p", "q"))
+    assert result == Equivalence(states=5, steps=5 * 8)
 
 
 def test_nothing_is_asked_below_a_violation() -> None:
@@ -118,7 +117,9 @@ def test_nothing_is_asked_below_a_violation() -> None:
             raise AssertionError("stepped after a violation")
         return (0, PENDING) if letter[0] else (1, VIOLATED)
 
-    assert prove(Monitor(0, step), read("the sw shall always satisfy q"), 0, ("q",)) == Proved(2, 4)
+    assert compare(
+        Monitor(0, step), read("the sw shall always satisfy q"), 0, ("q",)
+    ) == Equivalence(2, 4)
 
 
 def test_satisfied_is_for_ever_and_must_be_said_at_once() -> None:
@@ -134,8 +135,8 @@ def test_satisfied_is_for_ever_and_must_be_said_at_once() -> None:
         (2, True): (2, judgement),
     }
     late: Table = right | {(0, True): (2, PENDING)}
-    assert isinstance(prove(tabled(right), sentence, 1, ("q",)), Proved)
-    assert prove(tabled(late), sentence, 1, ("q",)) == Refuted(
+    assert isinstance(compare(tabled(right), sentence, 1, ("q",)), Equivalence)
+    assert compare(tabled(late), sentence, 1, ("q",)) == Difference(
         ((True,),), expected=judgement, actual=PENDING
     )
 
@@ -144,18 +145,18 @@ def test_a_lost_cause_is_told_though_fret_would_still_accept_the_trace() -> None
     """The second trigger forbids the response that the first one demands."""
     sentence = read("whenever p the sw shall after 2 ticks satisfy q")
     silent = Monitor(0, lambda state, letter: (0, PENDING))
-    only_broken = prove(silent, sentence, 2, ("p", "q"))
-    assert only_broken == Refuted(valuations("pq"), expected=VIOLATED, actual=PENDING)
+    only_broken = compare(silent, sentence, 2, ("p", "q"))
+    assert only_broken == Difference(valuations("pq"), expected=VIOLATED, actual=PENDING)
 
-    def step(seen: int, letter: Valuation) -> tuple[int, Judgement]:
+    def step(count: int, letter: Valuation) -> tuple[int, Judgement]:
         p, q = letter
-        if seen == 0:
+        if count == 0:
             return int(p), VIOLATED if p and q else PENDING
-        if seen == 3:
+        if count == 3:
             return 0, PENDING if q and not p else VIOLATED
-        return seen + 1, VIOLATED if q else ("violated", True) if p else PENDING
+        return count + 1, VIOLATED if q else ("violated", True) if p else PENDING
 
-    assert isinstance(prove(Monitor(0, step), sentence, 2, ("p", "q")), Proved)
+    assert isinstance(compare(Monitor(0, step), sentence, 2, ("p", "q")), Equivalence)
 
 
 # Refutations ----------------------------------------------------------------------------------
@@ -165,26 +166,26 @@ def test_a_lost_cause_is_told_though_fret_would_still_accept_the_trace() -> None
 @pytest.mark.parametrize("n", [1, 3, 10_000])
 @pytest.mark.parametrize("slip", [-1, 1])
 def test_a_deadline_that_is_one_tick_off_is_found(n: int, slip: int) -> None:
-    found = prove(within(n + slip), sentence_within(n), n, ("p", "q"))
+    result = compare(within(n + slip), sentence_within(n), n, ("p", "q"))
     wrong_at = n if slip > 0 else n - 1
     judgements = (VIOLATED, PENDING) if slip > 0 else (PENDING, VIOLATED)
-    assert found == Refuted(((True, False), *[(False, False)] * wrong_at), *judgements)
+    assert result == Difference(((True, False), *[(False, False)] * wrong_at), *judgements)
 
 
 def test_a_trigger_that_restarts_the_clock_is_found() -> None:
-    found = prove(within(2, restarts=True), sentence_within(2), 2, ("p", "q"))
-    assert found == Refuted(valuations("p - p"), VIOLATED, PENDING)
+    result = compare(within(2, restarts=True), sentence_within(2), 2, ("p", "q"))
+    assert result == Difference(valuations("p - p"), VIOLATED, PENDING)
 
 
 @pytest.mark.slow
 def test_a_trigger_that_restarts_a_long_clock_is_found() -> None:
     """There are a hundred million pairs, but 20 000 states decide."""
-    found = prove(within(10_000, restarts=True), sentence_within(10_000), 10_000, ("p", "q"))
-    assert isinstance(found, Refuted)
-    assert len(found.word) == 10_001
-    assert found.word[0] == (True, False)
-    assert any(p for p, _ in found.word[1:])
-    assert not found.shortest
+    result = compare(within(10_000, restarts=True), sentence_within(10_000), 10_000, ("p", "q"))
+    assert isinstance(result, Difference)
+    assert len(result.word) == 10_001
+    assert result.word[0] == (True, False)
+    assert any(p for p, _ in result.word[1:])
+    assert not result.shortest
 
 
 def test_the_verdict_on_the_finite_trace_counts() -> None:
@@ -194,30 +195,30 @@ def test_the_verdict_on_the_finite_trace_counts() -> None:
         after, (verdict, _) = within(2).transition(waited, letter)
         return after, (verdict, after == 0)
 
-    found = prove(Monitor(0, step), sentence_within(2), 2, ("p", "q"))
-    assert found == Refuted(valuations("p"), expected=PENDING, actual=("pending", False))
+    result = compare(Monitor(0, step), sentence_within(2), 2, ("p", "q"))
+    assert result == Difference(valuations("p"), expected=PENDING, actual=("pending", False))
 
 
 def test_a_rule_for_every_tick_is_not_one_for_rising_edges() -> None:
     sentence = read("upon p the sw shall within 1 tick satisfy q")
-    found = prove(within(1), sentence, 1, ("p", "q"))
-    assert found == Refuted(valuations("pq p -"), expected=PENDING, actual=VIOLATED)
+    result = compare(within(1), sentence, 1, ("p", "q"))
+    assert result == Difference(valuations("pq p -"), expected=PENDING, actual=VIOLATED)
 
 
 def test_no_shorter_word_tells_the_two_apart() -> None:
     """All words up to the length of the refutation, through the right monitor and the wrong."""
-    found = prove(within(3, restarts=True), sentence_within(3), 3, ("p", "q"))
-    assert isinstance(found, Refuted)
+    result = compare(within(3, restarts=True), sentence_within(3), 3, ("p", "q"))
+    assert isinstance(result, Difference)
 
-    def judged(monitor: Monitor, word: tuple[Valuation, ...]) -> list[Judgement]:
+    def judgements(monitor: Monitor, word: tuple[Valuation, ...]) -> list[Judgement]:
         judgements = [monitor.step(letter) for letter in word]
         lost = [k for k, judgement in enumerate(judgements) if judgement == VIOLATED]
         return judgements[: lost[0] + 1] if lost else judgements
 
-    for length in range(1, len(found.word)):
+    for length in range(1, len(result.word)):
         for word in product(LETTERS, repeat=length):
-            assert judged(within(3), word) == judged(within(3, restarts=True), word)
-    assert judged(within(3), found.word) != judged(within(3, restarts=True), found.word)
+            assert judgements(within(3), word) == judgements(within(3, restarts=True), word)
+    assert judgements(within(3), result.word) != judgements(within(3, restarts=True), result.word)
 
 
 LETTERS = tuple(product((False, True), repeat=2))
@@ -237,11 +238,11 @@ def tell_apart(steps: Steps) -> bool:
     while True:
         reached = set(pairs)
         for (right, state), letter in product(pairs, LETTERS):
-            expected, found = within(2).transition(right, letter), steps[state, letter]
-            if expected[1] != found[1]:
+            expected, result = within(2).transition(right, letter), steps[state, letter]
+            if expected[1] != result[1]:
                 return True
-            if found[1] != VIOLATED:
-                reached.add((expected[0], found[0]))
+            if result[1] != VIOLATED:
+                reached.add((expected[0], result[0]))
         if reached == pairs:
             return False
         pairs = reached
@@ -257,14 +258,14 @@ def tell_apart(steps: Steps) -> bool:
 def test_what_is_proved_is_equal_and_what_is_equal_is_proved(changes: Steps) -> None:
     steps = with_a_double() | changes
     machine = Monitor(0, lambda state, letter: steps[state, letter])
-    found = prove(machine, sentence_within(2), 2, ("p", "q"))
-    assert isinstance(found, Refuted) is tell_apart(steps)
-    assert isinstance(found, Refuted) is not isinstance(found, Proved)
-    if isinstance(found, Refuted):
+    result = compare(machine, sentence_within(2), 2, ("p", "q"))
+    assert isinstance(result, Difference) is tell_apart(steps)
+    assert isinstance(result, Difference) is not isinstance(result, Equivalence)
+    if isinstance(result, Difference):
         right, wrong = within(2), Monitor(0, machine.transition)
-        judged = [(right.step(letter), wrong.step(letter)) for letter in found.word]
-        assert judged[-1] == (found.expected, found.actual)
-        assert all(one == other for one, other in judged[:-1])
+        judgements = [(right.step(letter), wrong.step(letter)) for letter in result.word]
+        assert judgements[-1] == (result.expected, result.actual)
+        assert all(one == other for one, other in judgements[:-1])
 
 
 # What cannot be checked -----------------------------------------------------------------------
@@ -284,31 +285,31 @@ def test_what_is_proved_is_equal_and_what_is_equal_is_proved(changes: Steps) -> 
     ],
 )
 def test_predicates_about_other_ticks_are_left(text: str, predicate: str) -> None:
-    found = prove(within(0), read(text), 0, ("p", "q"))
-    assert found == NotChecked(f"`{predicate}` speaks of other ticks, and the automaton knows one")
+    result = compare(within(0), read(text), 0, ("p", "q"))
+    assert result == f"`{predicate}` speaks of other ticks, and the automaton knows one"
 
 
 def test_thirteen_propositions_are_too_many() -> None:
     names = ("p", "q", *(f"r{k}" for k in range(11)))
-    found = prove(within(3), sentence_within(3), 3, names)
-    assert found == NotChecked("13 propositions, more than 12")
+    result = compare(within(3), sentence_within(3), 3, names)
+    assert result == "13 propositions, more than 12"
 
 
 def test_an_automaton_may_be_too_large() -> None:
     sentence = read("only before m whenever p the sw shall after 500 ticks satisfy q")
-    found = prove(within(3), sentence, 500, ("m", "p", "q"), limit=1000)
-    assert found == NotChecked("the automaton has more than 1000 states")
+    result = compare(within(3), sentence, 500, ("m", "p", "q"), limit=1000)
+    assert result == "the automaton has more than 1000 states"
 
 
 def test_a_monitor_may_never_come_back() -> None:
     counting = Monitor(0, lambda ticks, letter: (ticks + 1, PENDING if letter[0] else VIOLATED))
-    found = prove(counting, read("the sw shall always satisfy q"), 0, ("q",), limit=1000)
-    assert found == NotChecked("the automaton and the monitor have more than 1000 states")
+    result = compare(counting, read("the sw shall always satisfy q"), 0, ("q",), limit=1000)
+    assert result == "the automaton and the monitor have more than 1000 states"
 
 
 def test_an_atom_that_is_not_named_is_the_callers_mistake() -> None:
     with pytest.raises(KeyError, match="q"):
-        prove(within(3), sentence_within(3), 3, ("p",))
+        compare(within(3), sentence_within(3), 3, ("p",))
 
 
 # Letters --------------------------------------------------------------------------------------

@@ -10,8 +10,8 @@ from functools import cache
 
 import pytest
 
+from compiler.logic.claims import Result
 from compiler.targets.python import monitor as target
-from fretc.verification.monitor.equivalence import NotChecked
 from fretc.verification.monitor.verifying import verified
 from monitors.loading import load
 from tests.compiler.formalization.test_mutants import (
@@ -140,8 +140,8 @@ FAULTS = (
 
 @cache
 def judge(sentence: str) -> tuple[str, Judge]:
-    made = rule(sentence)
-    return target.text(made), Judge(made)
+    formalized = rule(sentence)
+    return target.text(formalized), Judge(formalized)
 
 
 @pytest.mark.slow
@@ -150,10 +150,10 @@ def test_a_fault_comes_to_what_is_written_beside_it(
     sentence: str, old: str, new: str, expected: str
 ) -> None:
     """What is proved tells the same as the right one on drawn traces: `TOLD` is never right."""
-    text, judged = judge(sentence)
+    text, examiner = judge(sentence)
     place = text.index(MARK)
     assert text[place:].count(old) == 1, text[place:].count(old)
-    assert judged.found(text[:place] + text[place:].replace(old, new)) == expected
+    assert examiner.kind(text[:place] + text[place:].replace(old, new)) == expected
 
 
 @pytest.mark.parametrize(
@@ -162,14 +162,14 @@ def test_a_fault_comes_to_what_is_written_beside_it(
 )
 def test_a_parameter_of_another_name_than_its_proposition_has_is_refused(name: str) -> None:
     """`row` hid unknown values: it is what a step calls the values of a tick."""
-    made = rule("in m mode whenever longname the sw shall within 3 ticks satisfy q")
-    text = target.text(made)
+    formalized = rule("in m mode whenever longname the sw shall within 3 ticks satisfy q")
+    text = target.text(formalized)
     place = text.index(MARK)
     own = re.sub(r'(?<!")\blongname\b(?!"| the)', name, text[place:])
     own = own.replace('"longname": "longname"', f'"longname": "{name}"')
     own = own.replace('("longname", "longname", True)', f'("{name}", "longname", True)')
     assert load("renamed", text[:place] + own).PROPOSITIONS["longname"] == name
-    assert isinstance(verified(made, text[:place] + own).result, NotChecked)
+    assert verified(formalized, text[:place] + own).result is Result.NOT_CHECKED
 
 
 @pytest.mark.slow
@@ -179,8 +179,8 @@ def test_a_parameter_of_another_name_than_its_proposition_has_is_refused(name: s
 )
 def test_a_cell_has_no_name_that_something_else_has(name: str) -> None:
     """`known`, put back into the rail, would say that nothing was unknown."""
-    text, judged = judge(WITHIN)
+    text, examiner = judge(WITHIN)
     place = text.index(MARK)
-    assert judged.found(text[:place] + re.sub(r"\boldest_1\b", name, text[place:])) == REFUSED
+    assert examiner.kind(text[:place] + re.sub(r"\boldest_1\b", name, text[place:])) == REFUSED
     renamed = re.sub(r"\boldest_1\b", "count", text[place:])
-    assert judged.found(text[:place] + renamed) == SAME
+    assert examiner.kind(text[:place] + renamed) == SAME

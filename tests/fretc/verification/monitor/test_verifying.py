@@ -7,14 +7,9 @@ from collections.abc import Sequence
 import pytest
 
 from compiler.formalization.letters import Valuation
+from compiler.logic.claims import Outcome, Result, Trace, refuted
 from compiler.targets.python import monitor as target
-from fretc.verification.monitor.equivalence import Judgement, NotChecked, Proved, Refuted
-from fretc.verification.monitor.verifying import (
-    Disagreement,
-    NotAMonitorError,
-    Verified,
-    verified,
-)
+from fretc.verification.monitor.verifying import NotAMonitorError, verified
 from monitors.kernel import Monitor
 from monitors.loading import load
 from monitors.source_text import kernel
@@ -28,7 +23,7 @@ LAYOUT = "it is not laid out as fretc writes it"
 RUNTIME = "the run time in it is not the one of this version of fretc"
 
 
-def check(sentence: str, text: str | None = None, limit: int = 10**6) -> Verified:
+def check(sentence: str, text: str | None = None, limit: int = 10**6) -> Outcome:
     return verified(rule(sentence), emitted(sentence) if text is None else text, limit)
 
 
@@ -42,9 +37,37 @@ def edited(text: str, *edits: tuple[str, str]) -> str:
     return head + own
 
 
-def reason(found: Verified) -> str:
-    assert isinstance(found.result, NotChecked), found
-    return found.result.reason
+def reason(outcome: Outcome) -> str:
+    """Why it is not checked."""
+    assert outcome.result is Result.NOT_CHECKED, outcome
+    return outcome.detail
+
+
+SIZES = re.compile(
+    r"the same at every tick of every trace \((\d+) states, (\d+) steps\); "
+    r"columns agree on (\d+) drawn ticks"
+)
+
+
+def sizes(outcome: Outcome) -> tuple[int, ...]:
+    """Of a proof: states, steps, and drawn ticks."""
+    assert outcome.result is Result.PROVED, outcome
+    match = SIZES.match(outcome.detail)
+    assert match is not None
+    return tuple(map(int, match.groups()))
+
+
+def disagreement(outcome: Outcome) -> Trace:
+    """The trace at whose last tick the signals are wrong."""
+    assert outcome.result is Result.COUNTEREXAMPLE, outcome
+    assert outcome.detail.endswith(" on a trace")
+    assert outcome.trace is not None
+    return outcome.trace
+
+
+def judged_wrongly(outcome: Outcome) -> bool:
+    """Whether a trace shows another judgement than that of the sentence."""
+    return outcome.result is Result.COUNTEREXAMPLE and "that shows it has" in outcome.detail
 
 
 # What is right --------------------------------------------------------------------------------
@@ -55,9 +78,8 @@ def reason(found: Verified) -> str:
 def test_every_template_is_proved(scope: str) -> None:
     for template in templates((0, 1, 2)):
         if template.scope == scope:
-            found = check(template.sentence)
-            assert isinstance(found.result, Proved), (template, found)
-            assert found.compared > 0
+            outcome = check(template.sentence)
+            assert sizes(outcome)[2] > 0, (template, outcome)
 
 
 @pytest.mark.slow
@@ -65,7 +87,7 @@ def test_every_template_is_proved(scope: str) -> None:
 def test_templates_are_proved_at_longer_bounds(n: int) -> None:
     counting = [template for template in templates((n,)) if template.timing in COUNTING]
     for template in random.Random(n).sample(counting, 24):
-        assert isinstance(check(template.sentence).result, Proved), template
+        assert check(template.sentence).result is Result.PROVED, template
 
 
 @pytest.mark.slow
@@ -78,10 +100,10 @@ def test_templates_are_proved_at_longer_bounds(n: int) -> None:
     ],
 )
 def test_long_bounds_are_proved_as_they_are(sentence: str, least: int) -> None:
-    found = check(sentence)
-    assert isinstance(found.result, Proved)
-    assert found.result.states > least
-    assert found.compared > 4 * least, "the columns are compared on traces that reach the bound"
+    outcome = check(sentence)
+    states, _, ticks = sizes(outcome)
+    assert states > least
+    assert ticks > 4 * least, "the columns are compared on traces that reach the bound"
 
 
 @pytest.mark.slow
@@ -89,15 +111,14 @@ def test_each_requirement_of_one_text_is_proved() -> None:
     sentences = (WITHIN, FOR, "in m mode the sw shall before s satisfy q")
     text = emitted(*sentences)
     for number, sentence in enumerate(sentences, 1):
-        found = verified(rule(sentence, f"R{number}"), text)
-        assert isinstance(found.result, Proved), sentence
-        assert {*found.atoms} == {"m", "p", "q", "s"}
+        outcome = verified(rule(sentence, f"R{number}"), text)
+        assert outcome.result is Result.PROVED, sentence
 
 
 def test_of_several_requirements_only_the_wrong_one_is_refuted() -> None:
     text = edited(emitted(WITHIN, FOR), ("since_1 = oldest_1 >= 3", "since_1 = oldest_1 >= 4"))
-    assert isinstance(verified(rule(WITHIN, "R1"), text).result, Refuted)
-    assert isinstance(verified(rule(FOR, "R2"), text).result, Proved)
+    assert judged_wrongly(verified(rule(WITHIN, "R1"), text))
+    assert verified(rule(FOR, "R2"), text).result is Result.PROVED
 
 
 @pytest.mark.slow
@@ -108,32 +129,28 @@ def test_of_several_requirements_only_the_wrong_one_is_refuted() -> None:
 )
 def test_names_do_not_confuse_it(name: str) -> None:
     sentence = f'in m mode upon "{name}" the sw shall within 2 ticks satisfy ! p & q'
-    found = check(sentence)
-    assert isinstance(found.result, Proved), name
-    assert name in found.atoms
+    assert check(sentence).result is Result.PROVED, name
 
 
 @pytest.mark.parametrize("id", ["tick", "doubt", "Monitor", "3", "a-b", "since_1", "self", "first"])
 def test_ids_do_not_confuse_it(id: str) -> None:
-    made = rule(WITHIN, id)
-    assert isinstance(verified(made, target.text(made)).result, Proved)
+    formalized = rule(WITHIN, id)
+    assert verified(formalized, target.text(formalized)).result is Result.PROVED
 
 
 def test_a_proof_says_how_much_was_looked_at() -> None:
-    found = check(WITHIN)
-    assert (found.requirement, found.atoms) == ("R1", ("p", "q"))
-    assert found.result == Proved(states=5, steps=20)
-    assert found.compared == 20 * (4 * 3 + 50)
+    assert sizes(check(WITHIN)) == (5, 20, 20 * (4 * 3 + 50))
 
 
 # What is wrong --------------------------------------------------------------------------------
 
 P, Q, NONE, BOTH = (True, False), (False, True), (False, False), (True, True)
-PENDING, VIOLATED = ("pending", True), ("violated", False)
+PENDING = "pending (true if it ended there)"
+VIOLATED = "violated (false if it ended there)"
 
 
 @pytest.mark.parametrize(
-    ("edits", "word", "actual", "found"),
+    ("edits", "word", "expected", "actual"),
     [
         ([(">= 3\n", ">= 4\n")], (P, NONE, NONE, NONE), VIOLATED, PENDING),
         ([(">= 3\n", ">= 2\n")], (P, NONE, NONE), PENDING, VIOLATED),
@@ -155,27 +172,25 @@ PENDING, VIOLATED = ("pending", True), ("violated", False)
 def test_a_wrong_step_is_refuted_by_a_shortest_trace(
     edits: list[tuple[str, str]],
     word: tuple[Valuation, ...],
-    actual: Judgement,
-    found: Judgement,
+    expected: str,
+    actual: str,
 ) -> None:
-    result = check(WITHIN, edited(emitted(WITHIN), *edits)).result
-    assert result == Refuted(word, actual, found)
+    assert check(WITHIN, edited(emitted(WITHIN), *edits)) == refuted(
+        f"the shortest trace that shows it has {len(word)} ticks; after it, {actual}, and should "
+        f"be {expected}",
+        Trace(("p", "q"), word),
+    )
 
 
 def test_a_monitor_of_another_sentence_with_the_same_id_is_refuted() -> None:
-    assert isinstance(check(WITHIN, emitted(WITHIN.replace("3", "2"))).result, Refuted)
-    assert isinstance(check(WITHIN, emitted(WITHIN.replace("whenever", "upon"))).result, Refuted)
-    assert isinstance(
-        check("the sw shall satisfy q", emitted("the sw shall satisfy r")).result, Refuted
-    )
+    assert judged_wrongly(check(WITHIN, emitted(WITHIN.replace("3", "2"))))
+    assert judged_wrongly(check(WITHIN, emitted(WITHIN.replace("whenever", "upon"))))
+    assert judged_wrongly(check("the sw shall satisfy q", emitted("the sw shall satisfy r")))
 
 
 def test_a_wrong_column_program_disagrees_with_the_steps() -> None:
     text = edited(emitted(WITHIN), ("p & not_q, 3, every)", "p & not_q, 4, every)"))
-    found = check(WITHIN, text)
-    assert isinstance(found.result, Disagreement)
-    assert found.compared == 0
-    assert all(len(values) == len(found.atoms) for values in found.result.word)
+    assert disagreement(check(WITHIN, text)).names == ("p", "q")
 
 
 @pytest.mark.slow
@@ -186,7 +201,7 @@ def test_a_wrong_column_program_is_found_at_a_long_bound() -> None:
     for bound in ("4999", "5001"):
         wrong = text[:place] + text[place:].replace("0, 5000, every)", f"0, {bound}, every)")
         assert wrong != text
-        assert isinstance(check(sentence, wrong).result, Disagreement), bound
+        assert disagreement(check(sentence, wrong)), bound
 
 
 @pytest.mark.parametrize("signal", ["trigger", "breach", "owed", "settled", "answer"])
@@ -195,21 +210,19 @@ def test_every_signal_of_the_column_program_is_compared(signal: str) -> None:
     text = emitted(sentence)
     wrong = re.sub(rf"(?m)^( +{signal}=).*,$", r"\1every & 1,", text)
     assert wrong != text
-    assert isinstance(check(sentence, wrong).result, Disagreement)
+    assert disagreement(check(sentence, wrong))
 
 
 def test_a_column_program_that_fails_or_tells_of_ticks_beyond_the_trace_disagrees() -> None:
     for new in ("once(p, None, None, every)", "2361183241434822606848"):
         text = edited(emitted(WITHIN), ("trigger=p,", f"trigger={new},"))
-        assert isinstance(check(WITHIN, text).result, Disagreement), new
+        assert disagreement(check(WITHIN, text)), new
 
 
 def test_a_step_that_takes_what_is_unknown_for_certain_disagrees_with_the_columns() -> None:
     """With all values known, `not q` and `not_q` are one."""
     text = edited(emitted(WITHIN), ("elif p and not_q:", "elif p and not q:"))
-    found = check(WITHIN, text)
-    assert isinstance(found.result, Disagreement)
-    assert any(None in values for values in found.result.word)
+    assert any(None in values for values in disagreement(check(WITHIN, text)).rows)
 
 
 def test_the_trace_of_a_disagreement_names_the_atoms_in_their_order() -> None:
@@ -218,11 +231,10 @@ def test_the_trace_of_a_disagreement_names_the_atoms_in_their_order() -> None:
     other = "the sw shall always satisfy q | z"
     text = emitted(other, sentence)
     wrong = edited(text, ("p & not_q, 3, every)", "p & not_q, 4, every)"))
-    found = verified(rule(sentence, "R2"), wrong)
-    assert found.atoms == ("p", "q", "z")
-    assert isinstance(found.result, Disagreement)
-    *_, last = found.result.word
-    assert last[1] is not True, "an overdue demand is told where q does not come"
+    trace = disagreement(verified(rule(sentence, "R2"), wrong))
+    assert trace.names == ("p", "q", "z")
+    *_, last = trace.rows
+    assert last[1] is not True, "an overdue demand shows where q does not come"
 
 
 # What is not checked --------------------------------------------------------------------------
@@ -237,7 +249,7 @@ def test_more_than_twelve_propositions_are_not_checked() -> None:
     def of(count: int) -> str:
         return f"the sw shall always satisfy {' | '.join(f'a{i}' for i in range(count))}"
 
-    assert isinstance(check(of(12)).result, Proved)
+    assert check(of(12)).result is Result.PROVED
     assert reason(check(of(13))) == "13 propositions, more than 12"
 
 
@@ -246,8 +258,8 @@ def test_more_states_than_the_limit_are_not_checked() -> None:
 
 
 def test_a_monitor_of_other_requirements_is_not_checked() -> None:
-    found = verified(rule(WITHIN, "R2"), emitted(WITHIN))
-    assert reason(found) == "the monitor is of other requirements"
+    outcome = verified(rule(WITHIN, "R2"), emitted(WITHIN))
+    assert reason(outcome) == "the monitor is of other requirements"
 
 
 @pytest.mark.parametrize(
@@ -464,7 +476,7 @@ WINDOW = "            since_1 = kept_since_1.step("
 )
 def test_a_window_is_stepped_and_nothing_else(edit: tuple[str, str]) -> None:
     text = emitted(WINDOWED)
-    assert isinstance(check(WINDOWED, text).result, Proved)
+    assert check(WINDOWED, text).result is Result.PROVED
     why = reason(check(WINDOWED, edited(text, edit)))
     assert why.startswith((LAYOUT, "what it does at a tick depends on")), why
 

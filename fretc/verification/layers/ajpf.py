@@ -1,0 +1,21 @@
+"""Layer AJPF: what AJPF itself says of an agent."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from compiler.formalization.formalized import Formalized
+from compiler.logic.claims import Layer, Proof
+from compiler.project.folder import Project
+from fretc.verification.layers.request import Request, unknown
+
+
+def prove(rules: Sequence[Formalized], project: Project, request: Request) -> Iterator[Proof]:
+    """The results of AJPF; where nothing else is asked, rules without one are not checked."""
+    yield from request.ajpf
+    if set(request.layers) == {Layer.AJPF}:
+        known = {proof.requirement for proof in request.ajpf}
+        for rule in rules:
+            if rule.id not in known:
+                claim = f"AJPF: the agent of {rule.id} keeps it"
+                yield unknown(rule.id, Layer.AJPF, claim, "there is no result of AJPF (--ajpf)")

@@ -1,0 +1,25 @@
+"""Prover Dafny: it verifies the file of `--emit dafny`."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from compiler.formalization.formalized import Formalized
+from compiler.logic.claims import Layer, Proof
+from compiler.project.folder import Project
+from compiler.targets import dafny
+from fretc.verification.engines.dafny import with_dafny
+from fretc.verification.layers.request import Request, unknown
+
+
+def prove(rules: Sequence[Formalized], project: Project, request: Request) -> Iterator[Proof]:
+    """A proof for each claim of the file of each rule."""
+    for rule in rules:
+        request.progress(f"{rule.id}: Dafny")
+        refused = dafny.TARGET.refuse(rule)
+        if refused is not None:
+            claim = "Dafny verifies the file of the requirement"
+            yield unknown(rule.id, Layer.LOOP, claim, refused.message)
+            continue
+        declared, seconds = project.declarations, float(request.limits.seconds)
+        yield from with_dafny(rule, dafny.text(rule, declared), declared, seconds=seconds)

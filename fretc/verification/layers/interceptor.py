@@ -1,0 +1,48 @@
+"""Layer INTERCEPTOR: the text of the interceptor keeps its contracts."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from compiler.files import records
+from compiler.files.text_files import sha256
+from compiler.formalization.formalized import Formalized
+from compiler.logic.claims import Layer, Proof
+from compiler.project.folder import Project
+from compiler.project.interceptor_options import options
+from fretc.verification.engines import sandbox as processes
+from fretc.verification.engines.sandbox import Limits, Stopped
+from fretc.verification.interceptor.contracts import contracts
+from fretc.verification.interceptor.file import otherwise
+from fretc.verification.layers.request import Request, interceptor_of, unknown
+from fretc.verification.loop.layer import Named
+from fretish.bindings.declarations import Interception
+
+CLAIM = "the interceptor keeps its contracts"
+
+
+def prove(rules: Sequence[Formalized], project: Project, request: Request) -> Iterator[Proof]:
+    """A proof for each contract."""
+    file = interceptor_of(project, request)
+    declared = project.declarations.interceptor if project.declarations else None
+    if file is None or declared is None:
+        reason = "the bindings declare no interceptor (`[interceptor]`)"
+        yield unknown("interceptor", Layer.INTERCEPTOR, CLAIM, reason)
+        return
+    request.progress("interceptor: its contracts")
+    yield from _contracts(file, declared, request.limits)
+
+
+def _contracts(file: Named, declared: Interception, limits: Limits) -> Iterator[Proof]:
+    """Of the module that flies: its core may be any, the rest is what fretc writes."""
+    deviation = otherwise(file.text, declared)
+    proofs: Stopped | tuple[Proof, ...]
+    if deviation is not None:
+        proofs = Stopped(deviation)
+    else:
+        proofs = processes.confined(limits, contracts, file.text, options(declared))
+    if isinstance(proofs, Stopped):
+        yield unknown("interceptor", Layer.INTERCEPTOR, CLAIM, proofs.reason, file)
+    else:
+        artefacts = {file.name: sha256(file.text)}
+        yield from (records.replace(proof, artefacts=artefacts) for proof in proofs)

@@ -1,0 +1,75 @@
+"""What is asked of the layers: which of them, about which texts, and with which limits."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Sequence
+from dataclasses import dataclass
+from pathlib import PurePath
+
+from compiler.files.text_files import sha256
+from compiler.formalization.formalized import Formalized
+from compiler.logic.claims import Layer, Proof, not_checked, proof
+from compiler.project.folder import Project
+from compiler.targets.python import interceptor, monitor
+from compiler.targets.target import stem
+from fretc.verification.engines.sandbox import Limits
+from fretc.verification.loop.layer import Named, Setup
+from fretish.diagnostics.source import Source
+
+Progress = Callable[[str], None]
+"""Is called with what is being worked on from now on, in words."""
+
+
+@dataclass(frozen=True, slots=True)
+class Request:
+    """The layers and provers, and the texts; None: the text that fretc makes."""
+
+    layers: Collection[Layer]
+    limits: Limits
+    monitor: Source | None = None
+    interceptor: Source | None = None
+    agent: Source | None = None
+    properties: Source | None = None
+    percepts: tuple[str, ...] = ()
+    provers: Collection[str] = ()
+    ajpf: Sequence[Proof] = ()
+    """The results of AJPF."""
+    progress: Progress = lambda words: None
+    """Is called before each claim that takes its time."""
+
+    def names(self, name: str) -> bool:
+        """Whether a layer or a prover is asked."""
+        return name in self.layers or name in self.provers
+
+
+def setup_of(rule: Formalized, project: Project, request: Request) -> Setup:
+    """The parts of the closed loop around a requirement."""
+    declared = project.declarations
+    return Setup(
+        named(request.monitor) or Named(f"{stem(rule)}_monitor.py", monitor.text(rule)),
+        interceptor_of(project, request),
+        declared.interceptor if declared else None,
+        declared.assumed if declared else None,
+    )
+
+
+def interceptor_of(project: Project, request: Request) -> Named | None:
+    """The interceptor that is given, or the one of the bindings; None: they declare none."""
+    declared = project.declarations
+    if request.interceptor is not None or declared is None or declared.interceptor is None:
+        return named(request.interceptor)
+    name = PurePath(declared.source.name).name
+    return Named(interceptor.NAME, interceptor.text(declared.interceptor, name))
+
+
+def named(source: Source | None) -> Named | None:
+    """A given text, with the name of its file."""
+    return Named(PurePath(source.name).name, source.text) if source else None
+
+
+def unknown(
+    requirement: str, layer: Layer, claim: str, reason: str, text: Named | None = None
+) -> Proof:
+    """A claim that is not checked, about a text if there is one."""
+    artefacts = {text.name: sha256(text.text)} if text else {}
+    return proof(requirement, layer, claim, not_checked(reason), "fretc", (), artefacts)

@@ -1,0 +1,87 @@
+"""The layers and provers of `fretc verify`, in one table.
+
+The table is there at once; the module of a row is imported when it is asked for, so that help is
+quick.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from importlib import import_module
+from typing import TYPE_CHECKING, cast
+
+from compiler.logic.claims import Layer
+
+if TYPE_CHECKING:
+    from compiler.formalization.formalized import Formalized
+    from compiler.logic.claims import Proof
+    from compiler.project.folder import Project
+    from fretc.verification.layers.request import Request
+    from fretish.diagnostics.diagnostic import Diagnostic
+
+
+@dataclass(frozen=True, slots=True)
+class Method:
+    """A layer, or a prover that is asked beside the layers."""
+
+    name: str
+    """That of `--layer` or `--with`; a module of this package has the name, and `prove` in it."""
+    claim: str
+    """What it proves, as the help of `fretc verify` says it."""
+    of_requirement: bool = False
+    """Whether it takes one requirement at a time; else all of them together."""
+    needs_monitor: bool = False
+    """Whether it steps the monitor of a requirement, and its runs are runs of that monitor."""
+
+    def prove(
+        self, rules: Sequence[Formalized], project: Project, request: Request
+    ) -> Iterable[Proof] | Diagnostic:
+        """The proofs about the rules; a diagnostic where a text of the request has a mistake.
+
+        Args:
+            rules: one where it takes one at a time, else those of the project.
+            project: all rules, and what the bindings declare.
+            request: the texts that are given, the limits, and the other wishes.
+
+        Raises:
+            NotAMonitorError: the given text is no generated monitor.
+        """
+        module = import_module(f"fretc.verification.layers.{self.name}")
+        return cast("Iterable[Proof] | Diagnostic", module.prove(rules, project, request))
+
+
+TABLE = (
+    Method(
+        Layer.MONITOR,
+        "the text of a monitor means what its sentence says",
+        of_requirement=True,
+        needs_monitor=True,
+    ),
+    Method(
+        Layer.LOOP,
+        "both, and any environment, keep the requirement under the assumptions of the bindings",
+        of_requirement=True,
+        needs_monitor=True,
+    ),
+    Method(
+        Layer.BOUNDS,
+        "so they do whatever the times are",
+        of_requirement=True,
+        needs_monitor=True,
+    ),
+    Method("dafny", "every lemma and method of the file of `--emit dafny`", of_requirement=True),
+    Method(Layer.INTERCEPTOR, "its text keeps its contracts"),
+    Method("crosshair", "the contracts in the text of the interceptor"),
+    Method(Layer.AGENT, "its text has its properties"),
+    Method(Layer.AJPF, "what AJPF itself has said of it"),
+)
+"""In the order of the proofs."""
+OF_MONITOR = frozenset(method.name for method in TABLE if method.needs_monitor)
+"""Layers whose claims are about the text of a requirement's monitor."""
+
+
+def in_words() -> str:
+    """Each layer with its claim, from the monitor outwards."""
+    claims = {method.name: method.claim for method in TABLE}
+    return " ".join(f"{layer}: {claims[layer]}." for layer in Layer)
