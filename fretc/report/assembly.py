@@ -41,8 +41,8 @@ from fretc.report.sections.runs import Run, run_views, runs, trust
 from fretc.report.sections.sections import remark, section
 from fretc.report.sections.signatures import BROKEN, signatures
 from fretc.report.sections.signatures import idle as idle_signatures
+from fretc.report.traceability.acceptances import warnings
 from fretc.report.traceability.artefacts import shared_products
-from fretc.report.traceability.checks import checks
 from fretc.report.traceability.lock import Lock, Withdrawn, withdrawn
 from fretc.report.traceability.waivers import Waiver
 from fretc.verification.ajpf_results import merged
@@ -93,6 +93,7 @@ def report(
         *(line for claim in claimed for line in reviews.reservations(claim)),
     )
     signed = signatures(book, claimed, evidence, proofs)
+    checked = _checks(project, claimed, lock, evidence)
     return Report(
         schema=SCHEMA,
         fretc=__version__,
@@ -111,7 +112,7 @@ def report(
         planned=plans,
         proofs=proof_views((each for each in proved if each.requirement in SHARED), common),
         verification=phrases.place(proofs.file) if proofs else "",
-        remarks=tuple(remark(diagnostic) for diagnostic in _remarks(project, claimed)),
+        remarks=tuple(remark(diagnostic) for diagnostic in (*project.diagnostics, *checked)),
         hazards=hazard_views(project),
         matrix=matrix(project, claimed, sections, found),
         orphans=orphans(project, claimed, evidence),
@@ -127,6 +128,7 @@ def report(
         ),
         manifest=manifest(project, sections, tuple(found.values()), evidence, proofs, book.signers),
     ), (
+        *(each for each in checked if each.accepted),
         *stale(claimed, evidence, path),
         *idle_waivers(claimed),
         *book.diagnostics(),
@@ -139,13 +141,17 @@ def _confidence(evidence: Evidence | None) -> float:
     return next((one.confidence for one in told), CONFIDENCE)
 
 
-def _remarks(project: Project, claimed: Sequence[Claim]) -> Sequence[Diagnostic]:
-    """What reading it has told, and what `fretc check` finds; changes have a part of their own."""
-    said = project.diagnostics
-    if has_errors(said):
-        return said
-    found = checks(project, [claim.standing for claim in claimed])
-    return [*said, *(d for d in found if d.code is not Code.CHANGED_SINCE_REVIEW)]
+def _checks(
+    project: Project, claimed: Sequence[Claim], lock: Lock | None, evidence: Evidence | None
+) -> Sequence[Diagnostic]:
+    """What `fretc check` finds beside mistakes; reviews have a part of their own."""
+    if has_errors(project.diagnostics):
+        return ()
+    found = warnings(project, [claim.standing for claim in claimed], lock, evidence)
+    return [each for each in found if each.accepted or each.code not in _OF_REVIEWS]
+
+
+_OF_REVIEWS = (Code.CHANGED_SINCE_REVIEW, Code.NOT_REVIEWED)
 
 
 def _not_shown(view: RequirementView) -> NotShown:
@@ -190,7 +196,7 @@ def _overall(
                 _unsigned(sections),
                 _unplanned(missing),
                 _uncovered(project, claimed),
-                trust(runs),
+                trust(runs, project),
                 _FLAWED if flawed else "",
                 _forged(signed) if red else "",
             ),

@@ -17,6 +17,7 @@ from compiler.files.edition import __version__
 from compiler.formalization.formalized import Formalized
 from compiler.logic import printing
 from compiler.logic.claims import Proof
+from compiler.project.acceptances import TOPIC
 from compiler.project.folder import Project
 from fretc.audit.evidence import basis
 from fretc.audit.evidence.basis import Basis
@@ -30,6 +31,7 @@ from fretish.documents import Requirement
 
 HAZARD, PARENT, STATUS, PLAN = "hazard", "parent", "status", "plan"
 TEXT, WORDS, FORMULAS, ARTEFACT = "text", "words", "formulas", "artefact"
+ACCEPTANCE = "acceptance"
 LOG, VERDICT, REVIEW = "log", "verdict", "review"
 PROOF, SHARED = "proof", "shared"
 _ADDED = (LOG, VERDICT, PROOF, SHARED, PLAN, ARTEFACT, basis.TOPICS)
@@ -146,6 +148,7 @@ class _Chain:
     ) -> Chain:
         self._above(requirement, {requirement.id})
         self._beside(requirement)
+        self._accepted(requirement, rule)
         sentence = Node(basis.SENTENCE, requirement.id)
         self._add(sentence, self._basis[basis.SENTENCE])
         self._link(Node(TEXT, requirement.id), sentence)
@@ -174,6 +177,15 @@ class _Chain:
         self._add(in_force(self._id), digest("retired") if retired else IN_FORCE)
         for method in requirement.verify:
             self._add(Node(PLAN, f"{self._id} {method}"), digest(method))
+
+    def _accepted(self, requirement: Requirement, rule: Formalized | None) -> None:
+        """The warnings that a reviewer accepts with it: no verdict depends on them."""
+        topics = _topics(rule, self._project)
+        for each in self._project.acceptances:
+            elsewhere = each.about == TOPIC and each.subject not in ("", *topics)
+            mine = each.requirement is None or each.requirement is requirement
+            if mine and not elsewhere:
+                self._add(Node(ACCEPTANCE, each.name), digest(_normal(each.reason)))
 
     def _above(self, requirement: Requirement, seen: set[str]) -> None:
         """Hazards and requirements that it traces to, all the way up."""
@@ -296,6 +308,14 @@ def outdated(result: Result, audited_by: str, now: Basis) -> tuple[str, ...]:
 def _print_of_log(result: Result) -> str:
     """SHA-256 of the log; of its summary, where it was read by its index; "": neither is known."""
     return result.hashes.get("log") or result.hashes.get("log_summary") or ""
+
+
+def _topics(rule: Formalized | None, project: Project) -> set[str]:
+    """Which the propositions of a requirement are read from."""
+    if rule is None or project.declarations is None:
+        return set()
+    read = project.declarations.reading(rule.watched)
+    return {signal.path.topic for signal in read.signals.values()}
 
 
 def _said(requirement: Requirement) -> dict[str, Any]:
