@@ -6,6 +6,7 @@ hazard, or for the whole project. An accepted warning stays one: it is counted a
 
 from __future__ import annotations
 
+from bisect import bisect_right
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
@@ -42,14 +43,6 @@ class Acceptance:
     def about(self) -> str:
         """What a warning of the code is about: a key of `ACCEPTANCES`."""
         return explanations()[self.code.number].accept
-
-    def answers(self, diagnostic: Diagnostic) -> bool:
-        """Whether it is this warning that is accepted."""
-        if diagnostic.code is not self.code or diagnostic.severity is not Severity.WARNING:
-            return False
-        if self.requirement is not None:
-            return self.requirement.contains(diagnostic.span)
-        return self.subject in ("", diagnostic.subject)
 
 
 def acceptances(
@@ -112,21 +105,48 @@ def _bad(message: str, place: Span, mend: str) -> Diagnostic:
     return Diagnostic(Code.BAD_ACCEPTANCE, message, place, help=mend)
 
 
+_ByCode = Mapping[tuple[Code, str], Sequence[Acceptance]]
+"""By code and file those of headers, in their order in it; by code and `""` the others."""
+
+
 def answered(
     diagnostics: Iterable[Diagnostic], known: Sequence[Acceptance]
 ) -> tuple[Diagnostic, ...]:
     """The same, each accepted warning with the reason of the first acceptance that answers it."""
-    return tuple(_answered(diagnostic, known) for diagnostic in diagnostics)
+    by_code = _by_code(known)
+    return tuple(_answered(diagnostic, by_code) for diagnostic in diagnostics)
 
 
-def _answered(diagnostic: Diagnostic, known: Sequence[Acceptance]) -> Diagnostic:
-    found = next((each for each in known if each.answers(diagnostic)), None)
+def _answered(diagnostic: Diagnostic, known: _ByCode) -> Diagnostic:
+    found = next(_answers(diagnostic, known), None)
     return diagnostic if found is None else replace(diagnostic, accepted=found.reason)
 
 
+def _by_code(known: Iterable[Acceptance]) -> _ByCode:
+    found: dict[tuple[Code, str], list[Acceptance]] = {}
+    for each in known:
+        file = each.span.source.name if each.requirement else ""
+        found.setdefault((each.code, file), []).append(each)
+    return found
+
+
+def _answers(diagnostic: Diagnostic, known: _ByCode) -> Iterator[Acceptance]:
+    """The acceptances of a warning, those that are the most to the point first."""
+    if diagnostic.severity is not Severity.WARNING:
+        return
+    place = diagnostic.span
+    if place is not None and place.source.name:
+        headers = known.get((diagnostic.code, place.source.name), ())
+        before = bisect_right(headers, place.end, key=lambda each: each.span.start)
+        around = headers[max(0, before - 1) : before + 1]  # a header begins above its acceptance
+        yield from (e for e in around if e.requirement and e.requirement.contains(place))
+    others = known.get((diagnostic.code, ""), ())
+    yield from (each for each in others if each.subject in ("", diagnostic.subject))
+
+
 def idle(
-    known: Iterable[Acceptance],
-    warnings: Collection[Diagnostic],
+    known: Sequence[Acceptance],
+    warnings: Iterable[Diagnostic],
     declarations: Declarations | None,
     recorded: Collection[str] | None,
 ) -> Iterator[Diagnostic]:
@@ -138,10 +158,12 @@ def idle(
         declarations: the bindings, if there are any.
         recorded: the topics of the logs that were audited; None: no log was.
     """
+    by_code = _by_code(known)
+    used = {id(each) for warning in warnings for each in _answers(warning, by_code)}
     for each in known:
         retired = each.requirement is not None and each.requirement.status == "retired"
         open_yet = each.about == TOPIC and _may_come(each.subject, declarations, recorded)
-        if not (retired or open_yet or any(map(each.answers, warnings))):
+        if not (retired or open_yet or id(each) in used):
             yield Diagnostic(
                 Code.IDLE_ACCEPTANCE,
                 f"{each.code.number} is accepted, and no such warning is there",

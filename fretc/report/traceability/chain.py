@@ -17,7 +17,7 @@ from compiler.files.edition import __version__
 from compiler.formalization.formalized import Formalized
 from compiler.logic import printing
 from compiler.logic.claims import Proof
-from compiler.project.acceptances import TOPIC
+from compiler.project.acceptances import TOPIC, Acceptance
 from compiler.project.folder import Project
 from fretc.audit.evidence import basis
 from fretc.audit.evidence.basis import Basis
@@ -113,6 +113,8 @@ class _Common:
     bases: Mapping[int, Basis]
     audited_by: str
     """The version of fretc that made the evidence."""
+    acceptances: Mapping[int | None, Sequence[Acceptance]]
+    """Those in the header of each requirement, by its `id()`; None → those in the settings."""
     shared: Mapping[str, str]
     """Name of what is made of the bindings alone → its SHA-256; nothing where nothing is proved."""
 
@@ -124,8 +126,18 @@ def _common(project: Project, evidence: Evidence | None, proofs: Sequence[Proof]
         {requirement.id: requirement for requirement in project.requirements},
         bases(project),
         evidence.fretc if evidence else "",
+        _by_requirement(project.acceptances),
         {product.file: product.sha256 for product in shared},
     )
+
+
+def _by_requirement(
+    acceptances: Iterable[Acceptance],
+) -> Mapping[int | None, Sequence[Acceptance]]:
+    found: dict[int | None, list[Acceptance]] = {}
+    for each in acceptances:
+        found.setdefault(id(each.requirement) if each.requirement else None, []).append(each)
+    return found
 
 
 class _Chain:
@@ -181,10 +193,9 @@ class _Chain:
     def _accepted(self, requirement: Requirement, rule: Formalized | None) -> None:
         """The warnings that a reviewer accepts with it: no verdict depends on them."""
         topics = _topics(rule, self._project)
-        for each in self._project.acceptances:
-            elsewhere = each.about == TOPIC and each.subject not in ("", *topics)
-            mine = each.requirement is None or each.requirement is requirement
-            if mine and not elsewhere:
+        known = self._common.acceptances
+        for each in (*known.get(id(requirement), ()), *known.get(None, ())):
+            if each.about != TOPIC or each.subject in ("", *topics):
                 self._add(Node(ACCEPTANCE, each.name), digest(_normal(each.reason)))
 
     def _above(self, requirement: Requirement, seen: set[str]) -> None:

@@ -6,7 +6,6 @@ import pytest
 from fretc.logs.signals.rates import slow_topics
 from tests.fretc.logs.logs import MS, X_TEXT, S, declare, number, recorded, write
 
-
 AGE = 'max_age = "250 ms"\n'
 UNAGED = X_TEXT.replace(AGE, "")
 
