@@ -347,7 +347,7 @@ def test_a_slow_topic_is_accepted_by_its_name_and_idle_once_a_log_shows_it_fast(
 
 def test_every_form_of_the_report_that_has_room_lists_what_is_accepted(fretc: Fretc) -> None:
     reason = "<b>meant</b>"
-    project(CAUSES["F203"] | {'max_age = "100 ms"\n': ""}, {"F203": reason})
+    project({**CAUSES["F203"], 'max_age = "100 ms"\n': ""}, {"F203": reason})
     write("requirements/fretc.toml", '[accept]\nF315 = "slow by design"\n')
     audited(SLOW)
     forms = ("html", "json", "junit", "sarif", "markdown")
