@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import chain
 from pathlib import Path
 from typing import Any
 
-from compiler.files.settings import settings
+from compiler.files.settings import Settings, settings
 from compiler.files.text_files import read, unreadable
 from compiler.formalization.formalize import duplicates, formalize
 from compiler.formalization.formalized import Formalized
 from compiler.formalization.resolution import extended
+from compiler.project.acceptances import Acceptance, acceptances, answered
 from compiler.project.ancestry import circles, unknown_parents
 from compiler.project.parents import Parent
 from compiler.project.parents import parents as read_parents
@@ -70,11 +71,17 @@ class Project:
     id with another one, or its `params` name what is not there."""
     parents: Mapping[str, Parent] = field(default_factory=dict)
     """What other tools have, by its id; read where hazards are."""
+    acceptances: tuple[Acceptance, ...] = ()
+    """The warnings that are accepted, and why; those among `diagnostics` are marked."""
 
     @property
     def without_rule(self) -> tuple[Requirement, ...]:
         """The requirements that have an error, or are free text."""
         return tuple(each.requirement for each in self.failed)
+
+    def answered(self, diagnostics: Iterable[Diagnostic]) -> tuple[Diagnostic, ...]:
+        """The same, with the reason of each warning that is accepted."""
+        return answered(diagnostics, self.acceptances)
 
 
 def load(
@@ -95,7 +102,8 @@ def load(
     declarations, said = _declarations(bindings or _beside(paths, BINDINGS))
     known, told = _hazards(hazards) if hazards else ({}, ())
     written, unread = _written(paths)
-    above, elsewhere = _above(paths) if parents else ({}, ())
+    chosen = _settings(paths)
+    above, elsewhere = _above(chosen) if parents else ({}, ())
     broken = declarations is None and has_errors(said)
     rules, failed, mistaken, remarks = _formalized(written, declarations, broken=broken)
     upward = [*told, *elsewhere]
@@ -106,16 +114,21 @@ def load(
     mistakes = declarations.mistakes.values() if declarations else ()
     single = frozenset(chain.from_iterable(mistakes))
     general = (*(each for each in said if each not in single), *unread, *upward)
+    accepted, unanswered = acceptances(written, chosen if isinstance(chosen, Settings) else None)
+    if isinstance(chosen, Diagnostic) and not parents:
+        unanswered = (*unanswered, chosen)
+    everything = (*said, *unread, *remarks, *upward, *unanswered)
     return Project(
         tuple(written),
         rules,
         failed,
         declarations,
         known,
-        (*said, *unread, *remarks, *upward),
+        answered(everything, accepted),
         general,
         mistaken,
         above,
+        accepted,
     )
 
 
@@ -193,13 +206,19 @@ def whole(
     )
 
 
-def _above(paths: Sequence[str]) -> tuple[Mapping[str, Parent], tuple[Diagnostic, ...]]:
-    """The parents that live in other tools, by the settings of the project."""
+def _settings(paths: Sequence[str]) -> Settings | Diagnostic | None:
+    """The settings of the project; None where it is read from standard input."""
     first = next((path for path in paths if path != "-"), None)
-    told = settings(str(Path(first).parent)) if first else None
-    if isinstance(told, Diagnostic):
-        return {}, (told,)
-    return read_parents(told) if told is not None else ({}, ())
+    return settings(str(Path(first).parent)) if first else None
+
+
+def _above(
+    chosen: Settings | Diagnostic | None,
+) -> tuple[Mapping[str, Parent], tuple[Diagnostic, ...]]:
+    """The parents that live in other tools, by the settings of the project."""
+    if isinstance(chosen, Diagnostic):
+        return {}, (chosen,)
+    return read_parents(chosen) if chosen is not None else ({}, ())
 
 
 def _reason(remarks: Sequence[Diagnostic]) -> Diagnostic:
@@ -255,7 +274,7 @@ def beside(folder: str, name: str) -> str | None:
 
 def companions(paths: Sequence[str]) -> tuple[str, ...]:
     """What stands beside the first requirement and is read with it; no output may replace it."""
-    names = (BINDINGS, HAZARDS, "fretc.lock", "waivers.toml", "allowed_signers")
+    names = (BINDINGS, HAZARDS, "fretc.toml", "fretc.lock", "waivers.toml", "allowed_signers")
     return tuple(path for path in (_beside(paths, name) for name in names) if path is not None)
 
 

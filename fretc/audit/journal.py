@@ -238,6 +238,7 @@ def _plain(diagnostic: Diagnostic, bindings: Source) -> dict[str, Any]:
         "message": diagnostic.message,
         "help": diagnostic.help,
         "severity": str(diagnostic.severity),
+        "subject": diagnostic.subject,
         "span": span
         and {
             "name": span.source.name,
@@ -256,6 +257,7 @@ def _diagnostic(plain: Mapping[str, Any], bindings: Source) -> Diagnostic:
         _place(plain["span"], bindings) if plain["span"] else None,
         plain["help"],
         Severity(plain["severity"]),
+        subject=plain["subject"],
     )
 
 

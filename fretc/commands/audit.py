@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -172,6 +173,7 @@ def audit(
     refused = [reason for reason in plan.refusals if reason not in project.diagnostics]
     say_also(refused, project.diagnostics)
     result = audit_all(plan, logs, _engine(engine, jobs), journal, resume=resume)
+    result = replace(result, diagnostics=project.answered(result.diagnostics))
     say_also(result.diagnostics, (*project.diagnostics, *refused))
     if result.read:  # a mistyped name must not cost the evidence of the last audit
         marked = _marked(result, project, annotations) if annotate or annotations else {}

@@ -159,7 +159,7 @@ def _check(paths: tuple[str, ...], project: Project, form: str, jobs: int) -> No
     found = coverage(project.declarations, logs, jobs, plan if isinstance(plan, Plan) else None)
     if isinstance(found, Diagnostic):
         stop(found)
-    said = [*_unbound(project), *project.diagnostics, *found.diagnostics]
+    said = [*_unbound(project), *project.diagnostics, *project.answered(found.diagnostics)]
     say(said)
     click.echo(found.as_json if form == "json" else coloured(found.text), nl=False)
     raise SystemExit(BAD if has_errors(said) else SHOWN if found.shown else NOT_SHOWN)

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import click
 
-from fretc.terminal.output import BAD, NOT_SHOWN, SHOWN, say, say_line, stop
-from fretish.diagnostics.diagnostic import Diagnostic, Severity, has_errors
+from fretc.terminal.output import BAD, NOT_SHOWN, SHOWN, say_line, stop
+from fretish.diagnostics.diagnostic import Diagnostic, has_errors
+from fretish.diagnostics.rendering import render_all
 
 
 @click.command(short_help="Say what is wrong or missing in a project, before any run.")
@@ -30,7 +31,8 @@ def check(
     refuse; numbers that have drifted apart; requirements that hold whatever happens; planned
     methods that can give no result; links that are missing; what has changed since its review,
     or since its audit; what was reviewed and is claimed no more; waivers that cover nothing.
-    Exit status: 0 nothing to say, 3 warnings, 2 mistakes.
+    Warnings that are accepted are listed with their reasons.
+    Exit status: 0 no warning but accepted ones, 3 warnings, 2 mistakes.
     """
     from compiler.files.dates import today
     from compiler.project.folder import beside, whole
@@ -38,7 +40,7 @@ def check(
     from fretc.audit.plan import refusals
     from fretc.report.diagnostics import idle_waivers, stale_evidence
     from fretc.report.model.assessments import assessments
-    from fretc.report.traceability.checks import checks, unreviewed
+    from fretc.report.traceability.acceptances import warnings
     from fretc.report.traceability.lock import Lock, withdrawal_warnings, withdrawn_requirements
     from fretc.report.traceability.lock import read as read_lock
     from fretc.report.traceability.waivers import read as read_waivers
@@ -77,21 +79,20 @@ def check(
     flawed = has_errors(said)
     said.extend(reason for _, why in refusals(project) for reason in why)
     if not flawed:
-        said.extend(checks(project, standings))
-        said.extend(unreviewed(project, standings) if lock is not None and lock.reviews else ())
+        said.extend(warnings(project, standings, lock, results))
     _finish(tuple(dict.fromkeys(said)), len(project.requirements))
 
 
 def _finish(said: tuple[Diagnostic, ...], count: int) -> None:
     """Say it, and exit with what it means."""
-    say(said)
-    errors = sum(d.is_error for d in said)
-    warnings = sum(d.severity is Severity.WARNING for d in said)
-    if said:
-        say_line("")
-    say_line(
-        f"{_many(count, 'requirement')}: {_many(errors, 'mistake')}, {_many(warnings, 'warning')}"
-    )
+    accepted = [d for d in said if d.accepted]
+    ordered = [*(d for d in said if not d.accepted), *accepted]
+    errors, warnings = sum(d.is_error for d in said), sum(d.is_open for d in said)
+    if ordered:
+        say_line(f"{render_all(ordered)}\n")
+    counts = f"{_many(errors, 'mistake')}, {_many(warnings, 'warning')}"
+    also = f", {len(accepted)} accepted" if accepted else ""
+    say_line(f"{_many(count, 'requirement')}: {counts}{also}")
     raise SystemExit(BAD if errors else NOT_SHOWN if warnings else SHOWN)
 
 

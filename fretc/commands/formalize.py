@@ -135,8 +135,9 @@ def _emit(project: Project, kinds: dict[str, None], output: str, options: Option
     refused = [diagnostic for _, _, wrong in made for diagnostic in wrong]
     kept = [(target, rules) for target, rules, _ in made if rules is not None]
     say(refused)
-    say([d for target, rules in kept for rule in rules if (d := target.remark(rule))])
-    say([diagnostic for target, _ in kept for diagnostic in target.remarks(options)])
+    remarks = [d for target, rules in kept for rule in rules if (d := target.remark(rule))]
+    say(project.answered(remarks))
+    say(project.answered(d for target, _ in kept for d in target.remarks(options)))
     files = [artifact for target, rules in kept for artifact in target.emit(rules, options)]
     _deliver_all({str(artifact.path): artifact.text for artifact in files}, output)
     if refused:

@@ -79,6 +79,7 @@ def lock(
         text,
         unnamed_violations,
         verdicts_of,
+        warnings_of,
     )
 
     for name, said in (("--reviewer", reviewer), ("--role", role), ("--comment", comment)):
@@ -108,7 +109,7 @@ def lock(
     signatures = _signatures(where, reviews, chosen, key) if key is not None else {}
     deliver({Path(where): text(Lock(reviews)), **signatures})
     for chain in chosen:
-        say_line(visible(f"accepted {chain.requirement}: {verdicts_of(chain)}"))
+        say_line(visible(f"accepted {chain.requirement}: {verdicts_of(chain)}{warnings_of(chain)}"))
     for id in sorted(left, key=natural):
         say_line(f"left out {id}: it is not among the requirements")
 

@@ -25,9 +25,15 @@ def stop(*diagnostics: Diagnostic) -> NoReturn:
 
 
 def say(diagnostics: Sequence[Diagnostic]) -> None:
-    """Print them on standard error."""
-    if diagnostics:
-        say_line(render_all(diagnostics))
+    """Print them on standard error; of the warnings that are accepted, how many there are."""
+    accepted = sum(bool(diagnostic.accepted) for diagnostic in diagnostics)
+    shown = [diagnostic for diagnostic in diagnostics if not diagnostic.accepted]
+    if shown:
+        say_line(render_all(shown))
+    if accepted:
+        count = "1 warning is" if accepted == 1 else f"{accepted} warnings are"
+        gap = "\n" if shown else ""
+        say_line(f"{gap}{count} accepted: `fretc check` lists the reasons")
 
 
 def say_also(diagnostics: Sequence[Diagnostic], earlier: Sequence[Diagnostic]) -> None:

@@ -74,6 +74,7 @@ class Code(Enum):
     MESSAGE_CLOCK = ("F313", "a clock that ticks by message cannot count seconds")
     NEVER_CHANGED = ("F314", "a proposition never changed in the logs")
     SLOW_TOPIC = ("F315", "a topic comes less often than the bindings need it")
+    UNKNOWN_BETWEEN = ("F318", "a signal is unknown between the messages of its topic")
     BAD_MODALITY = ("F316", "the modality of a proposition cannot be emitted")
 
     SAME_TOPIC = ("F320", "two ends of the interceptor are one topic")
@@ -142,6 +143,8 @@ class Code(Enum):
     UNKNOWN_LOG = ("F542", "a lock would accept a verdict on a log that nothing identifies")
     IDLE_WAIVER = ("F543", "a waiver covers nothing")
     NOT_REVIEWED = ("F544", "a requirement was never reviewed, and others were")
+    BAD_ACCEPTANCE = ("F549", "an acceptance can answer no warning")
+    IDLE_ACCEPTANCE = ("F550", "an acceptance answers no warning that is there")
     BAD_MANIFEST = ("F545", "the manifest cannot be read")
     BAD_SIGNERS = ("F548", "the list of signers cannot be read")
     BAD_SIGNATURES = ("F556", "signatures cannot be read")
@@ -215,11 +218,20 @@ class Diagnostic:
     severity: Severity = Severity.ERROR
     paste: str = ""
     """Lines to put into a file as they are, which `help` speaks of."""
+    subject: str = ""
+    """The topic or the hazard that a warning is about, by which it can be accepted."""
+    accepted: str = ""
+    """The reason for which the project accepts a warning; it stays one, and is shown."""
 
     @property
     def is_error(self) -> bool:
         """Whether it stops the command."""
         return self.severity is Severity.ERROR
+
+    @property
+    def is_open(self) -> bool:
+        """Whether it is a warning that nobody has accepted."""
+        return self.severity is Severity.WARNING and not self.accepted
 
 
 def has_errors(diagnostics: Iterable[Diagnostic]) -> bool:

@@ -15,6 +15,8 @@ _WIDTH = 160
 
 def render(diagnostic: Diagnostic) -> str:
     """Several lines: code and message, place, the line with a caret, and the mend."""
+    if diagnostic.accepted:
+        return _accepted(diagnostic)
     kind = "" if diagnostic.severity is Severity.ERROR else f" {diagnostic.severity.value}:"
     lines = [f"{diagnostic.code.number}{kind} {visible(diagnostic.message)}"]
     if diagnostic.span is not None:
@@ -24,6 +26,14 @@ def render(diagnostic: Diagnostic) -> str:
     if diagnostic.paste:
         lines += ["", *map(visible, diagnostic.paste.rstrip("\n").split("\n"))]
     return "\n".join(lines)
+
+
+def _accepted(diagnostic: Diagnostic) -> str:
+    """The reason in the place of the mend; nobody has to look at the line again."""
+    lines = [f"{diagnostic.code.number} accepted: {visible(diagnostic.message)}"]
+    if diagnostic.span is not None:
+        lines.append(_place(diagnostic.span)[0])
+    return "\n".join([*lines, f"reason: {visible(diagnostic.accepted)}"])
 
 
 def render_all(diagnostics: Sequence[Diagnostic]) -> str:

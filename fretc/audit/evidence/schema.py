@@ -147,6 +147,9 @@ class Finding(Record, frozen=True):
     line: Ordinal | None
     column: Ordinal | None
     help: str | None
+    subject: Annotated[Name, about("the topic, where a warning can be accepted")] | UnsetType = (
+        UNSET
+    )
 
 
 class Topic(Record, frozen=True):

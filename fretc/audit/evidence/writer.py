@@ -110,7 +110,8 @@ def health(recording: Recording) -> Health:
 
 
 def _finding(diagnostic: Diagnostic) -> Finding:
-    return decoded(as_json(diagnostic), Finding)
+    subject = {"subject": diagnostic.subject} if diagnostic.subject else {}
+    return decoded(as_json(diagnostic) | subject, Finding)
 
 
 def _topic(topic: Read) -> Topic:

@@ -219,6 +219,9 @@ def _invocation(diagnostics: Sequence[Diagnostic]) -> dict[str, Any]:
                 "level": diagnostic.severity.value,
                 "message": {"text": diagnostic.message},
                 **_locations(diagnostic.span),
+                **(
+                    {"properties": {"accepted": diagnostic.accepted}} if diagnostic.accepted else {}
+                ),
             }
             for diagnostic in diagnostics
         ],

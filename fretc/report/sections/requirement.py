@@ -125,6 +125,7 @@ def remark(diagnostic: Diagnostic) -> Remark:
         diagnostic.message,
         f"{place}{where}",
         diagnostic.help or "",
+        diagnostic.accepted,
     )
 
 

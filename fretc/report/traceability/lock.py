@@ -18,6 +18,7 @@ from compiler.files.text_files import read as read_text
 from fretc.audit.evidence.basis import SENTENCE
 from fretc.audit.evidence.reader import VERDICTS
 from fretc.report.traceability.chain import (
+    ACCEPTANCE,
     IN_FORCE,
     REVIEW,
     Chain,
@@ -93,6 +94,12 @@ def accepted(chain: Chain, reviewer: str, role: str, date: str, comment: str) ->
 def verdicts_of(chain: Chain) -> str:
     """The verdicts that a review would accept, in words, the worst first."""
     return _in_words(chain.verdicts)
+
+
+def warnings_of(chain: Chain) -> str:
+    """The warnings that a review of it would accept, in words; empty where there is none."""
+    names = sorted(node.name for node in chain.prints if node.kind == ACCEPTANCE)
+    return f"; accepted warnings: {', '.join(names)}" if names else ""
 
 
 def _in_words(verdicts: Mapping[str, str]) -> str:

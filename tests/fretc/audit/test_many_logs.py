@@ -166,7 +166,7 @@ def test_a_proposition_without_a_binding_is_told_at_the_sentence(fretc: Fretc) -
         2,
         "",
         "F304 `halted` of R1 has no binding in requirements/bindings.toml\n"
-        "  --> requirements/r1.fret:11:58\n"
+        "  --> requirements/r1.fret:12:58\n"
         "   | whenever too_close agilex_agent shall eventually satisfy halted\n"
         "   |                                                          ^^^^^^\n"
         "help: add `[proposition.halted]` there\n",

@@ -81,6 +81,9 @@ def test_the_text_of_a_code() -> None:
         "\n"
         "  To mend it: State a bound.\n"
         "\n"
+        "  to accept it, in the header of the requirement:\n"
+        '    accept = { F203 = "the reason" }\n'
+        "\n"
         "  wrong:\n"
         "    whenever too_close the robot shall eventually satisfy stopped\n"
         "\n"
