@@ -11,7 +11,7 @@ from typing import Any
 
 from compiler.files.settings import settings
 from compiler.files.text_files import read, unreadable
-from compiler.formalization.formalize import duplicates, formalize
+from compiler.formalization.formalize import duplicates, formalize, unreadable_sentence
 from compiler.formalization.formalized import Formalized
 from compiler.project.ancestry import circles, unknown_parents
 from compiler.project.parents import Parent
@@ -47,6 +47,9 @@ class Failed:
 
     requirement: Requirement
     diagnostic: Diagnostic
+    """The first error; the note where it is free text."""
+    diagnostics: tuple[Diagnostic, ...] = ()
+    """All there is to say of it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -143,12 +146,12 @@ def _formalized(
     mistaken = dict(duplicates(written))
     rules, failed, said = [], [], list(dict.fromkeys(mistaken.values()))
     for requirement in written:
-        rule, remarks = None, requirement.mistakes
-        if not remarks:
+        rule, remarks = None, (*requirement.mistakes, *unreadable_sentence(requirement))
+        if not requirement.mistakes:
             rule, remarks = formalize(requirement, declarations)
         said.extend(remark for remark in remarks if remark.code not in unsaid)
         if rule is None:
-            failed.append(Failed(requirement, _reason(remarks)))
+            failed.append(Failed(requirement, _reason(remarks), remarks))
             continue
         rules.append(rule)
         if has_errors(remarks):
