@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import click
 
-from fretc.terminal.output import BAD, NOT_SHOWN, SHOWN, say, say_line, stop
+from fretc.terminal.output import BAD, NOT_SHOWN, SHOWN, deliver, say, say_line, stop
 from fretish.diagnostics.diagnostic import Diagnostic, Severity, has_errors
+from fretish.diagnostics.rendering import visible
 
 
 @click.command(short_help="Say what is wrong or missing in a project, before any run.")
@@ -17,12 +20,14 @@ from fretish.diagnostics.diagnostic import Diagnostic, Severity, has_errors
     "--verification",
     help="What `fretc verify` found; build/verification.json, if it is there and none is given.",
 )
+@click.option("--fix", is_flag=True, help="Write the mends that are sure, then check.")
 def check(
     requirements: str,
     bindings: str | None,
     hazards: str | None,
     evidence: str,
     verification: str | None,
+    fix: bool,
 ) -> None:
     """Say what is wrong or missing in a project, before any run.
 
@@ -30,6 +35,7 @@ def check(
     refuse; numbers that have drifted apart; requirements that hold whatever happens; planned
     methods that can give no result; links that are missing; what has changed since its review,
     or since its audit; what was reviewed and is claimed no more; waivers that cover nothing.
+    `--fix` mends what can mean one thing only (`should`, `and`, `=<`) and names each mend.
     Exit status: 0 nothing to say, 3 warnings, 2 mistakes.
     """
     from compiler.files.dates import today
@@ -44,6 +50,8 @@ def check(
     from fretc.report.traceability.waivers import read as read_waivers
     from fretc.verification.reader import known as proven
 
+    if fix:
+        _mend(requirements)
     project = whole(requirements, bindings, hazards)
     if isinstance(project, Diagnostic):
         stop(project)
@@ -79,6 +87,21 @@ def check(
         said.extend(checks(project, standings))
         said.extend(unreviewed(project, standings) if lock is not None and lock.reviews else ())
     _finish(tuple(dict.fromkeys(said)), len(project.requirements))
+
+
+def _mend(folder: str) -> None:
+    """Write what can be mended for sure, all files or none, and name each mend."""
+    from compiler.project.folder import requirement_files
+    from compiler.project.mending import mended
+
+    paths = requirement_files(folder)
+    files = () if isinstance(paths, Diagnostic) else mended(paths)
+    deliver({Path(file.path): file.text for file in files})
+    for mend in (mend for file in files for mend in file.mends):
+        place = f"{mend.span.source.name}:{mend.span.line}:{mend.span.column}"
+        say_line(visible(f"mended {place}: {mend.change}"))
+    if files:
+        say_line("")
 
 
 def _finish(said: tuple[Diagnostic, ...], count: int) -> None:

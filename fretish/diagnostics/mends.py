@@ -22,10 +22,23 @@ class Mend:
     @property
     def help(self) -> str:
         """The mend in words: an order where it is sure, a question where it is not."""
-        text, replaced = " ".join(self.text.split()), " ".join(self.span.text.split())
+        text, replaced = _plain(self.text), _plain(self.span.text)
         if not text:
             return f"leave `{replaced}` out" if self.sure else f"should `{replaced}` be left out?"
         return f"write `{text}`" if self.sure else f"did you mean `{text}`?"
+
+    @property
+    def change(self) -> str:
+        """What it does, for whoever has had it applied."""
+        text, replaced = _plain(self.text), _plain(self.span.text)
+        if not replaced:
+            return f"put `{text}` in"
+        return f"wrote `{text}` for `{replaced}`" if text else f"left `{replaced}` out"
+
+
+def _plain(text: str) -> str:
+    """On one line."""
+    return " ".join(text.split())
 
 
 @dataclass(frozen=True, slots=True)
