@@ -76,13 +76,12 @@ def mistakes(text: Span) -> tuple[Diagnostic, ...]:
             found[-1] = _unsure(found[-1])
             break
         tree = words if isinstance(words, Diagnostic) else _built(words, here)
-        wrong = [tree] if isinstance(tree, Diagnostic) else [*_against(tree)]
+        wrong = _around(tree, here) if isinstance(tree, Diagnostic) else [*_against(tree)]
         found.extend(_moved(each, read) for each in wrong)
         mend = found[-1].mend if isinstance(tree, Diagnostic) else None
         if len(text.text) > _LONG or mend is None or not mend.sure or read.touches(mend.span):
             break
         read = read.with_mend(mend)
-    found.extend(_beyond(found[-1], text) if found and len(text.text) <= _LONG else ())
     return tuple(sorted(found[:MISTAKES], key=_at))
 
 
@@ -124,13 +123,14 @@ def _against(sentence: s.Sentence) -> Iterator[Diagnostic]:
     yield from check_response_kinds(sentence)
 
 
-def _beyond(wrong: Diagnostic, text: Span) -> tuple[Diagnostic, ...]:
-    """The mistakes around the place where a second sentence begins."""
-    if wrong.code is not Code.SEVERAL_SENTENCES or wrong.span is None:
-        return ()
-    first = _tree(Span(text.source, text.start, wrong.span.start))
-    before = () if isinstance(first, Diagnostic) else tuple(_against(first))
-    return (*before, *mistakes(Span(text.source, wrong.span.start, text.end)))
+def _around(wrong: Diagnostic, text: Span) -> list[Diagnostic]:
+    """A mistake of the grammar; with those around it, where a second sentence begins there."""
+    if wrong.code is not Code.SEVERAL_SENTENCES or len(text.text) > _LONG:
+        return [wrong]
+    first, second = text.part(0, _at(wrong)), text.part(_at(wrong), text.end)
+    tree = _tree(first)
+    before = () if isinstance(tree, Diagnostic) else _against(tree)
+    return [*before, *mistakes(second), wrong]
 
 
 def _moved(wrong: Diagnostic, read: Mended) -> Diagnostic:

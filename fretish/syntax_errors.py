@@ -10,7 +10,7 @@ from collections.abc import Callable
 from fractions import Fraction
 
 from fretish.diagnostics.diagnostic import Code, Diagnostic, suggestion
-from fretish.diagnostics.mends import Mend
+from fretish.diagnostics.mends import Mend, left_out
 from fretish.diagnostics.source import Span
 from fretish.keywords import KEYWORDS
 from fretish.mistakes.operators import (
@@ -209,7 +209,7 @@ def _superfluous(u: Unexpected) -> Diagnostic | None:
         return None
     if u.lexeme.kind == "MODE" and not re.search(r"\bwhile\b", u.read.text, re.IGNORECASE):
         return None
-    return not_fretish(reasons[u.lexeme.kind], u.lexeme.span, Mend(u.lexeme.span, "", sure=True))
+    return not_fretish(reasons[u.lexeme.kind], u.lexeme.span, left_out(u.lexeme.span, sure=True))
 
 
 def _globally(u: Unexpected) -> Diagnostic | None:
@@ -221,7 +221,7 @@ def _globally(u: Unexpected) -> Diagnostic | None:
     return not_fretish(
         f"FRETish has no word for the scope `{u.before.word}`",
         u.before.span,
-        Mend(u.before.span.to(u.lexeme.span) if comma else u.before.span, "", sure=True),
+        left_out(u.before.span.to(u.lexeme.span) if comma else u.before.span, sure=True),
         "leave it out: without a scope a requirement is enforced everywhere",
     )
 
@@ -255,7 +255,7 @@ def _missing_shall(u: Unexpected) -> Diagnostic | None:
     """`the sw satisfy p`, `the sw always satisfy p`."""
     if not u.wants("SHALL") or u.wants("$END") or not u.follows("ID", "QUOTED"):
         return None
-    if u.lexeme.kind not in ("SATISFY", *TIMINGS):
+    if u.lexeme.kind not in ("SATISFY", *TIMINGS) or re.search(r"\bshall\b", u.rest.text, re.I):
         return None
     mend = Mend(u.lexeme.span.part(0, 0), "shall ", sure=u.lexeme.kind == "SATISFY")
     return Diagnostic(

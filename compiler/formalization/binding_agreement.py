@@ -219,7 +219,7 @@ def unbound(rule: Formalized, declarations: Declarations) -> Iterator[Diagnostic
 
 def place(rule: Formalized, name: str) -> Span:
     """Where the sentence names it first: the name, or the comparison or the call that it is of."""
-    compared = getattr(_stated(rule.sentence).get(name), "span", None)
+    compared: Span | None = getattr(_stated(rule.sentence).get(name), "span", None)
     if compared is not None and compared.source is rule.requirement.wording.source:
         return compared
     for expression in conditions(rule.sentence):

@@ -214,7 +214,8 @@ def _absent(folder: str, what: str) -> Diagnostic:
         Code.NO_SUCH_FILE,
         f"{what} `{folder}`",
         Source(folder, "").span(),
-        help="name the folder that your requirements are in",
+        help="name the folder that your requirements are in: `fretc check FOLDER`, or "
+        "`--requirements FOLDER` of the other commands",
     )
 
 

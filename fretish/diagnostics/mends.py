@@ -82,6 +82,13 @@ class Mended:
         return place, place + 1
 
 
+def left_out(span: Span, *, sure: bool = False) -> Mend:
+    """Without the span and the white space behind it."""
+    rest = span.source.text[span.end :]
+    blank = len(rest) - len(rest.lstrip(" \t"))
+    return Mend(Span(span.source, span.start, span.end + blank), "", sure)
+
+
 def applied(text: Span, mends: Sequence[Mend]) -> str:
     """The text with each mend in its place.
 

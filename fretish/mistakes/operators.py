@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 
 from fretish.diagnostics.diagnostic import Diagnostic
-from fretish.diagnostics.mends import Mend
+from fretish.diagnostics.mends import Mend, left_out
 from fretish.diagnostics.source import Span
 from fretish.mistakes.unexpected import STARTS_EXPRESSION, Lexeme, Unexpected, not_fretish
 
@@ -47,7 +47,7 @@ def unknown_character(text: Span, at: int) -> Diagnostic:
         name = quoted[1] or quoted[2]
         mend = Mend(Span(text.source, quoted.start(), quoted.end()), f'"{name}"', sure=True)
     elif span.text == ";" and not text.text[at + 1 :].strip(" \t\r\n.;"):
-        mend = Mend(span, "", sure=True)
+        mend = left_out(span, sure=True)
     return not_fretish(f"`{span.text}` is no character of FRETish", span, mend)
 
 
@@ -60,7 +60,7 @@ def other_language(u: Unexpected) -> Diagnostic | None:
     if u.before is not None and not u.wants("ID", "SHALL"):
         return _join(u, u.lexeme)
     spelt = _WORDS.get(word)
-    if spelt is None or not u.wants("ID") or u.wants("SHALL", "WHENEVER"):
+    if spelt in (None, u.lexeme.word) or not u.wants("ID") or u.wants("SHALL", "WHENEVER"):
         return None
     return _instead(u.lexeme.span, spelt, sure=word != "not" or not _more(u.rest))
 
@@ -156,7 +156,7 @@ def number_form(u: Unexpected) -> Diagnostic | None:
 def parenthesis(u: Unexpected) -> Diagnostic | None:
     """One that is missing, or one too many; which of them is meant, only the author knows."""
     if u.lexeme.kind == "RPAR" and u.wants("$END", "SATISFY", "SHALL"):
-        mend = Mend(u.lexeme.span, "")
+        mend = left_out(u.lexeme.span)
         words = "leave it out, or write the `(` that it closes"
         return not_fretish("there is no `(` for this `)`", u.lexeme.span, mend, words)
     if not u.lexeme.at_end or not u.wants("RPAR"):

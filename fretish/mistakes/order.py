@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 
 from fretish.diagnostics.diagnostic import Code, Diagnostic
-from fretish.diagnostics.mends import Mend
+from fretish.diagnostics.mends import Mend, left_out
 from fretish.diagnostics.source import Span
 from fretish.mistakes.operators import JOIN
 from fretish.mistakes.unexpected import Unexpected, not_fretish
@@ -31,9 +31,10 @@ def second_sentence(u: Unexpected) -> Diagnostic | None:
     if u.follows("_DOT") and u.lexeme.kind not in ("ID", "QUOTED"):
         return _another(u)
     ended = u.follows("_DOT") or "\n" in _gap(u)
-    direct = re.match(r'("[^"\n]+"|[\w.%]+)\s+shall\b', u.rest.text, re.IGNORECASE)
-    plain = ended or u.lexeme.kind == "THE" or u.lexeme.kind not in TIMINGS | {"ID", "QUOTED"}
-    if direct is None and not (plain and _SHALL.search(u.rest.text)):
+    named = u.lexeme.kind in ("ID", "QUOTED")
+    direct = named and re.match(r'("[^"\n]+"|[\w.%]+)\s+shall\b', u.rest.text, re.IGNORECASE)
+    plain = ended or not (named or u.lexeme.kind in TIMINGS)
+    if not direct and not (plain and _SHALL.search(u.rest.text)):
         return None
     return _another(u)
 
@@ -165,7 +166,7 @@ def missing_part(u: Unexpected) -> Diagnostic | None:
         return None
     word, kind = u.before.word, u.before.kind
     if u.lexeme.word.lower() == word.lower() and word.isalpha():
-        leave = Mend(u.lexeme.span, "", sure=True)
+        leave = left_out(u.lexeme.span, sure=True)
         return not_fretish(f"`{word}` stands twice", u.lexeme.span, leave)
     part = next((part for part, kinds in _PARTS.items() if kind in kinds), "")
     begins = u.lexeme.kind in ("SATISFY", "SHALL") or _is_component(u.rest.text)
@@ -194,19 +195,12 @@ def article(u: Unexpected) -> Diagnostic | None:
         return None
     message, words = "an expression has no article", _words(u)
     if len(words) == 1:
-        leave = Mend(Span(u.text.source, u.lexeme.span.start, _next(u)), "", sure=True)
-        return not_fretish(message, u.lexeme.span, leave, f"leave `{u.lexeme.word}` out")
+        return not_fretish(message, u.lexeme.span, left_out(u.lexeme.span, sure=True))
     name = "_".join(word for word in words if word.lower() not in _SMALL)
     example = f"such as `{name}` for these words, " if name else ""
     return not_fretish(
         message, u.lexeme.span, f"write a name, {example}or a comparison: `battery < 20`"
     )
-
-
-def _next(u: Unexpected) -> int:
-    """Where the word after this one begins."""
-    text = u.rest.text[len(u.lexeme.word) :]
-    return u.lexeme.span.end + len(text) - len(text.lstrip())
 
 
 def _words(u: Unexpected) -> list[str]:

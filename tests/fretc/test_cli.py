@@ -221,8 +221,8 @@ def test_a_mistyped_command_gets_a_suggestion(fretc: Fretc) -> None:
 
 def test_a_missing_file_is_named_with_its_neighbour(fretc: Fretc) -> None:
     write("r1.fret", R1)
-    assert fretc("r2.fret") == Run(
-        2, "", "F901 there is no file `r2.fret`\n  --> r2.fret\nhelp: did you mean `r1.fret`?\n"
+    assert fretc("rr1.fret") == Run(
+        2, "", "F901 there is no file `rr1.fret`\n  --> rr1.fret\nhelp: did you mean `r1.fret`?\n"
     )
 
 
@@ -238,7 +238,8 @@ def test_a_directory_without_requirements_is_refused(fretc: Fretc) -> None:
         2,
         "",
         "F901 no requirement (`*.fret`) is in `folder`\n  --> folder\n"
-        "help: name the folder that your requirements are in\n",
+        "help: name the folder that your requirements are in: `fretc check FOLDER`, or "
+        "`--requirements FOLDER` of the other commands\n",
     )
 
 
