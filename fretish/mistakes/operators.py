@@ -7,6 +7,7 @@ import re
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.diagnostics.mends import Mend, left_out
 from fretish.diagnostics.source import Span
+from fretish.mistakes.precedence import one_way
 from fretish.mistakes.unexpected import STARTS_EXPRESSION, Lexeme, Unexpected, not_fretish
 
 COMPARISONS = ("LESS", "AT_MOST", "GREATER", "AT_LEAST", "EQUAL", "UNEQUAL")
@@ -56,7 +57,8 @@ def other_language(u: Unexpected) -> Diagnostic | None:
     word = u.lexeme.word.lower()
     if u.before is not None and u.before.word + u.lexeme.word in _PAIRS:
         span = u.before.span.to(u.lexeme.span)
-        return _instead(span, _PAIRS[u.before.word + u.lexeme.word])
+        pair = u.before.word + u.lexeme.word
+        return _instead(span, _PAIRS[pair], sure=one_way(u.text, span, pair))
     if u.before is not None and not u.wants("ID", "SHALL"):
         return _join(u, u.lexeme)
     spelt = _WORDS.get(word)
@@ -93,7 +95,7 @@ def _join(u: Unexpected, lexeme: Lexeme) -> Diagnostic | None:
     """What joins two expressions in other languages, and in English."""
     word = lexeme.word.lower()
     if word in _JOINS:
-        return _instead(lexeme.span, _JOINS[word], sure=not _mixed(u, word))
+        return _instead(lexeme.span, _JOINS[word], sure=one_way(u.text, lexeme.span, word))
     if word in _NEGATED:
         words = f"say it by the operators of FRETish: `{_NEGATED[word]}`"
         return not_fretish(f"FRETish has no `{lexeme.word}`", lexeme.span, words)
@@ -102,13 +104,6 @@ def _join(u: Unexpected, lexeme: Lexeme) -> Diagnostic | None:
     if lexeme.kind == "IS":
         return not_fretish("`is` compares nothing here", lexeme.span, "compare by a sign: `p < 3`")
     return None
-
-
-def _mixed(u: Unexpected, word: str) -> bool:
-    """Whether the sentence has another joining word too: English does not say which binds first."""
-    return any(
-        re.search(rf"\b{other}\b", u.text.text, re.IGNORECASE) for other in _JOINS if other != word
-    )
 
 
 def _instead(span: Span, spelt: str, *, sure: bool = True) -> Diagnostic:

@@ -186,6 +186,7 @@ def _is_component(rest: str) -> bool:
 
 
 _PROSE = re.compile(r"the\s+(?P<words>[a-z]\w*(?:\s+[a-z]\w*)*)\s*(?P<end>,|\Z|[^\w\s])", re.I)
+_JOINED = re.compile(r"\b(?:and|or)\b", re.IGNORECASE)
 _SMALL = frozenset({"the", "a", "an", "is", "are", "of", "has", "have", "been"})
 
 
@@ -206,7 +207,7 @@ def article(u: Unexpected) -> Diagnostic | None:
 def _words(u: Unexpected) -> list[str]:
     """The plain words after the article, up to the next part of the sentence."""
     prose = _PROSE.match(u.rest.text)
-    words = prose["words"].split() if prose is not None else []
+    words = _JOINED.split(prose["words"])[0].split() if prose is not None else []
     lower = [word.lower() for word in words]
     if "shall" in lower:  # the component and its article stand before it
         at = max(lower.index("shall") - 1, 0)

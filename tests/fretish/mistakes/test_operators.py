@@ -44,6 +44,10 @@ def test_what_has_one_meaning_is_mended_for_sure(response: str, written: str, me
     [
         "p and q or r",
         "p or q and r",
+        "p | q and r",
+        "p | q && r",
+        "p -> q or r",
+        "p xor q || r",
         "p implies q or r",
         "not p and q",
         "not p & q",
@@ -68,6 +72,31 @@ def test_what_could_mean_two_things_is_never_sure(response: str) -> None:
     quoted = response.startswith("'p'")  # the pair is sure; the lonely one behind it is not
     assert found.help
     assert found.mend is None or found.mend.sure is quoted
+
+
+@pytest.mark.parametrize(
+    "response",
+    [
+        "(p | q) and r",
+        "p & q or r",
+        "p || q && r",
+        "p implies q & r",
+        "(p and q) | r",
+        "p | (q && r)",
+        '"a | b" and r',
+    ],
+)
+def test_what_binds_in_one_way_only_is_sure(response: str) -> None:
+    found = mistake_of(response).mend
+    assert found is not None
+    assert found.sure
+
+
+def test_another_part_of_the_sentence_has_no_say_in_what_binds() -> None:
+    found = parse(Source("r.fret", "when p | q the sw shall satisfy r and s").span())
+    assert isinstance(found, Diagnostic)
+    assert found.mend is not None
+    assert found.mend.sure
 
 
 @pytest.mark.parametrize(
