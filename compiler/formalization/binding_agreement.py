@@ -193,7 +193,10 @@ def unbound(rule: Formalized, declarations: Declarations) -> Iterator[Diagnostic
 
 
 def place(rule: Formalized, name: str) -> Span:
-    """Where the sentence names it first; the whole sentence for a comparison."""
+    """Where the sentence names it first: the name, or the comparison or the call that it is of."""
+    compared: Span | None = getattr(_stated(rule.sentence).get(name), "span", None)
+    if compared is not None and compared.source is rule.requirement.wording.source:
+        return compared
     for expression in conditions(rule.sentence):
         for mention in e.names(expression):
             if mention.id == name and mention.span is not None:

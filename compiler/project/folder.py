@@ -11,7 +11,7 @@ from typing import Any
 
 from compiler.files.settings import Settings, settings
 from compiler.files.text_files import read, unreadable
-from compiler.formalization.formalize import duplicates, formalize
+from compiler.formalization.formalize import duplicates, formalize, unreadable_sentence
 from compiler.formalization.formalized import Formalized
 from compiler.formalization.resolution import extended
 from compiler.project.acceptances import Acceptance, acceptances, answered
@@ -50,6 +50,9 @@ class Failed:
 
     requirement: Requirement
     diagnostic: Diagnostic
+    """The first error; the note where it is free text."""
+    diagnostics: tuple[Diagnostic, ...] = ()
+    """All there is to say of it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -170,14 +173,14 @@ def _formalized(
     mistaken = dict(duplicates(written))
     rules, failed, said = [], [], list(dict.fromkeys(mistaken.values()))
     for requirement in written:
-        rule, remarks = None, requirement.mistakes
-        if not remarks:
+        rule, remarks = None, (*requirement.mistakes, *unreadable_sentence(requirement))
+        if not requirement.mistakes:
             rule, remarks = formalize(requirement, declarations)
         if rule is not None and rule.declarations is not None:
             remarks = (*remarks, *disagreements(rule, rule.declarations))
         said.extend(remark for remark in remarks if remark.code not in unsaid)
         if rule is None:
-            failed.append(Failed(requirement, _reason(remarks)))
+            failed.append(Failed(requirement, _reason(remarks), remarks))
             continue
         rules.append(rule)
         if has_errors(remarks):
@@ -246,7 +249,8 @@ def _absent(folder: str, what: str) -> Diagnostic:
         Code.NO_SUCH_FILE,
         f"{what} `{folder}`",
         Source(folder, "").span(),
-        help="name the folder that your requirements are in",
+        help="name the folder that your requirements are in: `fretc check FOLDER`, or "
+        "`--requirements FOLDER` of the other commands",
     )
 
 

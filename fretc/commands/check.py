@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import click
 
-from fretc.terminal.output import BAD, NOT_SHOWN, SHOWN, say_line, stop
+from fretc.terminal.output import BAD, NOT_SHOWN, SHOWN, deliver, say_all, say_line, stop
 from fretish.diagnostics.diagnostic import Diagnostic, has_errors
-from fretish.diagnostics.rendering import render_all
+from fretish.diagnostics.rendering import visible
 
 
 @click.command(short_help="Say what is wrong or missing in a project, before any run.")
@@ -18,12 +20,14 @@ from fretish.diagnostics.rendering import render_all
     "--verification",
     help="What `fretc verify` found; build/verification.json, if it is there and none is given.",
 )
+@click.option("--fix", is_flag=True, help="Write the mends that are sure, then check.")
 def check(
     requirements: str,
     bindings: str | None,
     hazards: str | None,
     evidence: str,
     verification: str | None,
+    fix: bool,
 ) -> None:
     """Say what is wrong or missing in a project, before any run.
 
@@ -32,6 +36,7 @@ def check(
     methods that can give no result; links that are missing; what has changed since its review,
     or since its audit; what was reviewed and is claimed no more; waivers that cover nothing.
     Warnings that are accepted are listed with their reasons.
+    `--fix` mends what can mean one thing only (`should`, `and`, `=<`) and names each mend.
     Exit status: 0 no warning but accepted ones, 3 warnings, 2 mistakes.
     """
     from compiler.files.dates import today
@@ -46,6 +51,8 @@ def check(
     from fretc.report.traceability.waivers import read as read_waivers
     from fretc.verification.reader import known as proven
 
+    if fix:
+        _mend(requirements)
     project = whole(requirements, bindings, hazards)
     if isinstance(project, Diagnostic):
         stop(project)
@@ -83,13 +90,28 @@ def check(
     _finish(tuple(dict.fromkeys(said)), len(project.requirements))
 
 
+def _mend(folder: str) -> None:
+    """Write what can be mended for sure, all files or none, and name each mend."""
+    from compiler.project.folder import requirement_files
+    from compiler.project.mending import mended
+
+    paths = requirement_files(folder)
+    files = () if isinstance(paths, Diagnostic) else mended(paths)
+    deliver({Path(file.path): file.text for file in files})
+    for mend in (mend for file in files for mend in file.mends):
+        place = f"{mend.span.source.name}:{mend.span.line}:{mend.span.column}"
+        say_line(visible(f"mended {place}: {mend.change}"))
+    if files:
+        say_line("")
+
+
 def _finish(said: tuple[Diagnostic, ...], count: int) -> None:
     """Say it, and exit with what it means."""
     accepted = [d for d in said if d.accepted]
-    ordered = [*(d for d in said if not d.accepted), *accepted]
     errors, warnings = sum(d.is_error for d in said), sum(d.is_open for d in said)
-    if ordered:
-        say_line(f"{render_all(ordered)}\n")
+    say_all([d for d in said if not d.accepted], accepted)
+    if said:
+        say_line("")
     counts = f"{_many(errors, 'mistake')}, {_many(warnings, 'warning')}"
     also = f", {len(accepted)} accepted" if accepted else ""
     say_line(f"{_many(count, 'requirement')}: {counts}{also}")

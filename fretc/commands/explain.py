@@ -170,6 +170,12 @@ def _unknown(what: str, ids: Sequence[str], folder: str, *, is_file: bool) -> Di
             f"no diagnostic has the code `{what.upper()}`, and no requirement that id",
             help=f"there are {', '.join(sorted(area))}" if area else "codes begin with F1 to F9",
         )
+    if any(character.isspace() for character in what):
+        return Diagnostic(
+            Code.NO_SUCH_REQUIREMENT,
+            f"`{what}` is no id",
+            help='pipe a sentence in: `echo "the robot shall ..." | fretc explain -`',
+        )
     near = suggestion(what, ids)
     known = f"there are {', '.join(ids[:8])}{', ...' if len(ids) > 8 else ''}"
     return Diagnostic(

@@ -106,7 +106,7 @@ def _check_weaken(kinds: Sequence[str]) -> None:
 
 def _only_failed(project: Project) -> bool:
     """Whether every error is that of a sentence: the list of formulas then carries it."""
-    told = [failed.diagnostic for failed in project.failed]
+    told = {diagnostic for failed in project.failed for diagnostic in failed.diagnostics}
     return all(d in told for d in project.diagnostics if d.is_error)
 
 

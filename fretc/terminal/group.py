@@ -66,6 +66,12 @@ def _is_path(word: str) -> bool:
 
 
 def _unknown_command(word: str, commands: Sequence[str]) -> Diagnostic:
+    if any(character.isspace() for character in word):
+        return Diagnostic(
+            Code.UNKNOWN_COMMAND,
+            f"`{word}` is no command of fretc, and no file",
+            help='pipe a sentence in: `echo "the robot shall ..." | fretc -`',
+        )
     near = suggestion(word, [c for c in commands if c != DEFAULT])
     known = ", ".join(c for c in commands if c != DEFAULT)
     return Diagnostic(

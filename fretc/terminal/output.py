@@ -7,12 +7,13 @@ import sys
 from collections.abc import Iterable, Mapping, Sequence
 from contextlib import suppress
 from pathlib import Path
-from typing import NoReturn
+from typing import Any, NoReturn, TextIO
 
 import click
 
 from fretish.diagnostics.diagnostic import Code, Diagnostic
-from fretish.diagnostics.rendering import render_all, visible
+from fretish.diagnostics.rendering import Part, plain, render_all, visible
+from fretish.reading.natural_order import by_place
 
 SHOWN, VIOLATION, BAD, NOT_SHOWN, INTERRUPTED = 0, 1, 2, 3, 130
 """Exit status: all shown, a violation, bad use or input, something not shown, Ctrl-C."""
@@ -25,15 +26,44 @@ def stop(*diagnostics: Diagnostic) -> NoReturn:
 
 
 def say(diagnostics: Sequence[Diagnostic]) -> None:
-    """Print them on standard error; of the warnings that are accepted, how many there are."""
+    """Print them on standard error; of the warnings that are accepted, how many there are.
+
+    They are ordered by their places, and in colours where it is a terminal.
+    """
     accepted = sum(bool(diagnostic.accepted) for diagnostic in diagnostics)
-    shown = [diagnostic for diagnostic in diagnostics if not diagnostic.accepted]
-    if shown:
-        say_line(render_all(shown))
+    open_ones = [diagnostic for diagnostic in diagnostics if not diagnostic.accepted]
+    say_all(open_ones)
     if accepted:
         count = "1 warning is" if accepted == 1 else f"{accepted} warnings are"
-        gap = "\n" if shown else ""
+        gap = "\n" if open_ones else ""
         say_line(f"{gap}{count} accepted: `fretc check` lists the reasons")
+
+
+def say_all(*groups: Sequence[Diagnostic]) -> None:
+    """Print groups of diagnostics on standard error, each ordered by their places."""
+    paint = _painted if _has_colours(sys.stderr) else plain
+    blocks = [render_all(by_place(group), paint) for group in groups if group]
+    if blocks:
+        say_line("\n\n".join(blocks))
+
+
+_STYLES: Mapping[Part, Mapping[str, Any]] = {
+    Part.ERROR: {"fg": "red", "bold": True},
+    Part.WARNING: {"fg": "yellow", "bold": True},
+    Part.NOTE: {"fg": "blue", "bold": True},
+    Part.MESSAGE: {"bold": True},
+    Part.FRAME: {"fg": "blue"},
+    Part.HELP: {"fg": "cyan", "bold": True},
+}
+
+
+def _painted(text: str, part: Part) -> str:
+    return click.style(text, **_STYLES[part])
+
+
+def _has_colours(stream: TextIO) -> bool:
+    """Whether it is a terminal that shows colours, and the user wants them (no-color.org)."""
+    return stream.isatty() and "NO_COLOR" not in os.environ and os.environ.get("TERM") != "dumb"
 
 
 def say_also(diagnostics: Sequence[Diagnostic], earlier: Sequence[Diagnostic]) -> None:
@@ -85,9 +115,9 @@ def protect(outputs: Iterable[Path], protected: Iterable[str]) -> None:
 
 def coloured(lines: Sequence[tuple[str, str | None]]) -> str:
     """The lines, each in its colour where standard output is a terminal that wants colours."""
-    plain = not sys.stdout.isatty() or "NO_COLOR" in os.environ
+    colours = _has_colours(sys.stdout)
     return "".join(
-        f"{text if plain or colour is None else click.style(text, fg=colour)}\n"
+        f"{click.style(text, fg=colour) if colours and colour is not None else text}\n"
         for text, colour in lines
     )
 

@@ -6,11 +6,13 @@ that needs it; the codes live here, because a number is for life: never moved, n
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable
 from dataclasses import dataclass
 from difflib import get_close_matches
 from enum import Enum, StrEnum
 
+from fretish.diagnostics.mends import Mend
 from fretish.diagnostics.source import Span
 
 
@@ -44,6 +46,7 @@ class Code(Enum):
     UNCLOSED_HEADER = ("F113", "the header has no closing `+++`")
     TOO_DEEP = ("F115", "the sentence is nested too deep")
     NAME_CLASH = ("F116", "two names become one in formulas")
+    SEVERAL_SENTENCES = ("F117", "a second sentence stands without a line `+++` before it")
     FREE_TEXT = ("F114", "free text is kept and not formalized")
 
     DUPLICATE_ID = ("F201", "two requirements have the same id")
@@ -222,6 +225,8 @@ class Diagnostic:
     """The topic or the hazard that a warning is about, by which it can be accepted."""
     accepted: str = ""
     """The reason for which the project accepts a warning; it stays one, and is shown."""
+    mend: Mend | None = None
+    """What `help` says, where that is another text in the place of a span."""
 
     @property
     def is_error(self) -> bool:
@@ -242,11 +247,19 @@ def has_errors(diagnostics: Iterable[Diagnostic]) -> bool:
 def suggestion(word: str, known: Iterable[str], cutoff: float = 0.6) -> str | None:
     """The known word that is nearest to a misspelt one, if one is near.
 
+    It has the same numbers and operators: `battery < 10` is another claim than `battery < 20`.
+
     Args:
         word: what was written.
         known: what may be written.
         cutoff: how near, from 0 (anything) to 1 (equal), as `difflib` measures it.
     """
-    by_folded = {name.casefold(): name for name in known}
+    by_folded = {name.casefold(): name for name in known if _claim(name) == _claim(word)}
     near = get_close_matches(word.casefold(), by_folded, n=1, cutoff=cutoff)
     return by_folded[near[0]] if near else None
+
+
+def _claim(word: str) -> list[str]:
+    """The numbers and operators of a word, in its order."""
+    found: list[str] = re.findall(r"\d+|[<>=!&|]+", word)
+    return [part.lstrip("0") if part.isdigit() else part for part in found]

@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -221,8 +222,8 @@ def test_a_mistyped_command_gets_a_suggestion(fretc: Fretc) -> None:
 
 def test_a_missing_file_is_named_with_its_neighbour(fretc: Fretc) -> None:
     write("r1.fret", R1)
-    assert fretc("r2.fret") == Run(
-        2, "", "F901 there is no file `r2.fret`\n  --> r2.fret\nhelp: did you mean `r1.fret`?\n"
+    assert fretc("rr1.fret") == Run(
+        2, "", "F901 there is no file `rr1.fret`\n  --> rr1.fret\nhelp: did you mean `r1.fret`?\n"
     )
 
 
@@ -238,7 +239,8 @@ def test_a_directory_without_requirements_is_refused(fretc: Fretc) -> None:
         2,
         "",
         "F901 no requirement (`*.fret`) is in `folder`\n  --> folder\n"
-        "help: name the folder that your requirements are in\n",
+        "help: name the folder that your requirements are in: `fretc check FOLDER`, or "
+        "`--requirements FOLDER` of the other commands\n",
     )
 
 
@@ -470,3 +472,30 @@ def test_h_is_help_everywhere(fretc: Fretc, command: str) -> None:
     short, long = fretc(*name, "-h"), fretc(*name, "--help")
     assert (short.status, short.out, short.err) == (0, long.out, long.err)
     assert "-h, --help" in short.out
+
+
+def test_all_mistakes_of_a_file_are_told_and_each_sentence_has_its_first_in_json(
+    fretc: Fretc,
+) -> None:
+    text = (
+        '+++\nid = "A"\nverify = 3\n+++\nthe sw must satisfy p and q\n'
+        '+++\nid = "B"\n+++\nthe sw shall satisfy p && q == 3\n'
+    )
+    run = fretc(write("two.fret", text), "--emit", "ltl", "--format", "json", "-o", "-")
+    codes = [line[:4] for line in run.err.splitlines() if re.match(r"F\d{3} ", line)]
+    assert (run.status, codes) == (2, ["F105", "F107", "F101", "F101", "F101"])
+    first, second = json.loads(run.out)
+    assert (first["error"]["code"], second["error"]["column"]) == ("F105", 24)
+
+
+def test_a_sentence_in_the_place_of_a_file_is_told_how_to_go_in(fretc: Fretc) -> None:
+    run = fretc("the robot shall always satisfy p")
+    assert (run.status, "| fretc -`" in run.err) == (2, True)
+    write("requirements/r1.fret", R1)
+    run = fretc("explain", "the robot shall always satisfy p")
+    assert (run.status, "| fretc explain -`" in run.err) == (2, True)
+
+
+def test_what_follows_an_unclosed_header_is_not_read_as_a_sentence(fretc: Fretc) -> None:
+    run = fretc(write("r1.fret", '+++\nid = "A"\nthe sw must satisfy p\n'))
+    assert [line[:4] for line in run.err.splitlines() if line.startswith("F")] == ["F113"]

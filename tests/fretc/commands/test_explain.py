@@ -200,12 +200,15 @@ def test_what_has_no_trace_says_so(fretc: Fretc) -> None:
 
 
 def test_a_name_that_is_none_gets_a_suggestion(fretc: Fretc) -> None:
-    assert fretc("explain", "R11").err == (
-        "F515 no requirement in `requirements` has the id `R11`\nhelp: did you mean `R1`?\n"
+    assert fretc("explain", "RR1").err == (
+        "F515 no requirement in `requirements` has the id `RR1`\nhelp: did you mean `R1`?\n"
     )
     assert fretc("explain", "elephant").err == (
         "F515 no requirement in `requirements` has the id `elephant`\n"
         "help: there are E1, X1, T1, R1\n"
+    )
+    assert fretc("explain", "R11").err == (  # a number is nothing that one misspells
+        "F515 no requirement in `requirements` has the id `R11`\nhelp: there are E1, X1, T1, R1\n"
     )
     run = fretc("explain", "F699")
     assert (run.status, run.out) == (2, "")

@@ -659,7 +659,7 @@ def test_a_file_that_is_no_monitor_is_told(fretc: Fretc, r1: str, text: str, why
 
 def test_a_sentence_that_is_wrong_is_told(fretc: Fretc) -> None:
     run = fretc("verify", "--monitor", write("bad.fret", "the sw shall satisfy"))
-    assert first(run) == (2, "", "F101 the sentence ends too early")
+    assert first(run) == (2, "", "F101 the response is missing after `satisfy`")
 
 
 def test_what_has_no_monitor_has_no_proof(fretc: Fretc) -> None:
