@@ -146,7 +146,8 @@ def audit(
     if summary or query is not None:
         summarize(paths, query, form)
     _check_outputs(evidence, parquet, resume=resume)
-    from compiler.project.folder import beside, companions, load, requirement_files
+    from compiler.project.folder import load
+    from compiler.project.paths import beside, companions, requirement_files
     from fretc.audit.log_paths import files_of
     from fretc.audit.log_paths import logs as logs_of
     from fretc.audit.plan import Plan, planned
@@ -169,21 +170,23 @@ def audit(
     if not isinstance(plan, Plan):
         stop(*(reason for reason in plan if reason not in project.diagnostics))
     journal = _journal(evidence, plan) if evidence != "-" and len(logs) > 1 else None
-    refused = [reason for reason in plan.refusals if reason not in project.diagnostics]
-    say_also(refused, project.diagnostics)
+    refusals = [reason for reason in plan.refusals if reason not in project.diagnostics]
+    say_also(refusals, project.diagnostics)
     result = audit_all(plan, logs, _engine(engine, jobs), journal, resume=resume)
-    say_also(result.diagnostics, (*project.diagnostics, *refused))
+    say_also(result.diagnostics, (*project.diagnostics, *refusals))
     if result.read:  # a mistyped name must not cost the evidence of the last audit
-        marked = _marked(result, project, annotations) if annotate or annotations else {}
+        annotation_files = (
+            _annotation_files(result, project, annotations) if annotate or annotations else {}
+        )
         forms: dict[Path, str | bytes] = {Path(evidence): result.evidence}
         if parquet is not None:
             forms[Path(parquet)] = _table(result)
-        if {*map(os.path.realpath, forms)} & {*map(os.path.realpath, marked)}:
+        if {*map(os.path.realpath, forms)} & {*map(os.path.realpath, annotation_files)}:
             stop(not_written(evidence, "two outputs would go there"))
-        deliver({**forms, **marked}, inputs)
+        deliver({**forms, **annotation_files}, inputs)
         if journal is not None:
             journal.remove()
-    click.echo(_printed(result, project, refused, form), nl=False)
+    click.echo(_text(result, project, refusals, form), nl=False)
     if plan.refused or has_errors((*project.diagnostics, *result.diagnostics)):
         raise SystemExit(BAD)
     raise SystemExit(VIOLATION if result.violated else SHOWN if result.shown else NOT_SHOWN)
@@ -201,13 +204,13 @@ def _journal(evidence: str, plan: Plan) -> Journal | None:
     return Journal(Path(evidence), plan, key)
 
 
-def _marked(result: Audit, project: Project, folder: str | None) -> dict[Path, bytes]:
+def _annotation_files(result: Audit, project: Project, folder: str | None) -> dict[Path, bytes]:
     from fretc.audit.outputs.annotations import sidecars
 
     return sidecars(result.results, project.rules, Path(folder or "build/annotations"))
 
 
-def _printed(result: Audit, project: Project, refused: Sequence[Diagnostic], form: str) -> str:
+def _text(result: Audit, project: Project, refusals: Sequence[Diagnostic], form: str) -> str:
     from fretc.audit.outputs.junit import github, junit
     from fretc.audit.outputs.sarif import AllRuns, OneRun, sarif
 
@@ -220,11 +223,11 @@ def _printed(result: Audit, project: Project, refused: Sequence[Diagnostic], for
         case "github":
             return github(result.results, project.requirements, result.estimates)
         case "sarif":
-            said = (*project.diagnostics, *refused, *result.diagnostics)
-            left = project.without_rule
+            diagnostics = (*project.diagnostics, *refusals, *result.diagnostics)
+            without_rule = project.without_rule
             together = [AllRuns.of(one) for one in result.estimates]
             results = [OneRun.of(one) for one in result.results]
-            return sarif(results, project.rules, said, together, left)
+            return sarif(results, project.rules, diagnostics, together, without_rule)
         case _:
             return coloured(result.text)
 

@@ -82,7 +82,8 @@ def _project(requirements: str, bindings: str | None, *, given: bool, unread: st
 
     What is wrong with the bindings does not matter where they are the file that is to be replaced.
     """
-    from compiler.project.folder import beside, load, requirement_files
+    from compiler.project.folder import load
+    from compiler.project.paths import beside, requirement_files
 
     files = requirement_files(requirements)
     if isinstance(files, Diagnostic):
@@ -110,11 +111,11 @@ def _draft(log: str, project: Project, output: str, *, force: bool) -> None:
 
     if output != "-" and not force and os.path.lexists(output):
         stop(_exists(output))
-    found = look(log)
-    if isinstance(found, Diagnostic):
-        stop(found)
-    say(found.recording.findings)
-    deliver({Path(output): draft(found, wanted(project))}, (log,))
+    contents = look(log)
+    if isinstance(contents, Diagnostic):
+        stop(contents)
+    say(contents.recording.findings)
+    deliver({Path(output): draft(contents, wanted(project))}, (log,))
     raise SystemExit(SHOWN)
 
 
@@ -156,13 +157,13 @@ def _check(paths: tuple[str, ...], project: Project, form: str, jobs: int) -> No
     if project.declarations is None:
         stop(_no_bindings())
     plan = planned(project)
-    found = coverage(project.declarations, logs, jobs, plan if isinstance(plan, Plan) else None)
-    if isinstance(found, Diagnostic):
-        stop(found)
-    said = [*_unbound(project), *project.diagnostics, *found.diagnostics]
-    say(said)
-    click.echo(found.as_json if form == "json" else coloured(found.text), nl=False)
-    raise SystemExit(BAD if has_errors(said) else SHOWN if found.shown else NOT_SHOWN)
+    result = coverage(project.declarations, logs, jobs, plan if isinstance(plan, Plan) else None)
+    if isinstance(result, Diagnostic):
+        stop(result)
+    diagnostics = [*_unbound(project), *project.diagnostics, *result.diagnostics]
+    say(diagnostics)
+    click.echo(result.as_json if form == "json" else coloured(result.text), nl=False)
+    raise SystemExit(BAD if has_errors(diagnostics) else SHOWN if result.shown else NOT_SHOWN)
 
 
 def _unbound(project: Project) -> list[Diagnostic]:

@@ -33,7 +33,8 @@ def check(
     Exit status: 0 nothing to say, 3 warnings, 2 mistakes.
     """
     from compiler.files.dates import today
-    from compiler.project.folder import beside, whole
+    from compiler.project.folder import whole
+    from compiler.project.paths import beside
     from fretc.audit.evidence.reader import read as read_evidence
     from fretc.audit.plan import refusals
     from fretc.report.assembly import stale

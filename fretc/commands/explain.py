@@ -109,39 +109,40 @@ def _explain_rules(rules: Sequence[Formalized], form: str, picture: str | None) 
 
 def _rules(what: str, folder: str, bindings: str | None, *, is_file: bool) -> list[Formalized]:
     """The rules asked for; exits where there is none."""
-    from compiler.project.folder import listed, load
+    from compiler.project.folder import load
+    from compiler.project.paths import listed
 
     paths = listed([what if is_file else folder])
     if isinstance(paths, Diagnostic):
         stop(paths)
     project = load(paths, bindings)
     ids = [requirement.id for requirement in project.requirements]
-    wanted = ids if is_file else [id for id in ids if id.casefold() == what.casefold()]
-    if not wanted:
-        _said(project, ())
+    matches = ids if is_file else [id for id in ids if id.casefold() == what.casefold()]
+    if not matches:
+        _say_of(project, ())
         stop(_unknown(what, ids, folder, is_file=is_file))
-    chosen = [r for r in project.requirements if r.id in wanted]
-    _said(project, chosen)
-    rules = [rule for rule in project.rules if rule.id in wanted]
+    subjects = [r for r in project.requirements if r.id in matches]
+    _say_of(project, subjects)
+    rules = [rule for rule in project.rules if rule.id in matches]
     if not rules:
         raise SystemExit(NOT_SHOWN)  # free text
     return rules
 
 
-def _said(project: Project, chosen: Sequence[Requirement]) -> None:
+def _say_of(project: Project, subjects: Sequence[Requirement]) -> None:
     """What there is to say of the chosen requirements and of the bindings; exits at an error."""
     others = {
         diagnostic
         for requirement in project.requirements
-        if requirement not in chosen
+        if requirement not in subjects
         for diagnostic in project.diagnostics
         if diagnostic.span is not None
         and diagnostic.span.source == requirement.wording.source
         and _nearest(project, diagnostic) is requirement
     }
-    kept = [diagnostic for diagnostic in project.diagnostics if diagnostic not in others]
-    say(kept)
-    if has_errors(kept):
+    own = [diagnostic for diagnostic in project.diagnostics if diagnostic not in others]
+    say(own)
+    if has_errors(own):
         raise SystemExit(BAD)
 
 
@@ -171,9 +172,9 @@ def _unknown(what: str, ids: Sequence[str], folder: str, *, is_file: bool) -> Di
             help=f"there are {', '.join(sorted(area))}" if area else "codes begin with F1 to F9",
         )
     near = suggestion(what, ids)
-    known = f"there are {', '.join(ids[:8])}{', ...' if len(ids) > 8 else ''}"
+    listing = f"there are {', '.join(ids[:8])}{', ...' if len(ids) > 8 else ''}"
     return Diagnostic(
         Code.NO_SUCH_REQUIREMENT,
         f"no requirement in `{folder}` has the id `{what}`",
-        help=f"did you mean `{near}`?" if near else known if ids else "name a `.fret` file",
+        help=f"did you mean `{near}`?" if near else listing if ids else "name a `.fret` file",
     )

@@ -67,7 +67,8 @@ def compile_(
 
     FILE holds one or more requirements, or is a folder of such files; `-` is standard input.
     """
-    from compiler.project.folder import listed, load
+    from compiler.project.folder import load
+    from compiler.project.paths import listed
 
     if one_file and "monitor" not in kinds:
         stop(Diagnostic(Code.BAD_USAGE, "`--one-file` is for `--emit monitor`", help="add it"))
@@ -98,16 +99,18 @@ def _check_weaken(kinds: Sequence[str]) -> None:
     """F907 where no kind of file that is asked for has a weaker form."""
     weak = [f"`--emit {name}`" for name, target in TARGETS.items() if target.weak is not None]
     if not any(TARGETS[kind].weak for kind in kinds):
-        told = f"`--weaken` is for {' and '.join(weak)}"
+        message = f"`--weaken` is for {' and '.join(weak)}"
         stop(
-            Diagnostic(Code.BAD_USAGE, told, help="nothing else may say less than its requirement")
+            Diagnostic(
+                Code.BAD_USAGE, message, help="nothing else may say less than its requirement"
+            )
         )
 
 
 def _only_failed(project: Project) -> bool:
     """Whether every error is that of a sentence: the list of formulas then carries it."""
-    told = [failed.diagnostic for failed in project.failed]
-    return all(d in told for d in project.diagnostics if d.is_error)
+    reasons = [failed.diagnostic for failed in project.failed]
+    return all(d in reasons for d in project.diagnostics if d.is_error)
 
 
 def _deliver_formulas(project: Project, output: str) -> None:
@@ -115,9 +118,9 @@ def _deliver_formulas(project: Project, output: str) -> None:
     from compiler.files.templating import to_json
     from compiler.formalization.record import failed, formulas
 
-    found = {id(rule.requirement): formulas(rule) for rule in project.rules}
-    found |= {id(f.requirement): failed(f.requirement, f.diagnostic) for f in project.failed}
-    text = to_json([found[id(r)] for r in project.requirements])
+    records = {id(rule.requirement): formulas(rule) for rule in project.rules}
+    records |= {id(f.requirement): failed(f.requirement, f.diagnostic) for f in project.failed}
+    text = to_json([records[id(r)] for r in project.requirements])
     deliver({Path(output) / "ltl.json" if output != "-" else Path("-"): f"{text}\n"})
 
 
@@ -131,15 +134,15 @@ def _emit(project: Project, kinds: dict[str, None], output: str, options: Option
     """Write whatever can be; what a target refuses is told and keeps nothing else from it."""
     named = [TARGETS[kind] for kind in kinds]
     targets = [(options.weaken and target.weak) or target for target in named]
-    made = [(target, *_emitted(target, project.rules, options)) for target in targets]
-    refused = [diagnostic for _, _, wrong in made for diagnostic in wrong]
-    kept = [(target, rules) for target, rules, _ in made if rules is not None]
-    say(refused)
-    say([d for target, rules in kept for rule in rules if (d := target.remark(rule))])
-    say([diagnostic for target, _ in kept for diagnostic in target.remarks(options)])
-    files = [artifact for target, rules in kept for artifact in target.emit(rules, options)]
+    outputs = [(target, *_emitted(target, project.rules, options)) for target in targets]
+    refusals = [diagnostic for _, _, wrong in outputs for diagnostic in wrong]
+    jobs = [(target, rules) for target, rules, _ in outputs if rules is not None]
+    say(refusals)
+    say([d for target, rules in jobs for rule in rules if (d := target.remark(rule))])
+    say([diagnostic for target, _ in jobs for diagnostic in target.remarks(options)])
+    files = [artifact for target, rules in jobs for artifact in target.emit(rules, options)]
     _deliver_all({str(artifact.path): artifact.text for artifact in files}, output)
-    if refused:
+    if refusals:
         raise SystemExit(BAD)
 
 
@@ -152,16 +155,16 @@ def _emitted(
     """
     from compiler.formalization.formalize import clashes
 
-    found = [(rule, target.refuse(rule)) for rule in rules]
-    wrong = [diagnostic for _, diagnostic in found if diagnostic is not None]
+    answers = [(rule, target.refuse(rule)) for rule in rules]
+    wrong = [diagnostic for _, diagnostic in answers if diagnostic is not None]
     whole = [diagnostic] if (diagnostic := target.refuse_project(options)) else []
     one_file = options.one_file and target.name == "monitor"
     if one_file:
         whole += clashes(rules)
     if whole or (wrong and (one_file or not target.per_rule)):
         return None, [*wrong, *whole]
-    kept = [rule for rule, diagnostic in found if diagnostic is None]
-    return (kept or None) if wrong else kept, wrong
+    expressible = [rule for rule, diagnostic in answers if diagnostic is None]
+    return (expressible or None) if wrong else expressible, wrong
 
 
 @click.command(short_help="Put sentences into their canonical wording.")
@@ -170,18 +173,18 @@ def _emitted(
 @click.option("-o", "--output", type=click.Choice(("-",)), help="`-` prints in place of writing.")
 def fmt(files: tuple[str, ...], check: bool, output: str | None) -> None:
     """Put the sentences of requirement files into their canonical wording."""
-    from compiler.project.folder import listed
     from compiler.project.formatting import formatted
+    from compiler.project.paths import listed
 
     paths = listed(files)
     if isinstance(paths, Diagnostic):
         stop(paths)
-    done, wrong = formatted(paths)
+    texts, wrong = formatted(paths)
     if wrong:
         stop(*wrong)
-    changed = [file for file in done if file.before != file.after]
+    changed = [file for file in texts if file.before != file.after]
     if output == "-" or files == ("-",):
-        click.echo("".join(file.after for file in done), nl=False)
+        click.echo("".join(file.after for file in texts), nl=False)
     elif check:
         for file in changed:
             say_line(f"would change {file.path}")
@@ -221,15 +224,15 @@ def import_(
     source = read(file)
     if isinstance(source, Diagnostic):
         stop(source)
-    asked = {"id": id_column, "text": text_column, "project": project_column}
-    result = read_export(source, {part: name for part, name in asked.items() if name})
+    columns = {"id": id_column, "text": text_column, "project": project_column}
+    result = read_export(source, {part: name for part, name in columns.items() if name})
     say(result.diagnostics)
     if has_errors(result.diagnostics):
         raise SystemExit(BAD)
     files = {str(artifact.path): artifact.text for artifact in result.artifacts}
-    there = [path for path in files if (Path(output) / path).exists()]
-    if there and output != "-" and not force:
-        stop(_exists(str(Path(output) / there[0])))
+    clashes = [path for path in files if (Path(output) / path).exists()]
+    if clashes and output != "-" and not force:
+        stop(_exists(str(Path(output) / clashes[0])))
     _deliver_all(files, output)
     counts = f"{result.requirements} requirements, {result.variables} variables"
     say_line(f"imported {counts}")

@@ -30,13 +30,13 @@ def info(paths: tuple[str, ...], whole: bool, form: str) -> None:
     logs = logs_of(paths)
     if isinstance(logs, Diagnostic):
         stop(logs)
-    found = [look(log) for log in logs]
-    wrong = [one for one in found if isinstance(one, Diagnostic)]
-    read = [one for one in found if not isinstance(one, Diagnostic)]
-    say([*wrong, *(finding for one in read for finding in one.recording.findings)])
+    answers = [look(log) for log in logs]
+    wrong = [one for one in answers if isinstance(one, Diagnostic)]
+    contents = [one for one in answers if not isinstance(one, Diagnostic)]
+    say([*wrong, *(finding for one in contents for finding in one.recording.findings)])
     if form == "json":
-        click.echo(to_json([as_record(one) for one in read]))
+        click.echo(to_json([as_record(one) for one in contents]))
     else:
-        click.echo("\n".join(text(one, whole=whole) for one in read), nl=False)
-    intact = all(one.recording.intact for one in read)
+        click.echo("\n".join(text(one, whole=whole) for one in contents), nl=False)
+    intact = all(one.recording.intact for one in contents)
     raise SystemExit(BAD if wrong else SHOWN if intact else NOT_SHOWN)

@@ -89,14 +89,15 @@ def report(
     All forms say the same. The same inputs give the same bytes; waivers count by the day of
     SOURCE_DATE_EPOCH, where that is set.
     """
-    from compiler.project.folder import beside, companions, requirement_files, whole
+    from compiler.project.folder import whole
+    from compiler.project.paths import beside, companions, requirement_files
     from fretc.attestation.signatures import SIGNERS
     from fretc.report.make import make
     from fretc.verification.ajpf_results import written as results
     from fretc.verification.reader import written
 
-    wanted = [(form, path) for name, form in FORMS.items() if (path := places[name]) is not None]
-    for form, _ in wanted:
+    outputs = [(form, path) for name, form in FORMS.items() if (path := places[name]) is not None]
+    for form, _ in outputs:
         absent = form.missing()
         if absent is not None:
             stop(absent)
@@ -110,38 +111,40 @@ def report(
     waivers = waivers or beside(requirements, "waivers.toml")
     signers = signers or beside(requirements, SIGNERS)
     verification = verification or written()
-    said = ajpf or results()
-    made = make(
+    ajpf_results = ajpf or results()
+    outcome = make(
         project,
         evidence,
         lock=lock,
         waivers=waivers,
         verification=verification,
-        ajpf=said,
+        ajpf=ajpf_results,
         signers=signers,
     )
-    say([*project.diagnostics, *made.diagnostics])
-    if made.report is None:
+    say([*project.diagnostics, *outcome.diagnostics])
+    if outcome.report is None:
         raise SystemExit(BAD)
-    subject = Subject(made, made.report, project)
-    read = filter(None, (bindings, hazards, verification, lock, waivers, signers, *said))
-    logs = [result.run for result in made.results]
-    _deliver(wanted, subject, [evidence, *files, *companions(files), *read, *dict.fromkeys(logs)])
-    if has_errors([*project.diagnostics, *made.diagnostics]):
+    subject = Subject(outcome, outcome.report, project)
+    inputs = filter(None, (bindings, hazards, verification, lock, waivers, signers, *ajpf_results))
+    logs = [result.run for result in outcome.results]
+    _deliver(
+        outputs, subject, [evidence, *files, *companions(files), *inputs, *dict.fromkeys(logs)]
+    )
+    if has_errors([*project.diagnostics, *outcome.diagnostics]):
         raise SystemExit(BAD)
-    raise SystemExit(_status(made.report) if strict else SHOWN)
+    raise SystemExit(_status(outcome.report) if strict else SHOWN)
 
 
-def _deliver(wanted: Sequence[tuple[Form, str]], subject: Subject, read: Sequence[str]) -> None:
+def _deliver(outputs: Sequence[tuple[Form, str]], subject: Subject, inputs: Sequence[str]) -> None:
     """Each form to its own place."""
     from fretc.terminal.output import not_written
 
     paths: dict[Path, str] = {}
-    for form, path in wanted:
+    for form, path in outputs:
         if Path(path) in paths:
             stop(not_written(path, "two outputs would go there"))
         paths[Path(path)] = form.text(subject)
-    deliver(paths, read)
+    deliver(paths, inputs)
 
 
 def _status(whole: Report) -> int:
@@ -155,6 +158,6 @@ def _status(whole: Report) -> int:
         return VIOLATION
     if whole.withdrawn:
         return VIOLATION
-    claimed = [mark for mark in marks if mark.word != RETIRED]
-    shown = all(mark.shows or mark.word == WAIVED for mark in claimed)
-    return SHOWN if claimed and shown else NOT_SHOWN
+    in_force = [mark for mark in marks if mark.word != RETIRED]
+    shown = all(mark.shows or mark.word == WAIVED for mark in in_force)
+    return SHOWN if in_force and shown else NOT_SHOWN

@@ -81,35 +81,35 @@ def lock(
         verdicts_of,
     )
 
-    for name, said in (("--reviewer", reviewer), ("--role", role), ("--comment", comment)):
-        if not said.strip():
+    for name, words in (("--reviewer", reviewer), ("--role", role), ("--comment", comment)):
+        if not words.strip():
             stop(Diagnostic(Code.BAD_USAGE, f"`{name}` says nothing", help="fill it in"))
     day = day or today()
     if not is_date(day):
         stop(Diagnostic(Code.BAD_USAGE, f"`{day}` is no date", help="write it as `2026-11-22`"))
     if is_to_come(day):
-        told = f"`{day}` is still to come, and nobody can have reviewed then"
-        stop(Diagnostic(Code.BAD_USAGE, told, help="leave `--date` out: then it is today"))
+        message = f"`{day}` is still to come, and nobody can have reviewed then"
+        stop(Diagnostic(Code.BAD_USAGE, message, help="leave `--date` out: then it is today"))
     project, chains = _chains(requirements, evidence, verification)
     if has_errors(project.diagnostics):
         raise SystemExit(BAD)
     where = path or _beside(requirements)
     before = _read(where, must=False)
-    kept = before.reviews if before is not None else {}
-    gone = kept.keys() - {chain.requirement for chain in chains}
-    chosen = _chosen(chains, ids, gone)
-    violations = () if accept_violations else unnamed_violations(chosen, refuted(evidence))
-    refused = (*outdated_results(chosen), *violations)
-    if refused:
-        stop(*refused)
-    left = {id for id in gone if not ids or id in ids}
-    reviews = {id: review for id, review in kept.items() if id not in left}
-    reviews |= {c.requirement: accepted(c, reviewer, role, day, comment) for c in chosen}
-    signatures = _signatures(where, reviews, chosen, key) if key is not None else {}
+    old_reviews = before.reviews if before is not None else {}
+    orphans = old_reviews.keys() - {chain.requirement for chain in chains}
+    subjects = _chosen(chains, ids, orphans)
+    violations = () if accept_violations else unnamed_violations(subjects, refuted(evidence))
+    refusals = (*outdated_results(subjects), *violations)
+    if refusals:
+        stop(*refusals)
+    removals = {id for id in orphans if not ids or id in ids}
+    reviews = {id: review for id, review in old_reviews.items() if id not in removals}
+    reviews |= {c.requirement: accepted(c, reviewer, role, day, comment) for c in subjects}
+    signatures = _signatures(where, reviews, subjects, key) if key is not None else {}
     deliver({Path(where): text(Lock(reviews)), **signatures})
-    for chain in chosen:
+    for chain in subjects:
         say_line(visible(f"accepted {chain.requirement}: {verdicts_of(chain)}"))
-    for id in sorted(left, key=natural):
+    for id in sorted(removals, key=natural):
         say_line(f"left out {id}: it is not among the requirements")
 
 
@@ -147,16 +147,16 @@ def diff(
     project, chains = _chains(requirements, evidence, verification)
     if has_errors(project.diagnostics):
         raise SystemExit(BAD)
-    known = _read(baseline or _beside(requirements), must=True)
-    assert known is not None
-    found = differences(standings(chains, known), known)
+    base = _read(baseline or _beside(requirements), must=True)
+    assert base is not None
+    changes = differences(standings(chains, base), base)
     if form == "json":
-        click.echo(to_json([as_record(difference) for difference in found]))
+        click.echo(to_json([as_record(difference) for difference in changes]))
     else:
-        for difference in found:
+        for difference in changes:
             for line in text(difference):
                 click.echo(visible(line))
-    raise SystemExit(SHOWN if all(d.state == "same" for d in found) else NOT_SHOWN)
+    raise SystemExit(SHOWN if all(d.state == "same" for d in changes) else NOT_SHOWN)
 
 
 def _chains(
@@ -184,10 +184,10 @@ def _chains(
 
 
 def _chosen(
-    chains: Sequence[Chain], ids: tuple[str, ...], gone: Collection[str]
+    chains: Sequence[Chain], ids: tuple[str, ...], orphans: Collection[str]
 ) -> Sequence[Chain]:
     """The requirements that are named, or all; one that is gone may be named, to let it go."""
-    known = [*(chain.requirement for chain in chains), *gone]
+    known = [*(chain.requirement for chain in chains), *orphans]
     for id in ids:
         if id not in known:
             near = suggestion(id, known)
@@ -207,9 +207,9 @@ def _read(path: str, *, must: bool) -> Lock | None:
     """The lock; where there is none yet, None, unless there must be one."""
     from fretc.report.traceability.lock import read
 
-    found = read(path)
-    if not isinstance(found, Diagnostic):
-        return found
-    if must or found.is_error:
-        stop(replace(found, severity=Severity.ERROR))
+    lock_ = read(path)
+    if not isinstance(lock_, Diagnostic):
+        return lock_
+    if must or lock_.is_error:
+        stop(replace(lock_, severity=Severity.ERROR))
     return None

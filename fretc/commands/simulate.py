@@ -115,11 +115,11 @@ def _known(scenario: Scenario) -> None:
     from fretc.campaigns.experiment import project
     from simulation.world.scenario import ScenarioError
 
-    known = [rule.id for rule in project().rules]
+    ids = [rule.id for rule in project().rules]
     for id, verdict in scenario.expect.verdicts.items():
-        if id not in known:
+        if id not in ids:
             where = f"`expect.{verdict.replace(' ', '_')}`"
-            there = ", ".join(known)
+            there = ", ".join(ids)
             raise ScenarioError(f"{where} names `{id}`, which is no requirement; there are {there}")
 
 
@@ -134,8 +134,8 @@ def _place(name: str, why: str) -> Span | None:
     text = source.text
     header = re.search(rf"^\s*\[+\s*{re.escape(tables[0])}\b", text, re.M) if tables else None
     begin = header.end() if header else 0
-    found = re.compile(rf"(?<![\w-]){re.escape(key)}(?=\s*=)").search(text, begin) if key else None
-    return source.span(*found.span()) if found else source.span(0, 0)
+    match = re.compile(rf"(?<![\w-]){re.escape(key)}(?=\s*=)").search(text, begin) if key else None
+    return source.span(*match.span()) if match else source.span(0, 0)
 
 
 def _bad_scenario(name: str, why: str) -> Diagnostic:
@@ -187,14 +187,14 @@ def _record(
     from simulation.recording import Encoding
 
     path = _file(out)
-    drawn = {form: _file(name) for form, name in pictures.items() if name is not None}
-    if len({path, *drawn.values()}) <= len(drawn):
+    images = {form: _file(name) for form, name in pictures.items() if name is not None}
+    if len({path, *images.values()}) <= len(images):
         stop(not_written(out, "two outputs would go there"))
     limit = scenario.duration if duration is None else duration
     if not math.isfinite(limit):
         stop(not_written(out, "a mission ends"))
     decision = safety_function(scenario.safety.threshold)
-    with progress(int(limit), "simulating") as tell:
+    with progress(int(limit), "simulating") as show:
         try:
             mission = record(
                 path,
@@ -204,17 +204,17 @@ def _record(
                 decision,
                 Encoding(encoding),
                 limit,
-                lambda now: tell(int(now), f"{now:.0f} s"),
+                lambda now: show(int(now), f"{now:.0f} s"),
                 {"fretc": __version__},
             )
         except OSError as error:
             stop(not_written(out, error.strerror or str(error)))
     say_line(f"wrote {out}")
-    if drawn:
+    if images:
         from simulation.picture import animate, draw
 
         painters = {"png": draw, "gif": animate}
-        deliver({Path(str(pictures[form])): painters[form](mission) for form in drawn})
+        deliver({Path(str(pictures[form])): painters[form](mission) for form in images})
     click.echo(
         f"{scenario.name}, seed {mission.seed}: {mission.duration:.1f} s, "
         f"{mission.goals_reached} of {mission.goals_total} goals, {len(mission.stops)} stops, "
@@ -254,8 +254,8 @@ def _count(
     raise SystemExit(VIOLATION if any(run.wrong for run in runs) else SHOWN)
 
 
-def _missing_extra(absent: Sequence[str]) -> Diagnostic:
-    names = " and ".join(f"`{name}`" for name in absent)
+def _missing_extra(packages: Sequence[str]) -> Diagnostic:
+    names = " and ".join(f"`{name}`" for name in packages)
     return Diagnostic(
         Code.MISSING_EXTRA,
         f"the simulated robot needs {names}",

@@ -117,7 +117,7 @@ def verify(
     Exit status: 0 all proved, 1 a claim about a requirement is refuted, 2 bad use or input,
     3 something is vacuous, not checked, or stays stopped.
     """
-    from compiler.project.folder import companions
+    from compiler.project.paths import companions
     from fretc.verification.ajpf_results import written
     from fretc.verification.engines.sandbox import Limits
     from fretc.verification.verify import Request, refusals
@@ -129,7 +129,7 @@ def verify(
         named = {"monitor": None}
     project = _project(files, bindings)
     results = ajpf or (written() if "ajpf" in (named or _LAYERS) else ())
-    asked = Request(
+    request = Request(
         [Layer(name) for name in named or _LAYERS],
         Limits(seconds=limit),
         _read(path),
@@ -138,40 +138,41 @@ def verify(
         _read(properties),
         percepts,
         provers,
-        _said_by_ajpf(project, results),
+        _ajpf_evidence(project, results),
     )
-    wrong = refusals(project, asked)
-    if wrong:
-        stop(*wrong)
-    found = _evidence(project, asked)
-    given = (path, interceptor, agent, properties, bindings, *results)
-    read = [requirement.wording.source.name for requirement in project.requirements]
-    inputs = [*read, *companions(read), *(name for name in given if name is not None)]
-    _tell(found, form, output, traces, inputs)
-    raise SystemExit(_status(found))
+    mistakes = refusals(project, request)
+    if mistakes:
+        stop(*mistakes)
+    proofs = _evidence(project, request)
+    others = (path, interceptor, agent, properties, bindings, *results)
+    sources = [requirement.wording.source.name for requirement in project.requirements]
+    inputs = [*sources, *companions(sources), *(name for name in others if name is not None)]
+    _deliver(proofs, form, output, traces, inputs)
+    raise SystemExit(_status(proofs))
 
 
-def _said_by_ajpf(project: Project, results: Sequence[str]) -> Sequence[Evidence]:
+def _ajpf_evidence(project: Project, results: Sequence[str]) -> Sequence[Evidence]:
     from fretc.verification.ajpf_results import evidence
 
-    lines, said = evidence(project.rules, results)
-    say(said)
-    if has_errors(said):
+    lines, diagnostics = evidence(project.rules, results)
+    say(diagnostics)
+    if has_errors(diagnostics):
         raise SystemExit(BAD)
     return lines
 
 
 def _half(agent: str | None) -> Diagnostic:
-    given, missing = ("properties", "agent") if agent is None else ("agent", "properties")
+    present, missing = ("properties", "agent") if agent is None else ("agent", "properties")
     return Diagnostic(
         Code.BAD_USAGE,
-        f"`--{given}` is of no use without `--{missing}`",
+        f"`--{present}` is of no use without `--{missing}`",
         help="name both: `--agent FILE.gwen --properties FILE.psl`",
     )
 
 
 def _project(files: tuple[str, ...], bindings: str | None) -> Project:
-    from compiler.project.folder import listed, load
+    from compiler.project.folder import load
+    from compiler.project.paths import listed
 
     paths = listed(files)
     if isinstance(paths, Diagnostic):
@@ -196,30 +197,30 @@ def _read(path: str | None) -> Source | None:
     return source
 
 
-def _evidence(project: Project, asked: Request) -> Sequence[Evidence]:
+def _evidence(project: Project, request: Request) -> Sequence[Evidence]:
     from fretc.terminal.progress import at_work
     from fretc.verification.monitor.verifying import NotAMonitorError
     from fretc.verification.verify import evidence
 
     try:
-        found = evidence(project, asked, at_work)
+        proofs = evidence(project, request, at_work)
     except NotAMonitorError as error:
-        assert asked.monitor is not None
+        assert request.monitor is not None
         stop(
             Diagnostic(
                 Code.BAD_MONITOR,
-                f"`{asked.monitor.name}` is no generated monitor: {error}",
-                asked.monitor.span(0, 0),
+                f"`{request.monitor.name}` is no generated monitor: {error}",
+                request.monitor.span(0, 0),
                 help="name a file that `--emit monitor` wrote",
             )
         )
-    if isinstance(found, Diagnostic):
-        stop(found)
-    return found
+    if isinstance(proofs, Diagnostic):
+        stop(proofs)
+    return proofs
 
 
-def _tell(
-    found: Sequence[Evidence], form: str, output: str, traces: str | None, inputs: Iterable[str]
+def _deliver(
+    proofs: Sequence[Evidence], form: str, output: str, traces: str | None, inputs: Iterable[str]
 ) -> None:
     """Print it, and write the evidence and the runs."""
     from compiler.files.edition import __version__
@@ -228,25 +229,25 @@ def _tell(
     from compiler.logic.claims import document
     from fretc.verification.text_output import lines
 
-    text = f"{to_json(plain(document(__version__, found)))}\n"
+    text = f"{to_json(plain(document(__version__, proofs)))}\n"
     if output != "-" or form == "json":
-        click.echo(text if form == "json" else coloured([*lines(found)]), nl=False)
+        click.echo(text if form == "json" else coloured([*lines(proofs)]), nl=False)
     files: dict[Path, str | bytes] = {}
     if output != "-" or form != "json":
         files[Path(output)] = text
     if traces is not None:
-        files.update(_tables(found, Path(traces)))
+        files.update(_tables(proofs, Path(traces)))
     deliver(files, inputs)
 
 
-def _tables(found: Sequence[Evidence], folder: Path) -> dict[Path, str]:
+def _tables(proofs: Sequence[Evidence], folder: Path) -> dict[Path, str]:
     """Each run that a monitor can step, under the requirement, the layer and a number."""
     from compiler.logic.claims import Counterexample, Layer
     from fretc.verification.loop.replay import EXTRA
     from fretc.verification.text_output import as_csv
 
     files: dict[Path, str] = {}
-    for one in found:
+    for one in proofs:
         if one.layer not in (Layer.MONITOR, Layer.LOOP, Layer.BOUNDS):
             continue
         if isinstance(one.result, Counterexample) and one.result.trace is not None:
@@ -258,10 +259,10 @@ def _tables(found: Sequence[Evidence], folder: Path) -> dict[Path, str]:
     return files
 
 
-def _status(found: Sequence[Evidence]) -> int:
+def _status(proofs: Sequence[Evidence]) -> int:
     from compiler.logic.claims import Counterexample, Proved
     from fretc.verification.loop.layer import RELEASED
 
-    if any(isinstance(one.result, Counterexample) and one.claim != RELEASED for one in found):
+    if any(isinstance(one.result, Counterexample) and one.claim != RELEASED for one in proofs):
         return VIOLATION
-    return SHOWN if all(isinstance(one.result, Proved) for one in found) else NOT_SHOWN
+    return SHOWN if all(isinstance(one.result, Proved) for one in proofs) else NOT_SHOWN

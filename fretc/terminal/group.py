@@ -67,9 +67,9 @@ def _is_path(word: str) -> bool:
 
 def _unknown_command(word: str, commands: Sequence[str]) -> Diagnostic:
     near = suggestion(word, [c for c in commands if c != DEFAULT])
-    known = ", ".join(c for c in commands if c != DEFAULT)
+    names = ", ".join(c for c in commands if c != DEFAULT)
     return Diagnostic(
         Code.UNKNOWN_COMMAND,
         f"`{word}` is no command of fretc, and no file",
-        help=f"did you mean `fretc {near}`?" if near else f"there are {known}; or name a file",
+        help=f"did you mean `fretc {near}`?" if near else f"there are {names}; or name a file",
     )
