@@ -11,6 +11,16 @@ import click
 from fretc.commands.audit_progress import audit_all
 from fretc.commands.summary import summarize
 from fretc.terminal.group import Grouped
+from fretc.terminal.options import (
+    PATH,
+    Renamed,
+    bindings_option,
+    format_option,
+    jobs_option,
+    output_option,
+    path_option,
+    requirements_option,
+)
 from fretc.terminal.output import (
     BAD,
     NOT_SHOWN,
@@ -37,7 +47,7 @@ if TYPE_CHECKING:
 
 _AUDIT = {
     "Judged by": ("requirements", "bindings", "integrity", "evaluation", "confidence"),
-    "Printed and written": ("form", "evidence", "parquet", "annotate", "annotations"),
+    "Printed and written": ("form", "output", "parquet", "annotate", "annotations"),
     "Many logs": ("jobs", "resume", "engine"),
     "Questions to tables and evidence: LOG is one of them, nothing is audited": (
         "summary",
@@ -49,30 +59,27 @@ _AUDIT = {
 @click.command(
     cls=Grouped, headings=_AUDIT, short_help="Audit recorded runs against all requirements."
 )
-@click.argument("paths", nargs=-1, required=True, metavar="LOG...")
-@click.option(
-    "--requirements", default="requirements", show_default=True, help="Folder, or one file."
-)
-@click.option("--bindings", help="bindings.toml; the one in the requirements' folder if not given.")
-@click.option(
-    "--evidence",
+@click.argument("paths", nargs=-1, required=True, type=PATH, metavar="LOG...")
+@requirements_option
+@bindings_option
+@output_option(
+    cls=Renamed,
+    earlier="--evidence",
     default="build/evidence.json",
     show_default=True,
-    help="Where evidence goes; - prints it.",
+    help="Where evidence goes; `-` prints it.",
 )
 @click.option("--annotate", is_flag=True, help="Also write its verdicts as a log, for Foxglove.")
-@click.option(
+@path_option(
     "--annotations",
     metavar="FOLDER",
     help="Where these go: build/annotations, if not given. Implies --annotate.",
 )
-@click.option(
-    "--format",
-    "form",
-    type=click.Choice(("text", "json", "junit", "github", "sarif")),
-    default="text",
-    show_default=True,
-    help="What is printed: for a person, as JSON, as JUnit XML, as annotations of GitHub Actions, "
+@format_option(
+    "junit",
+    "github",
+    "sarif",
+    text="What is printed: for a person, as JSON, as JUnit XML, as annotations of GitHub Actions, "
     "as SARIF.",
 )
 @click.option(
@@ -97,12 +104,7 @@ _AUDIT = {
     show_default=True,
     help="Of what all logs together say of a requirement with a probability.",
 )
-@click.option(
-    "--jobs",
-    type=click.IntRange(min=1),
-    default=os.cpu_count() or 1,
-    help="Processes that share the logs; as many as there are cores, if not given.",
-)
+@jobs_option
 @click.option(
     "--engine",
     default="local",
@@ -110,7 +112,7 @@ _AUDIT = {
     help="Where logs are audited: local, dask (a cluster of this machine), dask://HOST:PORT.",
 )
 @click.option("--resume", is_flag=True, help="Go on with an audit that was stopped.")
-@click.option("--parquet", help="Where a table goes, too: a row for each run and requirement.")
+@path_option("--parquet", help="Where a table goes, too: a row for each run and requirement.")
 @click.option(
     "--summary", is_flag=True, help="How many of which verdict, worst runs, slowest answers."
 )
@@ -119,7 +121,7 @@ def audit(
     paths: tuple[str, ...],
     requirements: str,
     bindings: str | None,
-    evidence: str,
+    output: str,
     annotate: bool,
     annotations: str | None,
     form: str,
@@ -145,7 +147,7 @@ def audit(
     """
     if summary or query is not None:
         summarize(paths, query, form)
-    _check_outputs(evidence, parquet, resume=resume)
+    _check_outputs(output, parquet, resume=resume)
     from compiler.project.folder import load
     from compiler.project.paths import beside, companions, requirement_files
     from fretc.audit.log_paths import files_of
@@ -159,7 +161,7 @@ def audit(
     files = requirement_files(requirements)
     if isinstance(files, Diagnostic):
         stop(files)
-    outputs = [Path(path) for path in (evidence, f"{evidence}.journal", parquet) if path]
+    outputs = [Path(path) for path in (output, f"{output}.journal", parquet) if path]
     inputs = (*files_of(logs), *files, *companions(files), *([bindings] if bindings else []))
     protect(outputs, inputs)
     project = load(files, bindings or beside(requirements, "bindings.toml"))
@@ -169,7 +171,7 @@ def audit(
     plan = planned(project, evaluation, Integrity(integrity), confidence)
     if not isinstance(plan, Plan):
         stop(*(reason for reason in plan if reason not in project.diagnostics))
-    journal = _journal(evidence, plan) if evidence != "-" and len(logs) > 1 else None
+    journal = _journal(output, plan) if output != "-" and len(logs) > 1 else None
     refusals = [reason for reason in plan.refusals if reason not in project.diagnostics]
     say_also(refusals, project.diagnostics)
     result = audit_all(plan, logs, _engine(engine, jobs), journal, resume=resume)
@@ -178,11 +180,11 @@ def audit(
         annotation_files = (
             _annotation_files(result, project, annotations) if annotate or annotations else {}
         )
-        forms: dict[Path, str | bytes] = {Path(evidence): result.evidence}
+        forms: dict[Path, str | bytes] = {Path(output): result.evidence}
         if parquet is not None:
             forms[Path(parquet)] = _table(result)
         if {*map(os.path.realpath, forms)} & {*map(os.path.realpath, annotation_files)}:
-            stop(not_written(evidence, "two outputs would go there"))
+            stop(not_written(output, "two outputs would go there"))
         deliver({**forms, **annotation_files}, inputs)
         if journal is not None:
             journal.remove()
@@ -275,5 +277,5 @@ def _nothing_kept() -> Diagnostic:
     return Diagnostic(
         Code.BAD_USAGE,
         "`--resume` goes on with evidence in a file, and this is printed",
-        help="name a file with `--evidence`",
+        help="name a file with `-o`",
     )

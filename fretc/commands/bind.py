@@ -8,37 +8,32 @@ from typing import TYPE_CHECKING
 
 import click
 
+from fretc.terminal.options import (
+    PATH,
+    bindings_option,
+    format_option,
+    jobs_option,
+    output_option,
+    path_option,
+    requirements_option,
+)
 from fretc.terminal.output import BAD, NOT_SHOWN, SHOWN, coloured, deliver, say, stop
 from fretish.diagnostics.diagnostic import Code, Diagnostic, has_errors
 
 if TYPE_CHECKING:
     from compiler.project.folder import Project
 
-_FOLDER = "requirements"
-
 
 @click.command(short_help="Draft bindings from a log, or check what they see in logs.")
-@click.argument("paths", nargs=-1, metavar="[LOG...]")
-@click.option("--from", "source", metavar="LOG", help="Draft bindings of what is in this log.")
+@click.argument("paths", nargs=-1, type=PATH, metavar="[LOG...]")
+@path_option("--from", "source", metavar="LOG", help="Draft bindings of what is in this log.")
 @click.option("--check", is_flag=True, help="Tell what each proposition was in each LOG.")
-@click.option("--requirements", default=_FOLDER, show_default=True, help="Folder, or one file.")
-@click.option("--bindings", help="bindings.toml; the one in the requirements' folder if not given.")
-@click.option("-o", "--output", default="-", show_default=True, help="Where a draft goes.")
+@requirements_option
+@bindings_option
+@output_option(default="-", show_default=True, help="Where a draft goes.")
 @click.option("--force", is_flag=True, help="Write over a file that is there.")
-@click.option(
-    "--format",
-    "form",
-    type=click.Choice(("text", "json")),
-    default="text",
-    show_default=True,
-    help="How a check is printed.",
-)
-@click.option(
-    "--jobs",
-    type=click.IntRange(min=1),
-    default=os.cpu_count() or 1,
-    help="Processes that share the logs of a check; as many as there are cores, if not given.",
-)
+@format_option(text="How a check is printed.")
+@jobs_option
 def bind(
     paths: tuple[str, ...],
     source: str | None,

@@ -4,25 +4,37 @@ from __future__ import annotations
 
 import click
 
+from fretc.terminal.options import (
+    PATH,
+    bindings_option,
+    evidence_option,
+    format_option,
+    hazards_option,
+    places,
+    requirements_option,
+    verification_option,
+)
 from fretc.terminal.output import BAD, NOT_SHOWN, SHOWN, say, say_line, stop
 from fretish.diagnostics.diagnostic import Diagnostic, Severity, has_errors
+from fretish.diagnostics.rendering import as_json
 
 
 @click.command(short_help="Say what is wrong or missing in a project, before any run.")
-@click.argument("requirements", default="requirements", metavar="[FOLDER]")
-@click.option("--bindings", help="bindings.toml; the one in the folder if not given.")
-@click.option("--hazards", help="hazards.toml; the one in the folder if not given.")
-@click.option("--evidence", default="build/evidence.json", show_default=True)
-@click.option(
-    "--verification",
-    help="What `fretc verify` found; build/verification.json, if it is there and none is given.",
-)
+@click.argument("folder", required=False, type=PATH, metavar="")
+@requirements_option
+@bindings_option
+@hazards_option
+@evidence_option
+@verification_option
+@format_option()
 def check(
+    folder: str | None,
     requirements: str,
     bindings: str | None,
     hazards: str | None,
     evidence: str,
     verification: str | None,
+    form: str,
 ) -> None:
     """Say what is wrong or missing in a project, before any run.
 
@@ -45,6 +57,7 @@ def check(
     from fretc.report.traceability.waivers import read as read_waivers
     from fretc.verification.reader import known as proven
 
+    (requirements,) = places([folder] if folder is not None else [], requirements)
     project = whole(requirements, bindings, hazards)
     if isinstance(project, Diagnostic):
         stop(project)
@@ -79,19 +92,26 @@ def check(
     if not flawed:
         said.extend(checks(project, standings))
         said.extend(unreviewed(project, standings) if lock is not None and lock.reviews else ())
-    _finish(tuple(dict.fromkeys(said)), len(project.requirements))
+    _finish(tuple(dict.fromkeys(said)), len(project.requirements), form)
 
 
-def _finish(said: tuple[Diagnostic, ...], count: int) -> None:
+def _finish(said: tuple[Diagnostic, ...], count: int, form: str) -> None:
     """Say it, and exit with what it means."""
-    say(said)
+    from compiler.files.templating import to_json
+
     errors = sum(d.is_error for d in said)
     warnings = sum(d.severity is Severity.WARNING for d in said)
-    if said:
-        say_line("")
-    say_line(
-        f"{_many(count, 'requirement')}: {_many(errors, 'mistake')}, {_many(warnings, 'warning')}"
-    )
+    if form == "json":
+        counts = {"requirements": count, "mistakes": errors, "warnings": warnings}
+        click.echo(to_json({**counts, "diagnostics": [as_json(d) for d in said]}))
+    else:
+        say(said)
+        if said:
+            say_line("")
+        say_line(
+            f"{_many(count, 'requirement')}: {_many(errors, 'mistake')}, "
+            f"{_many(warnings, 'warning')}"
+        )
     raise SystemExit(BAD if errors else NOT_SHOWN if warnings else SHOWN)
 
 

@@ -10,6 +10,13 @@ from typing import TYPE_CHECKING
 
 import click
 
+from fretc.terminal.options import (
+    PATH,
+    bindings_option,
+    format_option,
+    path_option,
+    requirements_option,
+)
 from fretc.terminal.output import BAD, NOT_SHOWN, deliver, say, stop
 from fretish.diagnostics.diagnostic import Code, Diagnostic, has_errors, suggestion
 
@@ -22,20 +29,14 @@ if TYPE_CHECKING:
 
 
 @click.command(short_help="Explain a requirement with traces and a picture, or a code.")
-@click.argument("what", metavar="WHAT")
-@click.option(
-    "--requirements",
-    "folder",
-    default="requirements",
-    show_default=True,
-    help="Folder of the requirements.",
-)
-@click.option("--bindings", help="bindings.toml; the one beside the requirements if not given.")
-@click.option(
-    "--format", "form", type=click.Choice(("text", "json")), default="text", show_default=True
-)
-@click.option("--svg", "picture", help="Write the picture of the meaning to this file; `-` prints.")
-def explain(what: str, folder: str, bindings: str | None, form: str, picture: str | None) -> None:
+@click.argument("what", type=PATH, metavar="WHAT")
+@requirements_option
+@bindings_option
+@format_option()
+@path_option("--svg", "picture", help="Write the picture of the meaning to this file; `-` prints.")
+def explain(
+    what: str, requirements: str, bindings: str | None, form: str, picture: str | None
+) -> None:
     """Explain a requirement, or what a diagnostic means.
 
     WHAT is the id of a requirement, a `.fret` file or folder, or the code of a diagnostic
@@ -49,7 +50,7 @@ def explain(what: str, folder: str, bindings: str | None, form: str, picture: st
             stop(Diagnostic(Code.BAD_USAGE, "a code has no picture", help="leave `--svg` out"))
         _explain_code(code, form)
         return
-    rules = _rules(what, folder, bindings, is_file=is_file)
+    rules = _rules(what, requirements, bindings, is_file=is_file)
     if picture is not None and len(rules) > 1:
         mend = f"name one of them: `fretc explain {quote(rules[0].id)}`"
         stop(Diagnostic(Code.BAD_USAGE, f"`{what}` holds several requirements", help=mend))

@@ -10,6 +10,7 @@ import click
 
 from compiler.emit import TARGETS
 from fretc.terminal.group import DEFAULT, Compile
+from fretc.terminal.options import FOLDER, PATH, format_option, output_option, path_option
 from fretc.terminal.output import BAD, SHOWN, VIOLATION, deliver, say, say_line, stop
 from fretish.diagnostics.diagnostic import Code, Diagnostic, has_errors
 
@@ -22,7 +23,7 @@ _NOTATIONS = ("plain", "fret", "spot", "nusmv", "latex")
 
 
 @click.command(DEFAULT, cls=Compile, hidden=True)
-@click.argument("files", nargs=-1, required=True, metavar="FILE...")
+@click.argument("files", nargs=-1, required=True, type=PATH, metavar="FILE...")
 @click.option(
     "--emit",
     "kinds",
@@ -30,16 +31,9 @@ _NOTATIONS = ("plain", "fret", "spot", "nusmv", "latex")
     type=click.Choice([*TARGETS]),
     help="Make this kind of file; may be given several times.",
 )
-@click.option("-o", "--output", default="build", show_default=True, help="Folder; `-` prints.")
-@click.option("--bindings", help="bindings.toml; the one beside the first FILE if not given.")
-@click.option(
-    "--format",
-    "form",
-    type=click.Choice(("text", "json")),
-    default="text",
-    show_default=True,
-    help="Form of the formulas.",
-)
+@output_option(default="build", show_default=True, help="Folder; `-` prints.")
+@path_option("--bindings", help="bindings.toml; the one beside the first FILE if not given.")
+@format_option(text="Form of the formulas.")
 @click.option(
     "--notation",
     type=click.Choice(_NOTATIONS),
@@ -168,7 +162,7 @@ def _emitted(
 
 
 @click.command(short_help="Put sentences into their canonical wording.")
-@click.argument("files", nargs=-1, required=True, metavar="FILE...")
+@click.argument("files", nargs=-1, required=True, type=PATH, metavar="FILE...")
 @click.option("--check", is_flag=True, help="Write nothing; exit with 1 if a file would change.")
 @click.option("-o", "--output", type=click.Choice(("-",)), help="`-` prints in place of writing.")
 def fmt(files: tuple[str, ...], check: bool, output: str | None) -> None:
@@ -196,10 +190,8 @@ def fmt(files: tuple[str, ...], check: bool, output: str | None) -> None:
 
 
 @click.command("import", short_help="Read requirements that FRET exported.")
-@click.argument("file", metavar="FILE")
-@click.option(
-    "-o", "--output", default="requirements", show_default=True, help="Folder; `-` prints."
-)
+@click.argument("file", type=PATH, metavar="FILE")
+@output_option(default=FOLDER, show_default=True, help="Folder; `-` prints.")
 @click.option("--id-column", help="CSV: the column of the ids.")
 @click.option("--text-column", help="CSV: the column of the sentences or texts.")
 @click.option("--project-column", help="CSV: the column of the projects.")

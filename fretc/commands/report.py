@@ -10,6 +10,14 @@ import click
 
 from fretc.report.outputs import FORMS, Form, Subject
 from fretc.terminal.group import Grouped
+from fretc.terminal.options import (
+    bindings_option,
+    evidence_option,
+    hazards_option,
+    path_option,
+    requirements_option,
+    verification_option,
+)
 from fretc.terminal.output import BAD, NOT_SHOWN, SHOWN, VIOLATION, deliver, say, stop
 from fretish.diagnostics.diagnostic import Diagnostic, has_errors
 
@@ -35,7 +43,7 @@ def _forms(command: Callable[..., None]) -> Callable[..., None]:
     """The option of each form."""
     for form in FORMS.values():
         shown = form.default is not None
-        option = click.option(
+        option = path_option(
             f"--{form.name}", default=form.default, show_default=shown, help=form.help
         )
         command = option(command)
@@ -46,24 +54,19 @@ def _forms(command: Callable[..., None]) -> Callable[..., None]:
     cls=Grouped, headings=_HEADINGS, short_help="Trace hazard to verdict in one HTML file."
 )
 @_forms
-@click.option(
-    "--requirements", default="requirements", show_default=True, help="Folder, or one file."
-)
-@click.option("--bindings", help="bindings.toml; the one in the requirements' folder if not given.")
-@click.option("--hazards", help="hazards.toml; the one in the requirements' folder if not given.")
-@click.option("--evidence", default="build/evidence.json", show_default=True)
-@click.option(
-    "--verification",
-    help="What `fretc verify` found; build/verification.json, if it is there and none is given.",
-)
-@click.option(
+@requirements_option
+@bindings_option
+@hazards_option
+@evidence_option
+@verification_option
+@path_option(
     "--ajpf",
     multiple=True,
     help="A result of AJPF; each build/*_ajpf/result.json if none is given.",
 )
-@click.option("--lock", help="fretc.lock; the one in the requirements' folder if not given.")
-@click.option("--waivers", help="waivers.toml; the one in the requirements' folder if not given.")
-@click.option(
+@path_option("--lock", help="fretc.lock; the one in the requirements' folder if not given.")
+@path_option("--waivers", help="waivers.toml; the one in the requirements' folder if not given.")
+@path_option(
     "--signers", help="Whose keys count; allowed_signers in the requirements' folder if not given."
 )
 @click.option(

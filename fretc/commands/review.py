@@ -8,6 +8,14 @@ from typing import TYPE_CHECKING
 
 import click
 
+from fretc.terminal.options import (
+    PATH,
+    evidence_option,
+    format_option,
+    path_option,
+    requirements_option,
+    verification_option,
+)
 from fretc.terminal.output import BAD, NOT_SHOWN, SHOWN, deliver, say, say_line, stop
 from fretish.diagnostics.diagnostic import (
     Code,
@@ -26,15 +34,6 @@ if TYPE_CHECKING:
     from fretc.report.traceability.chain import Chain
     from fretc.report.traceability.lock import Lock, Review
 
-_REQUIREMENTS = click.option(
-    "--requirements", default="requirements", show_default=True, help="Folder, or one file."
-)
-_EVIDENCE = click.option("--evidence", default="build/evidence.json", show_default=True)
-_VERIFICATION = click.option(
-    "--verification",
-    help="What `fretc verify` found; build/verification.json, if it is there and none is given.",
-)
-
 
 @click.command(short_help="Accept the present state of requirements, as their reviewer.")
 @click.argument("ids", nargs=-1, metavar="[ID]...")
@@ -42,11 +41,11 @@ _VERIFICATION = click.option(
 @click.option("--role", required=True, help="As what: `safety engineer`.")
 @click.option("--comment", required=True, help="What was looked at, and why it is accepted.")
 @click.option("--date", "day", help="As 2026-11-22; today, or the day of SOURCE_DATE_EPOCH.")
-@_REQUIREMENTS
-@_EVIDENCE
-@_VERIFICATION
-@click.option("--lock", "path", help="The lock; `fretc.lock` in the requirements' folder.")
-@click.option("--key", help="Your private key, to sign the reviews with: ~/.ssh/id_ed25519.")
+@requirements_option
+@evidence_option
+@verification_option
+@path_option("--lock", "path", help="The lock; `fretc.lock` in the requirements' folder.")
+@path_option("--key", help="Your private key, to sign the reviews with: ~/.ssh/id_ed25519.")
 @click.option("--accept-violations", is_flag=True, help="Also where a run violates a requirement.")
 def lock(
     ids: tuple[str, ...],
@@ -125,13 +124,11 @@ def _signatures(
 
 
 @click.command(short_help="Say what has changed since a review, verdicts included.")
-@click.argument("baseline", required=False, metavar="[BASELINE]")
-@_REQUIREMENTS
-@_EVIDENCE
-@_VERIFICATION
-@click.option(
-    "--format", "form", type=click.Choice(("text", "json")), default="text", show_default=True
-)
+@click.argument("baseline", required=False, type=PATH, metavar="[BASELINE]")
+@requirements_option
+@evidence_option
+@verification_option
+@format_option()
 def diff(
     baseline: str | None, requirements: str, evidence: str, verification: str | None, form: str
 ) -> None:

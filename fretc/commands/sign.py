@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 
 import click
 
+from fretc.terminal.options import PATH, path_option
 from fretc.terminal.output import VIOLATION, deliver, say, say_line, stop
 from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
 from fretish.diagnostics.rendering import visible
@@ -42,14 +43,14 @@ class Signable:
 
 
 @click.command(short_help="Sign evidence, proofs, reviews, waivers or a report with your key.")
-@click.argument("files", nargs=-1, required=True, metavar="FILE...")
-@click.option("--key", required=True, metavar="FILE", help="Your private key: ~/.ssh/id_ed25519.")
+@click.argument("files", nargs=-1, required=True, type=PATH, metavar="FILE...")
+@path_option("--key", required=True, metavar="FILE", help="Your private key: ~/.ssh/id_ed25519.")
 @click.option(
     "--reviewer",
     help="Whose reviews or waivers to sign; if not given, those that `allowed_signers` beside FILE "
     "says are yours, or those of the only person who is named.",
 )
-@click.option(
+@path_option(
     "--verification",
     help="What `fretc verify` found, signed with evidence; build/verification.json, if it is there "
     "and none is given.",

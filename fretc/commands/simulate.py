@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import math
-import os
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict
@@ -13,6 +12,14 @@ from typing import TYPE_CHECKING
 
 import click
 
+from fretc.terminal.options import (
+    PATH,
+    Renamed,
+    format_option,
+    jobs_option,
+    output_option,
+    path_option,
+)
 from fretc.terminal.output import SHOWN, VIOLATION, deliver, not_written, say_line, stop
 from fretc.terminal.progress import progress
 from fretish.diagnostics.diagnostic import Code, Diagnostic
@@ -23,8 +30,12 @@ if TYPE_CHECKING:
 
 
 @click.command(short_help="Record missions of the simulated robot.")
-@click.argument("scenarios", nargs=-1, metavar="[SCENARIO]...")
-@click.option("--out", help="The MCAP file to record; of a campaign, the folder for all logs.")
+@click.argument("scenarios", nargs=-1, type=PATH, metavar="[SCENARIO]...")
+@output_option(
+    cls=Renamed,
+    earlier="--out",
+    help="The MCAP file to record; of a campaign, the folder for all logs.",
+)
 @click.option("--seed", default=1, show_default=True, type=click.IntRange(min=0))
 @click.option(
     "--duration",
@@ -32,22 +43,20 @@ if TYPE_CHECKING:
     help="Simulated seconds after which the mission is given up; else what the scenario says.",
 )
 @click.option("--encoding", type=click.Choice(("ros2", "ros1")), default="ros2", show_default=True)
-@click.option("--png", metavar="FILE", help="Also draw the mission.")
-@click.option("--gif", metavar="FILE", help="Also draw it as it went on.")
+@path_option("--png", metavar="FILE", help="Also draw the mission.")
+@path_option("--gif", metavar="FILE", help="Also draw it as it went on.")
 @click.option(
     "--campaign",
     type=click.IntRange(min=1),
     metavar="N",
     help="Run each scenario with N seeds, audit each log, print one table.",
 )
-@click.option("--jobs", default=os.cpu_count() or 1, type=click.IntRange(min=1), metavar="J")
-@click.option(
-    "--format", "form", type=click.Choice(("text", "json")), default="text", show_default=True
-)
+@jobs_option
+@format_option()
 @click.option("--list", "listing", is_flag=True, help="Name the scenarios, and record nothing.")
 def simulate(
     scenarios: Sequence[str],
-    out: str | None,
+    output: str | None,
     seed: int,
     duration: float | None,
     encoding: str,
@@ -74,13 +83,13 @@ def simulate(
     if campaign is not None:
         if png or gif or duration is not None or encoding != "ros2":
             raise click.UsageError("a campaign takes no --png, --gif, --duration or --encoding")
-        _count([_scenario(n) for n in scenarios or names()], seed, campaign, jobs, out, form)
+        _count([_scenario(n) for n in scenarios or names()], seed, campaign, jobs, output, form)
     if len(scenarios) > 1:
         raise click.UsageError("several scenarios need --campaign")
-    if out is None:
-        raise click.UsageError("missing option '--out'")
+    if output is None:
+        raise click.UsageError("missing option '--output'")
     scenario = _scenario(scenarios[0] if scenarios else NOMINAL)
-    _record(scenario, out, seed, duration, encoding, {"png": png, "gif": gif})
+    _record(scenario, output, seed, duration, encoding, {"png": png, "gif": gif})
 
 
 def _installed() -> None:

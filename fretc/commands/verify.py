@@ -9,6 +9,15 @@ import click
 
 from compiler.logic.claims import PROVERS, Layer
 from fretc.terminal.group import Grouped
+from fretc.terminal.options import (
+    PATH,
+    format_option,
+    limit_option,
+    output_option,
+    path_option,
+    places,
+    requirements_option,
+)
 from fretc.terminal.output import (
     BAD,
     NOT_SHOWN,
@@ -31,7 +40,7 @@ if TYPE_CHECKING:
 
 _LAYERS = tuple(map(str, Layer))
 _HEADINGS = {
-    "What is looked at": ("layers", "monitor", "provers", "bindings", "limit"),
+    "What is looked at": ("layers", "monitor", "provers", "requirements", "bindings", "limit"),
     "Texts in place of new ones": ("path", "interceptor", "agent", "properties", "percepts"),
     "Found by others": ("ajpf",),
     "Printed and written": ("form", "output", "traces"),
@@ -43,7 +52,7 @@ _HEADINGS = {
     headings=_HEADINGS,
     short_help="Prove that what is made of requirements keeps them.",
 )
-@click.argument("files", nargs=-1, required=True, metavar="FILE...")
+@click.argument("files", nargs=-1, type=PATH, metavar="[FILE]...")
 @click.option(
     "--layer",
     "layers",
@@ -59,37 +68,26 @@ _HEADINGS = {
     type=click.Choice(PROVERS),
     help="A prover to ask as well, if it is installed.",
 )
-@click.option("--file", "path", help="A monitor that was made before.")
-@click.option("--interceptor", help="An interceptor that was made before.")
-@click.option("--agent", help="An agent in Gwendolen; with --properties.")
-@click.option("--properties", help="The properties of the agent, as AJPF reads them.")
+@path_option("--file", "path", help="A monitor that was made before.")
+@path_option("--interceptor", help="An interceptor that was made before.")
+@path_option("--agent", help="An agent in Gwendolen; with --properties.")
+@path_option("--properties", help="The properties of the agent, as AJPF reads them.")
 @click.option(
     "--percept", "percepts", multiple=True, help="A percept that the agent's environment draws."
 )
-@click.option(
+@path_option(
     "--ajpf",
     multiple=True,
     help="A result of AJPF; each build/*_ajpf/result.json if none is given.",
 )
-@click.option("--bindings", help="bindings.toml; the one beside the first FILE if not given.")
-@click.option(
-    "--limit",
-    type=click.IntRange(min=1),
-    default=60,
-    show_default=True,
-    help="Seconds of a processor for each claim.",
+@requirements_option
+@path_option("--bindings", help="bindings.toml; the one beside the first FILE if not given.")
+@limit_option
+@format_option()
+@output_option(
+    default="build/verification.json", show_default=True, help="Where evidence goes; `-` prints it."
 )
-@click.option(
-    "--format", "form", type=click.Choice(("text", "json")), default="text", show_default=True
-)
-@click.option(
-    "-o",
-    "--output",
-    default="build/verification.json",
-    show_default=True,
-    help="Where evidence goes; - prints it.",
-)
-@click.option("--traces", help="A folder for each counterexample as a table that monitors read.")
+@path_option("--traces", help="A folder for each counterexample as a table that monitors read.")
 def verify(
     files: tuple[str, ...],
     layers: tuple[str, ...],
@@ -101,6 +99,7 @@ def verify(
     properties: str | None,
     percepts: tuple[str, ...],
     ajpf: tuple[str, ...],
+    requirements: str,
     bindings: str | None,
     limit: int,
     form: str,
@@ -127,7 +126,7 @@ def verify(
     named = dict.fromkeys((*layers, *(["monitor"] if monitor else [])))
     if path is not None and not named:
         named = {"monitor": None}
-    project = _project(files, bindings)
+    project = _project(places(files, requirements), bindings)
     results = ajpf or (written() if "ajpf" in (named or _LAYERS) else ())
     request = Request(
         [Layer(name) for name in named or _LAYERS],
@@ -170,7 +169,7 @@ def _half(agent: str | None) -> Diagnostic:
     )
 
 
-def _project(files: tuple[str, ...], bindings: str | None) -> Project:
+def _project(files: Sequence[str], bindings: str | None) -> Project:
     from compiler.project.folder import load
     from compiler.project.paths import listed
 

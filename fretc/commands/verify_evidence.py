@@ -2,13 +2,22 @@
 
 from __future__ import annotations
 
-import os
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
 
 from fretc.commands.sign import demand
+from fretc.terminal.options import (
+    PATH,
+    bindings_option,
+    format_option,
+    jobs_option,
+    limit_option,
+    path_option,
+    requirements_option,
+    verification_option,
+)
 from fretc.terminal.output import BAD, NOT_SHOWN, SHOWN, VIOLATION, coloured, say, stop
 from fretish.diagnostics.diagnostic import (
     Code,
@@ -33,12 +42,10 @@ if TYPE_CHECKING:
 
 
 @click.command("verify-evidence", short_help="Make evidence again, and say whether it stands.")
-@click.argument("file", default="build/evidence.json", metavar="[FILE]")
-@click.option(
-    "--requirements", default="requirements", show_default=True, help="Folder, or one file."
-)
-@click.option("--bindings", help="bindings.toml; the one in the requirements' folder if not given.")
-@click.option(
+@click.argument("file", type=PATH, default="build/evidence.json", metavar="[FILE]")
+@requirements_option
+@bindings_option
+@path_option(
     "--logs",
     "places_named",
     multiple=True,
@@ -47,7 +54,7 @@ if TYPE_CHECKING:
     "begins so. Else only files below the present folder are opened, and https.",
 )
 @click.option("--offline", is_flag=True, help="Ask nothing of any server.")
-@click.option(
+@path_option(
     "--manifest",
     metavar="FILE",
     help="What `sha256sum LOG...` wrote: FILE has these logs, with these hashes, and no other.",
@@ -57,29 +64,18 @@ if TYPE_CHECKING:
     metavar="ID,...",
     help="Look at these requirements only; else at all in force. A part never stands as a whole.",
 )
-@click.option("--report", help="An HTML report: it is made again from FILE, and compared.")
-@click.option(
-    "--verification",
-    help="What `fretc verify` found; build/verification.json, if it is there and none is given.",
-)
-@click.option(
+@path_option("--report", help="An HTML report: it is made again from FILE, and compared.")
+@verification_option
+@path_option(
     "--signed-by",
     metavar="KEY",
     help="A public key (id_ed25519.pub), or a list of signers: one of them must have signed FILE, "
     "and what --report and --verification name.",
 )
 @click.option("--no-proofs", is_flag=True, help="Prove nothing again: proofs are not checked.")
-@click.option(
-    "--limit",
-    type=click.IntRange(min=1),
-    default=60,
-    show_default=True,
-    help="Seconds of a processor for each proof.",
-)
-@click.option("--jobs", type=click.IntRange(min=1), default=os.cpu_count() or 1)
-@click.option(
-    "--format", "form", type=click.Choice(("text", "json")), default="text", show_default=True
-)
+@limit_option
+@jobs_option
+@format_option()
 def verify_evidence(
     file: str,
     requirements: str,

@@ -374,7 +374,7 @@ def _assumptions(project: Project, evidence: Evidence | None) -> tuple[str, ...]
 
 def stale(claimed: Sequence[Claim], evidence: Evidence | None, path: str) -> tuple[Diagnostic, ...]:
     """F504 for each requirement with evidence of something else, and each id that is unknown."""
-    again = f"audit again: `fretc audit LOG... --evidence {path}`"
+    again = f"audit again: `fretc audit LOG... -o {path}`"
     suspect = [
         Diagnostic(
             Code.STALE_EVIDENCE,
