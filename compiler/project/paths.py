@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 
 from compiler.files.text_files import unreadable
@@ -19,23 +20,24 @@ def requirement_files(folder: str) -> list[str] | Diagnostic:
     """The `.fret` files of a folder, `r2` before `r10`; or the one file, where it is a file."""
     try:
         if not _is_folder(folder):
-            return [folder] if Path(folder).is_file() else _absent(folder, "there is no folder")
+            return [folder] if Path(folder).is_file() else _absent("there is no folder", folder)
         listed = (name for name in os.listdir(folder) if name.endswith(".fret"))
         names = sorted(listed, key=natural)
     except OSError as error:
         return unreadable(folder, error)
     found = [str(Path(folder) / name) for name in names]
     return [path for path in found if not _is_folder(path)] or _absent(
-        folder, "no requirement (`*.fret`) is in"
+        "no requirement (`*.fret`) is in", folder
     )
 
 
-def _absent(folder: str, what: str) -> Diagnostic:
+def _absent(what: str, folder: str) -> Diagnostic:
     return Diagnostic(
         Code.NO_SUCH_FILE,
         f"{what} `{folder}`",
         Source(folder, "").span(),
-        help="name the folder that your requirements are in",
+        help="name the folder that your requirements are in, with `--requirements`; or begin one: "
+        "`fretc init`",
     )
 
 
@@ -45,12 +47,15 @@ def _is_folder(path: str) -> bool:
 
 
 def listed(paths: Sequence[str]) -> list[str] | Diagnostic:
-    """The files, with those of a folder in its place; each once, however it is spelt."""
+    """The files, with those of a folder in its place; each once, however it is spelt.
+
+    In the order of `paths`; in the natural one where theirs is that of a shell's `*.fret`.
+    """
     found: dict[str, str] = {}
-    for path in paths:
+    for path in sorted(paths, key=natural) if [*paths] == sorted(paths) else paths:
         files = requirement_files(path) if _is_folder(path) else [path]
         if isinstance(files, Diagnostic):
-            return files
+            return replace(files, help="name files, or a folder that has some")
         for file in files:
             found.setdefault(os.path.realpath(file) if file != "-" else file, file)
     return list(found.values())

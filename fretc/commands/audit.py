@@ -32,6 +32,7 @@ from fretc.terminal.output import (
     protect,
     say,
     say_also,
+    say_briefly,
     stop,
 )
 from fretish.diagnostics.diagnostic import Code, Diagnostic, has_errors
@@ -165,7 +166,7 @@ def audit(
     inputs = (*files_of(logs), *files, *companions(files), *([bindings] if bindings else []))
     protect(outputs, inputs)
     project = load(files, bindings or beside(requirements, "bindings.toml"))
-    say(project.diagnostics)
+    say_briefly(project.diagnostics, requirements)
     if has_errors(project.general):
         raise SystemExit(BAD)
     plan = planned(project, evaluation, Integrity(integrity), confidence)

@@ -17,7 +17,7 @@ from fretc.terminal.options import (
     path_option,
     requirements_option,
 )
-from fretc.terminal.output import BAD, NOT_SHOWN, SHOWN, coloured, deliver, say, stop
+from fretc.terminal.output import BAD, NOT_SHOWN, SHOWN, coloured, deliver, say, say_briefly, stop
 from fretish.diagnostics.diagnostic import Code, Diagnostic, has_errors
 
 if TYPE_CHECKING:
@@ -64,7 +64,8 @@ def bind(
     elif not paths:
         stop(Diagnostic(Code.NOTHING_TO_DO, "no log was given to check", help="name the logs"))
     else:
-        _check(paths, _project(requirements, bindings, given=given), form, jobs)
+        project = _project(requirements, bindings, given=given)
+        _check(paths, project, requirements, form, jobs)
 
 
 def _is_given(name: str) -> bool:
@@ -141,7 +142,9 @@ def _one_log(path: str) -> Diagnostic:
 # Checks
 
 
-def _check(paths: tuple[str, ...], project: Project, form: str, jobs: int) -> None:
+def _check(
+    paths: tuple[str, ...], project: Project, requirements: str, form: str, jobs: int
+) -> None:
     from fretc.audit.bindings.coverage import coverage
     from fretc.audit.log_paths import logs as logs_of
     from fretc.audit.plan import Plan, planned
@@ -156,7 +159,7 @@ def _check(paths: tuple[str, ...], project: Project, form: str, jobs: int) -> No
     if isinstance(result, Diagnostic):
         stop(result)
     diagnostics = [*_unbound(project), *project.diagnostics, *result.diagnostics]
-    say(diagnostics)
+    say_briefly(diagnostics, requirements)
     click.echo(result.as_json if form == "json" else coloured(result.text), nl=False)
     raise SystemExit(BAD if has_errors(diagnostics) else SHOWN if result.shown else NOT_SHOWN)
 

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 import click
 
+from fretc.terminal.group import is_sentence
 from fretc.terminal.options import (
     PATH,
     bindings_option,
@@ -39,9 +40,10 @@ def explain(
 ) -> None:
     """Explain a requirement, or what a diagnostic means.
 
-    WHAT is the id of a requirement, a `.fret` file or folder, or the code of a diagnostic
-    (`F203`). Of a requirement: its meaning, its formulas, a picture of when its response matters,
-    and short traces that satisfy and violate it, each with the reason and the tick that decides.
+    WHAT is the id of a requirement, a `.fret` file or folder, a sentence in quotes, or the code of
+    a diagnostic (`F203`). Of a requirement: its meaning, its formulas, a picture of when its
+    response matters, and short traces that satisfy and violate it, each with the reason and the
+    tick that decides.
     """
     is_file = what == "-" or what.endswith(".fret") or _is_path(what)
     code = None if is_file else _code(what)
@@ -50,7 +52,10 @@ def explain(
             stop(Diagnostic(Code.BAD_USAGE, "a code has no picture", help="leave `--svg` out"))
         _explain_code(code, form)
         return
-    rules = _rules(what, requirements, bindings, is_file=is_file)
+    if is_sentence(what):
+        rules = _typed(what, requirements, bindings)
+    else:
+        rules = _rules(what, requirements, bindings, is_file=is_file)
     if picture is not None and len(rules) > 1:
         mend = f"name one of them: `fretc explain {quote(rules[0].id)}`"
         stop(Diagnostic(Code.BAD_USAGE, f"`{what}` holds several requirements", help=mend))
@@ -108,12 +113,30 @@ def _explain_rules(rules: Sequence[Formalized], form: str, picture: str | None) 
         deliver({Path(picture): svg(explained[0].picture)}, protected=sources)
 
 
+def _typed(sentence: str, folder: str, bindings: str | None) -> list[Formalized]:
+    """The rule of a sentence; the project's clock, if there is one, says what a second is."""
+    from compiler.formalization.formalize import formalize
+    from compiler.project.folder import load
+    from compiler.project.paths import BINDINGS, beside
+    from fretish.diagnostics.source import Source
+    from fretish.documents import Requirement
+
+    project = load([], bindings or beside(folder, BINDINGS))
+    requirement = Requirement("sentence", Source("<sentence>", sentence.strip()).span())
+    rule, remarks = formalize(requirement, project.declarations)
+    diagnostics = [*project.diagnostics, *remarks]
+    say(diagnostics)
+    if rule is None or has_errors(diagnostics):
+        raise SystemExit(BAD)
+    return [rule]
+
+
 def _rules(what: str, folder: str, bindings: str | None, *, is_file: bool) -> list[Formalized]:
     """The rules asked for; exits where there is none."""
     from compiler.project.folder import load
-    from compiler.project.paths import listed
+    from compiler.project.paths import listed, requirement_files
 
-    paths = listed([what if is_file else folder])
+    paths = listed([what]) if is_file else requirement_files(folder)
     if isinstance(paths, Diagnostic):
         stop(paths)
     project = load(paths, bindings)

@@ -4,15 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
+from shlex import quote
 from typing import TYPE_CHECKING
 
 import click
 
 from compiler.emit import TARGETS
 from fretc.terminal.group import DEFAULT, Compile
-from fretc.terminal.options import FOLDER, PATH, format_option, output_option, path_option
-from fretc.terminal.output import BAD, SHOWN, VIOLATION, deliver, say, say_line, stop
+from fretc.terminal.options import PATH, format_option, output_option, path_option
+from fretc.terminal.output import BAD, FOLDER, SHOWN, VIOLATION, deliver, say, say_line, stop
 from fretish.diagnostics.diagnostic import Code, Diagnostic, has_errors
+from fretish.diagnostics.rendering import visible
 
 if TYPE_CHECKING:
     from compiler.formalization.formalized import Formalized
@@ -72,7 +74,8 @@ def compile_(
     if isinstance(paths, Diagnostic):
         stop(paths)
     project = load(paths, bindings)
-    say(project.diagnostics)
+    undecided = _undecided(project.rules)
+    say([*project.diagnostics, *undecided])
     as_json = form == "json" and set(kinds) <= {"ltl"}
     if as_json and _only_failed(project):
         _deliver_formulas(project, output if kinds else "-")
@@ -84,9 +87,16 @@ def compile_(
     free_texts = tuple(f.requirement for f in project.failed)
     options = Options(notation, simplify, one_file, free_texts, weaken, project.declarations)
     if kinds:
-        _emit(project, dict.fromkeys(kinds), output, options)
+        _emit(project, dict.fromkeys(kinds), output, options, undecided)
     else:
         _print_formulas(project, options)
+
+
+def _undecided(rules: Sequence[Formalized]) -> list[Diagnostic]:
+    """F203 for each rule that no run decides: the same, whatever is made of it."""
+    monitor = TARGETS["monitor"]
+    remarks = [monitor.remark(rule) for rule in rules if monitor.refuse(rule) is None]
+    return [remark for remark in remarks if remark is not None]
 
 
 def _check_weaken(kinds: Sequence[str]) -> None:
@@ -124,7 +134,13 @@ def _print_formulas(project: Project, options: Options) -> None:
     click.echo("\n".join(text(rule, options) for rule in project.rules), nl=False)
 
 
-def _emit(project: Project, kinds: dict[str, None], output: str, options: Options) -> None:
+def _emit(
+    project: Project,
+    kinds: dict[str, None],
+    output: str,
+    options: Options,
+    remarks: Sequence[Diagnostic],
+) -> None:
     """Write whatever can be; what a target refuses is told and keeps nothing else from it."""
     named = [TARGETS[kind] for kind in kinds]
     targets = [(options.weaken and target.weak) or target for target in named]
@@ -132,12 +148,41 @@ def _emit(project: Project, kinds: dict[str, None], output: str, options: Option
     refusals = [diagnostic for _, _, wrong in outputs for diagnostic in wrong]
     jobs = [(target, rules) for target, rules, _ in outputs if rules is not None]
     say(refusals)
-    say([d for target, rules in jobs for rule in rules if (d := target.remark(rule))])
+    of_rules = [d for target, rules in jobs for rule in rules if (d := target.remark(rule))]
+    say([remark for remark in of_rules if remark not in remarks])
     say([diagnostic for target, _ in jobs for diagnostic in target.remarks(options)])
-    files = [artifact for target, rules in jobs for artifact in target.emit(rules, options)]
-    _deliver_all({str(artifact.path): artifact.text for artifact in files}, output)
+    files = {
+        target.name: {str(a.path): a.text for a in target.emit(rules, options)}
+        for target, rules in jobs
+    }
+    texts = {path: text for each in files.values() for path, text in each.items()}
+    first_time = output != "-" and not any((Path(output) / path).exists() for path in texts)
+    _deliver_all(texts, output)
+    if first_time and texts:
+        say_line(
+            _next_steps(project, {kind: next(iter(f)) for kind, f in files.items() if f}, output)
+        )
     if refusals:
         raise SystemExit(BAD)
+
+
+def _next_steps(project: Project, firsts: Mapping[str, str], output: str) -> str:
+    """What can be done with files that are made for the first time.
+
+    Args:
+        project: of which they are made.
+        firsts: name of each target → the first of its files.
+        output: the folder of the files.
+    """
+    steps = [
+        TARGETS[kind].next_step.format(quote(str(Path(output) / path)))
+        for kind, path in firsts.items()
+        if TARGETS[kind].next_step
+    ]
+    source = project.requirements[0].wording.source.name
+    if source != "<stdin>":
+        steps.append(f"`fretc explain {quote(source)}` shows what is meant, with a picture")
+    return "\n".join(visible(f"next: {step}") for step in steps)
 
 
 def _emitted(

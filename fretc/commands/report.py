@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -14,11 +14,13 @@ from fretc.terminal.options import (
     bindings_option,
     evidence_option,
     hazards_option,
+    is_given,
+    output_option,
     path_option,
     requirements_option,
     verification_option,
 )
-from fretc.terminal.output import BAD, NOT_SHOWN, SHOWN, VIOLATION, deliver, say, stop
+from fretc.terminal.output import BAD, NOT_SHOWN, SHOWN, VIOLATION, deliver, say_briefly, stop
 from fretish.diagnostics.diagnostic import Diagnostic, has_errors
 
 if TYPE_CHECKING:
@@ -35,7 +37,7 @@ _HEADINGS = {
         "waivers",
         "signers",
     ),
-    "Forms": tuple(FORMS),
+    "Forms: one by `--format` and `-o`, or each to a file of its own": ("form", "output", *FORMS),
 }
 
 
@@ -53,6 +55,13 @@ def _forms(command: Callable[..., None]) -> Callable[..., None]:
 @click.command(
     cls=Grouped, headings=_HEADINGS, short_help="Trace hazard to verdict in one HTML file."
 )
+@click.option(
+    "--format",
+    "form",
+    type=click.Choice([*FORMS]),
+    help="The form that is printed, or goes to `-o`; html if only `-o` is given.",
+)
+@output_option(help="Where it goes; `-` prints it.")
 @_forms
 @requirements_option
 @bindings_option
@@ -85,6 +94,8 @@ def report(
     waivers: str | None,
     signers: str | None,
     strict: bool,
+    form: str | None,
+    output: str | None,
     **places: str | None,
 ) -> None:
     """Trace hazard, requirement, formula, artefact, run and verdict in one HTML file.
@@ -99,9 +110,9 @@ def report(
     from fretc.verification.ajpf_results import written as results
     from fretc.verification.reader import written
 
-    outputs = [(form, path) for name, form in FORMS.items() if (path := places[name]) is not None]
-    for form, _ in outputs:
-        absent = form.missing()
+    outputs = _outputs(form, output, places)
+    for kind, _ in outputs:
+        absent = kind.missing()
         if absent is not None:
             stop(absent)
     files = requirement_files(requirements)
@@ -124,7 +135,7 @@ def report(
         ajpf=ajpf_results,
         signers=signers,
     )
-    say([*project.diagnostics, *outcome.diagnostics])
+    say_briefly([*project.diagnostics, *outcome.diagnostics], requirements)
     if outcome.report is None:
         raise SystemExit(BAD)
     subject = Subject(outcome, outcome.report, project)
@@ -136,6 +147,17 @@ def report(
     if has_errors([*project.diagnostics, *outcome.diagnostics]):
         raise SystemExit(BAD)
     raise SystemExit(_status(outcome.report) if strict else SHOWN)
+
+
+def _outputs(
+    form: str | None, output: str | None, places: Mapping[str, str | None]
+) -> list[tuple[Form, str]]:
+    """Each form that is asked for, and its place; the default one only where none is."""
+    named = [(kind, path) for name, kind in FORMS.items() if (path := places[name]) is not None]
+    if form is None and output is None:
+        return named
+    chosen = [(kind, path) for kind, path in named if is_given(kind.name)]
+    return [(FORMS[form or "html"], output or "-"), *chosen]
 
 
 def _deliver(outputs: Sequence[tuple[Form, str]], subject: Subject, inputs: Sequence[str]) -> None:

@@ -16,7 +16,7 @@ from fretc.terminal.options import (
     requirements_option,
     verification_option,
 )
-from fretc.terminal.output import BAD, NOT_SHOWN, SHOWN, deliver, say, say_line, stop
+from fretc.terminal.output import BAD, NOT_SHOWN, SHOWN, deliver, say_briefly, say_line, stop
 from fretish.diagnostics.diagnostic import (
     Code,
     Diagnostic,
@@ -47,6 +47,7 @@ if TYPE_CHECKING:
 @path_option("--lock", "path", help="The lock; `fretc.lock` in the requirements' folder.")
 @path_option("--key", help="Your private key, to sign the reviews with: ~/.ssh/id_ed25519.")
 @click.option("--accept-violations", is_flag=True, help="Also where a run violates a requirement.")
+@format_option()
 def lock(
     ids: tuple[str, ...],
     reviewer: str,
@@ -59,6 +60,7 @@ def lock(
     path: str | None,
     key: str | None,
     accept_violations: bool,
+    form: str,
 ) -> None:
     """Accept the present state of requirements, as their reviewer.
 
@@ -70,8 +72,10 @@ def lock(
     that is not there any more stays until its ID is given, or none.
     """
     from compiler.files.dates import is_date, is_to_come, today
+    from compiler.files.templating import to_json
     from fretc.audit.evidence.reader import refuted
     from fretc.report.traceability.lock import (
+        Acceptance,
         Lock,
         accepted,
         outdated_results,
@@ -106,10 +110,15 @@ def lock(
     reviews |= {c.requirement: accepted(c, reviewer, role, day, comment) for c in subjects}
     signatures = _signatures(where, reviews, subjects, key) if key is not None else {}
     deliver({Path(where): text(Lock(reviews)), **signatures})
+    counts = Acceptance.of(subjects, refuted(evidence))
+    if form == "json":
+        click.echo(to_json({**counts.as_record, "left_out": sorted(removals, key=natural)}))
+        return
     for chain in subjects:
         say_line(visible(f"accepted {chain.requirement}: {verdicts_of(chain)}"))
     for id in sorted(removals, key=natural):
         say_line(f"left out {id}: it is not among the requirements")
+    say_line(counts.text)
 
 
 def _signatures(
@@ -172,11 +181,11 @@ def _chains(
         stop(proofs)
     audited = read(evidence)
     if isinstance(audited, Diagnostic):
-        say([*project.diagnostics, audited])
+        say_briefly([*project.diagnostics, audited], requirements)
         if audited.is_error:
             raise SystemExit(BAD)
         return project, chains(project, None, proofs=proofs)
-    say(project.diagnostics)
+    say_briefly(project.diagnostics, requirements)
     return project, chains(project, audited, proofs=proofs)
 
 

@@ -26,6 +26,7 @@ from fretc.terminal.output import (
     coloured,
     deliver,
     say,
+    say_briefly,
     stop,
 )
 from fretish.diagnostics.diagnostic import Code, Diagnostic, has_errors
@@ -108,6 +109,8 @@ def verify(
 ) -> None:
     """Prove that what is made of requirements keeps them, layer by layer.
 
+    FILE holds requirements, or is a folder of such files: in place of `--requirements`.
+
     monitor: the text of a monitor means what its sentence says. interceptor: its text keeps its
     contracts. loop: both, and any environment, keep the requirement under the assumptions of the
     bindings. bounds: so they do whatever the times are. agent: its text has its properties.
@@ -126,7 +129,7 @@ def verify(
     named = dict.fromkeys((*layers, *(["monitor"] if monitor else [])))
     if path is not None and not named:
         named = {"monitor": None}
-    project = _project(places(files, requirements), bindings)
+    project = _project(files, requirements, bindings)
     results = ajpf or (written() if "ajpf" in (named or _LAYERS) else ())
     request = Request(
         [Layer(name) for name in named or _LAYERS],
@@ -169,15 +172,16 @@ def _half(agent: str | None) -> Diagnostic:
     )
 
 
-def _project(files: Sequence[str], bindings: str | None) -> Project:
+def _project(files: Sequence[str], requirements: str, bindings: str | None) -> Project:
     from compiler.project.folder import load
-    from compiler.project.paths import listed
+    from compiler.project.paths import listed, requirement_files
 
-    paths = listed(files)
+    (first, *_) = places(files, requirements)
+    paths = listed(files) if files else requirement_files(requirements)
     if isinstance(paths, Diagnostic):
         stop(paths)
     project = load(paths, bindings)
-    say(project.diagnostics)
+    say_briefly(project.diagnostics, first)
     if has_errors(project.diagnostics):
         raise SystemExit(BAD)
     if not project.rules:

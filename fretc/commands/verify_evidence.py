@@ -18,7 +18,7 @@ from fretc.terminal.options import (
     requirements_option,
     verification_option,
 )
-from fretc.terminal.output import BAD, NOT_SHOWN, SHOWN, VIOLATION, coloured, say, stop
+from fretc.terminal.output import BAD, NOT_SHOWN, SHOWN, VIOLATION, coloured, say, say_briefly, stop
 from fretish.diagnostics.diagnostic import (
     Code,
     Diagnostic,
@@ -147,7 +147,7 @@ def _plan(requirements: str, bindings: str | None) -> tuple[Project, Plan]:
     project = whole(requirements, bindings)
     if isinstance(project, Diagnostic):
         stop(project)
-    say(project.diagnostics)
+    say_briefly(project.diagnostics, requirements)
     if has_errors(project.diagnostics):
         raise SystemExit(BAD)
     plan = planned(project)

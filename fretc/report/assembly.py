@@ -373,18 +373,24 @@ def _assumptions(project: Project, evidence: Evidence | None) -> tuple[str, ...]
 
 
 def stale(claimed: Sequence[Claim], evidence: Evidence | None, path: str) -> tuple[Diagnostic, ...]:
-    """F504 for each requirement with evidence of something else, and each id that is unknown."""
+    """F504 for requirements with evidence of something else, and for each id that is unknown.
+
+    Requirements whose evidence is suspect for one and the same reason share a message.
+    """
     again = f"audit again: `fretc audit LOG... -o {path}`"
+    suspicions: dict[tuple[int, str], list[Claim]] = {}
+    for claim in claimed:
+        suspicions.setdefault(_suspicions(claim), []).append(claim)
     suspect = [
         Diagnostic(
             Code.STALE_EVIDENCE,
-            f"the evidence of {claim.id} is suspect in {phrases.times(count, 'run')}: {why}",
-            claim.requirement.wording,
+            f"the evidence of {phrases.joined([claim.id for claim in some])} is suspect in "
+            f"{phrases.times(count, 'run')}{' each' if len(some) > 1 else ''}: {why}",
+            some[0].requirement.wording,
             help=again,
             severity=Severity.WARNING,
         )
-        for claim in claimed
-        for count, why in [_suspicions(claim)]
+        for (count, why), some in suspicions.items()
         if count
     ]
     strange = [

@@ -9,7 +9,7 @@ from __future__ import annotations
 import os
 
 import click
-from click.shell_completion import get_completion_class, shell_complete
+from click.shell_completion import ShellComplete, get_completion_class, shell_complete
 
 SHELLS = ("bash", "zsh", "fish")
 _NAME, _VARIABLE = "fretc", "_FRETC_COMPLETE"
@@ -19,7 +19,8 @@ def script(command: click.Command, shell: str) -> str:
     """What the shell is to load; `shell` is one of `SHELLS`."""
     kind = get_completion_class(shell)
     assert kind is not None
-    return kind(command, {}, _NAME, _VARIABLE).source()
+    # The source of bash alone would first run `bash`, to warn of an old one.
+    return ShellComplete.source(kind(command, {}, _NAME, _VARIABLE))
 
 
 def answered(command: click.Command) -> bool:

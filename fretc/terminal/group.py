@@ -70,11 +70,14 @@ class Grouped(click.Command):
 
 
 def is_sentence(words: str) -> bool:
-    """Whether it is a requirement itself, and not the name of something."""
-    return " shall " in f" {' '.join(words.split())} ".casefold() and not Path(words).exists()
+    """Whether it is a requirement itself, perhaps misspelt, and not the name of something."""
+    shall = any(suggestion(word, ("shall", "should", "must"), 0.8) for word in words.split()[1:])
+    return shall and not Path(words).exists()
 
 
 def _is_path(word: str) -> bool:
+    if is_sentence(word):
+        return False
     return word == "-" or "/" in word or "." in word or Path(word).exists()
 
 

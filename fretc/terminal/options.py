@@ -9,12 +9,10 @@ from typing import Any
 import click
 from click.shell_completion import CompletionItem
 
-from fretc.terminal.output import stop
+from fretc.terminal.output import FOLDER, stop
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 
 Command = Callable[..., Any]
-FOLDER = "requirements"
-"""Where the requirements of a project are, if nobody says otherwise."""
 
 
 class _Path(click.ParamType[str]):

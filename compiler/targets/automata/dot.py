@@ -117,4 +117,10 @@ def _lines(texts: Iterable[str]) -> str:
     return '"' + r"\n".join(escaped) + '"'
 
 
-TARGET = Target("dot", "a picture of the automaton, for Graphviz", emit, refuse)
+TARGET = Target(
+    "dot",
+    "a picture of the automaton, for Graphviz",
+    emit,
+    refuse,
+    next_step="`dot -Tsvg -O {}` draws it",
+)

@@ -120,4 +120,10 @@ def _specs(
     return specs
 
 
-TARGET = Target("smv", "a model with the monitor as a module, for NuSMV and nuXmv", emit, refuse)
+TARGET = Target(
+    "smv",
+    "a model with the monitor as a module, for NuSMV and nuXmv",
+    emit,
+    refuse,
+    next_step="`NuSMV {}` checks its properties",
+)

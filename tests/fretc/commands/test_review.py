@@ -28,7 +28,10 @@ def folder(fretc: Fretc) -> Path:
 def test_nothing_has_changed_right_after_a_review(fretc: Fretc, folder: Path) -> None:
     run = fretc("lock", *BY, *ON)
     assert (run.status, run.out) == (0, "")
-    assert run.err == "wrote requirements/fretc.lock\naccepted R1: satisfied in 1 run\n"
+    assert run.err == (
+        "wrote requirements/fretc.lock\naccepted R1: satisfied in 1 run\n"
+        "accepted 1 requirement: 0 violated, 0 not shown\n"
+    )
     run = fretc("diff")
     assert (run.status, run.out, run.err) == (0, "R1  as it was reviewed\n", "")
 
