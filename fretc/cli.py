@@ -25,6 +25,7 @@ from fretc.commands.completion import completion
 from fretc.commands.explain import explain
 from fretc.commands.formalize import compile_, fmt, import_
 from fretc.commands.info import info
+from fretc.commands.init import init
 from fretc.commands.report import report
 from fretc.commands.review import diff, lock
 from fretc.commands.sbom import sbom
@@ -70,6 +71,7 @@ def cli(folders: tuple[str, ...]) -> None:
 
 for _command in (
     compile_,
+    init,
     fmt,
     import_,
     explain,
