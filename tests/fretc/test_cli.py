@@ -94,6 +94,27 @@ def test_one_bad_sentence_among_several_is_an_error_object_in_the_array(fretc: F
     }
 
 
+def test_a_sentence_in_place_of_a_file_is_told_where_it_belongs(fretc: Fretc) -> None:
+    assert fretc("the rover shall satisfy speed <= 1.5") == Run(
+        2,
+        "",
+        "F906 a sentence is neither a command of fretc nor a file\n"
+        "help: type `fretc explain 'the rover shall satisfy speed <= 1.5'`, or `fretc -` and then "
+        "the sentence\n",
+    )
+
+
+@pytest.mark.parametrize("kinds", [("ltl",), ("ajpf",), ("monitor",), ("json", "monitor")])
+def test_a_file_has_one_opinion_whatever_is_made_of_it(
+    fretc: Fretc, kinds: tuple[str, ...]
+) -> None:
+    path = write("r1.fret", R1)
+    bare = fretc(path)
+    made = fretc(path, *(word for kind in kinds for word in ("--emit", kind)))
+    assert made.err.startswith(bare.err)
+    assert made.err.count("F203") == bare.err.count("F203") == 1
+
+
 # Files -----------------------------------------------------------------------------------------
 
 

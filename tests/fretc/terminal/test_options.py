@@ -1,7 +1,11 @@
 """One vocabulary of options: the same thing has the same name, whatever the command."""
 
+import re
+from pathlib import Path
+
 import click
 
+from compiler.emit import TARGETS
 from fretc.cli import cli
 from tests.command import Fretc, write
 from tests.each import each
@@ -61,3 +65,18 @@ def test_a_folder_of_requirements_is_named_once(fretc: Fretc) -> None:
     write("a/r.fret", "the sw shall always satisfy p")
     assert fretc("check", "a") == fretc("check", "--requirements", "a")
     assert fretc("check", "a", "--requirements", "b").err.startswith("F907 requirements are named")
+
+
+def test_options_that_commands_share_are_explained_in_one_place() -> None:
+    text = (Path(__file__).parents[3] / "docs/commands.md").read_text("utf-8")
+    table = text[text.index("| option |") : text.index("\nExit status")]
+    spellings = [spelling for name in COMMANDS for spelling in options(name)]
+    shared = {spelling for spelling in spellings if spellings.count(spelling) >= 4}
+    assert shared
+    assert all(f"`{spelling}`" in table for spelling in shared), shared
+
+
+@each("kind", [*TARGETS])
+def test_each_help_lists_each_kind_of_emit(fretc: Fretc, kind: str) -> None:
+    for help_ in (fretc("--help").out, fretc("r.fret", "--help").out):
+        assert kind in re.split(r"[\s,|.\[\]]+", help_.replace("-\n", "-"))
