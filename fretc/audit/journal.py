@@ -163,12 +163,12 @@ class Journal:
                 Code.BUSY,
                 f"another audit is at work on `{self.path}`",
                 Source(str(self.path), "").span(),
-                help="wait for it, or name another file with `--evidence`",
+                help="wait for it, or name another file with `-o`",
             )
         return Diagnostic(
             Code.NOT_WRITTEN,
             f"`{self.path}` cannot be written: {error.strerror or error}",
-            help="name another place with `--evidence`, or mend this one",
+            help="name another place with `-o`, or mend this one",
         )
 
     def _audited(self, entry: Mapping[str, Any]) -> Audited | None:

@@ -12,7 +12,8 @@ from typing import Any
 
 import numpy as np
 
-from compiler.project.folder import Project, load, requirement_files
+from compiler.project.folder import Project, load
+from compiler.project.paths import requirement_files
 from compiler.targets.python import interceptor as interceptors
 from compiler.targets.python import monitor as monitors
 from compiler.targets.target import Options as TargetOptions

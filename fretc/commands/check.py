@@ -6,28 +6,39 @@ from pathlib import Path
 
 import click
 
+from fretc.terminal.options import (
+    PATH,
+    bindings_option,
+    evidence_option,
+    format_option,
+    hazards_option,
+    places,
+    requirements_option,
+    verification_option,
+)
 from fretc.terminal.output import BAD, NOT_SHOWN, SHOWN, deliver, say_all, say_line, stop
 from fretish.diagnostics.diagnostic import Diagnostic, has_errors
-from fretish.diagnostics.rendering import visible
+from fretish.diagnostics.rendering import as_json, visible
 
 
 @click.command(short_help="Say what is wrong or missing in a project, before any run.")
-@click.argument("requirements", default="requirements", metavar="[FOLDER]")
-@click.option("--bindings", help="bindings.toml; the one in the folder if not given.")
-@click.option("--hazards", help="hazards.toml; the one in the folder if not given.")
-@click.option("--evidence", default="build/evidence.json", show_default=True)
-@click.option(
-    "--verification",
-    help="What `fretc verify` found; build/verification.json, if it is there and none is given.",
-)
+@click.argument("folder", required=False, type=PATH, metavar="")
+@requirements_option
+@bindings_option
+@hazards_option
+@evidence_option
+@verification_option
 @click.option("--fix", is_flag=True, help="Write the mends that are sure, then check.")
+@format_option()
 def check(
+    folder: str | None,
     requirements: str,
     bindings: str | None,
     hazards: str | None,
     evidence: str,
     verification: str | None,
     fix: bool,
+    form: str,
 ) -> None:
     """Say what is wrong or missing in a project, before any run.
 
@@ -40,7 +51,8 @@ def check(
     Exit status: 0 no warning but accepted ones, 3 warnings, 2 mistakes.
     """
     from compiler.files.dates import today
-    from compiler.project.folder import beside, whole
+    from compiler.project.folder import whole
+    from compiler.project.paths import beside
     from fretc.audit.evidence.reader import read as read_evidence
     from fretc.audit.plan import refusals
     from fretc.report.diagnostics import idle_waivers, stale_evidence
@@ -51,6 +63,7 @@ def check(
     from fretc.report.traceability.waivers import read as read_waivers
     from fretc.verification.reader import known as proven
 
+    (requirements,) = places([folder] if folder is not None else [], requirements)
     if fix:
         _mend(requirements)
     project = whole(requirements, bindings, hazards)
@@ -87,13 +100,13 @@ def check(
     said.extend(reason for _, why in refusals(project) for reason in why)
     if not flawed:
         said.extend(warnings(project, standings, lock, results))
-    _finish(tuple(dict.fromkeys(said)), len(project.requirements))
+    _finish(tuple(dict.fromkeys(said)), len(project.requirements), form)
 
 
 def _mend(folder: str) -> None:
     """Write what can be mended for sure, all files or none, and name each mend."""
-    from compiler.project.folder import requirement_files
     from compiler.project.mending import mended
+    from compiler.project.paths import requirement_files
 
     paths = requirement_files(folder)
     files = () if isinstance(paths, Diagnostic) else mended(paths)
@@ -105,16 +118,28 @@ def _mend(folder: str) -> None:
         say_line("")
 
 
-def _finish(said: tuple[Diagnostic, ...], count: int) -> None:
-    """Say it, and exit with what it means."""
-    accepted = [d for d in said if d.accepted]
-    errors, warnings = sum(d.is_error for d in said), sum(d.is_open for d in said)
-    say_all([d for d in said if not d.accepted], accepted)
-    if said:
-        say_line("")
-    counts = f"{_many(errors, 'mistake')}, {_many(warnings, 'warning')}"
-    also = f", {len(accepted)} accepted" if accepted else ""
-    say_line(f"{_many(count, 'requirement')}: {counts}{also}")
+def _finish(diagnostics: tuple[Diagnostic, ...], count: int, form: str) -> None:
+    """Print them, and exit with what they mean."""
+    from compiler.files.templating import to_json
+
+    accepted = [d for d in diagnostics if d.accepted]
+    errors = sum(d.is_error for d in diagnostics)
+    warnings = sum(d.is_open for d in diagnostics)
+    if form == "json":
+        counts = {
+            "requirements": count,
+            "mistakes": errors,
+            "warnings": warnings,
+            "accepted": len(accepted),
+        }
+        click.echo(to_json({**counts, "diagnostics": [as_json(d) for d in diagnostics]}))
+    else:
+        say_all([d for d in diagnostics if not d.accepted], accepted)
+        if diagnostics:
+            say_line("")
+        counts_in_words = f"{_many(errors, 'mistake')}, {_many(warnings, 'warning')}"
+        also = f", {len(accepted)} accepted" if accepted else ""
+        say_line(f"{_many(count, 'requirement')}: {counts_in_words}{also}")
     raise SystemExit(BAD if errors else NOT_SHOWN if warnings else SHOWN)
 
 

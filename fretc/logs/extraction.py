@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from fretc.logs import findings
+from fretc.logs import log_diagnostics
 from fretc.logs.mcap.container import Stream
 from fretc.logs.mcap.damage import LATEST
 from fretc.logs.mcap.payloads import Payloads, Places
@@ -99,7 +99,7 @@ class Extraction:
         """The fields of the present layouts: fewer, once a signal was refused."""
         if isinstance(decode, str):
             for signal in signals:
-                self._refuse(signal, findings.unknown_encoding(signal, decode))
+                self._refuse(signal, log_diagnostics.unknown_encoding(signal, decode))
 
     @property
     def reads(self) -> bool:
@@ -143,7 +143,7 @@ class Extraction:
                     signal, row, sample(signal, message, single=signal.name in self._single)
                 )
             except FieldError as error:
-                self._refuse(signal, findings.no_field(signal, error))
+                self._refuse(signal, log_diagnostics.no_field(signal, error))
                 continue
             extract.near(signal, nearest_of_one(signal, message))
 

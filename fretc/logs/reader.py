@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from functools import partial, reduce
 from operator import add
 
-from fretc.logs import containers, findings
+from fretc.logs import containers, log_diagnostics
 from fretc.logs.first_messages import Examples
 from fretc.logs.mcap.container import BrokenError
 from fretc.logs.mcap.damage import Damage
@@ -22,7 +22,7 @@ from fretc.logs.mcap.messages import Sink
 from fretc.logs.messages.decoding import decoder, numbers
 from fretc.logs.signals.integrity import Checked, Integrity
 from fretc.logs.signals.samples import Gap, Recording, Samples
-from fretc.logs.storage import refusals
+from fretc.logs.storage import storage_diagnostics
 from fretc.logs.storage.bags import NOWHERE
 from fretc.logs.storage.folders import METADATA, Folder, folder, is_folder, of_all
 from fretc.logs.storage.inputs import Input, opened, shown
@@ -151,7 +151,7 @@ def _opened(path: str, new: Callable[[], Columns], integrity: Integrity) -> _Rea
                 return log
             return _tried(partial(_file, path, log), place, new, integrity)
     except OSError as error:
-        return refusals.unreadable(error, place)
+        return storage_diagnostics.unreadable(error, place)
 
 
 def _tried(
@@ -179,7 +179,7 @@ def _file(
     if isinstance(part, Diagnostic):
         return part
     if part.span is None:
-        return findings.empty(place)
+        return log_diagnostics.empty(place)
     damages, notes = [(place, *one) for one in part.damages], (*part.notes, *_alone(path, place))
     return _Run(part.sha256, part.size, (part.span,), damages, notes, part.checked)
 
@@ -198,7 +198,7 @@ def _alone(path: str, place: Span) -> Iterator[Diagnostic]:
         about, whole = bags_of_run, f"'{run_name(bags_of_run)}'"
     else:
         return
-    yield refusals.part_of_a_run(about.files.index(name), len(about.files), whole, place)
+    yield storage_diagnostics.part_of_a_run(about.files.index(name), len(about.files), whole, place)
 
 
 def _folder(
@@ -209,7 +209,7 @@ def _folder(
     if isinstance(about, Diagnostic):
         return about
     if about.compressed:
-        return refusals.compressed_folder(about.compressed, place)
+        return storage_diagnostics.compressed_folder(about.compressed, place)
     places = [Source(os.path.join(about.path, name), "").span() for name in about.files]
     found: list[Part | Diagnostic] = []
     for file in places:
@@ -222,7 +222,7 @@ def _folder(
     spans = [part.span for part in parts if part.span is not None]
     if not spans:
         wrong = [part for part in found if isinstance(part, Diagnostic)]
-        return wrong[0] if wrong else findings.empty(place)
+        return wrong[0] if wrong else log_diagnostics.empty(place)
     damages = list(_losses(about, places, found))
     if about.messages not in (None, sink.counted) and not damages:
         lost = (min(a for a, _ in spans), max(b for _, b in spans))
@@ -259,7 +259,7 @@ def _too_long(recording: Recording, clock: Clock, place: Span) -> Diagnostic | N
     length = recording.end_ns - recording.start_ns
     if clock.period is None or length // clock.period < _MOST_TICKS:
         return None
-    return findings.too_long(length, length // clock.period, clock, place)
+    return log_diagnostics.too_long(length, length // clock.period, clock, place)
 
 
 def _recording(
@@ -268,7 +268,7 @@ def _recording(
     lost = [gap for _, _, gap in run.damages if gap is not None]
     gaps = tuple(sorted({columns.on_clock(gap) for gap in lost}))
     origin = min(start for start, _ in [*run.spans, *lost])
-    told = [findings.damaged(damage, gap, origin, file) for file, damage, gap in run.damages]
+    told = [log_diagnostics.damaged(damage, gap, origin, file) for file, damage, gap in run.damages]
     samples = {signal.name: Samples(*columns.samples(signal), signal.scale) for signal in wanted}
     start, end = columns.span((min(a for a, _ in run.spans), max(b for _, b in run.spans)))
     return Recording(
@@ -286,7 +286,7 @@ def _recording(
             *columns.findings(),
             *clocks(columns, wanted),
             *never_stated(samples, examples, wanted),
-            *findings.few(told, place),
+            *log_diagnostics.few(told, place),
             *run.notes,
         ),
         intact=not run.damages,

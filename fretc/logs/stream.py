@@ -18,7 +18,7 @@ from typing import Any
 
 import numpy as np
 
-from fretc.logs import findings
+from fretc.logs import log_diagnostics
 from fretc.logs.mcap.damage import LATEST
 from fretc.logs.signals.propositions import truth_values
 from fretc.logs.signals.samples import EXACT, Recording, Samples, Topic
@@ -397,7 +397,7 @@ def _value(signal: Signal, message: Message) -> tuple[float, np.dtype[Any] | Non
     try:
         value = sample(signal, message, single=single)
     except FieldError as error:
-        return findings.no_field(signal, error)
+        return log_diagnostics.no_field(signal, error)
     if isinstance(value, int):
         return value, EXACT
     if isnan(value):

@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from fretc.logs import findings
+from fretc.logs import log_diagnostics
 from fretc.logs.extraction import Extract, Extraction
 from fretc.logs.mcap.container import Stream
 from fretc.logs.mcap.damage import LATEST
@@ -162,7 +162,7 @@ class Columns:
         for signal in tuple(column.signals):
             declared = signal.type and short_type(signal.type)
             if stream.schema and declared and declared != short_type(type_):
-                column.refuse(signal, findings.wrong_type(signal, type_))
+                column.refuse(signal, log_diagnostics.wrong_type(signal, type_))
 
     def add(self, stream: Stream, log_time: int, publish_time: int, payload: memoryview) -> None:
         """One message; messages of bound topics wait for others of their stream."""
@@ -351,8 +351,8 @@ class Columns:
 
     def _absent(self, topic: str, span: Span | None) -> Diagnostic:
         if topic in self.topics:
-            return findings.no_message(topic, span)
-        return findings.no_topic(topic, self.topics, span)
+            return log_diagnostics.no_message(topic, span)
+        return log_diagnostics.no_topic(topic, self.topics, span)
 
     def readers(self) -> dict[str, Span | None]:
         """The wanted bound topics, each with the place that binds it."""
@@ -367,13 +367,13 @@ class Columns:
     def _oddities(self, column: Column, signal: Signal) -> list[Diagnostic]:
         diagnostics, count = [], len(column.logs)
         if len(column.types) > 1 and signal.type is None:
-            diagnostics.append(findings.several_types(signal, list(column.types)))
+            diagnostics.append(log_diagnostics.several_types(signal, list(column.types)))
         if column.undecoded:
-            diagnostics.append(findings.bad_messages(signal, column.undecoded, count))
+            diagnostics.append(log_diagnostics.bad_messages(signal, column.undecoded, count))
         if late := column.late():
-            diagnostics.append(findings.out_of_order(signal, late, count))
+            diagnostics.append(log_diagnostics.out_of_order(signal, late, count))
         if column.unstamped:
-            diagnostics.append(findings.unstamped(signal, self._shift()))
+            diagnostics.append(log_diagnostics.unstamped(signal, self._shift()))
         return diagnostics
 
     def _shift(self) -> int:

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import os
 import sys
+from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from contextlib import suppress
 from pathlib import Path
+from shlex import quote
 from typing import Any, NoReturn, TextIO
 
 import click
@@ -15,6 +17,8 @@ from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.rendering import Part, plain, render_all, visible
 from fretish.reading.natural_order import by_place
 
+FOLDER = "requirements"
+"""Where the requirements of a project are, if nobody says otherwise."""
 SHOWN, VIOLATION, BAD, NOT_SHOWN, INTERRUPTED = 0, 1, 2, 3, 130
 """Exit status: all shown, a violation, bad use or input, something not shown, Ctrl-C."""
 
@@ -64,6 +68,33 @@ def _painted(text: str, part: Part) -> str:
 def _has_colours(stream: TextIO) -> bool:
     """Whether it is a terminal that shows colours, and the user wants them (no-color.org)."""
     return stream.isatty() and "NO_COLOR" not in os.environ and os.environ.get("TERM") != "dumb"
+
+
+def say_briefly(diagnostics: Sequence[Diagnostic], requirements: str) -> None:
+    """Print them, with one line for all warnings about sentences: those are `check`'s matter.
+
+    Args:
+        diagnostics: of a project.
+        requirements: where its requirements are, as the user names it.
+    """
+    warnings = [each for each in diagnostics if _is_about_a_sentence(each)]
+    others = [each for each in diagnostics if each not in warnings]
+    say(others)
+    if not warnings:
+        return
+    counts = Counter(each.code.number for each in warnings)
+    codes = ", ".join(f"{count} {code}" for code, count in sorted(counts.items()))
+    noun = "warning about a sentence" if len(warnings) == 1 else "warnings about sentences"
+    place = "" if requirements == FOLDER else f" --requirements {quote(requirements)}"
+    if others:
+        say_line("")
+    say_line(visible(f"{len(warnings)} {noun} ({codes}): see `fretc check{place}`"))
+
+
+def _is_about_a_sentence(diagnostic: Diagnostic) -> bool:
+    """Whether it warns of what a sentence means; it is the same whatever is bound or recorded."""
+    about_meaning = diagnostic.code.number.startswith("F2")
+    return about_meaning and diagnostic.is_open
 
 
 def say_also(diagnostics: Sequence[Diagnostic], earlier: Sequence[Diagnostic]) -> None:

@@ -268,4 +268,11 @@ def _spoken(text: str) -> str:
     return re.sub(r"_+", "_", name) or "p"
 
 
-TARGET = Target("monitor", "a standalone runtime monitor in Python", emit, refuse, remark)
+TARGET = Target(
+    "monitor",
+    "a standalone runtime monitor in Python",
+    emit,
+    refuse,
+    remark,
+    next_step="`python {} TRACE.csv` judges a table with a column for each proposition",
+)

@@ -92,6 +92,27 @@ def draft(overview: Overview, wanted: Sequence[Wanted]) -> str:
     )
 
 
+def drafted_signals(overview: Overview) -> tuple[Drafted, ...]:
+    """The signals that a draft writes out."""
+    return tuple(signal for topic in _topics(overview) for signal in topic.signals)
+
+
+def plain_signals(overview: Overview) -> tuple[Drafted, ...]:
+    """A signal for each number of a message whose type says nothing: without a unit."""
+    taken: set[str] = set()
+    return tuple(
+        _named(_plain(topic, field), taken)
+        for name, topic in overview.recording.topics.items()
+        for field in overview.numbers.get(name) or ()
+        if topic.count and "[" not in field and _is_worth(field) and path(f"{name}.{field}")
+    )
+
+
+def _plain(topic: Topic, field: str) -> Drafted:
+    name = _word(f"{topic.name}_{field}")
+    return Drafted(name, topic.name, short_type(topic.type), Quantity(field, ""), _max_age(topic))
+
+
 # Propositions
 
 
@@ -155,8 +176,7 @@ def _drafted(topic: Topic, numbers: Sequence[str]) -> list[Drafted]:
     """The signals of a topic, where its type is well known; with names that are not yet unique."""
     if not topic.count:
         return []
-    base = re.sub(r"\W+", "_", topic.name, flags=re.ASCII).strip("_").lower()
-    base = base if base[:1].isalpha() else f"topic_{base}"
+    base = _word(topic.name)
     type_ = short_type(topic.type)
     return [
         Drafted(
@@ -169,6 +189,12 @@ def _drafted(topic: Topic, numbers: Sequence[str]) -> list[Drafted]:
         for quantity in QUANTITIES.get(type_, ())
         if quantity.field in numbers and path(f"{topic.name}.{quantity.field}") is not None
     ]
+
+
+def _word(text: str) -> str:
+    """The text as a name."""
+    word = re.sub(r"\W+", "_", text, flags=re.ASCII).strip("_").lower()
+    return word if word[:1].isalpha() else f"topic_{word}"
 
 
 _RESERVED = {"and", "or", "not", "for", "true", "false", "abs", "min", "max"}

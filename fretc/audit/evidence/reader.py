@@ -78,7 +78,7 @@ def _not_audited(path: str) -> Diagnostic:
     return Diagnostic(
         Code.NO_SUCH_FILE,
         f"no run has been audited: there is no evidence in `{path}`",
-        help=f"audit a run: `fretc audit LOG... --evidence {path}`",
+        help=f"audit a run: `fretc audit LOG... -o {path}`",
         severity=Severity.NOTE,
     )
 
@@ -89,7 +89,7 @@ def _not_json(source: Source, error: json.JSONDecodeError) -> Diagnostic:
         Code.BAD_EVIDENCE,
         f"the evidence is not JSON: {error.msg[:1].lower()}{error.msg[1:]}",
         source.span(at, at + 1),
-        help=f"audit again: `fretc audit LOG... --evidence {source.name}`",
+        help=f"audit again: `fretc audit LOG... -o {source.name}`",
     )
 
 
@@ -98,7 +98,7 @@ def _wrong(path: str, what: str) -> Diagnostic:
         Code.BAD_EVIDENCE,
         f"`{path}` {what}",
         Source(path, "").span(),
-        help=f"audit again: `fretc audit LOG... --evidence {path}`",
+        help=f"audit again: `fretc audit LOG... -o {path}`",
     )
 
 

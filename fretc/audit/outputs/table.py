@@ -88,7 +88,7 @@ def read(paths: Sequence[str]) -> Table | Diagnostic:
     """The rows of all the files, Parquet or evidence; a row that is in several comes once for each.
 
     Args:
-        paths: what `--parquet` or `--evidence` wrote.
+        paths: what `--parquet` or `--output` wrote.
     """
     import pyarrow
 
@@ -154,7 +154,7 @@ def _neither(path: str) -> Diagnostic:
         Code.BAD_EVIDENCE,
         f"`{path}` is neither a table nor evidence",
         Source(path, "").span(),
-        help="name what `fretc audit LOG... --parquet FILE` or `--evidence FILE` wrote",
+        help="name what `fretc audit LOG... --parquet FILE` or `-o FILE` wrote",
     )
 
 

@@ -48,7 +48,7 @@ def commands(
     def audit() -> str:
         logs = " ".join(_log(run.result.run) for run in runs) or "LOG..."
         level = "" if confidence == CONFIDENCE else f" --confidence {confidence}"
-        return f"fretc audit {logs} {_options(project)}{level} --evidence {_quoted(evidence)}"
+        return f"fretc audit {logs} {_options(project)}{level} -o {_quoted(evidence)}"
 
     def report() -> str:
         verification = f" --verification {_quoted(proofs.file)}" if proofs else ""

@@ -15,7 +15,8 @@ from typing import Any
 
 import pytest
 
-from compiler.project.folder import beside, load, requirement_files
+from compiler.project.folder import load
+from compiler.project.paths import beside, requirement_files
 from fretc.audit import fleet
 from fretc.audit.many_logs import Audit, Audited, Engine, audit_logs
 from fretc.audit.plan import Plan, packed, planned, unpacked

@@ -16,7 +16,8 @@ import pytest
 
 from compiler.files import text_files as files
 from compiler.files.user_key import user_key
-from compiler.project.folder import beside, load, requirement_files
+from compiler.project.folder import load
+from compiler.project.paths import beside, requirement_files
 from fretc.audit.journal import Journal
 from fretc.audit.many_logs import Audit, Audited, audit_logs, audited
 from fretc.audit.plan import Plan, planned

@@ -1,5 +1,6 @@
 """`fretc check`: what is wrong or missing in a project, before any run."""
 
+import json
 from pathlib import Path
 
 import pytest
@@ -31,6 +32,21 @@ def edited(name: str, old: str, new: str) -> None:
 def test_a_sound_project_is_said_to_be_sound(good: Fretc) -> None:
     run = good("check")
     assert (run.status, run.out, run.err) == (0, "", "1 requirement: 0 mistakes, 0 warnings\n")
+
+
+def test_the_same_is_said_as_json(good: Fretc) -> None:
+    edited("r1.fret", "within 300 milliseconds", "eventually")
+    edited("r1.fret", "status", "statuss")
+    text, record = good("check"), json.loads(good("check", "--format", "json").out)
+    assert record["mistakes"] == 1
+    assert text.err.endswith(
+        f"{record['requirements']} requirement: {record['mistakes']} mistake, "
+        f"{record['warnings']} warnings\n"
+    )
+    for diagnostic in record["diagnostics"]:
+        assert f"{diagnostic['code']} " in text.err
+        assert diagnostic["message"] in text.err
+    assert good("check", "--format", "json").status == text.status == 2
 
 
 def test_a_trigger_that_the_component_itself_commands_is_told(good: Fretc) -> None:

@@ -42,6 +42,27 @@ def fretc(
     return runner(monkeypatch, capsys)
 
 
+def test_a_sentence_is_explained_as_it_is_typed(fretc: Fretc) -> None:
+    sentence = "whenever too_close the robot shall within 200 milliseconds satisfy stopped"
+    by_id, typed = fretc("explain", "R1"), fretc("explain", sentence)
+    assert (typed.status, typed.err) == (0, "")
+    assert typed.out.splitlines()[0] == "sentence"
+    assert typed.out.splitlines()[1:] == by_id.out.splitlines()[1:]
+    (record,) = json.loads(fretc("explain", sentence, "--format", "json").out)
+    assert record["id"] == "sentence"
+
+
+def test_a_sentence_with_a_mistake_has_a_place_and_a_mend(fretc: Fretc) -> None:
+    run = fretc("explain", "the robot should satisfy speed <= 1.5")
+    assert (run.status, run.out) == (2, "")
+    assert run.err.splitlines()[1] == "  --> <sentence>:1:11"
+
+
+def test_a_file_that_reads_as_a_sentence_is_a_file(fretc: Fretc) -> None:
+    write("the robot shall satisfy p", "the robot shall always satisfy stopped")
+    assert "always satisfy stopped" in fretc("explain", "the robot shall satisfy p").out
+
+
 def test_a_requirement_is_explained_by_its_id(fretc: Fretc) -> None:
     run = fretc("explain", "R1")
     assert (run.status, run.err) == (0, "")

@@ -630,8 +630,25 @@ def test_a_requirement_is_not_written_over(fretc: Fretc, r1: str) -> None:
     assert run.err.startswith("F905 `r1.fret` cannot be written")
 
 
-def test_files_must_be_named_and_be_there(fretc: Fretc, r1: str) -> None:
-    assert first(fretc("verify", "--monitor")) == (2, "", "F907 missing argument 'FILE...'")
+def test_requirements_are_named_by_files_or_by_the_option(fretc: Fretc, r1: str) -> None:
+    write("requirements/r1.fret", Path(r1).read_text())
+    by_file = fretc("verify", "--monitor", "requirements/r1.fret")
+    assert by_file.status == 0
+    assert fretc("verify", "--monitor") == by_file
+    assert fretc("verify", "--monitor", "--requirements", "requirements") == by_file
+    assert first(fretc("verify", r1, "--requirements", "requirements")) == (
+        2,
+        "",
+        f"F907 requirements are named twice: `{r1}` and `--requirements`",
+    )
+
+
+def test_files_must_be_there(fretc: Fretc, r1: str) -> None:
+    assert first(fretc("verify", "--monitor")) == (
+        2,
+        "",
+        "F901 there is no folder `requirements`",
+    )
     assert first(fretc("verify", "--monitor", "no.fret")) == (
         2,
         "",

@@ -201,6 +201,21 @@ def test_a_project_without_a_requirement_shows_nothing(tmp_path: Path) -> None:
 # What is suspect, what has errors --------------------------------------------------------------
 
 
+def test_one_reason_for_many_requirements_is_one_message(tmp_path: Path) -> None:
+    sentence = "whenever near the robot shall within 300 milliseconds satisfy stopped"
+    ids = [f"R{number}" for number in range(1, 11)]
+    known = project(tmp_path, *(requirement(id, sentence) for id in ids))
+    old = {"bindings": "0" * 64}
+    two = [result(known, "satisfied", "R3", run=run, hashes=old) for run in ("a", "b")]
+    rest = [result(known, "satisfied", id, hashes=old) for id in ids if id != "R3"]
+    messages = [d.message for d in report_of(known, tmp_path, *two, *rest).diagnostics]
+    assert len(messages) == 2
+    assert messages[0].startswith(
+        "the evidence of R1, R2, R4, R5, R6, R7, R8, R9 and R10 is suspect in 1 run each: "
+    )
+    assert messages[1].startswith("the evidence of R3 is suspect in 2 runs: ")
+
+
 @pytest.mark.parametrize(
     ("name", "why"),
     [

@@ -60,10 +60,8 @@ def test_a_full_standard_error_leaves_the_exit_status_alone(folder: Path) -> Non
 
 def test_a_full_standard_output_is_told(folder: Path) -> None:
     done = in_shell(folder, "r1.fret", "{} >/dev/full")
-    assert (done.returncode, done.stderr.splitlines()[0]) == (
-        2,
-        "F905 `standard output` cannot be written: No space left on device",
-    )
+    assert done.returncode == 2
+    assert "F905 `standard output` cannot be written: No space left on device" in done.stderr
 
 
 def test_a_closed_standard_output_costs_nothing_but_the_output(folder: Path) -> None:

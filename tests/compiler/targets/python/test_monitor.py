@@ -673,6 +673,33 @@ def test_the_json_has_the_fields_that_programs_rely_on(programs: Path) -> None:
     assert {key: found[key] for key in promised} == promised
 
 
+@pytest.mark.slow
+@pytest.mark.parametrize("form", ["text", "json"])
+def test_a_reader_that_goes_away_is_neither_a_verdict_nor_bad_use(
+    programs: Path, form: str
+) -> None:
+    command = f"{sys.executable} -I -S {programs / 'within.py'} - --format {form}"
+    line = f"printf 'p,q\\n1,0\\n' | {command} | true; echo ${{PIPESTATUS[1]}}"
+    done = tool("bash", "-c", line)
+    assert (done.stdout, done.stderr) == ("141\n", "")
+
+
+@pytest.mark.parametrize(
+    ("trace", "why"),
+    [
+        ("p,q\n", "the trace has no tick"),
+        ("p,q\n1,\n0,\n0,\n0,\n", "unknown at ticks 3..3"),
+        (
+            "p,q\n,0\n",
+            "unknown whether there was a trigger, or whether a demand is open at the end",
+        ),
+    ],
+)
+def test_what_is_missing_is_said(programs: Path, trace: str, why: str) -> None:
+    done = call(programs, "within", "-", stdin=trace.encode())
+    assert done.stdout.decode() == f"<stdin>: within: no data ({why})\n"
+
+
 def test_people_read_one_line(programs: Path) -> None:
     done = call(programs, "within", "-", stdin=b"p,q\n1,0\n0,1\n")
     assert done.stdout.decode() == "<stdin>: within: satisfied (1 trigger)\n"

@@ -41,7 +41,7 @@ def test_no_evidence_yet_is_a_note_that_tells_how_to_audit(tmp_path: Path) -> No
     assert found == Diagnostic(
         Code.NO_SUCH_FILE,
         "no run has been audited: there is no evidence in `nowhere/evidence.json`",
-        help="audit a run: `fretc audit LOG... --evidence nowhere/evidence.json`",
+        help="audit a run: `fretc audit LOG... -o nowhere/evidence.json`",
         severity=Severity.NOTE,
     )
 

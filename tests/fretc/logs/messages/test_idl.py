@@ -14,7 +14,7 @@ from fretc.logs.messages.definitions import DefinitionError
 from fretc.logs.messages.idl import types
 from fretc.logs.messages.probes import trusted
 from fretc.logs.signals.samples import Recording
-from fretc.logs.storage.refusals import install
+from fretc.logs.storage.storage_diagnostics import install
 from fretish.diagnostics.diagnostic import Code
 from tests.fretc.logs.logs import (
     MS,

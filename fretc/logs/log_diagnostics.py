@@ -13,7 +13,7 @@ from fretc.logs.messages.decoding import MissingExtra
 from fretc.logs.signals.samples import Gap
 from fretc.logs.signals.signals import FieldError
 from fretc.logs.signals.stamps import STILL
-from fretc.logs.storage.refusals import install
+from fretc.logs.storage.storage_diagnostics import install
 from fretish.bindings.declarations import Signal, short_type
 from fretish.clock import Clock, TimeSource
 from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity, suggestion
