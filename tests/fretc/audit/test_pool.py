@@ -2,6 +2,7 @@
 
 import os
 import signal
+import threading
 import time
 from contextlib import closing
 from multiprocessing import active_children
@@ -86,3 +87,22 @@ def test_closing_ends_the_work_at_once() -> None:
         start = time.monotonic()
     assert time.monotonic() - start < 10
     assert not active_children()
+
+
+def test_a_process_that_dies_while_it_sends_a_result_costs_no_other_thing_its_result(
+    tmp_path: Path,
+) -> None:
+    mark = tmp_path / "mark"
+
+    def work(thing: int) -> bytes:
+        if thing == 1 and not mark.exists():
+            mark.touch()
+            time.sleep(0.1)
+            threading.Timer(0.2, os._exit, (7,)).start()
+            return bytes(10**7)  # the pipe holds less than that: it is still being sent
+        return bytes(thing)
+
+    with closing(each(work, range(4), 2)) as results:
+        first = next(results)
+        time.sleep(0.5)
+        assert dict([first, *results]) == {i: bytes(i) for i in range(4)}
