@@ -35,7 +35,7 @@ def check(
     from compiler.files.dates import today
     from compiler.project.folder import beside, whole
     from fretc.audit.evidence.reader import read as read_evidence
-    from fretc.audit.plan import refusals
+    from fretc.audit.refusals import refusals
     from fretc.report.assembly import stale
     from fretc.report.model.claims import claims, idle_waivers
     from fretc.report.traceability.checks import checks, unreviewed

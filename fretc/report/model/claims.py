@@ -10,6 +10,7 @@ from compiler.formalization.formalized import Formalized, plain
 from compiler.logic.claims import Proof
 from compiler.project.folder import Project
 from compiler.targets.python import monitor
+from fretc.audit.bases import bases
 from fretc.audit.evidence.basis import Basis, why
 from fretc.audit.evidence.probabilities import Estimated
 from fretc.audit.evidence.reader import by_requirement
@@ -25,7 +26,6 @@ from fretc.audit.evidence.verdicts import (
     severity,
 )
 from fretc.audit.measurements.trials import NO_TRIALS
-from fretc.audit.plan import bases
 from fretc.report.model import phrases
 from fretc.report.model.probabilities import contradictions
 from fretc.report.model.views import Mark, verdict_mark

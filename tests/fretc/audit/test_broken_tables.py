@@ -17,8 +17,9 @@ from mcap.writer import Writer
 
 from compiler.emit import TARGETS
 from compiler.project.folder import Project, load
+from fretc.audit.bases import bases
 from fretc.audit.bindings.draft import wanted
-from fretc.audit.plan import Plan, bases, planned
+from fretc.audit.plan import Plan, planned
 from fretc.terminal.output import BAD, SHOWN, VIOLATION
 from fretish.bindings.reader import read_bindings
 from fretish.diagnostics.source import Source
