@@ -67,7 +67,7 @@ def make_report(
     if not project.requirements:
         raise Refusal((Diagnostic(Code.NOTHING_TO_DO, "there is no requirement to report on"),))
     first = project.requirements[0].wording.source.name
-    made = make(
+    outcome = make(
         project,
         os.fspath(evidence),
         lock=_path(lock) or beside(first, "fretc.lock"),
@@ -76,9 +76,9 @@ def make_report(
         ajpf=[os.fspath(path) for path in ajpf] or ajpf_results(),
         signers=_path(signers) or beside(first, SIGNERS),
     )
-    if made.report is None:
-        raise Refusal(made.diagnostics)
-    return Report(made)
+    if outcome.report is None:
+        raise Refusal(outcome.diagnostics)
+    return Report(outcome)
 
 
 def _path(path: Path | None) -> str | None:

@@ -1,4 +1,4 @@
-"""What every log of an audit is judged by, as values that can be sent to any process or machine."""
+"""The plan of an audit: a value that can be sent to any process or machine."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from fretc.audit.evidence.schema import SCHEMA
 from fretc.audit.expected_response import demand
 from fretc.audit.measurements import confidence_intervals as odds
 from fretc.audit.measurements.count_trials import chance, trials
-from fretc.audit.one_log import Watched
+from fretc.audit.one_log import MonitoredRequirement
 from fretc.audit.refusals import RefusedRequirement, in_force, refusals
 from fretc.logs.signals.integrity import Integrity
 from fretish.bindings.declarations import Declarations
@@ -33,7 +33,7 @@ from monitors.loading import load
 
 @dataclass(frozen=True, slots=True)
 class Plan:
-    """The claims and what their propositions mean; what an audit shows depends on nothing else."""
+    """The claims and what their propositions mean: all that an audit depends on beside the logs."""
 
     claims: tuple[Claim, ...]
     declarations: Declarations = field(compare=False, repr=False)
@@ -41,11 +41,11 @@ class Plan:
     evaluation: str
     """How the monitors are run: a key of `fretc.audit.many_logs.EVALUATIONS`."""
     integrity: Integrity
-    """What is looked at of a log."""
+    """How closely a log is read."""
     key: str
     """SHA-256 of all of it to the letter that one log is judged by, and of the fretc that does."""
     confidence: float = odds.CONFIDENCE
-    """Of what all logs together say of a probability."""
+    """Of the bounds of a probability over all logs."""
     refused: tuple[RefusedRequirement, ...] = field(default=(), compare=False, repr=False)
     """The requirements in force that are not among the claims."""
 
@@ -73,9 +73,9 @@ def planned(
 
     Args:
         project: without errors but for those of single requirements.
-        evaluation: how the monitors are run: `columns` or `online`; what they show is the same.
-        integrity: what is looked at of a log beyond the messages in question.
-        confidence: of what is said of a probability, between 0.5 and 1.
+        evaluation: how the monitors are run: `columns` or `online`; the verdicts are the same.
+        integrity: how closely a log is read, beyond the messages in question.
+        confidence: of the bounds of a probability, between 0.5 and 1.
     """
     declarations = project.declarations
     unauditable = refusals(project)
@@ -142,10 +142,10 @@ def unpacked(data: bytes) -> Plan:
 
 
 @lru_cache(maxsize=4)
-def watched(plan: Plan) -> tuple[Watched, ...]:
-    """The monitors of the claims, in their order: loaded once in each process."""
+def monitored_requirements(plan: Plan) -> tuple[MonitoredRequirement, ...]:
+    """The claims with their monitors, in their order: loaded once in each process."""
     return tuple(
-        Watched(
+        MonitoredRequirement(
             load(f"{claim.id}_monitor", claim.monitor),
             claim.basis,
             claim.demand,

@@ -115,17 +115,17 @@ class _Crew:
 
     def done(self) -> Iterator[tuple[int, Any]]:
         """Wait for results; there is at least one, and their processes are free again."""
-        for found in wait(list(self.busy)):
-            assert isinstance(found, Connection)
-            process, place = self.busy.pop(found)
+        for connection in wait(list(self.busy)):
+            assert isinstance(connection, Connection)
+            process, place = self.busy.pop(connection)
             try:
-                fine, result = found.recv()
+                fine, result = connection.recv()
             except (EOFError, OSError):
-                found.close()
+                connection.close()
                 process.join()
                 yield place, Killed(process.exitcode or 0)
                 continue
-            self._idle.append((found, process))
+            self._idle.append((connection, process))
             if not fine:
                 raise result
             yield place, result

@@ -18,7 +18,7 @@ from mcap.writer import Writer
 from compiler.emit import TARGETS
 from compiler.project.folder import Project, load
 from fretc.audit.bases import bases
-from fretc.audit.bindings.draft import wanted
+from fretc.audit.bindings.draft import missing_propositions
 from fretc.audit.plan import Plan, planned
 from fretc.terminal.output import BAD, SHOWN, VIOLATION
 from fretish.bindings.reader import read_bindings
@@ -359,9 +359,11 @@ def test_a_basis_is_what_it_is_without_the_broken_table() -> None:
 
 
 def test_a_draft_in_place_of_broken_bindings_has_all_propositions() -> None:
-    names = [each.name for each in wanted(project(broken([("signal", "ay", "F306")])))]
+    names = [
+        each.name for each in missing_propositions(project(broken([("signal", "ay", "F306")])))
+    ]
     assert names == ["low", "near", "slow", "still"]
-    assert wanted(project()) == ()
+    assert missing_propositions(project()) == ()
 
 
 def test_assumptions_are_those_of_tables_that_are_read() -> None:

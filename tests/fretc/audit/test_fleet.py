@@ -17,7 +17,7 @@ import pytest
 
 from compiler.project.folder import beside, load, requirement_files
 from fretc.audit import fleet
-from fretc.audit.many_logs import Audit, Audited, Engine, audit_logs
+from fretc.audit.many_logs import Audit, Engine, LogAudit, audit_logs
 from fretc.audit.plan import Plan, packed, planned, unpacked
 from fretish.diagnostics.diagnostic import Diagnostic
 from tests.command import Fretc
@@ -72,7 +72,7 @@ def kill(cluster: Any) -> None:
     os.kill(next(iter(cluster.workers.values())).pid, signal.SIGKILL)
 
 
-def deadly(plan: bytes, log: str, folder: str, wanted: str) -> Audited | str:
+def deadly(plan: bytes, log: str, folder: str, wanted: str) -> LogAudit | str:
     """What a worker does, which knows of no patch: one log kills it."""
     if log == LOGS[3]:
         os.kill(os.getpid(), signal.SIGKILL)
@@ -103,7 +103,7 @@ def test_a_worker_that_is_killed_loses_nothing_and_counts_nothing_twice(
     here = audit_logs(plan(), LOGS)
     told: list[str] = []
 
-    def tell(log: str, audited: Audited) -> None:
+    def tell(log: str, audited: LogAudit) -> None:
         if not told:
             kill(cluster)
         told.append(log)

@@ -21,7 +21,7 @@ from mcap.writer import CompressionType, IndexType
 
 from compiler.project import folder as project
 from compiler.targets.python.monitor import text
-from fretc.audit.one_log import Watched, audit
+from fretc.audit.one_log import MonitoredRequirement, audit
 from fretc.logs.reader import read
 from fretc.logs.signals.samples import Recording
 from fretish.bindings.declarations import Declarations
@@ -135,7 +135,7 @@ class Bench:
         self.project = project.load([str(folder / "r.fret")], str(folder / "bindings.toml"))
         assert not self.project.diagnostics
         monitors = [load(f"{rule.id}_monitor", text(rule)) for rule in self.project.rules]
-        self.watched = [Watched(monitor, {}) for monitor in monitors]
+        self.watched = [MonitoredRequirement(monitor, {}) for monitor in monitors]
         self.known = cache(self._known)
 
     @property

@@ -18,7 +18,7 @@ from compiler.files import text_files as files
 from compiler.files.user_key import user_key
 from compiler.project.folder import beside, load, requirement_files
 from fretc.audit.journal import Journal
-from fretc.audit.many_logs import Audit, Audited, audit_logs, audited
+from fretc.audit.many_logs import Audit, LogAudit, audit_logs, audited
 from fretc.audit.plan import Plan, planned
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from tests.command import Fretc
@@ -108,7 +108,7 @@ def test_only_what_is_not_finished_is_audited(fretc: Fretc) -> None:
     known = journal.finished(LOGS)
     assert not isinstance(known, Diagnostic)
     told: list[str] = []
-    result = audit_logs(plan(), LOGS, known=known, tell=lambda log, _: told.append(log))
+    result = audit_logs(plan(), LOGS, finished=known, tell=lambda log, _: told.append(log))
     assert isinstance(result, Audit)
     assert told == ["c.mcap"]
 
@@ -152,7 +152,7 @@ def test_a_log_that_could_not_be_read_or_has_changed_meanwhile_is_not_kept(fretc
     journal = journal_of(plan())
     assert journal.keep("no.mcap", audited(plan(), "no.mcap")) is False
     good = audited(plan(), "a.mcap")
-    assert journal.keep("a.mcap", Audited(good.results, (), read=True, stamp=None)) is False
+    assert journal.keep("a.mcap", LogAudit(good.results, (), read=True, stamp=None)) is False
     assert not JOURNAL.exists()
 
 

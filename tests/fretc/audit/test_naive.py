@@ -21,7 +21,7 @@ from hypothesis import settings
 
 from compiler.formalization.formalize import formalize
 from compiler.targets.python.monitor import text
-from fretc.audit.one_log import Watched, audit
+from fretc.audit.one_log import MonitoredRequirement, audit
 from fretc.logs.reader import read
 from fretc.logs.signals.samples import Recording
 from fretish.bindings.declarations import Declarations
@@ -524,8 +524,10 @@ def differences(found: Case, path: Path) -> list[str]:
         return [f"not intact: {[f.message for f in recording.findings]}"]
     run, apart = found.run, []
     watching = watched(found)
-    (evidence,) = audit(recording, declarations, [Watched(watching, {})])
-    (stepped,) = audit(recording, declarations, [Watched(watching, {})], kernel.stepped)
+    (evidence,) = audit(recording, declarations, [MonitoredRequirement(watching, {})])
+    (stepped,) = audit(
+        recording, declarations, [MonitoredRequirement(watching, {})], kernel.stepped
+    )
     if (evidence.verdict, evidence.outcome) != (stepped.verdict, stepped.outcome):
         apart.append(f"engines: {evidence.verdict}, {stepped.verdict}")
     for name, tally in evidence.propositions.items():

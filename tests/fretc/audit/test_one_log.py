@@ -10,7 +10,7 @@ from compiler.files.records import plain
 from compiler.formalization.formalize import formalize
 from compiler.targets.python.monitor import text
 from fretc.audit.evidence.writer import Evidence, as_record
-from fretc.audit.one_log import Watched, audit, signals_of
+from fretc.audit.one_log import MonitoredRequirement, audit, signals_of
 from fretc.logs.signals.samples import Recording, Samples
 from fretish.bindings.declarations import Declarations
 from fretish.bindings.reader import read_bindings
@@ -68,7 +68,9 @@ def audited(
     ((requirement,), _) = requirements(Source("R1.fret", sentence))
     rule, said = formalize(requirement, known)
     assert rule is not None, said
-    watched = Watched(load("monitor", text(rule)), HASHES | {"sentence": rule.fingerprint})
+    watched = MonitoredRequirement(
+        load("monitor", text(rule)), HASHES | {"sentence": rule.fingerprint}
+    )
     (evidence,) = audit(recording, known, [watched])
     return evidence
 

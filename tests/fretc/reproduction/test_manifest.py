@@ -28,7 +28,7 @@ def wrong(folder: Path, logs: dict[str, str]) -> list[str]:
     manifest = read(str(file))
     assert isinstance(manifest, Manifest)
     found = matches(whole, manifest, {"logs/run": str(folder)})
-    return [reason for match in found for one in match.wrong for reason in one.reasons]
+    return [reason for match in found for one in match.differences for reason in one.reasons]
 
 
 def test_a_manifest_of_all_files_of_a_folder_is_matched(tmp_path: Path) -> None:

@@ -24,7 +24,7 @@ from compiler.logic.claims import (
 from compiler.logic.claims import document as proofs_document
 from compiler.project.folder import Project, whole
 from fretc.audit.evidence.reader import read, required
-from fretc.audit.many_logs import IN_TURN, Audited, Found, audit_logs
+from fretc.audit.many_logs import IN_TURN, LogAudit, LogAudits, audit_logs
 from fretc.audit.plan import Plan, planned
 from fretc.report.traceability.chain import chains
 from fretc.report.traceability.lock import Lock, accepted
@@ -32,8 +32,8 @@ from fretc.reproduction import proofs as reproving
 from fretc.reproduction.completeness import Scope
 from fretc.reproduction.manifest import Manifest
 from fretc.reproduction.manifest import read as read_manifest
-from fretc.reproduction.outcome import Finding, Rechecked
-from fretc.reproduction.results import rechecked
+from fretc.reproduction.outcome import Finding, Recheck
+from fretc.reproduction.results import recheck
 from fretc.verification import reader as proven
 from fretc.verification.engines.sandbox import Limits
 from fretish.diagnostics.diagnostic import Diagnostic
@@ -161,20 +161,20 @@ class Case:
 
     def __init__(self, project: Project, plan: Plan, lock: Lock, manifest: Manifest) -> None:
         self.project, self._plan, self._lock, self._manifest = project, plan, lock, manifest
-        self._known: dict[tuple[str, str], Audited] = {}
+        self._known: dict[tuple[str, str], LogAudit] = {}
 
-    def judged(self, text: str) -> Sequence[Rechecked] | Diagnostic:
+    def judged(self, text: str) -> Sequence[Recheck] | Diagnostic:
         found = required(write("build/changed.json", text))
         if isinstance(found, Diagnostic):
             return found
         runs = dict.fromkeys(result.run for result in found.results)
         there = {run: run for run in runs if run and Path(run).is_file()}
         scope = Scope(tuple(claim.id for claim in self._plan.claims), self._lock)
-        again = rechecked(found.document, self._plan, there, self._engine, scope, self._manifest)
+        again = recheck(found.document, self._plan, there, self._engine, scope, self._manifest)
         assert not isinstance(again, Diagnostic)
         return again
 
-    def _engine(self, plan: Plan, logs: Sequence[str]) -> Found:
+    def _engine(self, plan: Plan, logs: Sequence[str]) -> LogAudits:
         for one in logs:
             key = (plan.integrity, one)
             if key not in self._known:
@@ -185,7 +185,7 @@ class Case:
             yield one, self._known[key]
 
 
-def stands(found: Sequence[Rechecked] | Diagnostic) -> bool:
+def stands(found: Sequence[Recheck] | Diagnostic) -> bool:
     """Whether the command would exit with 0."""
     if isinstance(found, Diagnostic):
         return False
@@ -272,11 +272,11 @@ def test_no_change_to_proofs_is_certified(case: Case, monkeypatch: pytest.Monkey
     monkeypatch.setattr(reproving, "evidence", lambda *asked: FOUND)
     content = json.loads(json.dumps(plain(proofs_document("0.1.0", FOUND))))
 
-    def judged(text: str) -> Sequence[Rechecked] | Diagnostic:
+    def judged(text: str) -> Sequence[Recheck] | Diagnostic:
         found = proven.read(write("build/changed.json", text))
         if isinstance(found, Diagnostic):
             return found
-        again = reproving.reproved(
+        again = reproving.prove_again(
             case.project, found, Limits(), tuple(REQUIREMENTS), lambda words: None
         )
         assert not isinstance(again, Diagnostic)

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from compiler.project.folder import load
-from fretc.audit.bindings.draft import Wanted, draft, wanted
+from fretc.audit.bindings.draft import MissingProposition, draft, missing_propositions
 from fretc.logs.reader import look, read
 from fretc.logs.signals.samples import Recording
 from fretish.bindings.declarations import Declarations
@@ -20,7 +20,7 @@ ROOT = Path(__file__).parents[4]
 LOGS = sorted((ROOT / "traces").glob("*.mcap"))
 
 
-def drafted(path: Path, needs: Sequence[Wanted] = ()) -> str:
+def drafted(path: Path, needs: Sequence[MissingProposition] = ()) -> str:
     overview = look(str(path))
     assert not isinstance(overview, Diagnostic), overview
     return draft(overview, needs)
@@ -49,7 +49,7 @@ def test_a_whole_draft(
     sent += every(S, 3, "/mode")
     sent.append(named("/name", "std_msgs/msg/String", payload("std_msgs/String", data="a")))
     write(Path("run.mcap"), sorted(sent, key=lambda message: message.time))
-    needs = [Wanted("near", ("R1", "R2"), "input", "any")]
+    needs = [MissingProposition("near", ("R1", "R2"), "input", "any")]
     golden("bindings/draft.toml", drafted(Path("run.mcap"), needs))
 
 
@@ -123,7 +123,7 @@ def test_other_numbers_are_there_as_comments(tmp_path: Path) -> None:
 
 def test_a_proposition_that_is_to_be_filled_in_is_an_error_until_it_is(tmp_path: Path) -> None:
     path = write(tmp_path / "a.mcap", every(100 * MS, 12))
-    text = drafted(path, [Wanted("near", ("R1",), "input", "any")])
+    text = drafted(path, [MissingProposition("near", ("R1",), "input", "any")])
     declarations, wrong = read_bindings(Source("bindings.toml", text))
     assert declarations is not None
     (diagnostic,) = wrong
@@ -139,12 +139,12 @@ def test_a_proposition_that_is_to_be_filled_in_is_an_error_until_it_is(tmp_path:
 # What requirements still need
 
 
-def needed(folder: Path, *sentences: str, bindings: str = "") -> list[Wanted]:
+def needed(folder: Path, *sentences: str, bindings: str = "") -> list[MissingProposition]:
     files = [
         put(str(folder / f"r{i}.fret"), f'+++\nid = "R{i}"\n+++\n{sentence}\n')
         for i, sentence in enumerate(sentences, 1)
     ]
-    return list(wanted(load(files, put(str(folder / "bindings.toml"), bindings))))
+    return list(missing_propositions(load(files, put(str(folder / "bindings.toml"), bindings))))
 
 
 def test_each_name_is_wanted_once_with_the_role_that_its_place_gives_it(tmp_path: Path) -> None:

@@ -68,7 +68,7 @@ def naive(
 
     Those of the columns that are constants stay what they are.
     """
-    found = {"answered": 0, "failed": 0, "open": 0, "kept": 0}
+    found = {"answered": 0, "failed": 0, "open": 0, "met_by_end": 0}
     more = template.n + 2
     fixed = {name: value for name, value in (constants or {}).items() if name != "p"}
     futures = [
@@ -83,7 +83,7 @@ def naive(
             found["answered" if told.pop() else "failed"] += 1
         elif only_forbids(template) and met(template, columns, trigger):
             found["answered"] += 1
-            found["kept"] += 1
+            found["met_by_end"] += 1
         else:
             found["open"] += 1
     return Trials(**found)
@@ -280,7 +280,7 @@ def test_without_a_condition_each_interval_is_one() -> None:
 
 def test_what_only_forbids_is_met_when_the_run_ends() -> None:
     sentence = "the robot shall with probability > 0.5 always satisfy r"
-    assert counted(sentence, {"r": bits("111")}) == Trials(1, 0, 0, kept=1)
+    assert counted(sentence, {"r": bits("111")}) == Trials(1, 0, 0, met_by_end=1)
     assert counted(sentence, {"r": bits("110")}) == Trials(0, 1, 0)
     assert counted(sentence, {"r": bits("1?1")}) == Trials(0, 0, 1)
 
@@ -298,7 +298,7 @@ def test_an_empty_run_has_none() -> None:
 
 
 def test_a_cut_tick_undoes_what_was_only_kept() -> None:
-    kept = Trials(3, 1, 0, kept=2)
+    kept = Trials(3, 1, 0, met_by_end=2)
     assert kept.before(Trials(1, 3, 0)) == Trials(1, 1, 2)
     assert kept.before(Trials(3, 1, 1)) == kept
     assert Trials(3, 0, 0).before(Trials(3, 1, 0)) == Trials(3, 0, 1)
