@@ -21,9 +21,9 @@ def made(*names: str) -> None:
 
 
 def code(*paths: str) -> str:
-    found = logs(paths)
-    assert isinstance(found, Diagnostic)
-    return found.code.number
+    diagnostic = logs(paths)
+    assert isinstance(diagnostic, Diagnostic)
+    return diagnostic.code.number
 
 
 def test_a_folder_stands_for_the_logs_below_it_in_the_order_of_their_names() -> None:

@@ -40,8 +40,8 @@ FAR, NEAR, STILL, MOVING = 1.0, 0.01, 0.0, 0.4
 
 
 def declared(text: str = BINDINGS) -> Declarations:
-    declarations, wrong = read_bindings(Source("bindings.toml", text))
-    assert declarations is not None, wrong
+    declarations, diagnostics = read_bindings(Source("bindings.toml", text))
+    assert declarations is not None, diagnostics
     return declarations
 
 
@@ -64,14 +64,14 @@ def recorded(
 def audited(
     sentence: str, recording: Recording, declarations: Declarations | None = None
 ) -> Evidence:
-    known = declarations or declared()
+    bindings = declarations or declared()
     ((requirement,), _) = requirements(Source("R1.fret", sentence))
-    rule, said = formalize(requirement, known)
-    assert rule is not None, said
+    rule, diagnostics = formalize(requirement, bindings)
+    assert rule is not None, diagnostics
     watched = MonitoredRequirement(
         load("monitor", text(rule)), HASHES | {"sentence": rule.fingerprint}
     )
-    (evidence,) = audit(recording, known, [watched])
+    (evidence,) = audit(recording, bindings, [watched])
     return evidence
 
 

@@ -15,8 +15,8 @@ from fretc.audit.pool import Killed, each
 
 @pytest.mark.parametrize("jobs", [1, 2, 5])
 def test_each_thing_has_its_result_once(jobs: int) -> None:
-    found = list(each(lambda thing: thing * thing, range(40), jobs))
-    assert sorted(found, key=lambda done: done[0]) == [(i, i * i) for i in range(40)]
+    results = list(each(lambda thing: thing * thing, range(40), jobs))
+    assert sorted(results, key=lambda done: done[0]) == [(i, i * i) for i in range(40)]
     assert not active_children()
 
 
@@ -53,9 +53,9 @@ def test_a_thing_that_kills_its_process_twice_is_told_and_the_others_are_done(jo
             os.kill(os.getpid(), signal.SIGKILL)
         return -thing
 
-    found = dict(each(work, range(8), jobs))
-    assert found.pop(3) == Killed(-signal.SIGKILL)
-    assert found == {i: -i for i in range(8) if i != 3}
+    results = dict(each(work, range(8), jobs))
+    assert results.pop(3) == Killed(-signal.SIGKILL)
+    assert results == {i: -i for i in range(8) if i != 3}
     assert not active_children()
 
 

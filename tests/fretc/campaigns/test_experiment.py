@@ -92,10 +92,10 @@ def test_the_plan_audits_all_of_them() -> None:
     ],
     ids=["free", "NaN", "empty", "one NaN", "NaN, 4.4 cm", "5.4 cm", "too near", "zeros"],
 )
-def test_the_safety_function_answers_a_scan(seen: Scan, stop: bool) -> None:
+def test_the_safety_function_answers_a_scan(message: Scan, stop: bool) -> None:
     function = safety_function()
     function.hear("/odom", odometry(0.1), 0)
-    function.hear("/scan", seen, MS)
+    function.hear("/scan", message, MS)
     assert function.step(MS) is stop
 
 
@@ -124,11 +124,11 @@ def test_a_demand_is_open_until_the_robot_has_stood_for_200_ms() -> None:
 
 
 def test_the_threshold_can_be_another() -> None:
-    seen = scan(INF, INF, INF, INF, 1.0, INF, INF, INF)  # 69 cm from the outline
+    message = scan(INF, INF, INF, INF, 1.0, INF, INF, INF)  # 69 cm from the outline
     for threshold, stop in ((0.05, False), (0.69, False), (0.70, True), (0.9, True)):
         function = safety_function(threshold)
         function.hear("/odom", odometry(0.1), 0)
-        function.hear("/scan", seen, 0)
+        function.hear("/scan", message, 0)
         assert function.step(0) is stop
 
 
@@ -155,11 +155,11 @@ STILL = Twist()
 GO, STOP = messages.boolean(False), messages.boolean(True)
 
 
-def said(options: Interceptor, *heard: Any) -> list[Twist]:
+def said(options: Interceptor, *arrivals: Any) -> list[Twist]:
     """What the emitted interceptor publishes; a number stands for that many ticks."""
     out: list[Twist] = []
     gate: Any = intercepted(options)(lambda six: out.append(Twist(*six)))
-    for one in heard:
+    for one in arrivals:
         if isinstance(one, int):
             for _ in range(one):
                 gate.ring()

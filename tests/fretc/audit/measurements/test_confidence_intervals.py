@@ -68,9 +68,13 @@ def test_where_whole_runs_are_good_or_bad_no_answer_is_wrong_more_often_than_sta
     answers = [said(op, bound, good(k, 50) + bad(n - k, 50)) for k in range(n + 1)]
     edge = Fraction(bound)
     for p in [Fraction(i, 40) for i in range(41)] + [edge, edge - Fraction(1, 999)]:
-        wrong = "refuted" if holds(p, op, edge) else "supported"
+        false_answer = "refuted" if holds(p, op, edge) else "supported"
         weight = sum(
-            (comb(n, k) * p**k * (1 - p) ** (n - k) for k in range(n + 1) if answers[k] == wrong),
+            (
+                comb(n, k) * p**k * (1 - p) ** (n - k)
+                for k in range(n + 1)
+                if answers[k] == false_answer
+            ),
             Fraction(0),
         )
         assert weight <= Fraction(5, 100), p
@@ -80,7 +84,7 @@ def test_where_whole_runs_are_good_or_bad_no_answer_is_wrong_more_often_than_sta
 def test_runs_of_different_lengths_and_chances_keep_the_level(confidence: float) -> None:
     """Short runs are better than long ones; what is bounded is their mean, weighed by triggers."""
     (small, many), (large, few) = (1, 12), (4, 8)
-    found = {
+    estimates = {
         (i, j): bounds(
             good(i, small) + bad(many - i, small) + good(j, large) + bad(few - j, large), confidence
         )
@@ -90,13 +94,13 @@ def test_runs_of_different_lengths_and_chances_keep_the_level(confidence: float)
         a, b = Fraction(p), Fraction(q)
         share = (a * small * many + b * large * few) / (small * many + large * few)
         below = above = Fraction(0)
-        for (i, j), told in found.items():
+        for (i, j), estimate in estimates.items():
             weight = (
                 comb(many, i) * a**i * (1 - a) ** (many - i)
                 * comb(few, j) * b**j * (1 - b) ** (few - j)
             )  # fmt: skip
-            below += weight * (told.high < share)
-            above += weight * (told.low > share)
+            below += weight * (estimate.high < share)
+            above += weight * (estimate.low > share)
         assert max(below, above) <= 1 - Fraction(str(confidence)), (p, q)
 
 
@@ -140,21 +144,21 @@ REPETITIONS = 1000 if os.environ.get("HYPOTHESIS_PROFILE") == "full" else 30
 def wrong(kind: str, n: int, p: float, confidence: float, repetitions: int) -> tuple[int, int]:
     """How often `> p` is supported and `>= p` is refuted, where the probability is p."""
     chance, edge = np.random.default_rng(20_240_229), Fraction(str(p))
-    found = {"supported": 0, "refuted": 0}
+    counts = {"supported": 0, "refuted": 0}
     for _ in range(repetitions):
-        drawn = DRAWS[kind](chance, n, p)
-        told = estimated((Trials(int(k), TRIGGERS - int(k), 0) for k in drawn), confidence)
-        found["supported"] += answer(told, ">", edge) == "supported"
-        found["refuted"] += answer(told, ">=", edge) == "refuted"
-    return found["supported"], found["refuted"]
+        sample = DRAWS[kind](chance, n, p)
+        estimate = estimated((Trials(int(k), TRIGGERS - int(k), 0) for k in sample), confidence)
+        counts["supported"] += answer(estimate, ">", edge) == "supported"
+        counts["refuted"] += answer(estimate, ">=", edge) == "refuted"
+    return counts["supported"], counts["refuted"]
 
 
 def most(repetitions: int, rate: float) -> int:
     """What a rate that is no higher exceeds in one of ten thousand such simulations at most."""
-    left, k = 1.0, -1
-    while left > 1e-4:
+    rest, k = 1.0, -1
+    while rest > 1e-4:
         k += 1
-        left -= comb(repetitions, k) * rate**k * (1 - rate) ** (repetitions - k)
+        rest -= comb(repetitions, k) * rate**k * (1 - rate) ** (repetitions - k)
     return k
 
 
@@ -178,8 +182,8 @@ def test_there_is_power_where_triggers_are_independent() -> None:
         (30, 0.9, "0.99", "refuted"),
     ]:
         for _ in range(20):
-            drawn = DRAWS["independent"](chance, n, p)
-            runs = [Trials(int(k), TRIGGERS - int(k), 0) for k in drawn]
+            sample = DRAWS["independent"](chance, n, p)
+            runs = [Trials(int(k), TRIGGERS - int(k), 0) for k in sample]
             assert said(">=", bound, runs) == expected
 
 
@@ -243,8 +247,8 @@ def test_every_operator(op: ComparisonOperator, good: str, bad: str, even: str) 
 def test_at_the_ends_one_trigger_can_tell(
     op: ComparisonOperator, bound: str, all_good: str, one_bad: str, all_bad: str
 ) -> None:
-    found = (said(op, bound, spread(50, 0)), said(op, bound, spread(49, 1)))
-    assert (*found, said(op, bound, spread(0, 50))) == (all_good, one_bad, all_bad)
+    answers = (said(op, bound, spread(50, 0)), said(op, bound, spread(49, 1)))
+    assert (*answers, said(op, bound, spread(0, 50))) == (all_good, one_bad, all_bad)
 
 
 def test_one_failure_of_one_log_refutes_certainty_and_nothing_less() -> None:
@@ -263,10 +267,10 @@ def test_without_a_trigger_nothing_is_known(op: ComparisonOperator) -> None:
 
 def test_logs_that_differ_widen_the_interval_and_can_withhold_the_answer() -> None:
     """5000 triggers with 50 failures: in all logs alike, or all in one of them."""
-    alike, one = spread(4950, 50), good(99, 50) + bad(1, 50)
-    assert said(">=", "0.95", alike) == "supported"
+    equal_runs, one = spread(4950, 50), good(99, 50) + bad(1, 50)
+    assert said(">=", "0.95", equal_runs) == "supported"
     assert said(">=", "0.95", one) == "inconclusive"
-    assert bounds(one, 0.95).low < bounds(alike, 0.95).low
+    assert bounds(one, 0.95).low < bounds(equal_runs, 0.95).low
 
 
 # What is open, and what does not matter ---------------------------------------------------------
@@ -288,9 +292,9 @@ def test_bounds_hold_whatever_the_open_triggers_come_to(
         dropped = data.draw(st.integers(0, run.open - answered))  # they were no triggers
         failed = run.failed + run.open - answered - dropped
         decided.append(Trials(run.answered + answered, failed, 0))
-    told, really = estimated([LARGEST, *runs]).bounds, estimated(decided).bounds
+    bounds, really = estimated([LARGEST, *runs]).bounds, estimated(decided).bounds
     if len([run for run in decided if run.count]) > 1:
-        assert told.low <= really.low <= really.high <= told.high
+        assert bounds.low <= really.low <= really.high <= bounds.high
 
 
 def test_open_triggers_count_against_either_bound() -> None:
@@ -302,8 +306,8 @@ def test_open_triggers_count_against_either_bound() -> None:
 @given(some_trials, st.randoms(use_true_random=False))
 def test_the_order_of_the_logs_does_not_matter(runs: list[Trials], chance: object) -> None:
     shuffled = sorted(runs, key=lambda _: chance.random())  # type: ignore[attr-defined]
-    told, other = estimated(shuffled), estimated(runs)
-    assert (told.trials, told.bounds) == (other.trials, other.bounds)
+    one, other = estimated(shuffled), estimated(runs)
+    assert (one.trials, one.bounds) == (other.trials, other.bounds)
 
 
 @given(some_trials, st.integers(0, 5))

@@ -49,9 +49,9 @@ def recorded(
 
 
 def found(expr: str, recording: Recording) -> tuple[Margin, ...]:
-    known = declared(expr)
-    ticks = timeline(known, recording).times
-    return margins(known.propositions["p"], known, recording, ticks)
+    declarations = declared(expr)
+    ticks = timeline(declarations, recording).times
+    return margins(declarations.propositions["p"], declarations, recording, ticks)
 
 
 def test_a_bound_that_is_never_crossed_has_a_margin_and_the_time_it_came_that_near() -> None:
@@ -73,9 +73,9 @@ def test_one_that_is_crossed_has_none_and_the_time_of_the_first_change() -> None
 @pytest.mark.parametrize(
     ("operator", "kept"), [("<", False), ("<=", True), (">", False), (">=", True)]
 )
-def test_at_the_bound_itself_the_margin_is_zero(operator: str, kept: bool) -> None:
+def test_at_the_bound_itself_the_margin_is_zero(operator: str, truth_value: bool) -> None:
     (margin,) = found(f"x {operator} 1 m", recorded([(0, 1.0)], end=10))
-    assert (margin.comparison, margin.distance) == (kept, 0.0)
+    assert (margin.comparison, margin.distance) == (truth_value, 0.0)
 
 
 def test_a_margin_is_judged_as_the_proposition_is() -> None:
@@ -153,21 +153,21 @@ def test_it_agrees_with_a_look_at_every_nanosecond(
     samples: list[tuple[int, float]], gaps: list[tuple[int, int]], end: int
 ) -> None:
     samples = sorted(((t, v) for t, v in samples if t <= end), key=lambda sample: sample[0])
-    lost = [(start, start + length) for start, length in gaps if start + length <= end]
-    recording = recorded(samples, end, lost)
+    holes = [(start, start + length) for start, length in gaps if start + length <= end]
+    recording = recorded(samples, end, holes)
     (margin,) = found("x < 5 cm", recording)
-    seen = [(t, value) for t in range(end // 10 * 10 + 1) for value in _at(t, samples, lost)]
-    values = [value for _, value in seen]
+    readings = [(t, value) for t in range(end // 10 * 10 + 1) for value in _at(t, samples, holes)]
+    values = [value for _, value in readings]
     below = {value < 0.05 for value in values}
     assert margin.least == min(values, default=None)
     assert margin.greatest == max(values, default=None)
     expected = None if not below else "crossed" if len(below) == 2 else below == {True}
     assert margin.comparison == expected
-    apart = [(abs(value - 0.05), t) for t, value in seen if abs(value) != inf]
-    if len(below) != 1 or not apart:
+    distances = [(abs(value - 0.05), t) for t, value in readings if abs(value) != inf]
+    if len(below) != 1 or not distances:
         assert margin.distance is None
     else:
-        assert (margin.distance, margin.nearest_ns) == min(apart)
+        assert (margin.distance, margin.nearest_ns) == min(distances)
 
 
 def _at(t: int, samples: Sequence[tuple[int, float]], gaps: Sequence[Gap]) -> list[float]:
