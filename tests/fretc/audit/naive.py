@@ -76,7 +76,7 @@ class Run:
     topics: dict[str, tuple[int, ...]]
     clock_topic: str | None = None
     slow: dict[str, _Slow] = field(default_factory=dict)
-    """What was found out of each proposition; the same at all phases."""
+    """What is known of each proposition; the same at all phases."""
 
     @property
     def first(self) -> int:
@@ -227,12 +227,12 @@ class _Slow:
             states = self.window(ticks, i)
             if not i:
                 force = next((s for at, s in reversed(self.steps) if at < time), None)
-            columns.append(self.seen(states, force))
+            columns.append(self.tick_value(states, force))
             force = states[-1] if states else force
         if not ticks or run.last <= ticks[-1]:
             return columns, []
         rest = [state for time, state in self.steps if ticks[-1] < time <= run.last]
-        return columns, [self.seen(rest, force)]
+        return columns, [self.tick_value(rest, force)]
 
     def window(self, ticks: Sequence[int], i: int) -> list[Truth]:
         """The steps that a tick sees."""
@@ -268,17 +268,17 @@ class _Slow:
         ]
         return max(firsts, default=run.first)
 
-    def seen(self, states: Sequence[Truth], force: Truth) -> Truth:
+    def tick_value(self, states: Sequence[Truth], force: Truth) -> Truth:
         """What a tick sees of the steps; without one, what was in force before."""
         if not states:
-            found = force
+            value = force
         elif self.proposition.aggregate == "any":
-            found = True if True in states else None if None in states else False
+            value = True if True in states else None if None in states else False
         elif self.proposition.aggregate == "all":
-            found = False if False in states else None if None in states else True
+            value = False if False in states else None if None in states else True
         else:
-            found = states[-1]
-        return self.proposition.on_unknown if found is None else found
+            value = states[-1]
+        return self.proposition.on_unknown if value is None else value
 
 
 def _computed(op: str, args: Sequence[Fraction]) -> Number:

@@ -156,7 +156,7 @@ def project(bindings: str = BINDINGS) -> Project:
     return load([f"requirements/{id.lower()}.fret" for id in SENTENCES], path)
 
 
-def judged(plan: Plan) -> dict[str, Any]:
+def verdicts_of(plan: Plan) -> dict[str, Any]:
     """All that the verdicts on each claim rest on, but for the log."""
     declared, verdicts = plan.declarations, {}
     for claim in plan.claims:
@@ -178,8 +178,8 @@ def check(cases: Sequence[Case]) -> None:
     assert isinstance(plan, Plan)
     refused_ids = refused(cases)
     assert {each.id for each in plan.refused} == refused_ids
-    assert judged(plan) == {
-        id: what for id, what in judged(good_plan).items() if id not in refused_ids
+    assert verdicts_of(plan) == {
+        id: what for id, what in verdicts_of(good_plan).items() if id not in refused_ids
     }
     codes = {kind.split()[0] for _, _, kind in cases}
     errors = [each.code.number for each in flawed.diagnostics if each.is_error]

@@ -538,17 +538,17 @@ def differences(one: Case, path: Path) -> list[str]:
         ours = (tally.true, tally.false, tally.unknown, tally.changes)
         if ours != counts:
             apart.append(f"{name}: {ours}, and not {counts}: {column}")
-    apart += judged(evidence.verdict, one, run, "verdict")
+    apart += verdict_differences(evidence.verdict, one, run, "verdict")
     if evidence.phases is not None:
         for stretch in evidence.phases.stretches:
             every = range(stretch.first, stretch.last + 1)
             for phase in every if run.tick < 100 else {every[0], every[-1]}:
                 at = replace(run, phase=phase)
-                apart += judged(str(stretch.verdict), one, at, f"phase {phase}")
+                apart += verdict_differences(str(stretch.verdict), one, at, f"phase {phase}")
     return apart
 
 
-def judged(verdict: str, one: Case, run: Run, what: str) -> list[str]:
+def verdict_differences(verdict: str, one: Case, run: Run, what: str) -> list[str]:
     """What is wrong about one verdict."""
     may = verdicts(one.form, one.ticks, run)
     if may is None or may == {verdict}:

@@ -77,13 +77,13 @@ def evidence() -> Any:
     return content
 
 
-def told() -> Any:
+def estimate() -> Any:
     (probability,) = evidence()["probabilities"]
     return probability
 
 
 def counts() -> tuple[int, int, int]:
-    triggers = told()["triggers"]
+    triggers = estimate()["triggers"]
     return triggers["answered"], triggers["failed"], triggers["open"]
 
 
@@ -214,7 +214,7 @@ def test_what_is_unknown_in_the_middle_is_open_and_damage_withholds_support(fret
     assert "1 log is damaged or could not be read: what is lost could speak against it" in run.out
     answered, failed, _ = counts()
     assert (answered > 1200, failed) == (True, 0)
-    assert told()["logs"]["damaged"] == 1
+    assert estimate()["logs"]["damaged"] == 1
 
 
 def test_damage_hides_no_failure_that_was_seen(fretc: Fretc) -> None:
@@ -240,7 +240,7 @@ def test_a_copy_of_a_log_counts_once(fretc: Fretc) -> None:
     logs(28, "1000", "0100")
     shutil.copy("runs/000.mcap", "runs/copy.mcap")
     assert fretc("audit", "runs").status == 3
-    assert (counts(), told()["logs"]["copies"]) == ((28, 0, 0), 1)
+    assert (counts(), estimate()["logs"]["copies"]) == ((28, 0, 0), 1)
 
 
 @pytest.mark.slow
@@ -259,7 +259,7 @@ def test_a_log_that_was_written_again_counts_once(fretc: Fretc, integrity: str) 
     write_log(Path("runs/loose.mcap"), unnoted, compression=CompressionType.NONE)
     write_log(Path("runs/bare.mcap"), unnoted, data_crcs=True, statistics=False)
     assert fretc("audit", "runs", "--integrity", integrity).status == 3
-    assert (counts(), told()["logs"]["copies"]) == ((28, 0, 0), 4)
+    assert (counts(), estimate()["logs"]["copies"]) == ((28, 0, 0), 4)
 
 
 def test_runs_that_differ_in_a_value_or_a_time_are_no_copies(fretc: Fretc) -> None:
@@ -274,8 +274,8 @@ def test_runs_that_differ_in_a_value_or_a_time_are_no_copies(fretc: Fretc) -> No
         ],
     )
     fretc("audit", "runs")
-    assert told()["logs"]["copies"] == 0
-    assert told()["logs"]["counted"] == 3
+    assert estimate()["logs"]["copies"] == 0
+    assert estimate()["logs"]["counted"] == 3
 
 
 def test_the_order_of_the_logs_changes_nothing(fretc: Fretc) -> None:
@@ -285,11 +285,11 @@ def test_the_order_of_the_logs_changes_nothing(fretc: Fretc) -> None:
         for i in range(8)
     ]
     fretc("audit", *paths)
-    first = told()
+    first = estimate()
     for _ in range(3):
         chance.shuffle(paths)
         fretc("audit", *paths, "--jobs", "2", "--evaluation", "online")
-        assert told() == first
+        assert estimate() == first
 
 
 def test_what_was_kept_of_a_stopped_audit_counts(fretc: Fretc) -> None:
@@ -308,7 +308,7 @@ def test_without_a_trigger_nothing_is_known(fretc: Fretc) -> None:
     assert run.status == 3
     assert "∅ R7  vacuous" in run.out
     assert "◔ inconclusive  there was no trigger\n" in run.out
-    assert (told()["estimate"], told()["needed"]) == (None, 33)
+    assert (estimate()["estimate"], estimate()["needed"]) == (None, 33)
 
 
 def test_an_unreadable_log_is_bad_input_and_supports_nothing(fretc: Fretc) -> None:
@@ -316,14 +316,17 @@ def test_an_unreadable_log_is_bad_input_and_supports_nothing(fretc: Fretc) -> No
     write("runs/bad.mcap", "no log")
     run = fretc("audit", "runs")
     assert run.status == 2
-    assert (told()["answer"], told()["logs"]["damaged"]) == ("inconclusive", 1)
+    assert (estimate()["answer"], estimate()["logs"]["damaged"]) == (
+        "inconclusive",
+        1,
+    )
 
 
 @pytest.mark.slow
 def test_the_stated_confidence_is_used(fretc: Fretc) -> None:
     logs(33, "1000", "0100")
     assert fretc("audit", "runs", "--confidence", "0.99").status == 3
-    assert told()["confidence"] == 0.99
+    assert estimate()["confidence"] == 0.99
     assert " --confidence 0.99 --evidence " in json.dumps(reported(fretc)["commands"])
     assert fretc("audit", "runs", "--confidence", "0.9").status == 0
     for value in ("0.5", "1", "95", "x"):

@@ -155,7 +155,7 @@ STILL = Twist()
 GO, STOP = messages.boolean(False), messages.boolean(True)
 
 
-def said(options: Interceptor, *arrivals: Any) -> list[Twist]:
+def commands(options: Interceptor, *arrivals: Any) -> list[Twist]:
     """What the emitted interceptor publishes; a number stands for that many ticks."""
     out: list[Twist] = []
     gate: Any = intercepted(options)(lambda six: out.append(Twist(*six)))
@@ -188,16 +188,16 @@ def test_the_simulated_robot_has_the_interceptor_of_the_bindings() -> None:
 
 
 def test_an_interceptor_of_a_scenario_is_the_emitted_one_with_its_options() -> None:
-    assert said(Interceptor(), FAST, GO, FAST, 1) == [STILL, FAST, FAST]
-    assert said(Interceptor(), GO, FAST, STOP, GO, 5) == [FAST] + [STILL] * 5 + [FAST]
-    assert said(Interceptor(hold=0.05), GO, FAST, STOP, GO, 2) == [FAST, STILL, STILL, FAST]
-    assert said(Interceptor(), GO, FAST, 10) == [FAST] * 10 + [STILL]
+    assert commands(Interceptor(), FAST, GO, FAST, 1) == [STILL, FAST, FAST]
+    assert commands(Interceptor(), GO, FAST, STOP, GO, 5) == [FAST] + [STILL] * 5 + [FAST]
+    assert commands(Interceptor(hold=0.05), GO, FAST, STOP, GO, 2) == [FAST, STILL, STILL, FAST]
+    assert commands(Interceptor(), GO, FAST, 10) == [FAST] * 10 + [STILL]
     patient = Interceptor(command_timeout=0, safety_timeout=0.1)
-    assert said(patient, GO, FAST, 2) == [FAST, FAST, STILL]
+    assert commands(patient, GO, FAST, 2) == [FAST, FAST, STILL]
     latching = Interceptor(hold=0, latching=True)
-    assert said(latching, GO, FAST, STOP, GO, FAST) == [FAST, STILL, STILL]
+    assert commands(latching, GO, FAST, STOP, GO, FAST) == [FAST, STILL, STILL]
 
 
 def test_the_papers_interceptor_says_zero_only_when_a_command_comes() -> None:
     paper = Interceptor(at_once=False, period=0, hold=0, command_timeout=0, safety_timeout=0)
-    assert said(paper, FAST, STOP, 3, FAST, GO, FAST) == [FAST, STILL, FAST]
+    assert commands(paper, FAST, STOP, 3, FAST, GO, FAST) == [FAST, STILL, FAST]

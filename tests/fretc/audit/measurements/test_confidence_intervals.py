@@ -34,7 +34,9 @@ def spread(answered: int, failed: int, open_: int = 0, logs: int = 100) -> list[
     ]
 
 
-def said(op: ComparisonOperator, bound: str, runs: list[Trials], confidence: float = 0.95) -> str:
+def answer_of(
+    op: ComparisonOperator, bound: str, runs: list[Trials], confidence: float = 0.95
+) -> str:
     return answer(estimated(runs, both_sides(op, confidence)), op, Fraction(bound))
 
 
@@ -65,7 +67,7 @@ def test_where_whole_runs_are_good_or_bad_no_answer_is_wrong_more_often_than_sta
     op: ComparisonOperator, n: int, bound: str
 ) -> None:
     """The true probability is p; each answer that contradicts it, over all outcomes of n runs."""
-    answers = [said(op, bound, good(k, 50) + bad(n - k, 50)) for k in range(n + 1)]
+    answers = [answer_of(op, bound, good(k, 50) + bad(n - k, 50)) for k in range(n + 1)]
     edge = Fraction(bound)
     for p in [Fraction(i, 40) for i in range(41)] + [edge, edge - Fraction(1, 999)]:
         false_answer = "refuted" if holds(p, op, edge) else "supported"
@@ -184,7 +186,7 @@ def test_there_is_power_where_triggers_are_independent() -> None:
         for _ in range(20):
             sample = DRAWS["independent"](chance, n, p)
             runs = [Trials(int(k), TRIGGERS - int(k), 0) for k in sample]
-            assert said(">=", bound, runs) == expected
+            assert answer_of(">=", bound, runs) == expected
 
 
 # Answers ---------------------------------------------------------------------------------------
@@ -208,7 +210,7 @@ def test_there_is_power_where_triggers_are_independent() -> None:
     ],
 )
 def test_how_many_runs_support_how_much(runs: list[Trials], bound: str, expected: str) -> None:
-    assert said(">=", bound, runs) == expected
+    assert answer_of(">=", bound, runs) == expected
 
 
 GOOD, BAD, EVEN = spread(950, 50), spread(50, 950), spread(500, 500)
@@ -226,7 +228,11 @@ GOOD, BAD, EVEN = spread(950, 50), spread(50, 950), spread(500, 500)
     ],
 )
 def test_every_operator(op: ComparisonOperator, good: str, bad: str, even: str) -> None:
-    assert (said(op, "0.5", GOOD), said(op, "0.5", BAD), said(op, "0.5", EVEN)) == (good, bad, even)
+    assert (answer_of(op, "0.5", GOOD), answer_of(op, "0.5", BAD), answer_of(op, "0.5", EVEN)) == (
+        good,
+        bad,
+        even,
+    )
 
 
 @pytest.mark.parametrize(
@@ -247,29 +253,29 @@ def test_every_operator(op: ComparisonOperator, good: str, bad: str, even: str) 
 def test_at_the_ends_one_trigger_can_tell(
     op: ComparisonOperator, bound: str, all_good: str, one_bad: str, all_bad: str
 ) -> None:
-    answers = (said(op, bound, spread(50, 0)), said(op, bound, spread(49, 1)))
-    assert (*answers, said(op, bound, spread(0, 50))) == (all_good, one_bad, all_bad)
+    answers = (answer_of(op, bound, spread(50, 0)), answer_of(op, bound, spread(49, 1)))
+    assert (*answers, answer_of(op, bound, spread(0, 50))) == (all_good, one_bad, all_bad)
 
 
 def test_one_failure_of_one_log_refutes_certainty_and_nothing_less() -> None:
-    assert said(">=", "1", [Trials(99, 1, 0)]) == "refuted"
-    assert said(">=", "0.99", [Trials(0, 900, 0)]) == "inconclusive"
-    assert said(">=", "0.01", [Trials(900, 0, 0)]) == "inconclusive"
+    assert answer_of(">=", "1", [Trials(99, 1, 0)]) == "refuted"
+    assert answer_of(">=", "0.99", [Trials(0, 900, 0)]) == "inconclusive"
+    assert answer_of(">=", "0.01", [Trials(900, 0, 0)]) == "inconclusive"
     assert bounds([Trials(10, 10, 0)], 0.95) == Bounds(0.0, 1.0)
 
 
 @pytest.mark.parametrize("op", OPERATORS)
 def test_without_a_trigger_nothing_is_known(op: ComparisonOperator) -> None:
     for bound in ("0", "0.5", "1"):
-        assert said(op, bound, []) == "inconclusive"
-        assert said(op, bound, [Trials(0, 0, 0)] * 40) == "inconclusive"
+        assert answer_of(op, bound, []) == "inconclusive"
+        assert answer_of(op, bound, [Trials(0, 0, 0)] * 40) == "inconclusive"
 
 
 def test_logs_that_differ_widen_the_interval_and_can_withhold_the_answer() -> None:
     """5000 triggers with 50 failures: in all logs alike, or all in one of them."""
     equal_runs, one = spread(4950, 50), good(99, 50) + bad(1, 50)
-    assert said(">=", "0.95", equal_runs) == "supported"
-    assert said(">=", "0.95", one) == "inconclusive"
+    assert answer_of(">=", "0.95", equal_runs) == "supported"
+    assert answer_of(">=", "0.95", one) == "inconclusive"
     assert bounds(one, 0.95).low < bounds(equal_runs, 0.95).low
 
 
@@ -341,8 +347,8 @@ def test_so_many_are_enough_and_one_less_is_not(runs: list[Trials]) -> None:
     more = needed(estimated(runs), ">=", Fraction("0.99"))
     assert more is not None
     size = max(run.count for run in runs)
-    assert said(">=", "0.99", runs + good(more, size)) == "supported"
-    assert said(">=", "0.99", runs + good(more - 1, size)) == "inconclusive"
+    assert answer_of(">=", "0.99", runs + good(more, size)) == "supported"
+    assert answer_of(">=", "0.99", runs + good(more - 1, size)) == "inconclusive"
 
 
 def test_where_no_number_helps_there_is_none() -> None:

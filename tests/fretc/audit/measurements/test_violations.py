@@ -27,7 +27,7 @@ NO_DEADLINE = Demand()
 WITHIN = "whenever near the rover shall within 2 ticks satisfy still"
 
 
-def told(
+def violations_of(
     outcome: Outcome, horizon: int | None = None, demand: Demand = NO_DEADLINE
 ) -> list[Violation]:
     log = recorded([FAR] * outcome.ticks, [MOVING] * outcome.ticks)
@@ -62,25 +62,25 @@ def test_the_trigger_is_the_oldest_whose_deadline_has_passed() -> None:
 
 
 def test_one_that_was_answered_is_not_to_blame() -> None:
-    stretches = told(outcome([(9, 9)], [5, 7, 8], answers=[(5, 6)]), horizon=4)
+    stretches = violations_of(outcome([(9, 9)], [5, 7, 8], answers=[(5, 6)]), horizon=4)
     assert triggers_of(stretches) == [7]
 
 
 def test_without_a_deadline_it_is_the_last_trigger_and_at_the_end_the_oldest_open() -> None:
-    assert triggers_of(told(outcome([(9, 9)], [3, 5, 12]))) == [5]
-    assert triggers_of(told(outcome([(9, 9)], []))) == [None]
+    assert triggers_of(violations_of(outcome([(9, 9)], [3, 5, 12]))) == [5]
+    assert triggers_of(violations_of(outcome([(9, 9)], []))) == [None]
     ended = outcome([(19, 19)], [3, 5, 12], answers=[(3, 4)], open_=[(5, None), (12, None)])
-    assert triggers_of(told(ended)) == [5]
+    assert triggers_of(violations_of(ended)) == [5]
 
 
 def test_the_deadline_is_told_where_there_is_one_within_the_run() -> None:
     one = outcome([(9, 9)], [5])
-    (violation,) = told(one, horizon=4, demand=Demand("still", 4))
+    (violation,) = violations_of(one, horizon=4, demand=Demand("still", 4))
     assert violation.deadline == Moment(9, 9 * S, 9.0)
     assert violation.missing == "still"
-    (none,) = told(one, horizon=4, demand=Demand("still"))
+    (none,) = violations_of(one, horizon=4, demand=Demand("still"))
     assert none.deadline is None
-    (later,) = told(outcome([(9, 9)], [5], ticks=10), horizon=6, demand=Demand("still", 6))
+    (later,) = violations_of(outcome([(9, 9)], [5], ticks=10), horizon=6, demand=Demand("still", 6))
     assert later.deadline is None
 
 
@@ -192,7 +192,7 @@ def test_the_last_sample_at_the_broken_tick_is_kept_exactly(broken: int) -> None
 
 def test_only_the_first_violations_carry_their_samples() -> None:
     runs = [(2 * i, 2 * i) for i in range(MOST_WINDOWS + 5)]
-    stretches = told(outcome(runs, [], ticks=300))
+    stretches = violations_of(outcome(runs, [], ticks=300))
     assert [v.window is not None for v in stretches] == [True] * MOST_WINDOWS + [False] * 5
 
 

@@ -120,7 +120,7 @@ def at(phase: int, declarations: Declarations, log: Recording, watching: Monitor
     ).verdict
 
 
-def found(declarations: Declarations, log: Recording, watching: Monitor) -> Phases:
+def phases_of(declarations: Declarations, log: Recording, watching: Monitor) -> Phases:
     (result,) = phases(declarations, log, [watching]).values()
     return result
 
@@ -185,19 +185,19 @@ def test_each_phase_has_the_verdict_of_an_audit_that_declares_it(
 ) -> None:
     watching = monitor(sentence)
     declarations = replace(declarations, clock=replace(declarations.clock, phase=phase))
-    result = found(declarations, log, watching)
+    result = phases_of(declarations, log, watching)
     assert result.exact
     assert each(result) == [at(s, declarations, log, watching) for s in range(12)]
     assert result.verdict == each(result)[phase]
 
 
 def test_a_last_tick_that_changes_divides_the_phases() -> None:
-    result = found(declared(), LAST_TICK_CHANGES, monitor(SENTENCES[-2]))
+    result = phases_of(declared(), LAST_TICK_CHANGES, monitor(SENTENCES[-2]))
     assert each(result)[5:] == ["inconclusive"] * 3 + ["vacuous"] * 4
 
 
 def test_a_cut_tick_whose_demand_depends_on_the_phase_divides_them() -> None:
-    result = found(declared(), CUT_TICK_DEPENDS, monitor(SENTENCES[-1]))
+    result = phases_of(declared(), CUT_TICK_DEPENDS, monitor(SENTENCES[-1]))
     assert each(result)[5:] == ["vacuous"] * 3 + ["inconclusive"] * 4
 
 
@@ -224,7 +224,7 @@ BUSY = recorded(
 def test_what_is_not_judged_is_left_out_and_the_rest_is_right(sentence: str, phase: int) -> None:
     clock = replace(declared().clock, phase=phase)
     declarations = replace(declared(), clock=clock)
-    result = found(declarations, BUSY, monitor(sentence))
+    result = phases_of(declarations, BUSY, monitor(sentence))
     expected = [at(s, declarations, BUSY, monitor(sentence)) for s in range(12)]
     assert each(result)[phase] == result.verdict == expected[phase]
     for one, other in zip(each(result), expected, strict=True):
@@ -233,7 +233,7 @@ def test_what_is_not_judged_is_left_out_and_the_rest_is_right(sentence: str, pha
 
 @pytest.mark.usefixtures("few")
 def test_a_search_that_ends_early_says_so() -> None:
-    result = found(declared(), BUSY, monitor(SENTENCES[2]))
+    result = phases_of(declared(), BUSY, monitor(SENTENCES[2]))
     assert not result.exact
     assert "not computed at " in result.text
     assert "no change within " in result.text
@@ -243,24 +243,24 @@ def test_a_search_that_ends_early_says_so() -> None:
 # What is told
 
 
-def told_of(*stretches: Stretch, declared: int = 0, period: int = 100) -> Phases:
+def phases_with(*stretches: Stretch, declared: int = 0, period: int = 100) -> Phases:
     return Phases(period, declared, stretches)
 
 
 def test_one_verdict_at_all_phases_is_not_told() -> None:
-    result = told_of(Stretch(0, 99, "satisfied"))
+    result = phases_with(Stretch(0, 99, "satisfied"))
     assert (result.text, result.nearest, result.exact, result.varies) == ("", None, True, False)
 
 
 def test_the_nearest_change_is_found_around_the_end_of_the_tick() -> None:
     stretches = Stretch(0, 39, "satisfied"), Stretch(40, 90, "violated"), Stretch(91, 99, "vacuous")
-    assert [told_of(*stretches, declared=d).nearest for d in (0, 8, 20, 39, 90, 91)] == [
+    assert [phases_with(*stretches, declared=d).nearest for d in (0, 8, 20, 39, 90, 91)] == [
         1, 9, 20, 1, 1, 1,
     ]  # fmt: skip
 
 
 def test_a_share_is_never_rounded_to_nothing_or_to_all() -> None:
-    result = told_of(Stretch(0, 0, "violated"), Stretch(1, 999, "satisfied"), period=1000)
+    result = phases_with(Stretch(0, 0, "violated"), Stretch(1, 999, "satisfied"), period=1000)
     assert result.text == (
         "by phase of the ticks violated at less than 1 %, satisfied at 99 %, the nearest change is "
         "1 ns away"
@@ -273,5 +273,5 @@ def test_a_clock_that_ticks_by_message_has_no_phases() -> None:
 
 
 def test_a_log_shorter_than_a_tick_has_no_tick_at_the_later_phases() -> None:
-    result = found(declared(), recorded([(0, 1.0)], [(0, 1.0)], 4), monitor(SENTENCES[0]))
+    result = phases_of(declared(), recorded([(0, 1.0)], [(0, 1.0)], 4), monitor(SENTENCES[0]))
     assert result.stretches == (Stretch(0, 4, "satisfied"), Stretch(5, 11, "no data"))
