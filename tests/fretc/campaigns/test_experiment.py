@@ -79,7 +79,7 @@ def test_the_plan_audits_all_of_them() -> None:
 
 
 @pytest.mark.parametrize(
-    ("seen", "stop"),
+    ("message", "stop"),
     [
         (FREE, False),
         (scan(*[NAN] * 8), True),

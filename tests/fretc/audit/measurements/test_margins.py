@@ -71,7 +71,7 @@ def test_one_that_is_crossed_has_none_and_the_time_of_the_first_change() -> None
 
 
 @pytest.mark.parametrize(
-    ("operator", "kept"), [("<", False), ("<=", True), (">", False), (">=", True)]
+    ("operator", "truth_value"), [("<", False), ("<=", True), (">", False), (">=", True)]
 )
 def test_at_the_bound_itself_the_margin_is_zero(operator: str, truth_value: bool) -> None:
     (margin,) = margins_of(f"x {operator} 1 m", recorded([(0, 1.0)], end=10))
