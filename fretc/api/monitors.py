@@ -61,14 +61,14 @@ def monitor_text(*rules: Formalized) -> str:
         raise Refusal((_nothing(),))
     rules = tuple({id(rule): rule for rule in rules}.values())
     same_id = duplicates([rule.requirement for rule in rules]).values()
-    wrong = [
+    errors = [
         *filter(None, map(python.refuse, rules)),
         *clashes(rules),
         *dict.fromkeys(same_id),
         *_several_clocks(rules),
     ]
-    if wrong:
-        raise Refusal(wrong)
+    if errors:
+        raise Refusal(errors)
     return python.text(*rules)
 
 

@@ -13,7 +13,7 @@ from fretish.diagnostics.diagnostic import Diagnostic
 
 if TYPE_CHECKING:
     from fretc.audit.journal import Journal
-    from fretc.audit.many_logs import Audit, Audited, Engine
+    from fretc.audit.many_logs import Audit, Engine, LogAudit
     from fretc.audit.plan import Plan
 
 
@@ -41,7 +41,7 @@ def audit_all(
             say_line(f"`{journal.path}` was not kept by you in this place: that is not used")
     count = len(finished)
 
-    def keep(log: str, audited: Audited) -> None:
+    def keep(log: str, audited: LogAudit) -> None:
         nonlocal count
         added = journal.keep(log, audited) if journal is not None else False
         if isinstance(added, Diagnostic):

@@ -102,7 +102,7 @@ def _project(requirements: str, bindings: str | None, *, given: bool, unread: st
 
 
 def _draft(log: str, project: Project, output: str, *, force: bool) -> None:
-    from fretc.audit.bindings.draft import draft, wanted
+    from fretc.audit.bindings.draft import draft, missing_propositions
     from fretc.logs.reader import look
 
     if output != "-" and not force and os.path.lexists(output):
@@ -111,7 +111,7 @@ def _draft(log: str, project: Project, output: str, *, force: bool) -> None:
     if isinstance(contents, Diagnostic):
         stop(contents)
     say(contents.recording.findings)
-    deliver({Path(output): draft(contents, wanted(project))}, (log,))
+    deliver({Path(output): draft(contents, missing_propositions(project))}, (log,))
     raise SystemExit(SHOWN)
 
 

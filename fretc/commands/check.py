@@ -54,7 +54,7 @@ def check(
     from compiler.project.folder import whole
     from compiler.project.paths import beside
     from fretc.audit.evidence.reader import read as read_evidence
-    from fretc.audit.plan import refusals
+    from fretc.audit.refusals import refusals
     from fretc.report.diagnostics import idle_waivers, stale_evidence
     from fretc.report.model.assessments import assessments
     from fretc.report.traceability.acceptances import warnings

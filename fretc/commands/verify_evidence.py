@@ -37,7 +37,7 @@ if TYPE_CHECKING:
     from fretc.report.traceability.lock import Lock
     from fretc.reproduction.completeness import Scope
     from fretc.reproduction.manifest import Manifest
-    from fretc.reproduction.outcome import Rechecked
+    from fretc.reproduction.outcome import Recheck
     from fretc.verification.reader import Proofs
 
 
@@ -127,7 +127,7 @@ def verify_evidence(
     raise SystemExit(_status(results, same, scope))
 
 
-def _status(results: Sequence[Rechecked], same: bool | None, scope: Scope) -> int:
+def _status(results: Sequence[Recheck], same: bool | None, scope: Scope) -> int:
     from fretc.reproduction.outcome import Finding
 
     kinds = {one.finding for one in results}
@@ -261,11 +261,11 @@ def _rechecked(
     scope: Scope,
     manifest: Manifest | None,
     jobs: int,
-) -> tuple[Rechecked, ...]:
+) -> tuple[Recheck, ...]:
     from fretc.audit.many_logs import locally
-    from fretc.reproduction.results import rechecked
+    from fretc.reproduction.results import recheck
 
-    results = rechecked(whole, plan, places, locally(jobs), scope, manifest)
+    results = recheck(whole, plan, places, locally(jobs), scope, manifest)
     if isinstance(results, Diagnostic):
         stop(results)
     return results
@@ -273,18 +273,18 @@ def _rechecked(
 
 def _reproved(
     project: Project, proofs: Proofs | None, scope: Scope, limit: int, *, skip: bool
-) -> Sequence[Rechecked]:
+) -> Sequence[Recheck]:
     from fretc.reproduction.outcome import PROOFS, unknown
-    from fretc.reproduction.proofs import reproved, unproved
+    from fretc.reproduction.proofs import prove_again, unproved_plans
     from fretc.terminal.progress import at_work
     from fretc.verification.engines.sandbox import Limits
 
-    missing = tuple(unproved(project, proofs.proofs if proofs else (), scope.claimed))
+    missing = tuple(unproved_plans(project, proofs.proofs if proofs else (), scope.claimed))
     if proofs is None:
         return missing
     if skip:
         return (unknown(PROOFS, "", "no proof was made again: `--no-proofs`"), *missing)
-    results = reproved(project, proofs, Limits(seconds=limit), scope.claimed, at_work)
+    results = prove_again(project, proofs, Limits(seconds=limit), scope.claimed, at_work)
     if isinstance(results, Diagnostic):
         stop(results)
     return (*results, *missing)
@@ -314,7 +314,7 @@ def _report(
     return current.html == source.text
 
 
-def _print(results: Sequence[Rechecked], same: bool | None, against: str) -> None:
+def _print(results: Sequence[Recheck], same: bool | None, against: str) -> None:
     from fretc.reproduction.outcome import SIGNS, Finding
 
     lines: list[tuple[str, str | None]] = []
@@ -336,7 +336,7 @@ def _print(results: Sequence[Rechecked], same: bool | None, against: str) -> Non
     click.echo(coloured([(visible(line), colour) for line, colour in lines]), nl=False)
 
 
-def _counts(results: Sequence[Rechecked], same: bool | None) -> dict[str, int]:
+def _counts(results: Sequence[Recheck], same: bool | None) -> dict[str, int]:
     """How many of each finding, the report among them."""
     from fretc.reproduction.outcome import Finding, counts
 
@@ -346,9 +346,7 @@ def _counts(results: Sequence[Rechecked], same: bool | None) -> dict[str, int]:
     return totals
 
 
-def _print_json(
-    results: Sequence[Rechecked], same: bool | None, scope: Scope, against: str
-) -> None:
+def _print_json(results: Sequence[Recheck], same: bool | None, scope: Scope, against: str) -> None:
     from dataclasses import asdict
 
     from compiler.files.templating import to_json

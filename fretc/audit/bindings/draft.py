@@ -61,7 +61,7 @@ class TopicDraft:
 
 
 @dataclass(frozen=True, slots=True)
-class Wanted:
+class MissingProposition:
     """A proposition that the requirements name and no bindings define."""
 
     name: str
@@ -70,10 +70,10 @@ class Wanted:
     aggregate: str
 
 
-def draft(overview: Overview, wanted: Sequence[Wanted]) -> str:
+def draft(overview: Overview, missing: Sequence[MissingProposition]) -> str:
     """The text of a `bindings.toml`.
 
-    Without wanted propositions it can be read as it is; each of these is an error until edited.
+    Without missing propositions it can be read as it is; each of these is an error until edited.
     """
     topics = _topics(overview)
     signals = [signal for topic in topics for signal in topic.signals]
@@ -85,7 +85,7 @@ def draft(overview: Overview, wanted: Sequence[Wanted]) -> str:
         tick=in_words(tick),
         why=why,
         topics=topics,
-        wanted=wanted,
+        missing=missing,
         example=f"{signals[0].name} < 0.5 {signals[0].quantity.unit}".strip()
         if signals
         else "x < 5 cm",
@@ -116,28 +116,28 @@ def _plain(topic: Topic, field: str) -> Drafted:
 # Propositions
 
 
-def wanted(project: Project) -> tuple[Wanted, ...]:
+def missing_propositions(project: Project) -> tuple[MissingProposition, ...]:
     """The propositions of the requirements that the project's bindings do not define.
 
     Bindings with a mistake are those that the draft is to replace: they define none.
     """
     declared = project.declarations
-    known = declared.propositions if declared and not declared.mistakes else {}
+    defined = declared.propositions if declared and not declared.mistakes else {}
     users: dict[str, list[Formalized]] = {}
     for rule in project.rules:
         if rule.requirement.status == "retired":
             continue
         for name in rule.watched:
-            if name not in known:
+            if name not in defined:
                 users.setdefault(name, []).append(rule)
-    return tuple(_wanted(name, rules) for name, rules in users.items())
+    return tuple(_missing_proposition(name, rules) for name, rules in users.items())
 
 
-def _wanted(name: str, rules: Sequence[Formalized]) -> Wanted:
+def _missing_proposition(name: str, rules: Sequence[Formalized]) -> MissingProposition:
     roles = {_role(name, rule.sentence) for rule in rules}
     role = roles.pop() if len(roles) == 1 else Role.INTERNAL
     aggregate = "any" if role is Role.INPUT else "last"
-    return Wanted(name, tuple(rule.id for rule in rules), str(role), aggregate)
+    return MissingProposition(name, tuple(rule.id for rule in rules), str(role), aggregate)
 
 
 def _role(name: str, sentence: s.Sentence) -> Role:
@@ -159,17 +159,19 @@ def _role(name: str, sentence: s.Sentence) -> Role:
 
 
 def _topics(overview: Overview) -> list[TopicDraft]:
-    taken: set[str] = set()
-    found = []
+    names: set[str] = set()
+    drafts = []
     for name, topic in overview.recording.topics.items():
         numbers = overview.numbers.get(name)
         drafted = _drafted(topic, numbers or ())
-        signals = tuple(_named(signal, taken) for signal in drafted)
-        used = {signal.path for signal in signals}
+        signals = tuple(_named(signal, names) for signal in drafted)
+        paths_of_signals = {signal.path for signal in signals}
         paths = [f"{name}.{field}" for field in numbers or () if _is_worth(field)]
-        others = tuple(each for each in paths if each not in used and path(each) is not None)
-        found.append(TopicDraft(_title(topic), signals, others, _remark(topic, numbers, paths)))
-    return found
+        others = tuple(
+            each for each in paths if each not in paths_of_signals and path(each) is not None
+        )
+        drafts.append(TopicDraft(_title(topic), signals, others, _remark(topic, numbers, paths)))
+    return drafts
 
 
 def _drafted(topic: Topic, numbers: Sequence[str]) -> list[Drafted]:
@@ -200,12 +202,12 @@ def _word(text: str) -> str:
 _RESERVED = {"and", "or", "not", "for", "true", "false", "abs", "min", "max"}
 
 
-def _named(signal: Drafted, taken: set[str]) -> Drafted:
+def _named(signal: Drafted, names: set[str]) -> Drafted:
     """The same with a name of its own, which an expression can use."""
     name, number = signal.name, 2
-    while name in taken or name in _RESERVED:
+    while name in names or name in _RESERVED:
         name, number = f"{signal.name}_{number}", number + 1
-    taken.add(name)
+    names.add(name)
     return replace(signal, name=name)
 
 

@@ -60,8 +60,8 @@ class Samples:
 
     def at(self, seconds: float) -> float | None:
         """The value in force; None where it is unknown or there is none yet."""
-        known = [v for t, v in zip(self.times, self.values, strict=True) if t <= seconds]
-        return known[-1] if known else None
+        values = [v for t, v in zip(self.times, self.values, strict=True) if t <= seconds]
+        return values[-1] if values else None
 
 
 @dataclass(frozen=True, slots=True)

@@ -363,8 +363,8 @@ class Result(Record, frozen=True, kw_only=True):
     @property
     def hashes(self) -> Mapping[str, str]:
         """Those that are known, by their names."""
-        found: Mapping[str, str] = plain(self.fingerprints)
-        return found
+        prints: Mapping[str, str] = plain(self.fingerprints)
+        return prints
 
     @property
     def uncertain(self) -> frozenset[int]:
@@ -374,8 +374,8 @@ class Result(Record, frozen=True, kw_only=True):
     @property
     def trials(self) -> Trials | None:
         """Of a requirement with a probability, where the log could be read."""
-        known = self.outcomes
-        return Trials(known.answered, known.failed, known.open) if known else None
+        outcomes = self.outcomes
+        return Trials(outcomes.answered, outcomes.failed, outcomes.open) if outcomes else None
 
     @property
     def content(self) -> str:

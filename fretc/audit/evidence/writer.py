@@ -1,4 +1,4 @@
-"""What one audit of one run against one requirement has shown, as its evidence file has it."""
+"""The result of one requirement in one run, in the form of the evidence file."""
 
 from __future__ import annotations
 
@@ -171,9 +171,9 @@ def as_record(evidence: Evidence) -> Result:
 
 
 def unread(run: str, requirement: str, diagnostic: Diagnostic, hashes: Mapping[str, str]) -> Result:
-    """The result of a run whose log could not be read: nothing is shown."""
-    found = Health(False, None, None, (), (_finding(diagnostic),), {})
-    return unjudged(run, requirement, diagnostic.message, hashes, found)
+    """The result of a run whose log could not be read: no data."""
+    health = Health(False, None, None, (), (_finding(diagnostic),), {})
+    return unjudged(run, requirement, diagnostic.message, hashes, health)
 
 
 def unjudged(
@@ -256,11 +256,11 @@ def _threshold(margin: Margin, first_ns: int) -> Threshold:
     )
 
 
-def _comparison(kept: bool | str | None) -> Comparison | None:
-    if isinstance(kept, str):
-        assert kept == CROSSED
+def _comparison(state: bool | str | None) -> Comparison | None:
+    if isinstance(state, str):
+        assert state == CROSSED
         return "crossed"
-    return None if kept is None else "true" if kept else "false"
+    return None if state is None else "true" if state else "false"
 
 
 def _reading(value: float | None) -> Reading:

@@ -13,7 +13,7 @@ from fretc.logs.signals.samples import Recording, Topic
 from fretish.diagnostics.rendering import visible
 
 _MOST = 8
-"""Fields of a topic that a person is shown."""
+"""At most so many fields of a topic stand in the text for a person."""
 _WIDEST = 60
 """Characters of a topic's name that the others stand clear of."""
 
@@ -21,8 +21,8 @@ _WIDEST = 60
 def as_record(overview: Overview) -> dict[str, Any]:
     """Plain values, in a fixed order of keys."""
     recording = overview.recording
-    told = plain(health(recording))
-    for name, topic in told["topics"].items():
+    record = plain(health(recording))
+    for name, topic in record["topics"].items():
         numbers = overview.numbers.get(name)
         topic["rate_hz"] = _rate(recording.topics[name])
         topic["signals"] = None if numbers is None else [f"{name}.{path}" for path in numbers]
@@ -31,7 +31,7 @@ def as_record(overview: Overview) -> dict[str, Any]:
         "sha256": recording.sha256,
         "start_ns": recording.start_ns,
         "end_ns": recording.end_ns,
-        **told,
+        **record,
     }
 
 
@@ -95,7 +95,7 @@ def _fields(overview: Overview, name: str, *, whole: bool) -> Iterator[str]:
     if numbers is None:
         yield f"cannot be read: {overview.reasons[name]}"
         return
-    shown = numbers if whole else numbers[:_MOST]
-    if shown:
-        more = f", and {len(numbers) - len(shown)} more" if len(numbers) > len(shown) else ""
-        yield f"{', '.join(f'.{path}' for path in shown)}{more}"
+    listed = numbers if whole else numbers[:_MOST]
+    if listed:
+        more = f", and {len(numbers) - len(listed)} more" if len(numbers) > len(listed) else ""
+        yield f"{', '.join(f'.{path}' for path in listed)}{more}"

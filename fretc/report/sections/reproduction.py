@@ -17,10 +17,10 @@ from compiler.files.shell_quoting import (
     words,
 )
 from compiler.project.folder import Project
+from fretc.audit.bases import bases
 from fretc.audit.evidence.basis import BINDINGS, of_all
 from fretc.audit.evidence.schema import Evidence
 from fretc.audit.measurements.confidence_intervals import CONFIDENCE
-from fretc.audit.plan import bases
 from fretc.report.model import phrases
 from fretc.report.model.views import Command, Hash, RequirementView
 from fretc.report.sections.runs import Run

@@ -19,11 +19,11 @@ from compiler.logic import printing
 from compiler.logic.claims import Proof
 from compiler.project.acceptances import TOPIC, Acceptance
 from compiler.project.folder import Project
+from fretc.audit.bases import bases
 from fretc.audit.evidence import basis
 from fretc.audit.evidence.basis import Basis
 from fretc.audit.evidence.reader import by_requirement
 from fretc.audit.evidence.schema import Evidence, Result
-from fretc.audit.plan import bases
 from fretc.report.traceability.artefacts import Product, shared_products
 from fretc.report.traceability.artefacts import products as products_of
 from fretish.bindings.canonical import described, digest
