@@ -52,6 +52,14 @@ class Quantity:
 
 
 @dataclass(frozen=True, slots=True)
+class Word:
+    """A value of an enumerated signal, as the bindings spell it: `docking`."""
+
+    text: str
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
 class Negation:
     """Arithmetic minus: `-x`."""
 
@@ -71,7 +79,7 @@ class Arithmetic:
 
 @dataclass(frozen=True, slots=True)
 class Comparison:
-    """`left op right`, both numbers; the whole is Boolean."""
+    """`left op right`, both numbers, or both words; the whole is Boolean."""
 
     op: ComparisonOperator
     left: Expression
@@ -146,6 +154,7 @@ Expression = (
     | Name
     | Number
     | Quantity
+    | Word
     | Negation
     | Arithmetic
     | Comparison
@@ -177,7 +186,7 @@ def _flat(kind: type[And] | type[Or], arg: Expression) -> tuple[Expression, ...]
 def children(expression: Expression) -> tuple[Expression, ...]:
     """The direct parts, left to right."""
     match expression:
-        case Truth() | Name() | Number() | Quantity():
+        case Truth() | Name() | Number() | Quantity() | Word():
             return ()
         case Not(arg) | Negation(arg) | Persistence(arg):
             return (arg,)
@@ -195,14 +204,18 @@ def children(expression: Expression) -> tuple[Expression, ...]:
             return (left, right)
 
 
-def names(expression: Expression) -> Iterator[Name]:
-    """Every `Name` in it, left to right, with repetitions."""
+def parts(expression: Expression) -> Iterator[Expression]:
+    """The expression, and everything in it, left to right."""
     waiting = [expression]
     while waiting:
         part = waiting.pop()
-        if isinstance(part, Name):
-            yield part
+        yield part
         waiting.extend(reversed(children(part)))
+
+
+def names(expression: Expression) -> Iterator[Name]:
+    """Every `Name` in it, left to right, with repetitions."""
+    return (part for part in parts(expression) if isinstance(part, Name))
 
 
 def depth(expression: Expression) -> int:
