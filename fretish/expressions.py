@@ -218,6 +218,17 @@ def names(expression: Expression) -> Iterator[Name]:
     return (part for part in parts(expression) if isinstance(part, Name))
 
 
+def truths(expression: Expression) -> Iterator[Name]:
+    """Every `Name` in it that stands for a truth value; those in calls are left out."""
+    waiting = [expression]
+    while waiting:
+        part = waiting.pop()
+        if isinstance(part, Name):
+            yield part
+        elif not isinstance(part, Comparison | Arithmetic | Negation | Call):
+            waiting.extend(reversed(children(part)))
+
+
 def depth(expression: Expression) -> int:
     """How many operators stand within each other, without recursion."""
     deepest = 0

@@ -269,7 +269,10 @@ def _recording(
     gaps = tuple(sorted({columns.on_clock(gap) for gap in lost}))
     origin = min(start for start, _ in [*run.spans, *lost])
     told = [findings.damaged(damage, gap, origin, file) for file, damage, gap in run.damages]
-    samples = {signal.name: Samples(*columns.samples(signal), signal.scale) for signal in wanted}
+    samples = {
+        signal.name: Samples(*columns.samples(signal), signal.scale, signal.values)
+        for signal in wanted
+    }
     start, end = columns.span((min(a for a, _ in run.spans), max(b for _, b in run.spans)))
     return Recording(
         name=place.source.name,

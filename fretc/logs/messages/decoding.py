@@ -6,7 +6,7 @@ A message definition may be any text, and a payload any bytes.
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import redirect_stderr, redirect_stdout
 from functools import lru_cache
 from io import StringIO
@@ -17,6 +17,7 @@ from fretc.logs.mcap.container import Stream
 from fretc.logs.messages import idl, protobuf
 from fretc.logs.messages import json_messages as jsontext
 from fretc.logs.messages.definitions import TooLargeError, types
+from fretc.logs.messages.definitions import constants as constants_of_ros
 from fretc.logs.messages.layouts import Shape
 from fretc.logs.signals.signals import Sparse, fields, optional_field
 from fretish.bindings.declarations import short_type
@@ -107,8 +108,37 @@ def is_single(stream: Stream, where: Sequence[str]) -> bool:
     return field is not None and field.type == "float32"
 
 
+def constants(stream: Stream, where: Sequence[str]) -> Mapping[str, int] | None:
+    """The names that the definition of messages has for the numbers at that place of each.
+
+    Of ROS they are the constants of the type that has the field, of Protobuf those of its enum.
+
+    Args:
+        stream: of messages that can be decoded.
+        where: the names of fields from the message down.
+
+    Returns:
+        None where the field holds no numbers, or only each message tells.
+    """
+    if stream.channel.message_encoding == "protobuf":
+        return protobuf.constants(stream, where)
+    layout, schema = shape(stream), stream.schema
+    holder = layout.holder(tuple(where)) if layout is not None else None
+    if schema is None or holder is None:
+        return None
+    return _constants(schema.encoding, schema.name, schema.data).get(holder, {})
+
+
 _MOST = 256
 """Definitions that are kept: all logs of a robot have the same ones."""
+
+
+@lru_cache(_MOST)
+def _constants(encoding: str, name: str, data: bytes) -> Mapping[str, Mapping[str, int]]:
+    """Of each type that a message is made of; its definition has a shape."""
+    if encoding == "ros2idl":
+        return idl.constants(data.decode())
+    return constants_of_ros(name, data.decode())
 
 
 @lru_cache(_MOST)

@@ -92,6 +92,15 @@ class Shape:
             name = field.type
         return None
 
+    def holder(self, where: Where) -> str | None:
+        """The type that has the number, or the numbers, at that place; None: there is none."""
+        if self.number(where) is None:
+            return None
+        name = self.name
+        for part in where[:-1]:
+            name = next(field.type for field in self.types[name] if field.name == part)
+        return name
+
     def has(self, where: Where) -> bool:
         """Whether there is a number at that place of each message."""
         field = self.number(where)

@@ -9,7 +9,7 @@ Source: https://protobuf.dev/programming-guides/field_presence/.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any
 
 from fretc.logs.mcap.container import Stream
@@ -74,6 +74,18 @@ def is_single(stream: Stream, where: Sequence[str]) -> bool:
         field = descriptor.fields_by_name.get(name) if descriptor is not None else None
         descriptor = field.message_type if field is not None else None
     return field is not None and bool(field.type == field.TYPE_FLOAT)
+
+
+def constants(stream: Stream, where: Sequence[str]) -> Mapping[str, int] | None:
+    """The names of the numbers at that place of each message; None where there are no numbers."""
+    descriptor, field = _official(stream)(b"").DESCRIPTOR, None
+    for name in where:
+        field = descriptor.fields_by_name.get(name) if descriptor is not None else None
+        descriptor = field.message_type if field is not None else None
+    if field is None or field.message_type is not None or field.cpp_type == field.CPPTYPE_STRING:
+        return None
+    kind = field.enum_type
+    return {} if kind is None else {name: each.number for name, each in kind.values_by_name.items()}
 
 
 def _official(stream: Stream) -> Callable[[bytes], Any]:
