@@ -184,13 +184,14 @@ def never_stated(signal: Signal, paths: Collection[str]) -> Diagnostic:
     """Every message leaves out the field of the signal, as their type allows."""
     name = ".".join(signal.path.fields)
     numbers = [path.removesuffix("[:]") for path in paths]
+    what = "word" if signal.values else "number"
     near = suggestion(name, numbers)
-    listed = f"they state {', '.join(numbers[:8])}{', ...' if len(numbers) > 8 else ''}"
+    first = f"{', '.join(numbers[:8])}{', ...' if len(numbers) > 8 else ''}"
     return Diagnostic(
         Code.NO_FIELD,
-        f"no message of `{signal.path.topic}` states a number in `{name}`",
+        f"no message of `{signal.path.topic}` states a {what} in `{name}`",
         signal.span,
-        f"did you mean `{near}`?" if near else listed if numbers else "they state no number at all",
+        f"did you mean `{near}`?" if near else f"they state {first or f'no {what} at all'}",
     )
 
 
@@ -238,12 +239,12 @@ def foreign_value(signal: Signal, foreign: Foreign, count: int, after: int) -> D
     )
 
 
-def no_truth(signal: Signal, count: int, of_all: int, first: str, after: int) -> Diagnostic:
+def no_truth(signal: Signal, foreign: Foreign, count: int, after: int) -> Diagnostic:
     """F424: some samples of a signal that stands for a truth value are neither 0 nor 1."""
     return Diagnostic(
         Code.NO_TRUTH,
-        f"`{signal.name}` stands for a truth value, and {count} of {of_all} samples are neither 1 "
-        f"nor 0, the first one {first} at {_seconds(after)}: they are unknown",
+        f"`{signal.name}` stands for a truth value, and {foreign.count} of {count} samples are "
+        f"neither 1 nor 0, the first one {foreign.text} at {_seconds(after)}: they are unknown",
         signal.span,
         f"is it a number? Then compare it: `{signal.name} > 0`",
         Severity.WARNING,

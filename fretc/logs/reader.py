@@ -19,7 +19,8 @@ from fretc.logs.first_messages import Examples
 from fretc.logs.mcap.container import BrokenError
 from fretc.logs.mcap.damage import Damage
 from fretc.logs.mcap.messages import Sink
-from fretc.logs.messages.decoding import decoder, numbers
+from fretc.logs.messages.decoding import decoder, leaves
+from fretc.logs.messages.leaves import Leaves, numbers
 from fretc.logs.signals.integrity import Checked, Integrity
 from fretc.logs.signals.samples import Gap, Recording, Samples
 from fretc.logs.storage import refusals
@@ -45,10 +46,18 @@ class Overview:
 
     recording: Recording
     """By log times, without samples."""
-    numbers: Mapping[str, tuple[str, ...] | None]
+    leaves: Mapping[str, Leaves | None]
     """Of each topic the fields that a signal can read; None where its messages cannot be read."""
     reasons: Mapping[str, str]
     """Why not."""
+
+    @property
+    def numbers(self) -> Mapping[str, tuple[str, ...] | None]:
+        """Of each topic the paths of its numbers and truth values."""
+        return {
+            topic: None if leaves is None else numbers(leaves)
+            for topic, leaves in self.leaves.items()
+        }
 
 
 def read(
@@ -112,7 +121,7 @@ def _look(path: str) -> Overview | Diagnostic:
     decoders = {topic: decoder(stream) for topic, stream in streams}
     return Overview(
         _recording(place, run, columns, examples, ()),
-        {topic: numbers(stream, examples.of(topic)) for topic, stream in streams},
+        {topic: leaves(stream, examples.of(topic)) for topic, stream in streams},
         {topic: why for topic, why in decoders.items() if isinstance(why, str)},
     )
 

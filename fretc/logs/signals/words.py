@@ -105,7 +105,7 @@ def words(signal: Signal, numbers: Values) -> tuple[Numbers, NDArray[np.bool_]]:
 
 def shown(value: object) -> str:
     """A value of a log, short and safe to print."""
-    text = value if isinstance(value, str) else str(_plain(value))
+    text = (value or "an empty text") if isinstance(value, str) else str(_plain(value))
     cut = f"{text[:_LONGEST]}..." if len(text) > _LONGEST else text
     return visible(cut)
 
