@@ -118,6 +118,6 @@ def _plain(value: object) -> object:
     return int(value) if whole else value  # type: ignore[call-overload]
 
 
-def name_of(place: float, values: Sequence[str]) -> str | None:
+def word_at(place: float, values: Sequence[str]) -> str | None:
     """The word at a place; None where that is unknown."""
     return None if isnan(place) else values[int(place)]

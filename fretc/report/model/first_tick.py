@@ -24,7 +24,8 @@ def reading(signal: str, violation: Violation, result: Result, ages: Mapping[str
     """
     known, limit = _value(signal, violation), ages.get(signal)
     bounds = _bounds(signal, result)
-    value = phrases.value(known, result.units.get(signal, ""), bounds)
+    is_word = isinstance(violation.values[signal], str)
+    value = f'"{known}"' if is_word else phrases.value(known, result.units.get(signal, ""), bounds)
     age = _age(signal, violation)
     if known is None or age is None or limit is None or round(age, 9) <= limit:
         return value
@@ -46,7 +47,7 @@ def _bounds(signal: str, result: Result) -> list[float]:
 
 
 def _value(signal: str, violation: Violation) -> float | str | None:
-    """The number in the evidence; the window also knows infinite ones."""
+    """The number or the word in the evidence; the window also knows infinite ones."""
     known = violation.values[signal]
     if known is None and violation.window and signal in violation.window.samples:
         found = violation.window.samples[signal].at(violation.first.seconds)
@@ -57,8 +58,10 @@ def _value(signal: str, violation: Violation) -> float | str | None:
 
 def _age(signal: str, violation: Violation) -> float | None:
     """Seconds from its last sample to the first tick; None where no sample is known."""
-    if violation.window is None or signal not in violation.window.samples:
+    window = violation.window
+    samples = (window.samples.get(signal) or window.words.get(signal)) if window else None
+    if samples is None:
         return None
     at = violation.first.seconds
-    known = [time for time in violation.window.samples[signal].times if time <= at]
+    known = [time for time in samples.times if time <= at]
     return at - known[-1] if known else None
