@@ -53,10 +53,10 @@ def bind(
     """Draft bindings from a log, or check what they see in logs.
 
     `--from LOG` prints a bindings.toml: the clock, a signal for each field whose meaning is known,
-    all other numbers as comments, and each proposition that the requirements name and no bindings
-    define, to be filled in. `--check LOG...` tells in how many ticks each proposition was true,
-    false and unknown, and how often it changed. Exit status of a check: 0 each proposition took
-    both values in some log, 3 one did not, 2 bad input.
+    all other numbers and texts as comments, and each proposition that the requirements name and no
+    bindings define, to be filled in. `--check LOG...` tells in how many ticks each proposition was
+    true, false and unknown, and how often it changed. Exit status of a check: 0 each proposition
+    took both values in some log, 3 one did not, 2 bad input.
     """
     if (source is None) == (not check):
         stop(_one_of_both())
@@ -105,16 +105,16 @@ def _project(requirements: str, bindings: str | None, *, given: bool, unread: st
 
 
 def _draft(log: str, project: Project, output: str, *, force: bool) -> None:
-    from fretc.audit.bindings.draft import draft, wanted
+    from fretc.audit.bindings.draft import draft, durations, wanted
     from fretc.logs.reader import look
 
     if output != "-" and not force and os.path.lexists(output):
         stop(_exists(output))
-    found = look(log)
+    found = look(log, words=True)
     if isinstance(found, Diagnostic):
         stop(found)
     say(found.recording.findings)
-    deliver({Path(output): draft(found, wanted(project))}, (log,))
+    deliver({Path(output): draft(found, wanted(project), durations(project))}, (log,))
     raise SystemExit(SHOWN)
 
 

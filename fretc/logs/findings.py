@@ -6,6 +6,7 @@ are nanoseconds.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Collection, Mapping, Sequence
 
 from fretc.logs.mcap.damage import Damage
@@ -228,13 +229,19 @@ def _constant(word: str, known: Mapping[str, int]) -> str | None:
 def foreign_value(signal: Signal, foreign: Foreign, count: int, after: int) -> Diagnostic:
     """F423: some samples are none of the words; the first one came so long after the log began."""
     near = suggestion(foreign.text, signal.values)
+    is_number = re.fullmatch(r"-?[\d.]+", foreign.text) is not None
+    if is_number and not signal.numbers:
+        mend = "give the number of each word: `values = { drive = 0 }`"
+    elif signal.numbers and not is_number:
+        mend = 'the field holds texts: `values = ["drive"]`'
+    else:
+        mend = f"did you mean `{near}`?" if near else "add it, if it is one of them"
     return Diagnostic(
         Code.FOREIGN_VALUE,
         f"{foreign.count} of {count} samples of `{signal.name}` are none of its values, the first "
         f"one `{foreign.text}` at {_seconds(after)}: they are unknown",
         signal.span,
-        f"its values are {listed(signal.values)}{f'; did you mean `{near}`?' if near else ''}; of "
-        "a field of numbers `values` gives the number of each: `values = { drive = 0 }`",
+        f"its values are {listed(signal.values)}; {mend}",
         Severity.WARNING,
     )
 

@@ -10,9 +10,11 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
+from fretc.audit.one_log import examined
 from fretc.logs.signals.samples import Recording
 from fretc.logs.signals.traces import trace
 from fretc.logs.signals.words import words
+from fretc.logs.stream import End, Stream
 from tests.fretc.logs.logs import MS, S, Sent, codes, declare, payload, recorded, times, write
 from tests.fretc.logs.messages.test_idl import LINE
 from tests.fretc.logs.messages.test_protobuf import STATE
@@ -325,3 +327,79 @@ def test_numbers_mean_the_same_words_at_once_and_one_by_one(
     for number, place, is_foreign in zip(seen, places, foreign, strict=True):
         assert bool(is_foreign) is (number == number and number not in known)
         assert (known[int(place)] == number) if number in known else np.isnan(place)
+
+
+STREAMED = f"""
+[clock]
+tick = "100 ms"
+
+[signal.mode]
+path = "/m.mode"
+values = {WORDS}
+max_age = "250 ms"
+
+[signal.gear]
+path = "/m.gear"
+values = {{ park = 0, forward = 3 }}
+
+[signal.on]
+path = "/m.on"
+
+[proposition.p]
+expr = "on and mode != 'drive' or gear = park"
+"""
+ROWS = st.tuples(
+    st.sampled_from(["drive", "docking", "fly", None]),
+    st.sampled_from([0, 3, 1, None]),
+    st.sampled_from([True, False, 0, 1, 2, None]),
+)
+
+
+@settings(max_examples=40, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(st.lists(st.tuples(st.sampled_from([40, 100, 300]), ROWS), min_size=1, max_size=8))
+def test_a_stream_sees_what_a_log_of_the_same_messages_shows(
+    tmp_path: Path, rows: list[tuple[int, tuple[object, object, object]]]
+) -> None:
+    declarations, sent, now = declare(STREAMED), [], S
+    stream = Stream(declarations, ["p"])
+    for step, row in rows:
+        message = dict(zip(("mode", "gear", "on"), row, strict=True))
+        assert stream.message("/m", now, message) is None
+        sent.append(Sent("/m", "m", json.dumps(message).encode(), now, encoding="json"))
+        now += step * MS
+    end = stream.end()
+    assert isinstance(end, End)
+    recording = recorded(write(tmp_path / "l.mcap", sent), declarations)
+    assert [tick.truth["p"] for tick in end.ticks] == column(recording, STREAMED)
+    found = examined(recording, declarations, ["p"]).findings
+    kinds = {"F423", "F424"}
+    told = [each.message for each in found if each.code.number in kinds]
+    assert sorted(each.message for each in stream.findings) == sorted(told)
+
+
+def test_a_word_may_be_added_where_messages_have_its_number() -> None:
+    stream = Stream(declare(STREAMED), ["p"])
+    for time, word in ((S, "park"), (S + STEP, 3), (S + 2 * STEP, "reverse")):
+        assert stream.add("gear", time, word) is None
+    assert stream.add("mode", S, "drive") is None
+    end = stream.end()
+    assert isinstance(end, End)
+    assert [tick.truth["p"] for tick in end.ticks] == [True, False, None]
+    (finding,) = stream.findings
+    assert finding.message == (
+        "1 of 3 samples of `gear` are none of its values, the first one `reverse` at 0.200 s: "
+        "they are unknown"
+    )
+    wrong = stream.add("mode", S, {"a": 1})
+    assert wrong is not None
+
+
+def test_a_number_that_stands_for_a_truth_value_is_named(tmp_path: Path) -> None:
+    declarations = declare(FLAG.format("on"))
+    log = write(tmp_path / "l.mcap", objects([1, 55.5, 0, 3]))
+    findings = examined(recorded(log, declarations), declarations, ["p"]).findings
+    (finding,) = [each for each in findings if each.code.number == "F424"]
+    assert finding.message == (
+        "`on` stands for a truth value, and 2 of 4 samples are neither 1 nor 0, the first one 55.5 "
+        "at 0.100 s: they are unknown"
+    )
