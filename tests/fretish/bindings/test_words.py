@@ -227,7 +227,8 @@ def test_the_numbers_of_words_are_in_the_order_of_the_words() -> None:
         ("park", "drive"),
         (0, 1),
     )
-    assert (found.signals["mode"].numbers, found.signals["mode"].scale) == ((), 1)
+    assert found.signals["mode"].numbers == ()
+    assert found.signals["mode"].scale == 1
 
 
 def test_valid_compares_no_words() -> None:

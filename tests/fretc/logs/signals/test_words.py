@@ -260,7 +260,7 @@ def test_a_plain_number_is_true_false_or_unknown(
     assert column(recording, FLAG.format(expr)) == expected
 
 
-NAIVE = {
+NAIVE: dict[str, Callable[[object, object], bool]] = {
     "mode = docking": lambda a, _: a == "docking",
     "mode != docking": lambda a, _: a != "docking",
     "mode = other": lambda a, b: a == b,

@@ -16,7 +16,7 @@ S = 10**9
 RESULT = replace(EMPTY, thresholds=(NEAR, SLOW), units={"clearance": "m", "vx": "m/s"})
 
 
-def broken(**samples: Samples) -> Violation:
+def broken(**samples: Samples[float]) -> Violation:
     return made(
         moment(123, 12.3),
         moment(125, 12.5),
