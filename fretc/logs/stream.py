@@ -12,7 +12,7 @@ from __future__ import annotations
 from array import array
 from bisect import bisect_left, bisect_right
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from math import isnan
 from typing import Any
 
@@ -419,6 +419,11 @@ class Message(Sparse):
         declared = getattr(self._message, "get_fields_and_field_types", None)
         return tuple(declared()) if callable(declared) else fields(self._message)
 
+    def constant(self, name: str) -> int | None:
+        """A whole constant of the message's type, as those of ROS have them."""
+        found = getattr(type(self._message), name, None)
+        return found if isinstance(found, int) else None
+
     def field(self, name: str) -> object:
         """The value of a field; arrays of Python's `array` are those of NumPy."""
         if name not in self.names:
@@ -441,6 +446,7 @@ def _value(
     Last, what it is where that is none of the values of its signal; else nothing.
     """
     single = _is_single(signal, message)
+    signal = _named(signal, message)
     try:
         value = word(signal, message) if signal.values else sample(signal, message, single=single)
     except FieldError as error:
@@ -452,6 +458,23 @@ def _value(
     if isnan(value):
         return value, None, ""
     return value, np.dtype(np.float32 if single and is_chosen(signal) else np.float64), ""
+
+
+def _named(signal: Signal, message: Message) -> Signal:
+    """The signal with the numbers of its words, where the field's message has such constants."""
+    if not signal.values or signal.numbers:
+        return signal
+    holder: object = message
+    for name in signal.path.fields[:-1]:
+        holder = optional_field(holder, name)
+    if not isinstance(holder, Message) or isinstance(
+        optional_field(holder, signal.path.fields[-1]), str
+    ):
+        return signal
+    numbers = tuple(
+        number for each in signal.values if (number := holder.constant(each)) is not None
+    )
+    return replace(signal, numbers=numbers) if len(set(numbers)) == len(signal.values) else signal
 
 
 def _is_single(signal: Signal, message: Message) -> bool:

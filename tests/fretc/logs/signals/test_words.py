@@ -403,3 +403,23 @@ def test_a_number_that_stands_for_a_truth_value_is_named(tmp_path: Path) -> None
         "`on` stands for a truth value, and 2 of 4 samples are neither 1 nor 0, the first one 55.5 "
         "at 0.100 s: they are unknown"
     )
+
+
+class Status:
+    """As rospy and rclpy have a message with constants."""
+
+    DRIVE, DOCKING = 0, 4
+    __slots__ = ("data",)
+
+    def __init__(self, data: object) -> None:
+        self.data = data
+
+
+def test_the_constants_of_a_message_of_python_are_its_words() -> None:
+    values = '["DRIVE", "DOCKING"]'
+    stream = Stream(declare(declared("/m.state.data", values, "mode = DOCKING")), ["p"])
+    for i, data in enumerate((4, 0, 7)):
+        assert stream.message("/m", S + i * STEP, {"state": Status(data)}) is None
+    end = stream.end()
+    assert isinstance(end, End)
+    assert [tick.truth["p"] for tick in end.ticks] == [True, False, None]
