@@ -156,7 +156,7 @@ class SafetyFunction:
             stands = asked and self._truth(one, recording, time, unknown=False)
             truths[one.name] = stands
         self._last = time
-        self._monitor.step(**{self._monitor.PROPOSITIONS[name]: t for name, t in truths.items()})
+        self._monitor.advance([truths])
         (told,) = self._monitor.must.signals()
         self._demanded = bool(told.trigger or told.owed)
         return self._demanded
