@@ -11,7 +11,7 @@ import struct
 from collections.abc import Callable, Mapping
 from fractions import Fraction
 from functools import cache
-from math import ceil, floor, inf, isfinite
+from math import ceil, floor, inf, isfinite, isnan
 from numbers import Integral, Real
 from typing import Any, NamedTuple
 
@@ -20,8 +20,8 @@ from monitors.kernel.verdicts import Truth, boolean
 Number = float | None
 """A number, or None: unknown. NaN is unknown, too."""
 
-Reading = float | int | None
-"""A number as it is computed with: an `int` is from 2^53 on, or below -2^53; none is NaN."""
+Reading = float | None
+"""A number as it is computed with, never NaN. An `int` has 2^53 or more, with or without a sign."""
 
 DOUBLES_END = 2**53
 """From here on 64-bit floats do not hold every whole number."""
@@ -109,11 +109,11 @@ def number(value: object, name: str) -> Reading:
     if isinstance(value, Integral):
         return _whole(int(value))
     if type(value).__name__ == "float32":
-        return None if value != value else Single(value)
+        return None if isnan(value) else Single(value)
     return _real(value)
 
 
-def _real(value: Real) -> Reading:
+def _real(value: Any) -> Reading:
     """A number of another kind: of 80-bit floats, for example, which hold more whole numbers."""
     try:
         double = float(value)
@@ -129,7 +129,7 @@ def _whole(value: int) -> Reading:
 
 
 def _known(value: float) -> float | None:
-    return None if value != value else value
+    return None if isnan(value) else value
 
 
 def truth_value(value: object, name: str) -> Truth:
@@ -199,7 +199,7 @@ def is_word(value: str | None, sign: str, other: str | None) -> Truth:
 # What is computed -----------------------------------------------------------------------------
 
 
-def _plain(term: float | int | Constant) -> float:
+def _plain(term: float | Constant) -> float:
     """As a 64-bit float."""
     if isinstance(term, Constant):
         return term.double

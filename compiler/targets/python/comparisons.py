@@ -12,13 +12,16 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
 
+from compiler.files.templating import python
 from compiler.formalization.formalized import Formalized
 from compiler.formalization.obligation import atom, variable
 from compiler.logic.printing import is_compound
 from fretish import expressions as e
 from fretish.bindings.constants import called, computed, whole_exponent
+from fretish.bindings.declarations import Signal
 from fretish.checking import conditions
 from fretish.reading.recursion import deep
+from fretish.units import unit
 
 NUMBER, TRUTH, WORD = "number", "truth", "word"
 """What a variable is."""
@@ -44,6 +47,8 @@ class Compared:
     tree: e.Comparison
     units: Mapping[str, tuple[str, Fraction]]
     """The unit of each variable that is a signal, and its factor to base units."""
+    word: str | None = None
+    """What its only variable is compared with, where that is a word."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -122,27 +127,31 @@ def _clashing(rules: Sequence[Formalized], found: Iterable[Compared]) -> Iterato
 def _compared(tree: e.Comparison, rule: Formalized) -> Compared | None:
     """The comparison with its variables; None where it cannot be compiled."""
     signals = rule.declarations.signals if rule.declarations else {}
-    words = _words(tree, rule)
     names = tuple(dict.fromkeys(name.id for name in e.names(tree)))
     units = {
         variable(id): (signals[id].unit_name, signals[id].scale) for id in names if id in signals
     }
-    inputs = words or {variable(id): Input(NUMBER) for id in names}
-    compared = Compared(inputs, tree, units)
+    spoken = _spoken(tree, signals)
+    if spoken is not None:
+        id, word, words = spoken
+        return Compared({variable(id): Input(WORD, words)}, tree, units, word)
+    compared = Compared({variable(id): Input(NUMBER) for id in names}, tree, units)
     try:
-        Writer(dict.fromkeys(inputs, "x")).comparison(compared)
+        Writer(dict.fromkeys(compared.inputs, "x")).comparison(compared)
     except NotCompiledError:
         return None
     return compared
 
 
-def _words(tree: e.Comparison, rule: Formalized) -> Mapping[str, Input]:
-    """The variable of a comparison with a word, with its words.
+def _spoken(
+    tree: e.Comparison, signals: Mapping[str, Signal]
+) -> tuple[str, str, tuple[str, ...]] | None:
+    """A signal of words, the word that it is compared with by `=` or `!=`, and all its words.
 
-    Here `e.Word` and `Signal.values` come in: `Comparison("=", Name("mode"), Word("docking"))` is
-    `{"mode": Input(WORD, values)}`. Until sentences have words, there is none.
+    Sentences have no words yet: here `Comparison("=", Name("mode"), Word("docking"))` becomes
+    `("mode", "docking", signals["mode"].values)`. All that follows from it is there.
     """
-    return {}
+    return None
 
 
 class NotCompiledError(Exception):
@@ -151,11 +160,11 @@ class NotCompiledError(Exception):
 
 @dataclass(frozen=True, slots=True)
 class _Term:
-    """A number as text; a constant has its exact value, too, and no scale."""
+    """A number as text; a constant has its exact value, too."""
 
     text: str
     scale: Fraction | None = None
-    """From its unit to the base unit; None: in any."""
+    """From its unit to the base unit; None: it has none, and is in that of what it meets."""
     exact: Fraction | None = None
 
 
@@ -193,22 +202,32 @@ class Writer:
             NotCompiledError: it holds what is no number here.
         """
         self.units = compared.units
-        left, right = self._term(compared.tree.left), self._term(compared.tree.right)
         op = compared.tree.op
+        if compared.word is not None:
+            (name,) = compared.inputs
+            return f'is_word({self.parameters[name]}, "{op}", {python(compared.word)})'
+        if not compared.units.keys() >= compared.inputs.keys() and _has_unit(compared.tree):
+            raise NotCompiledError  # nothing says in which unit the variable is
+        left, right = self._term(compared.tree.left), self._term(compared.tree.right)
         if _UNKNOWN in (left, right):
             return "None"
+        left, right, _ = _in_one_unit(left, right)
         if left.exact is not None and right.exact is not None:
             return str(_holds(op, left.exact, right.exact))
-        first, second, _ = _in_one_unit(left, right)
-        return f'compared({first}, "{op}", {second})'
+        return f'compared({left.text}, "{op}", {right.text})'
 
     def _term(self, tree: e.Expression) -> _Term:
         match tree:
             case e.Number(digits) if _WRITTEN.fullmatch(digits):
                 return _constant(Fraction(digits))
+            case e.Quantity(digits, name) if _WRITTEN.fullmatch(digits):
+                known = unit(name)
+                assert known is not None, "the parser refuses unknown units"
+                return _constant(Fraction(digits), known.factor)
             case e.Name(id) if variable(id) in self.parameters:
                 name = variable(id)
-                return _Term(self.parameters[name], self.units.get(name, ("", Fraction(1)))[1])
+                scale = self.units[name][1] if name in self.units else None
+                return _Term(self.parameters[name], scale)
             case e.Negation(arg):
                 term = self._term(arg)
                 return _applied("negative", term, None if term.exact is None else -term.exact)
@@ -224,25 +243,16 @@ class Writer:
     def _arithmetic(self, op: e.ArithmeticOperator, left: _Term, right: _Term) -> _Term:
         if _UNKNOWN in (left, right):
             return _UNKNOWN
-        if right.exact is not None and (op == "^" or left.exact is not None):
-            try:
-                if left.exact is not None:
-                    return _constant(computed(op, left.exact, right.exact))
-                return _power(left, whole_exponent(right.exact))
-            except ValueError:
-                raise NotCompiledError from None
-        match op:
-            case "^":
-                raise NotCompiledError
-            case "*":
-                scale = _scale(left) * _scale(right)
-                return _Term(f"times({left.text}, {right.text})", scale)
-            case "/":
-                scale = _scale(left) / _scale(right)
-                return _Term(f"over({left.text}, {right.text})", scale)
-            case _:
-                first, second, scale = _in_one_unit(left, right)
-                return _Term(f"{_ARITHMETIC[op]}({first}, {second})", scale)
+        if op == "^":
+            return _power(left, right)
+        if op in ("*", "/"):
+            left, right = (_plain(each) for each in (left, right))
+            scale = _combined(op, left.scale, right.scale)
+        else:
+            left, right, scale = _in_one_unit(left, right)
+        if left.exact is not None and right.exact is not None:
+            return _constant(computed(op, left.exact, right.exact), scale)
+        return _Term(f"{_ARITHMETIC[op]}({left.text}, {right.text})", scale)
 
     def _call(self, name: str, args: Sequence[_Term]) -> _Term:
         if name == "abs":
@@ -253,12 +263,12 @@ class Writer:
         found, *rest = args
         for term in rest:
             if _UNKNOWN in (found, term):
-                found = _UNKNOWN
-            elif found.exact is not None and term.exact is not None:
-                found = _constant(called(name, [found.exact, term.exact]))
+                return _UNKNOWN
+            first, second, scale = _in_one_unit(found, term)
+            if first.exact is not None and second.exact is not None:
+                found = _constant(called(name, [first.exact, second.exact]), scale)
             else:
-                first, second, scale = _in_one_unit(found, term)
-                found = _Term(f"{_ENDS[name]}({first}, {second})", scale)
+                found = _Term(f"{_ENDS[name]}({first.text}, {second.text})", scale)
         return found
 
     def _before(self, initial: _Term, term: _Term) -> _Term:
@@ -266,7 +276,7 @@ class Writer:
         if _UNKNOWN in (initial, term):  # a mistake in the sentence: nothing is compared with it
             raise NotCompiledError
         before, now, scale = _in_one_unit(initial, term)
-        key = f"first({before})", f"first({now})" if term.exact is not None else now
+        key = f"first({before.text})", f"first({now.text})" if now.exact is not None else now.text
         name = self.earlier.setdefault(key, f"_earlier_{len(self.earlier) + 1}")
         return _Term(name, scale)
 
@@ -279,12 +289,12 @@ _MOST_BITS = 1 << 13
 """Of a constant: Python reads no more than 4 300 digits."""
 
 
-def _constant(value: Fraction | None) -> _Term:
+def _constant(value: Fraction | None, scale: Fraction | None = None) -> _Term:
     if value is None:
         return _UNKNOWN
     if max(map(int.bit_length, value.as_integer_ratio())) > _MOST_BITS:
         raise NotCompiledError
-    return _Term(f'exact("{written(value)}")', None, value)
+    return _Term(f'exact("{written(value)}")', scale, value)
 
 
 def written(value: Fraction) -> str:
@@ -300,29 +310,60 @@ def written(value: Fraction) -> str:
 _MOST_PLACES = 12
 
 
-def _scale(term: _Term) -> Fraction:
-    return Fraction(1) if term.scale is None else term.scale
+def _plain(factor: _Term) -> _Term:
+    """A factor: a constant is in its base unit."""
+    if factor.exact is None or factor.scale is None:
+        return factor
+    return _in_base(factor, factor.scale)
 
 
-def _in_one_unit(left: _Term, right: _Term) -> tuple[str, str, Fraction | None]:
-    """Both in one unit, and the factor of it: a constant is in that of the other one."""
+def _combined(op: str, left: Fraction | None, right: Fraction | None) -> Fraction | None:
+    """The factor of a product or a quotient."""
+    if left is None and right is None:
+        return None
+    a, b = (Fraction(1) if each is None else each for each in (left, right))
+    return a * b if op == "*" else a / b
+
+
+def _in_one_unit(left: _Term, right: _Term) -> tuple[_Term, _Term, Fraction | None]:
+    """Both in one unit, and the factor of it: that of what is measured."""
     if left.scale is None or right.scale is None or left.scale == right.scale:
-        return left.text, right.text, right.scale if left.scale is None else left.scale
-    return _in_base(left), _in_base(right), Fraction(1)
+        return left, right, right.scale if left.scale is None else left.scale
+    if left.exact is not None and right.exact is None:
+        return _constant(left.exact * left.scale / right.scale, right.scale), right, right.scale
+    if right.exact is not None and left.exact is None:
+        return left, _constant(right.exact * right.scale / left.scale, left.scale), left.scale
+    return _in_base(left, left.scale), _in_base(right, right.scale), Fraction(1)
 
 
-def _in_base(term: _Term) -> str:
-    return f'in_base({term.text}, exact("{_scale(term)}"))'
+def _in_base(term: _Term, scale: Fraction) -> _Term:
+    if term.exact is not None:
+        return _constant(term.exact * scale, Fraction(1))
+    return _Term(f'in_base({term.text}, exact("{scale}"))', Fraction(1))
 
 
 def _applied(function: str, term: _Term, exact: Fraction | None) -> _Term:
     if term == _UNKNOWN or exact is not None:
-        return _constant(exact)
+        return _constant(exact, term.scale)
     return _Term(f"{function}({term.text})", term.scale)
 
 
-def _power(base: _Term, exponent: int) -> _Term:
-    return _Term(f"power({base.text}, {exponent})", _scale(base) ** exponent)
+def _power(base: _Term, exponent: _Term) -> _Term:
+    if exponent.exact is None:
+        raise NotCompiledError
+    try:
+        times = whole_exponent(exponent.exact)
+        value = None if base.exact is None else computed("^", base.exact, exponent.exact)
+    except ValueError:
+        raise NotCompiledError from None
+    scale = None if base.scale is None else base.scale**times
+    if value is not None:
+        return _constant(value, scale)
+    return _Term(f"power({base.text}, {times})", scale)
+
+
+def _has_unit(tree: e.Expression) -> bool:
+    return any(isinstance(part, e.Quantity) for part in _parts(tree))
 
 
 def _holds(op: e.ComparisonOperator, left: Fraction, right: Fraction) -> bool:

@@ -75,7 +75,7 @@ def _check_module(module: ast.Module, *, by_variables: bool) -> None:
     demand(monitor.name == f"{title}Monitor" and _is_plain(rail) and _is_plain(monitor), monitor)
     base = "VariableMonitor" if by_variables else "Monitor"
     demand([ast.unparse(each) for each in (*rail.bases, *monitor.bases)] == [base], monitor)
-    demand(is_one_of(binding, f"MONITOR: type[Monitor] = {monitor.name}"), binding)
+    demand(is_one_of(binding, f"MONITOR: type[{base}] = {monitor.name}"), binding)
     _check_annotations(module, title)
     main = "main_by_variables" if by_variables else "main"
     demand(is_one_of(run, f'if __name__ == "__main__":\n    sys.exit({main}(MONITOR))'), run)
@@ -102,6 +102,7 @@ def _check_annotations(module: ast.Module, title: str) -> None:
 _ANNOTATIONS = frozenset(
     (
         *("None", "bool", "int", "Truth", "Verdict", "tuple[Verdict, ...]", "type[Monitor]"),
+        "type[VariableMonitor]",
         *("tuple[Signals[bool], ...]", "tuple[Signals[int], ...]", "tuple[Marks, ...]"),
         *("ClassVar[tuple[str, ...]]", "ClassVar[Mapping[str, str]]"),
         *("Iterable[Sequence[Any]]", "Iterable[Row | Mapping[str, Truth]]"),

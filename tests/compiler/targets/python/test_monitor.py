@@ -588,6 +588,8 @@ def programs(tmp_path_factory: pytest.TempPathFactory) -> Path:
         "scoped": "in m, when p the sw shall after 2 ticks satisfy q",
         "names": "after l mode, whenever class | I the sw shall for 2 ticks "
         'satisfy x.y & "a b" > 3',
+        "numbers": "whenever absReal(preReal(0.1, speed) - 2) < maxReal(speed, 1 / 3) & x mod 3 = y"
+        " the sw shall within 2 ticks satisfy q",
         "always": "the sw shall always satisfy q",
         "long": "only after some_rather_long_mode_name, upon another_rather_long_name > 3 the sw "
         "shall until yet_another_rather_long_stop_name satisfy the_response_is_long_too",
@@ -770,7 +772,7 @@ def test_a_percent_sign_in_a_sentence_does_not_break_the_help(
 def test_unusual_names_are_columns(programs: Path) -> None:
     done = call(programs, "names", "--help").stdout.decode()
     columns = done.split("columns: ")[1].splitlines()[0]
-    assert columns == "l, class, I, x.y, (a_SPC_b > 3)"
-    trace = "l,class,I,x.y,(a_SPC_b > 3)\n1,0,0,1,1\n0,0,1,1,1\n0,0,0,1,1\n0,0,0,0,1\n"
+    assert columns == "l, class, I, x.y, a b"
+    trace = "l,class,I,x.y,a b\n1,0,0,1,4\n0,0,1,1,3.5\n0,0,0,1,1e2\n0,0,0,0,inf\n"
     done = call(programs, "names", "-", "--format", "json", stdin=trace.encode()).stdout.decode()
     assert json.loads(done)["violations"] == [[3, 3]]
