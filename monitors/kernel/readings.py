@@ -291,9 +291,8 @@ def in_base(value: Reading, scale: Constant) -> Reading:
     """In the base unit: `value * scale`, rounded once where one operation does it."""
     if value is None:
         return None
-    top, bottom = _double(scale.exact.numerator), _double(scale.exact.denominator)
-    plain = _plain(value)
-    return _known(plain / bottom if scale.exact.numerator == 1 else plain * top / bottom)
+    top, bottom = scale.exact.as_integer_ratio()
+    return _known(_plain(value) * _double(top) / _double(bottom))
 
 
 def first(term: Term) -> Reading:

@@ -149,6 +149,10 @@ def both(tree: e.Comparison, row: Mapping[str, Any], units: Mapping[str, str]) -
 rows = st.fixed_dictionaries(dict.fromkeys(NAMES, given_numbers))
 X = e.Name("x")
 HALF = e.Number(f"{2**52}.5")
+NEXT = np.nextafter(np.float32(1), np.float32(2))
+"""And beside it, numbers whose nearest 64-bit float is nearer to another 32-bit float."""
+ABOVE = e.Number(f"1.{(2**36 + 1) * 5**60:060}")
+BELOW = e.Number(f"1.{(3 * 2**36 - 1) * 5**60:060}")
 
 
 @pytest.mark.filterwarnings("ignore::RuntimeWarning")
@@ -159,6 +163,22 @@ HALF = e.Number(f"{2**52}.5")
 @example(e.Comparison("<", X, e.Number(str(2**53 + 1))), {"x": 2**53})
 @example(e.Comparison("<", e.Call("min", (X, e.Name("y"))), e.Number("1")), {"x": 0, "y": math.nan})
 @example(e.Comparison("=", e.Arithmetic("/", X, X), X), {"x": -0.0})
+@example(e.Comparison("<=", X, ABOVE), {"x": NEXT})
+@example(e.Comparison(">=", X, BELOW), {"x": NEXT})
+@example(e.Comparison("<", X, e.Number(f"{2**53 + 1}.5")), {"x": 2**53 + 1})
+@example(e.Comparison(">", e.Negation(X), e.Negation(e.Number("0.9"))), {"x": np.float32(0.9)})
+@example(
+    e.Comparison("<", e.Call("min", (X, e.Name("y"))), e.Number("0.9")),
+    {"x": np.float32(0.9), "y": np.float32(2)},
+)
+@example(
+    e.Comparison("<", e.Call("max", (X, e.Name("y"))), e.Number(str(2**53 + 5))),
+    {"x": 2**53 + 1, "y": 2.0**53 + 4},
+)
+@example(
+    e.Comparison("=", e.Call("min", (X, e.Number(str(2**60)))), e.Number(str(2**53))),
+    {"x": 2**53 + 1},
+)
 def test_bare_numbers_compare_as_in_an_audit(tree: e.Comparison, row: dict[str, Any]) -> None:
     both(tree, row, {})
 
