@@ -776,3 +776,34 @@ def test_unusual_names_are_columns(programs: Path) -> None:
     trace = "l,class,I,x.y,a b\n1,0,0,1,4\n0,0,1,1,3.5\n0,0,0,1,1e2\n0,0,0,0,inf\n"
     done = call(programs, "names", "-", "--format", "json", stdin=trace.encode()).stdout.decode()
     assert json.loads(done)["violations"] == [[3, 3]]
+
+
+def test_a_table_of_numbers_is_compared_and_judged(programs: Path) -> None:
+    """`x mod 3 = y` holds at the first two ticks; no response comes to the first in time."""
+    trace = b"x,y,speed,q\n4,1,3,0\n7.5,1.5,2.5,0\n,1,2.5,0\n5,1,1,1\n"
+    for engine in ("columns", "online"):
+        done = call(programs, "numbers", "-", "--engine", engine, "--format", "json", stdin=trace)
+        outcome = json.loads(done.stdout)
+        assert (outcome["triggers"], outcome["violations"]) == ([0, 1], [[2, 2]]), engine
+        assert (done.returncode, done.stderr) == (1, b"")
+
+
+def test_a_table_of_numbers_that_cannot_be_read_is_refused_with_its_place(programs: Path) -> None:
+    done = call(programs, "numbers", "-", stdin=b"x,y,speed,q\n4,1,3,0\n4,one,3,0\n")
+    assert (done.returncode, done.stdout) == (2, b"")
+    assert done.stderr.decode() == (
+        "<stdin>:3: column `y`: `one` is no number; write it as 17.5 or 1e-3, or nothing for "
+        "unknown\n"
+    )
+
+
+def test_a_monitor_of_numbers_reads_the_truth_of_comparisons_too(programs: Path) -> None:
+    text = call(programs, "numbers", "--help").stdout.decode()
+    assert "columns: speed, x, y, q\n" in text
+    header = text.split("with --propositions: ")[1].splitlines()[0]
+    names = re.split(r", (?=[(q])", header)
+    assert len(names) == 3
+    assert names[-1] == "q"
+    quoted = ",".join(f'"{name}"' for name in names)
+    trace = f"{quoted}\n1,1,0\n0,0,0\n0,0,0\n".encode()
+    assert call(programs, "numbers", "-", "--propositions", stdin=trace).returncode == 1
