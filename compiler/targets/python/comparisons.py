@@ -7,6 +7,7 @@ does (`fretc.logs.signals.measures`). A comparison that holds anything else stay
 
 from __future__ import annotations
 
+import itertools
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -214,7 +215,10 @@ class Writer:
         left, right, _ = _in_one_unit(left, right)
         if left.exact is not None and right.exact is not None:
             return str(_holds(op, left.exact, right.exact))
-        return f'compared({left.text}, "{op}", {right.text})'
+        text = f'compared({left.text}, "{op}", {right.text})'
+        if max(map(_nesting, (text, *itertools.chain(*self.earlier)))) > _MOST_NESTING:
+            raise NotCompiledError
+        return text
 
     def _term(self, tree: e.Expression) -> _Term:
         match tree:
@@ -360,6 +364,15 @@ def _power(base: _Term, exponent: _Term) -> _Term:
     if value is not None:
         return _constant(value, scale)
     return _Term(f"power({base.text}, {times})", scale)
+
+
+_MOST_NESTING = 150
+"""Python reads 200 parentheses within each other."""
+
+
+def _nesting(text: str) -> int:
+    """How many parentheses are within each other."""
+    return max(itertools.accumulate((c == "(") - (c == ")") for c in text))
 
 
 def _has_unit(tree: e.Expression) -> bool:

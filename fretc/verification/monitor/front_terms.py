@@ -34,6 +34,8 @@ class Differing:
     truths: tuple[Mapping[str, Truth], ...]
     """The right ones, at each tick."""
     fault: str
+    values: str
+    """Of the variables at the last tick."""
 
 
 def terms(text: str) -> Mapping[str, Term]:
@@ -156,12 +158,14 @@ def differing(
             try:
                 actual = left(row)
             except Exception as error:
-                return Differing(tuple(told), f"{_given(row)} it stops: {type(error).__name__}")
+                return Differing(tuple(told), f"it stops: {type(error).__name__}", _given(row))
             for name in propositions:
                 if actual[name] is not expected[name]:
-                    words = f"`{name}` is {_in_words(actual[name])} in it"
-                    fault = f"{_given(row)} {words}, and should be {_in_words(expected[name])}"
-                    return Differing(tuple(told), fault)
+                    right_one = _in_words(expected[name])
+                    fault = (
+                        f"`{name}` is {_in_words(actual[name])} in it, and should be {right_one}"
+                    )
+                    return Differing(tuple(told), fault, _given(row))
     return None
 
 
@@ -201,7 +205,7 @@ def _drawn(choose: random.Random, variable: Variable, numbers: Sequence[float | 
 
 
 def _given(row: Mapping[str, Value]) -> str:
-    return f"with {', '.join(f'{name} = {_in_words(value)}' for name, value in row.items())}"
+    return ", ".join(f"{name} = {_in_words(value)}" for name, value in row.items())
 
 
 def _in_words(value: Value) -> str:

@@ -58,9 +58,9 @@ def as_result(outcome: Verified) -> v.Result:
                 f"be {_judgement(*expected)}"
             )
             return v.Counterexample(detail, v.Trace(outcome.atoms, word))
-        case Disagreement(word, fault):
-            detail = f"{fault} on a trace"
-            return v.Counterexample(detail, v.Trace(outcome.atoms, word))
+        case Disagreement(word, fault, values):
+            last = f"; at its last tick {values}" if values else ""
+            return v.Counterexample(f"{fault} on a trace{last}", v.Trace(outcome.atoms, word))
         case NotChecked(reason):
             return v.NotChecked(reason)
         case _:

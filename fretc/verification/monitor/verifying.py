@@ -56,6 +56,8 @@ class Disagreement:
     word: tuple[tuple[Truth, ...], ...]
     """The values of `atoms`; None: unknown."""
     fault: str = "its column program and its steps differ"
+    values: str = ""
+    """Of the variables at the last tick, where they matter."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -182,7 +184,7 @@ def _differing(
         found = front_terms.differing(monitor, reference, (text, written), names)
         if found is not None:
             word = tuple(tuple(row.get(name) for name in atoms) for row in found.truths)
-            return Disagreement(word, found.fault)
+            return Disagreement(word, found.fault, found.values)
     wrong = next(name for name in names if actual.get(name) != expected[name])
     return NotChecked(f"`{wrong}` is not computed of variables as fretc computes it")
 

@@ -412,6 +412,7 @@ def test_a_row_that_is_refused_is_no_tick_that_is_looked_back_at() -> None:
         ("the sw shall always satisfy x ^ 17 < 1", None),
         (f"the sw shall always satisfy x < {'9' * 61}", None),
         ("the sw shall always satisfy x < 1e1000", None),
+        (f"the sw shall always satisfy minReal({', '.join('x' * 200)}) < 1", None),
         ("the sw shall always satisfy p & absReal(x, y) < 1", None),
         (
             "the sw shall always satisfy f(x) & cos(x) < 1 & x < 1",
