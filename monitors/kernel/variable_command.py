@@ -22,7 +22,8 @@ def main_by_variables(
     """Run the monitor over tables of variables and print the verdicts.
 
     Returns:
-        0 all satisfied, 1 a violation, 2 bad use or input, 3 something is not shown.
+        0 all satisfied, 1 a violation, 2 bad use or input, 3 something is not shown, 130 stopped by
+        Ctrl-C, 141 nobody reads the output any more.
     """
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
@@ -37,9 +38,10 @@ def main_by_variables(
     except InputError as error:
         _complain(str(error))
     except OSError as error:  # standard output is full, or its reader has gone
-        if not isinstance(error, BrokenPipeError):
-            _complain(f"standard output cannot be written: {error.strerror}")
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        if isinstance(error, BrokenPipeError):
+            return 141  # what a shell makes of SIGPIPE
+        _complain(f"standard output cannot be written: {error.strerror}")
     except KeyboardInterrupt:
         return 130
     except _FAULTS as error:  # status 1 would say that a requirement is violated
