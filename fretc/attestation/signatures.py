@@ -25,7 +25,7 @@ from fretish.diagnostics.source import Source, Span
 from fretish.reading.limits import within
 
 if TYPE_CHECKING:
-    from fretc.attestation.keys import Sealed
+    from fretc.attestation.keys import DsseEnvelope
     from fretc.attestation.signers import Signer, Signers
     from fretc.audit.evidence.schema import Evidence
 
@@ -36,9 +36,9 @@ SIGNERS = "allowed_signers"
 
 @dataclass(frozen=True, slots=True)
 class Envelope:
-    """A line of the file."""
+    """A line of the file: a DSSE envelope, and the statement that is its payload."""
 
-    sealed: Sealed
+    dsse: DsseEnvelope
     statement: Statement
     place: Span
 
@@ -62,7 +62,7 @@ def read(path: str) -> tuple[Envelope, ...] | Diagnostic:
 
 
 def _envelopes(source: Source) -> tuple[Envelope, ...] | Diagnostic:
-    from fretc.attestation.keys import opened
+    from fretc.attestation.keys import read_envelope
 
     envelopes = []
     start = 0
@@ -72,8 +72,8 @@ def _envelopes(source: Source) -> tuple[Envelope, ...] | Diagnostic:
         if not line.strip():
             continue
         try:
-            sealed = opened(line)
-            envelopes.append(Envelope(sealed, read_statement(sealed.payload), place))
+            dsse = read_envelope(line)
+            envelopes.append(Envelope(dsse, read_statement(dsse.payload), place))
         except MisshapenError as error:
             return _wrong(place, f"the line is no signed statement of fretc: {error}")
     return tuple(envelopes)
@@ -81,10 +81,10 @@ def _envelopes(source: Source) -> tuple[Envelope, ...] | Diagnostic:
 
 def envelope(line: str) -> Envelope:
     """The envelope of a new line."""
-    from fretc.attestation.keys import opened
+    from fretc.attestation.keys import read_envelope
 
-    sealed = opened(line)
-    return Envelope(sealed, read_statement(sealed.payload), Source("", line).span())
+    dsse = read_envelope(line)
+    return Envelope(dsse, read_statement(dsse.payload), Source("", line).span())
 
 
 def _wrong(place: Span, what: str) -> Diagnostic:
@@ -116,7 +116,7 @@ def kept(
         one
         for one in envelopes
         if (about := one.statement.main & current)
-        and not (one.sealed.keys == new.sealed.keys and about <= new.statement.main)
+        and not (one.dsse.key_ids == new.dsse.key_ids and about <= new.statement.main)
     )
 
 
@@ -208,7 +208,7 @@ class Book:
         return Signing(State.NONE, "nobody signed it")
 
     def _unknown(self, about: Sequence[_CheckedEnvelope]) -> str:
-        keys = dict.fromkeys(key for one in about for key in one.envelope.sealed.keys)
+        keys = dict.fromkeys(key for one in about for key in one.envelope.dsse.key_ids)
         names = {signer.key.fingerprint for one in about for signer in one.broken}
         unknown_keys = ", ".join(key for key in keys if key not in names)
         if not unknown_keys:
@@ -301,7 +301,7 @@ def book(files: Sequence[str], signers: Signers | None) -> Book | Diagnostic:
 
 
 def _checked(envelope: Envelope, signers: Sequence[Signer]) -> _CheckedEnvelope:
-    named = [one for one in signers if one.key.fingerprint in envelope.sealed.keys]
-    good = tuple(one for one in named if envelope.sealed.is_signed_by(one.key))
+    named = [one for one in signers if one.key.fingerprint in envelope.dsse.key_ids]
+    good = tuple(one for one in named if envelope.dsse.is_signed_by(one.key))
     bad = tuple(one for one in named if one not in good)
     return _CheckedEnvelope(envelope, frozenset(envelope.statement.subjects), good, bad)
