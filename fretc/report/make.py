@@ -21,7 +21,7 @@ from fretc.report.page.html import html
 from fretc.report.traceability.lock import read as read_lock
 from fretc.report.traceability.waivers import Waiver
 from fretc.report.traceability.waivers import read as read_waivers
-from fretc.verification.ajpf_results import evidence as read_ajpf
+from fretc.verification.ajpf_results import ajpf_proofs
 from fretc.verification.reader import read as read_proofs
 from fretish.diagnostics.diagnostic import Diagnostic
 
@@ -84,7 +84,7 @@ def make(
     if isinstance(book, Diagnostic):
         return ReportBuild(None, (book,))
     in_force, waiver_diagnostics = _waivers(project, waivers)
-    ajpf_lines, ajpf_diagnostics = read_ajpf(project.rules, ajpf)
+    ajpf_lines, ajpf_diagnostics = ajpf_proofs(project.rules, ajpf)
     no_evidence = (audit,) if isinstance(audit, Diagnostic) else ()
     present = None if isinstance(audit, Diagnostic) else audit
     whole, diagnostics = report(
