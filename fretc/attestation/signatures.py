@@ -157,7 +157,7 @@ class _CheckedEnvelope:
 
 
 @dataclass(frozen=True, slots=True)
-class Book:
+class SignatureBook:
     """All signatures of a project, checked against the signers."""
 
     signers: Signers | None
@@ -188,7 +188,9 @@ class Book:
             return signing
         if not any(one.by for one in agreeing):
             return Signing(State.CHANGED, "the statement that was signed says something else")
-        return Book(self.signers, tuple(agreeing)).of_file(attestation.EVIDENCE, evidence.sha256)
+        return SignatureBook(self.signers, tuple(agreeing)).of_file(
+            attestation.EVIDENCE, evidence.sha256
+        )
 
     def _of(self, about: Sequence[_CheckedEnvelope], subject: Subject, name: str | None) -> Signing:
         by = list(dict.fromkeys(signer for one in about for signer in one.by))
@@ -231,7 +233,7 @@ def _agrees(signed: Statement, now: Statement) -> bool:
     return signed.of(attestation.LOG) == now.of(attestation.LOG) and says == now.says
 
 
-NO_SIGNATURES = Book(None)
+NO_SIGNATURES = SignatureBook(None)
 
 
 def _has(one: _CheckedEnvelope, kind: str, sha256: str) -> bool:
@@ -271,7 +273,7 @@ def missing() -> Diagnostic | None:
     )
 
 
-def gathered(files: Sequence[str], signers: str | None) -> Book | Diagnostic:
+def read_signatures(files: Sequence[str], signers: str | None) -> SignatureBook | Diagnostic:
     """The signatures beside files, checked against a list of signers.
 
     Args:
@@ -279,7 +281,7 @@ def gathered(files: Sequence[str], signers: str | None) -> Book | Diagnostic:
         signers: path of the list; None: there is none.
     """
     if signers is None and not any(Path(beside(path)).exists() for path in files):
-        return Book(None)
+        return SignatureBook(None)
     absent = missing()
     if absent is not None:
         return absent
@@ -289,7 +291,7 @@ def gathered(files: Sequence[str], signers: str | None) -> Book | Diagnostic:
     return listed if isinstance(listed, Diagnostic) else book(files, listed)
 
 
-def book(files: Sequence[str], signers: Signers | None) -> Book | Diagnostic:
+def book(files: Sequence[str], signers: Signers | None) -> SignatureBook | Diagnostic:
     """The signatures beside files, checked."""
     checked: list[_CheckedEnvelope] = []
     for path in files:
@@ -297,7 +299,7 @@ def book(files: Sequence[str], signers: Signers | None) -> Book | Diagnostic:
         if isinstance(envelopes, Diagnostic):
             return envelopes
         checked.extend(_checked(one, signers.signers if signers else ()) for one in envelopes)
-    return Book(signers, tuple(checked))
+    return SignatureBook(signers, tuple(checked))
 
 
 def _checked(envelope: Envelope, signers: Sequence[Signer]) -> _CheckedEnvelope:
