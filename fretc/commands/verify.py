@@ -314,7 +314,7 @@ def _status(proofs: Sequence[Proof]) -> int:
     That a stop is never released breaks no requirement: it is 3, and not 1.
     """
     from compiler.logic.claims import Result
-    from fretc.verification.loop.layer import RELEASED
+    from fretc.verification.loop.closed_loop import RELEASED
 
     refuted = (proof.claim for proof in proofs if proof.result is Result.COUNTEREXAMPLE)
     if any(claim != RELEASED for claim in refuted):
