@@ -17,7 +17,7 @@ from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.rendering import Part, plain, render_all, visible
 from fretish.reading.natural_order import by_place
 
-FOLDER = "requirements"
+REQUIREMENTS_FOLDER = "requirements"
 """Where the requirements of a project are, if nobody says otherwise."""
 SHOWN, VIOLATION, BAD, NOT_SHOWN, INTERRUPTED = 0, 1, 2, 3, 130
 """Exit status: all shown, a violation, bad use or input, something not shown, Ctrl-C."""
@@ -85,7 +85,7 @@ def say_briefly(diagnostics: Sequence[Diagnostic], requirements: str) -> None:
     counts = Counter(each.code.number for each in warnings)
     codes = ", ".join(f"{count} {code}" for code, count in sorted(counts.items()))
     noun = "warning about a sentence" if len(warnings) == 1 else "warnings about sentences"
-    place = "" if requirements == FOLDER else f" --requirements {quote(requirements)}"
+    place = "" if requirements == REQUIREMENTS_FOLDER else f" --requirements {quote(requirements)}"
     if others:
         say_line("")
     say_line(visible(f"{len(warnings)} {noun} ({codes}): see `fretc check{place}`"))
