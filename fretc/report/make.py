@@ -12,6 +12,7 @@ from compiler.files.dates import today
 from compiler.formalization.formalized import Formalized
 from compiler.project.folder import Project
 from fretc.attestation.signatures import gathered
+from fretc.audit.evidence.declared_units import without_samples
 from fretc.audit.evidence.reader import read as read_evidence
 from fretc.audit.evidence.schema import Result
 from fretc.report.assembly import report
@@ -36,7 +37,7 @@ class ReportBuild:
     rules: tuple[Formalized, ...] = ()
     """The formalized requirements; the page draws what they mean."""
     results: tuple[Result, ...] = ()
-    """Those of the evidence, in its order."""
+    """Those of the evidence, in its order and in declared units."""
 
     @property
     def html(self) -> str | None:
@@ -94,7 +95,7 @@ def make(
         whole,
         (*no_evidence, *waiver_diagnostics, *ajpf_diagnostics, *diagnostics),
         project.rules,
-        present.results if present else (),
+        without_samples(present.results, project.declarations) if present else (),
     )
 
 
