@@ -69,8 +69,8 @@ def word_of(result: Result, refused: Collection[str] = ()) -> str:
     """
     if result.requirement in refused:
         return NOT_JUDGED
-    counted = result.trials is not None and result.verdict == kernel.INCONCLUSIVE
-    return COUNTED if counted else result.verdict
+    counts = result.trials is not None and result.verdict != kernel.NO_DATA
+    return COUNTED if counts else result.verdict
 
 
 def sign_of(word: str) -> Sign:
