@@ -12,6 +12,7 @@ from compiler.files.dates import today
 from compiler.formalization.formalized import Formalized
 from compiler.project.folder import Project
 from fretc.attestation.signatures import read_signatures
+from fretc.audit.evidence.declared_units import without_samples
 from fretc.audit.evidence.reader import read as read_evidence
 from fretc.audit.evidence.schema import Result
 from fretc.report.assembly import report
@@ -40,7 +41,7 @@ class ReportBuild:
     rules: tuple[Formalized, ...] = ()
     """The formalized requirements; the HTML page draws what they mean."""
     results: tuple[Result, ...] = ()
-    """The results of the evidence, in its order."""
+    """The results of the evidence, in its order and in declared units."""
 
     @property
     def html(self) -> str | None:
@@ -105,7 +106,7 @@ def make(
         full_report,
         (*notes, *waiver_diagnostics, *ajpf_diagnostics, *report_diagnostics),
         project.rules,
-        present.results if present else (),
+        without_samples(present.results, project.declarations) if present else (),
     )
 
 

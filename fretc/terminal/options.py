@@ -9,7 +9,7 @@ from typing import Any
 import click
 from click.shell_completion import CompletionItem
 
-from fretc.terminal.output import REQUIREMENTS_FOLDER, stop
+from fretc.terminal.output import EVIDENCE, REQUIREMENTS_FOLDER, stop
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 
 Command = Callable[..., Any]
@@ -81,7 +81,7 @@ hazards_option = path_option(
 )
 evidence_option = path_option(
     "--evidence",
-    default="build/evidence.json",
+    default=EVIDENCE,
     show_default=True,
     help="What `fretc audit` has written.",
 )
