@@ -333,7 +333,7 @@ def test_the_stated_confidence_is_used(fretc: Fretc) -> None:
     logs(33, "1000", "0100")
     assert fretc("audit", "runs", "--confidence", "0.99").status == 3
     assert estimate()["confidence"] == 0.99
-    assert " --confidence 0.99 --evidence " in json.dumps(reported(fretc)["commands"])
+    assert " --confidence 0.99 -o " in json.dumps(reported(fretc)["commands"])
     assert fretc("audit", "runs", "--confidence", "0.9").status == 0
     for value in ("0.5", "1", "95", "x"):
         assert fretc("audit", "runs", "--confidence", value).status == 2
