@@ -17,6 +17,8 @@ Order = Literal["<", "<=", ">", ">="]
 MIRRORED: Mapping[str, Order] = {"<": ">", "<=": ">=", ">": "<", ">=": "<="}
 """What says the same when both sides are exchanged."""
 ArithmeticOperator = Literal["+", "-", "*", "/", "mod", "^"]
+MOST_EXPONENT = 16
+"""Of a power that is computed: it is a product."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -215,14 +217,18 @@ def with_comparisons(
             assert_never(expression)
 
 
-def names(expression: Expression) -> Iterator[Name]:
-    """Every `Name` in it, left to right, with repetitions."""
+def parts(expression: Expression) -> Iterator[Expression]:
+    """The expression, and everything in it, left to right."""
     waiting = [expression]
     while waiting:
         part = waiting.pop()
-        if isinstance(part, Name):
-            yield part
+        yield part
         waiting.extend(reversed(children(part)))
+
+
+def names(expression: Expression) -> Iterator[Name]:
+    """Every `Name` in it, left to right, with repetitions."""
+    return (part for part in parts(expression) if isinstance(part, Name))
 
 
 def depth(expression: Expression) -> int:

@@ -264,6 +264,14 @@ class _Reader(Fields):
 
     def _valid(self, table: Mapping[str, Any], at: tuple[str, ...]) -> e.Expression | None:
         valid = self._expression(table, at)
+        if valid is not None and binding.ticks_back(valid):
+            self._say(
+                Code.BAD_EXPRESSION,
+                "`pre` is of ticks, and a message has none",
+                self.tables.value(*at),
+                "compare the reading with fields of its message",
+            )
+            return None
         if valid is None or binding.is_truth(valid):
             return valid
         self._say(
@@ -394,6 +402,8 @@ class _Reader(Fields):
         self._keep(at, [m for name in signals for m in self.mistakes.get(("signal", name), ())])
         if not self._is_truth(expression, at):
             return None
+        if not self._ticks_fit(table, expression, at):
+            return None
         if table.get("agg", Aggregate.LAST) == Aggregate.LAST:
             last = f"proposition {name}: the last sample of a tick counts"
             self.defaults.append(Default(("proposition", name), last, "agg" in table))
@@ -430,6 +440,34 @@ class _Reader(Fields):
             percents = {name for name, unit in self.units.items() if unit == units.PERCENT}
             self.diagnostics.extend(binding.plain_percents(expression, percents, place))
         return kind is None
+
+    def _ticks_fit(
+        self, table: Mapping[str, Any], expression: e.Expression, at: tuple[str, ...]
+    ) -> bool:
+        """Whether what looks back by ticks stands where there are ticks."""
+        if not binding.ticks_back(expression):
+            return True
+        place = self.tables.value(*at, "expr")
+        if table.get("agg", Aggregate.LAST) != Aggregate.LAST:
+            self._say(
+                Code.BAD_BINDING_FIELD,
+                "`pre` sees what is in force at each tick: `agg` can only be `last`",
+                self.tables.value(*at, "agg"),
+                "take it out",
+            )
+        elif any(
+            isinstance(part, e.Persistence) and binding.ticks_back(part)
+            for part in e.parts(expression)
+        ):
+            self._say(
+                Code.BAD_EXPRESSION,
+                "`pre` counts ticks, and `for` the time between them",
+                place,
+                "let the requirement say for how long: `for 2 ticks satisfy ...`",
+            )
+        else:
+            return True
+        return False
 
     # Variables that are not bound
 
