@@ -17,16 +17,18 @@ from compiler.formalization.past import past, watch
 from compiler.formalization.resolution import in_own_units, resolved
 from compiler.logic.formula import endless
 from compiler.logic.printing import identifier
+from fretish.bindings.comparisons import is_measured
 from fretish.bindings.declarations import Declarations, Modality, Variable
 from fretish.checking import temporal_predicates, too_deep
 from fretish.clock import Clock, assumed_ticks, in_ticks
 from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
 from fretish.documents import Requirement
+from fretish.expressions import Truth
 from fretish.parser import parse
 from fretish.pitfalls import surprises
 from fretish.reading.limits import within
 from fretish.reading.recursion import deep
-from fretish.syntax import Sentence
+from fretish.syntax import Sentence, with_comparisons
 
 
 @deep
@@ -166,7 +168,15 @@ def _remarks(sentence: Sentence, declarations: Declarations | None) -> Iterator[
     if assumed is not None:
         yield assumed
     yield from surprises(sentence)
-    yield from temporal_predicates(sentence)
+    yield from temporal_predicates(_without_signals(sentence, declarations))
+
+
+def _without_signals(sentence: Sentence, declarations: Declarations | None) -> Sentence:
+    """The sentence without the comparisons that are judged as they stand: by signals."""
+    signals = declarations.signals if declarations else {}
+    return with_comparisons(
+        sentence, lambda each: Truth(True) if is_measured(each, signals) else each
+    )
 
 
 def duplicates(requirements: Sequence[Requirement]) -> Mapping[int, Diagnostic]:
