@@ -48,10 +48,14 @@ def check_depth(sentence: Sentence) -> Diagnostic | None:
 
 def too_deep(sentence: Sentence) -> Diagnostic:
     """F115."""
+    return _too_deep(sentence.span)
+
+
+def _too_deep(place: Span | None) -> Diagnostic:
     return Diagnostic(
         Code.TOO_DEEP,
         "an expression has too many operators within each other",
-        sentence.span,
+        place,
         help="give parts of it names of their own",
     )
 
@@ -79,15 +83,28 @@ def has_units(sentence: Sentence) -> bool:
 
 def check_names(sentence: Sentence) -> Diagnostic | None:
     """F109 for the first name that is a reserved word."""
-    for expression in conditions(sentence):
-        for id, span in _names(expression):
-            if id in RESERVED:
-                return Diagnostic(
-                    Code.RESERVED,
-                    f"`{id}` is reserved by the languages that requirements are exported to",
-                    span,
-                    help=f"choose another name, such as `{id}_`",
-                )
+    mistakes = (_reserved(expression) for expression in conditions(sentence))
+    return next((mistake for mistake in mistakes if mistake is not None), None)
+
+
+def check_value(expression: e.Expression, place: Span) -> Diagnostic | None:
+    """The same checks, of the number or the truth value that a variable stands for."""
+    if depth(expression) > MOST:
+        return _too_deep(place)
+    is_truth = _is_boolean(expression, expected=True)
+    return _reserved(expression) or _check_kinds(expression, place, boolean=is_truth)
+
+
+def _reserved(expression: e.Expression) -> Diagnostic | None:
+    """F109."""
+    for id, span in _names(expression):
+        if id in RESERVED:
+            return Diagnostic(
+                Code.RESERVED,
+                f"`{id}` is reserved by the languages that requirements are exported to",
+                span,
+                help=f"choose another name, such as `{id}_`",
+            )
     return None
 
 
@@ -109,9 +126,11 @@ def check_response_kinds(sentence: Sentence) -> Diagnostic | None:
     return None
 
 
-def _check_kinds(expression: e.Expression, place: Span | None) -> Diagnostic | None:
+def _check_kinds(
+    expression: e.Expression, place: Span | None, *, boolean: bool = True
+) -> Diagnostic | None:
     """A name may be either: its kind is what its place asks for."""
-    waiting: list[tuple[e.Expression, bool, Span | None]] = [(expression, True, place)]
+    waiting: list[tuple[e.Expression, bool, Span | None]] = [(expression, boolean, place)]
     while waiting:
         part, boolean, near = waiting.pop()
         here = getattr(part, "span", None) or near

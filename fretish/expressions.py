@@ -6,7 +6,7 @@ Spans do not compare: two expressions are equal when they say the same, wherever
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Literal, assert_never
 
@@ -195,6 +195,25 @@ def children(expression: Expression) -> tuple[Expression, ...]:
             | Comparison(_, left, right)
         ):
             return (left, right)
+
+
+def with_children(expression: Expression, parts: Sequence[Expression]) -> Expression:
+    """The expression with other direct parts, as many; `&` and `|` stay flat."""
+    match expression:
+        case Truth() | Name() | Number() | Quantity():
+            return expression
+        case Not() | Negation() | Persistence():
+            return replace(expression, arg=parts[0])
+        case And():
+            return And(tuple(arg for part in parts for arg in _flat(And, part)))
+        case Or():
+            return Or(tuple(arg for part in parts for arg in _flat(Or, part)))
+        case Call():
+            return replace(expression, args=tuple(parts))
+        case Xor() | Implies() | Iff() | Arithmetic() | Comparison():
+            return replace(expression, left=parts[0], right=parts[1])
+        case _:
+            assert_never(expression)
 
 
 def with_comparisons(

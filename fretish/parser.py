@@ -20,7 +20,7 @@ from lark.visitors import Transformer_NonRecursive
 
 from fretish import expressions as e
 from fretish import syntax as s
-from fretish.checking import check_depth, check_names, check_response_kinds
+from fretish.checking import check_depth, check_names, check_response_kinds, check_value
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.diagnostics.source import Span
 from fretish.syntax_errors import (
@@ -45,6 +45,19 @@ _UNITS: dict[str, s.TimeUnit] = {
 }
 
 
+def parse_value(text: Span) -> e.Expression | Diagnostic:
+    """Read one expression, all of it: what a variable stands for.
+
+    Args:
+        text: the expression, somewhere in a source; spans of the tree point into that source.
+    """
+    tree = _read(text, "value")
+    if isinstance(tree, Diagnostic):
+        return tree
+    expression = cast(e.Expression, tree)
+    return check_value(expression, text) or expression
+
+
 def parse(text: Span) -> s.Sentence | Diagnostic:
     """Read one sentence, all of it.
 
@@ -56,9 +69,19 @@ def parse(text: Span) -> s.Sentence | Diagnostic:
     """
     if not text.text.strip():
         return no_sentence(text)
+    tree = _read(text, "start")
+    if isinstance(tree, Diagnostic):
+        return tree
+    sentence = cast(s.Sentence, tree)
+    checks = (check_depth, check_names, check_response_kinds)
+    return next((mistake for check in checks if (mistake := check(sentence))), sentence)
+
+
+def _read(text: Span, start: str) -> object:
+    """The tree of a rule of the grammar, or the first thing that does not fit."""
     try:
         with _places_in(text):
-            sentence = cast(s.Sentence, _Build().transform(_lark().parse(text.text)))
+            return _Build().transform(_lark().parse(text.text, start=start))
     except UnexpectedToken as error:
         return _unexpected(error, text)
     except UnexpectedCharacters as error:
@@ -67,8 +90,6 @@ def parse(text: Span) -> s.Sentence | Diagnostic:
         if isinstance(error.orig_exc, _MistakeError):
             return error.orig_exc.diagnostic
         raise
-    checks = (check_depth, check_names, check_response_kinds)
-    return next((mistake for check in checks if (mistake := check(sentence))), sentence)
 
 
 class _MistakeError(Exception):
@@ -104,6 +125,7 @@ def _lark() -> Lark:
     grammar = files("fretish").joinpath("grammar.lark").read_text(encoding="utf-8")
     return Lark(
         grammar + _QUANTITY,
+        start=["start", "value"],
         parser="lalr",
         lexer="basic",
         propagate_positions=True,
@@ -297,6 +319,9 @@ class _Build(Transformer_NonRecursive[Token, Any]):
         if not text.isdigit() or len(text) > 15:
             raise _MistakeError(bad_duration(_span(children[0], digits[-1])))
         return s.Duration(int(text), _UNITS[unit.type], _meta_span(meta))
+
+    def value(self, meta: Any, children: list[e.Expression]) -> e.Expression:
+        return children[0]
 
     def start(self, meta: Any, children: list[Any]) -> s.Sentence:
         *parts, response = _parts(children)

@@ -335,10 +335,13 @@ def is_eventual(timing: Timing) -> bool:
 
 def with_comparisons(sentence: Sentence, rewrite: Callable[[Comparison], Expression]) -> Sentence:
     """The sentence with each comparison in it replaced."""
+    return with_expressions(
+        sentence, lambda expression: expressions.with_comparisons(expression, rewrite)
+    )
 
-    def rewritten(expression: Expression) -> Expression:
-        return expressions.with_comparisons(expression, rewrite)
 
+def with_expressions(sentence: Sentence, rewritten: Callable[[Expression], Expression]) -> Sentence:
+    """The sentence with another scope, condition, stop condition and response."""
     scope, condition, timing = sentence.scope, sentence.condition, sentence.timing
     return replace(
         sentence,

@@ -28,11 +28,13 @@ from fretish.bindings.declarations import (
     Variable,
     path,
 )
+from fretish.bindings.definitions import circle
 from fretish.bindings.fields import Fields
 from fretish.bindings.interceptor import Loop
 from fretish.clock import Clock, End, Rounding, TimeSource
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.source import Source, Span
+from fretish.parser import parse_value
 from fretish.reading.limits import within
 from fretish.reading.toml_text import Tables, read
 
@@ -41,7 +43,7 @@ _TOPIC = re.compile(r"[A-Za-z_~/]\S*")
 """A topic, and no duration: a duration begins with a digit."""
 _CLOCK = ("time", "tick", "phase", "end", "rounding")
 _SIGNAL = (
-    "path", "type", "reduce", "unit", "valid", "invalid", "max_age", "footprint", "sensor",
+    "path", "type", "reduce", "unit", "valid", "invalid", "max_age", "footprint", "sensor", "role",
 )  # fmt: skip
 _PROPOSITION = ("text", "expr", "role", "agg", "on_unknown", "kind", "modality", "action")
 _INVALID = {
@@ -97,13 +99,15 @@ class _Reader(Fields):
         self._check_keys(data, _TABLES, "the bindings")
         signals = self._parts("signal", self._signal)
         propositions = self._parts("proposition", self._proposition)
+        variables = {name: self._variable(name, f) for name, f in self._tables("variable").items()}
+        self._check_definitions(variables)
         loop = Loop(self.tables, self.diagnostics)
         return Declarations(
             self.tables.text.source,
             self._clock(),
             signals,
             propositions,
-            {name: self._variable(name, f) for name, f in self._tables("variable").items()},
+            variables,
             tuple(each for each in self.defaults if each.part not in self.mistakes),
             loop.interceptor(),
             self._assumed(loop),
@@ -259,6 +263,9 @@ class _Reader(Fields):
             max_age=self._max_age(table, at),
             footprint=footprint,
             sensor=self._sensor(table, at),
+            role=self._choice(table, (*at, "role"), Role, Role.INTERNAL)
+            if "role" in table
+            else None,
             span=self.tables.value(*at, "path"),
         )
 
@@ -479,13 +486,60 @@ class _Reader(Fields):
             for key in ("component", "type", "role", "text")
         }
         fret = self._field(table, (*at, "fret"), dict, "a table of texts") or {}
+        value, place = self._value(table, (*at, "value"))
+        if value is not None and texts["role"] not in ("", Role.INTERNAL, Role.MODE):
+            self._say(
+                Code.BAD_BINDING_FIELD,
+                f"`{name}` stands for something: its role cannot be `{texts['role']}`",
+                self.tables.value(*at, "role"),
+                "it may be internal or mode",
+            )
         return Variable(
             name,
             **texts,
             fret=fret,
             modality=self._modality(table, at),
             action=self._action(table, at),
+            value=value,
+            span=place,
         )
+
+    def _value(
+        self, table: Mapping[str, Any], at: tuple[str, ...]
+    ) -> tuple[e.Expression | None, Span | None]:
+        """What a variable stands for, and where that is written."""
+        text = self._field(table, at, str, 'an expression in quotes: `"1.5 m/s"`')
+        if text is None:
+            return None, None
+        place = self._inside(at, text)
+        value = parse_value(place)
+        if isinstance(value, Diagnostic):
+            self.diagnostics.append(value)
+            return None, place
+        return value, place
+
+    def _check_definitions(self, variables: Mapping[str, Variable]) -> None:
+        """F342 and F343: what a name stands for is said once, and not by way of itself."""
+        values = {name: v.value for name, v in variables.items() if v.value is not None}
+        for name in values:
+            kinds = [kind for kind in ("signal", "proposition") if name in self._tables(kind)]
+            other = f"by `[{kinds[0]}.{name}]`" if kinds else "by FRETish, as the first tick"
+            if kinds or name == "FTP":
+                self._say(
+                    Code.DOUBLE_DEFINITION,
+                    f"`{name}` is defined twice: by its `value`, and {other}",
+                    self.tables.value("variable", name, "value"),
+                    "take one of them out",
+                )
+        chain = circle(values)
+        if chain:
+            self._say(
+                Code.DEFINITION_CIRCLE,
+                f"the values of variables lead in a circle: {' -> '.join(chain[:_MOST_NAMES])}"
+                f"{' ...' if len(chain) > _MOST_NAMES else ''}",
+                self.tables.value("variable", chain[0], "value"),
+                "let one of them stand for numbers and signals alone",
+            )
 
     def _modality(self, table: Mapping[str, Any], at: tuple[str, ...]) -> Modality:
         if table.get("modality") != "P":
@@ -541,7 +595,9 @@ class _Reader(Fields):
         return None
 
 
-_VARIABLE = ("component", "type", "role", "text", "fret", "modality", "action")
+_VARIABLE = ("component", "type", "role", "text", "value", "fret", "modality", "action")
+_MOST_NAMES = 12
+"""Of a circle that a message shows."""
 _ACTION = re.compile(r"[a-z][A-Za-z0-9_]*")
 
 

@@ -85,6 +85,9 @@ class Code(Enum):
     PLAIN_PERCENT = ("F338", "a plain number stands beside a signal in percent")
     WHICH_UNIT = ("F350", "a bare number stands beside signals in several units")
     PROSE_DRIFT = ("F351", "title or text state another number than the requirement")
+    DEFINITION_CIRCLE = ("F342", "the values of variables lead in a circle")
+    DOUBLE_DEFINITION = ("F343", "a name is defined in two ways")
+    VARIABLE_TYPE = ("F344", "a variable is used against its type")
     AMBIGUOUS_UNIT = ("F339", "a part of a unit is the name of a signal too")
 
     UNREADABLE_LOG = ("F401", "the log cannot be read")
