@@ -60,7 +60,7 @@ def _lexemes(text: str) -> list[str] | None:
 
 def _is_clear(lexemes: list[str]) -> bool:
     """Whether `or` and `xor`, whose ranks differ, do not meet, nor `not` and a comparison."""
-    if {"or", "xor"} <= {*lexemes}:
+    if any({"or", "xor"} <= signs for signs in _levels(lexemes)):
         return False
     for i, word in enumerate(lexemes):
         after = [*lexemes[i + 1 : i + 3], "", ""]
@@ -69,6 +69,21 @@ def _is_clear(lexemes: list[str]) -> bool:
         if word == "not" and after[0] == "(" and not _is_followed(lexemes, i + 1):
             return False
     return True
+
+
+def _levels(lexemes: list[str]) -> list[set[str]]:
+    """What stands between each pair of parentheses, and in none, without what is inside of it."""
+    found: list[set[str]] = [set()]
+    open_ = [0]
+    for word in lexemes:
+        if word == "(":
+            open_.append(len(found))
+            found.append(set())
+        elif word == ")" and len(open_) > 1:
+            open_.pop()
+        else:
+            found[open_[-1]].add(word)
+    return found
 
 
 def _is_followed(lexemes: list[str], opening: int) -> bool:
