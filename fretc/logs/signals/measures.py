@@ -243,7 +243,7 @@ def _arithmetic(op: e.ArithmeticOperator, left: Term, right: Term) -> Term:
             case "mod":
                 x, y, scale = together(_double(left), _double(right))
                 return Measure(np.where(y == 0, np.nan, np.mod(x, y)), scale)
-            case "^":
+            case _:  # `^`; sums are above
                 return _power(a, right)
 
 

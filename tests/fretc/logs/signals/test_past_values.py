@@ -3,6 +3,7 @@
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from fractions import Fraction
+from typing import Any
 
 import numpy as np
 import pytest
@@ -32,7 +33,7 @@ def bindings(expression: str, tick: str = "10 ns", unit: str = "1", extra: str =
     )
 
 
-def samples(pairs: Pairs, kind: object = np.float64) -> Samples:
+def samples(pairs: Pairs, kind: Any = np.float64) -> Samples:
     ordered = sorted(pairs, key=lambda pair: pair[0])
     times = np.array([time for time, _ in ordered], np.int64)
     return Samples(times, np.array([value for _, value in ordered], kind))
