@@ -27,12 +27,12 @@ from fretish.clock import Clock, assumed_ticks, in_ticks
 from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
 from fretish.diagnostics.source import Span
 from fretish.documents import Requirement
-from fretish.expressions import Truth
-from fretish.parser import parse
+from fretish.expressions import Comparison, Expression, Truth, with_comparisons
+from fretish.parser import mistakes, parse
 from fretish.pitfalls import surprises
 from fretish.reading.limits import within
 from fretish.reading.recursion import deep
-from fretish.syntax import Sentence, with_comparisons
+from fretish.syntax import Sentence, with_expressions
 
 
 @deep
@@ -57,7 +57,7 @@ def _formalized(
         return None, (_free_text(requirement),)
     written = parse(requirement.wording)
     if isinstance(written, Diagnostic):
-        return None, (written,)
+        return None, mistakes(requirement.wording)
     definitions = used(written, declarations.definitions) if declarations else {}
     wrong = _misuses(written, definitions, declarations, requirement.wording)
     if wrong:
@@ -100,7 +100,22 @@ def _judged(
     sentence = expanded(written, definitions)
     if isinstance(sentence, Diagnostic) or declarations is None:
         return sentence
-    return check_response_kinds(sentence) or in_own_units(sentence, declarations, place)
+    wrong = next(check_response_kinds(sentence), None)
+    return wrong or in_own_units(sentence, declarations, place)
+
+
+@deep
+def unreadable_sentence(requirement: Requirement) -> tuple[Diagnostic, ...]:
+    """The mistakes of the sentence of a requirement whose header has some, too.
+
+    None where the header does not end: nothing says where the sentence begins.
+    """
+    wording = requirement.wording
+    codes = {mistake.code for mistake in requirement.mistakes}
+    if not codes or Code.UNCLOSED_HEADER in codes or requirement.is_free_text:
+        return ()
+    found = within(wording.end - wording.start, wording, partial(mistakes, wording))
+    return (found,) if isinstance(found, Diagnostic) else found
 
 
 def clashes(rules: Sequence[Formalized]) -> Iterator[Diagnostic]:
@@ -211,9 +226,11 @@ def _remarks(sentence: Sentence, declarations: Declarations | None) -> Iterator[
 def _without_signals(sentence: Sentence, declarations: Declarations | None) -> Sentence:
     """The sentence without the comparisons that are judged as they stand: by signals."""
     signals = declarations.signals if declarations else {}
-    return with_comparisons(
-        sentence, lambda each: Truth(True) if is_measured(each, signals) else each
-    )
+
+    def answered(comparison: Comparison) -> Expression:
+        return Truth(True) if is_measured(comparison, signals) else comparison
+
+    return with_expressions(sentence, partial(with_comparisons, rewrite=answered))
 
 
 def duplicates(requirements: Sequence[Requirement]) -> Mapping[int, Diagnostic]:

@@ -21,7 +21,7 @@ from compiler.formalization.obligation import TRAITS, Obligation, Trait, obligat
 from compiler.formalization.record import wording
 from compiler.logic import printing
 from compiler.logic.identifiers import legal_names
-from compiler.targets.automata.refusals import no_automaton
+from compiler.targets.automata.expressibility import no_automaton
 from compiler.targets.automata.smv_symbols import monitor
 from compiler.targets.target import DEFAULT, Options, Target, stem
 from fretish.checking import RESERVED
@@ -120,4 +120,10 @@ def _specs(
     return specs
 
 
-TARGET = Target("smv", "a model with the monitor as a module, for NuSMV and nuXmv", emit, refuse)
+TARGET = Target(
+    "smv",
+    "a model with the monitor as a module, for NuSMV and nuXmv",
+    emit,
+    refuse,
+    next_step="`NuSMV {}` checks its properties",
+)

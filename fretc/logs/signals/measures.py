@@ -44,8 +44,8 @@ class Scope:
     `numbers` have shape (length,), or one element for all points; NaN is unknown. Times their
     `scales` (1 where none is given) they are in base units. Quantities are read in `unit` or its
     powers. `persistences` are the states of each `... for 200 ms`, from
-    `fretc.logs.signals.propositions`. Where the points are ticks, `earlier` has them one tick
-    before; None: they are the first tick.
+    `fretc.logs.signals.propositions`. `words` are the values of enumerated signals. Where the
+    points are ticks, `earlier` has them one tick before; None: they are the first tick.
     """
 
     length: int
@@ -54,6 +54,7 @@ class Scope:
     scales: Mapping[str, Fraction] = field(default_factory=dict)
     persistences: Mapping[e.Persistence, NDArray[np.int8]] = field(default_factory=dict)
     earlier: Scope | None = None
+    words: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True)
@@ -117,6 +118,8 @@ def term(expression: e.Expression, scope: Scope) -> Term:
             return _before(initial, arg, scope)
         case e.Call(name, args, _):
             return _call(name, [term(arg, scope) for arg in args])
+        case e.Word(text):
+            raise ExpressionError(f"a number is needed, and `{text}` is a word")
         case _:
             raise ExpressionError("a number is needed, and this is a truth value")
 
