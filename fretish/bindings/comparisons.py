@@ -232,7 +232,10 @@ class _Writer:
         zero = isinstance(part, e.Number) and number(part.digits) == 0
         if target.mixed and not zero:
             raise _MistakeError(_which_unit(self._span(part)))
-        if self._bare or not target.name:
+        if self._bare:
+            return part
+        part = _in_bindings(part)
+        if not target.name:
             return part
         if unit(target.name) is None:
             raise _MistakeError(_which_unit(self._span(part)))
@@ -292,6 +295,18 @@ def plain(exact: Fraction, span: Span | None = None) -> e.Expression:
     text = str(scaled.numerator).rjust(digits + 1, "0")
     whole, fraction = text[: len(text) - digits], text[len(text) - digits :].rstrip("0")
     return e.Number(f"{whole}.{fraction}" if fraction else whole, span)
+
+
+def _in_bindings(part: e.Expression) -> e.Expression:
+    """What is made of bare numbers alone, as bindings spell it."""
+    parts = [_in_bindings(each) for each in e.children(part)]
+    match e.with_children(part, parts):
+        case e.Call(name, _) as call:
+            return replace(call, name=FUNCTIONS.get(name, name))
+        case e.Arithmetic("^", _, exponent) as power:
+            return replace(power, right=e.Number(str(_exponent(exponent))))
+        case other:
+            return other
 
 
 def _is_number(digits: str) -> bool:

@@ -95,6 +95,9 @@ def rewritten(text: str) -> tuple[str, str] | Code:
             "speed - pre(0 km/h, speed) < 3.6 km/h",
         ),
         ("preInt(1, tally) = 2", "preInt(1, tally) = 2", "pre(1, tally) = 2"),
+        ("tally > preInt(1, 2)", "tally > preInt(1, 2)", "tally > pre(1, 2)"),
+        ("speed < maxReal(1, 2)", "speed < maxReal(1, 2)", "speed < max(1, 2) * 1 km/h"),
+        ("tally < 10 ^ 2.0", "tally < 10 ^ 2.0", "tally < 10 ^ 2"),
     ],
 )
 def test_a_number_is_in_the_unit_of_the_signal_beside_it(
