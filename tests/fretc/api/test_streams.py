@@ -21,6 +21,8 @@ SENTENCES = (
     "whenever p r shall eventually satisfy q",
     "r shall always satisfy q",
     "upon p r shall for 2 ticks satisfy q",
+    "whenever p r shall immediately satisfy x - preReal(2, x) <= limit | falling",
+    "r shall always satisfy (x + 1) mod 3 < 2 & x ^ 2 <= 16",
 )
 BINDINGS = """
 [clock]
@@ -29,6 +31,10 @@ end = "{end}"
 [signal.x]
 path = "/x.data"
 max_age = "25 ns"
+[variable.limit]
+value = "2"
+[variable.falling]
+value = "x < preInt(1, preInt(4, x))"
 [proposition.p]
 expr = "x < 3"
 agg = "any"
