@@ -19,7 +19,7 @@ import random
 from collections.abc import Iterator, Mapping, Sequence
 
 from compiler.formalization.formalized import Formalized
-from compiler.formalization.letters import atoms_of
+from compiler.formalization.letters import atoms_of, excluded
 from compiler.logic.claims import Outcome, Trace, not_checked, proved, refuted
 from compiler.targets.python import monitor as target
 from fretc.verification.monitor import rails
@@ -85,8 +85,7 @@ def _compared(
         return not_checked("the monitor is of other requirements")
     place = places[0]
     atoms = tuple(dict.fromkeys((*atoms_of(rule.sentence), *monitor.PROPOSITIONS)))
-    machine = Stepped(monitor, place, atoms)
-    result = compare(machine, rule.sentence, rule.ticks or 0, atoms, limit)
+    result = _lock_step(rule, monitor, place, atoms, limit)
     if isinstance(result, str):
         return not_checked(result)
     if isinstance(result, Difference):
@@ -103,6 +102,22 @@ def _compared(
         return _proved(result, ticks)
     states = _compared_with_generated(generated, text, monitor, place, atoms, limit)
     return _proved(result, ticks, states) if isinstance(states, int) else states
+
+
+def _lock_step(
+    rule: Formalized, monitor: Monitor, place: int, atoms: Sequence[str], limit: int
+) -> Equivalence | Difference | str:
+    """The comparison with the automaton of the sentence, over all valuations of the atoms.
+
+    Where they differ, over those that can occur: a trace that no numbers make shows nothing.
+    """
+    sentence, ticks = rule.sentence, rule.ticks or 0
+    result = compare(Stepped(monitor, place, atoms), sentence, ticks, atoms, limit)
+    impossible = excluded(rule) if isinstance(result, Difference) else ()
+    if not impossible:
+        return result
+    machine = Stepped(monitor, place, atoms)
+    return compare(machine, sentence, ticks, atoms, limit, impossible)
 
 
 def _proved(same: Equivalence, ticks: int, states: int = 0) -> Outcome:
