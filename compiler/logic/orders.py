@@ -52,7 +52,7 @@ def exclusions(
     read = {name: _relation(each, scales) for name, each in comparisons.items()}
     found: list[Exclusion] = []
     for group in _groups(read):
-        _Search({name: read[name] for name in group}, found).run()
+        _Search({name: read[name] for name in read if name in group}, found).run()
     return tuple(found)
 
 

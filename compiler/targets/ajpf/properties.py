@@ -23,8 +23,8 @@ from compiler.files.templating import render
 from compiler.formalization.formalized import Formalized
 from compiler.formalization.obligation import Uninterpreted, boolean, obligation
 from compiler.logic import formula as f
-from compiler.logic.printing import is_compound
 from compiler.targets.ajpf import without_next as nextfree
+from compiler.targets.comparison_names import comparison_names, definitions
 from compiler.targets.target import (
     DEFAULT,
     Options,
@@ -174,10 +174,8 @@ def _refused_name(rule: Formalized) -> Diagnostic | None:
     if not AGENT.fullmatch(agent) or agent in KEY_WORDS:
         mend = "begin with a letter, use letters, digits and `_` only, and no key word of AJPF"
         return _not(rule, f"the agent name `{agent}`", mend)
-    for name in rule.propositions:
-        if is_compound(name):
-            mend = "give it a name of its own that begins with a small letter, and bind that"
-            return _not(rule, f"the proposition `{name}`", mend)
+    names = comparison_names(rule)
+    for name in (names.get(name, name) for name in rule.propositions):
         if not FUNCTOR.fullmatch(name):
             mend = "begin with a small letter, and use letters, digits and `_` only"
             return _not(rule, f"the proposition `{name}`", mend)
@@ -253,12 +251,12 @@ def _controls(rule: Formalized, key: str) -> Iterator[tuple[str, f.Formula, str]
 
 
 def _text(formula: f.Formula, rule: Formalized) -> str:
-    agent = rule.sentence.component
+    agent, names = rule.sentence.component, comparison_names(rule)
 
     def spell(name: str) -> str:
         declared = rule.glossary.get(name)
         modality = declared.modality if declared else Modality.BELIEF
-        return f"{modality}({agent},{name})"
+        return f"{modality}({agent},{names.get(name, name)})"
 
     return property_text(formula, spell)
 
@@ -317,6 +315,7 @@ def text(rule: Formalized, options: Options = DEFAULT) -> str:
         id=rule.id,
         sentence=" ".join(rule.requirement.wording.text.split()),
         loss=weakened(rule, options),
+        definitions=definitions(rule),
         properties=properties(rule, options),
     )
 

@@ -51,7 +51,8 @@ def compared(
         machine: laid out as fretc writes it.
         place: of the requirement among those of the machine.
         reference: a monitor of one requirement.
-        atoms: the order of the values in a letter; at least the propositions of both.
+        atoms: the order of the values in a letter; the other propositions of the machine are false,
+            and the requirement must not depend on them.
         limit: the most pairs of states; with more the result is None.
     """
     states = 0
@@ -77,7 +78,9 @@ class _Rail:
         self._rail: Any = monitor.RAIL(doubt=doubt)
         self._place = place
         self._cells = Cells(self._rail)
-        self._order = tuple(atoms.index(name) for name in monitor.PROPOSITIONS)
+        self._order = tuple(
+            atoms.index(name) if name in atoms else None for name in monitor.PROPOSITIONS
+        )
         prefixes = tuple(n.removesuffix("_open") for n in self._rail.__slots__ if _is_open(n))
         self._marks = tuple((mark, f"{prefix}_{mark}") for prefix in prefixes for mark in MARKS)
 
@@ -87,7 +90,7 @@ class _Rail:
 
     def step(self, state: Hashable, letter: Letter) -> tuple[object, ...]:
         """The signals after one tick, and the marks from each of `_STARTS`."""
-        row = tuple([letter[i] for i in self._order])
+        row = tuple([False if i is None else letter[i] for i in self._order])
         marks: list[object] = []
         for start in _STARTS:
             self._cells.load(state)

@@ -22,10 +22,18 @@ from compiler.formalization.formalized import Formalized
 from compiler.formalization.letters import atoms_of, excluded
 from compiler.logic.claims import Outcome, Trace, not_checked, proved, refuted
 from compiler.targets.python import monitor as target
+from compiler.targets.python.monitor import prefixes_of
 from fretc.verification.monitor import rails
 from fretc.verification.monitor.column_terms import Terms
-from fretc.verification.monitor.equivalence import Difference, Equivalence, Judgement, compare
+from fretc.verification.monitor.equivalence import (
+    Difference,
+    Equivalence,
+    Judgement,
+    Machine,
+    compare,
+)
 from fretc.verification.monitor.machine import Stepped
+from fretc.verification.monitor.slices import Alone, slice_of
 from fretc.verification.monitor.text_check import own, strange
 from monitors.kernel import Column, Monitor
 from monitors.kernel.columns import column, truths
@@ -85,7 +93,9 @@ def _compared(
         return not_checked("the monitor is of other requirements")
     place = places[0]
     atoms = tuple(dict.fromkeys((*atoms_of(rule.sentence), *monitor.PROPOSITIONS)))
-    result = _lock_step(rule, monitor, place, atoms, limit)
+    needed, cells = _needed(rule, text, monitor, atoms)
+    machine = Alone(Stepped(monitor, place, atoms, cells), len(atoms) - len(needed))
+    result = _lock_step(rule, machine, needed, limit)
     if isinstance(result, str):
         return not_checked(result)
     if isinstance(result, Difference):
@@ -100,23 +110,34 @@ def _compared(
         return _disagreement(atoms, word)
     if text == generated or _is_generated(text, monitor, (*others, rule)):
         return _proved(result, ticks)
-    states = _compared_with_generated(generated, text, monitor, place, atoms, limit)
+    states = _compared_with_generated(generated, text, monitor, place, (atoms, len(needed)), limit)
     return _proved(result, ticks, states) if isinstance(states, int) else states
 
 
+def _needed(
+    rule: Formalized, text: str, monitor: Monitor, atoms: tuple[str, ...]
+) -> tuple[tuple[str, ...], frozenset[str] | None]:
+    """The atoms and the cells that a requirement depends on; all, where it may depend on more."""
+    own = atoms_of(rule.sentence)
+    prefix = prefixes_of(each.id for each in monitor.REQUIREMENTS)[rule.id]
+    part = slice_of(text, prefix, monitor.PROPOSITIONS)
+    return (own, part.cells) if part.propositions <= {*own} else (atoms, None)
+
+
 def _lock_step(
-    rule: Formalized, monitor: Monitor, place: int, atoms: Sequence[str], limit: int
+    rule: Formalized, machine: Machine, atoms: Sequence[str], limit: int
 ) -> Equivalence | Difference | str:
     """The comparison with the automaton of the sentence, over all valuations of the atoms.
 
     Where they differ, over those that can occur: a trace that no numbers make shows nothing.
     """
     sentence, ticks = rule.sentence, rule.ticks or 0
-    result = compare(Stepped(monitor, place, atoms), sentence, ticks, atoms, limit)
+    start = machine.save()
+    result = compare(machine, sentence, ticks, atoms, limit)
     impossible = excluded(rule) if isinstance(result, Difference) else ()
     if not impossible:
         return result
-    machine = Stepped(monitor, place, atoms)
+    machine.load(start)
     return compare(machine, sentence, ticks, atoms, limit, impossible)
 
 
@@ -148,7 +169,7 @@ def _refuted(difference: Difference, atoms: tuple[str, ...]) -> Outcome:
     return refuted(
         f"{kind} that shows it has {length}; after it, {_in_words(difference.actual)}, and should "
         f"be {_in_words(difference.expected)}",
-        Trace(atoms, difference.word),
+        _whole(atoms, difference.word),
     )
 
 
@@ -161,7 +182,12 @@ def _disagreement(
     atoms: Sequence[str], word: Word, fault: str = "its column program and its steps differ"
 ) -> Outcome:
     """The signals of the monitor are wrong at the last tick of a trace."""
-    return refuted(f"{fault} on a trace", Trace(tuple(atoms), word))
+    return refuted(f"{fault} on a trace", _whole(atoms, word))
+
+
+def _whole(atoms: Sequence[str], word: Word) -> Trace:
+    """The trace with the propositions of other requirements, which are false in it."""
+    return Trace(tuple(atoms), tuple((*row, *(False,) * (len(atoms) - len(row))) for row in word))
 
 
 def _is_generated(text: str, monitor: Monitor, rules: Sequence[Formalized]) -> bool:
@@ -175,22 +201,37 @@ def _is_generated(text: str, monitor: Monitor, rules: Sequence[Formalized]) -> b
 
 
 def _compared_with_generated(
-    generated: str, text: str, monitor: Monitor, place: int, atoms: Sequence[str], limit: int
+    generated: str,
+    text: str,
+    monitor: Monitor,
+    place: int,
+    atoms: tuple[Sequence[str], int],
+    limit: int,
 ) -> int | Outcome:
-    """In how many states it agrees with the text that fretc writes for the rule."""
-    if len(atoms) > rails.MOST_PROPOSITIONS:
+    """In how many states it agrees with the text that fretc writes for the rule.
+
+    Args:
+        generated: that text.
+        text: the monitor's.
+        monitor: loaded from it.
+        place: of the requirement among those of the monitor.
+        atoms: all propositions, and how many of them the requirement depends on: the first ones.
+        limit: the most states.
+    """
+    names, count = atoms
+    if count > rails.MOST_PROPOSITIONS:
         most = rails.MOST_PROPOSITIONS
         return not_checked(
-            f"it is not the text that fretc writes, and {len(atoms)} propositions, more than "
+            f"it is not the text that fretc writes, and {count} propositions, more than "
             f"{most}, are too many to compare both with unknown values"
         )
-    comparison = rails.compared(monitor, place, load("generated", generated), atoms, limit)
+    comparison = rails.compared(monitor, place, load("generated", generated), names[:count], limit)
     match comparison:
         case None:
             return not_checked(f"with unknown values there are more than {limit} states")
         case rails.Apart(word, signal):
             fault = f"the text that fretc writes tells another {signal}"
-            return _disagreement(atoms, word, fault)
+            return _disagreement(names, word, fault)
         case rails.Same(states):
             terms = Terms()
             if terms.of(text, place) == terms.of(generated, 0):
