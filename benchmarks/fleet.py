@@ -17,7 +17,8 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from compiler.files.text_files import sha256
-from compiler.project.folder import beside, load, requirement_files
+from compiler.project.folder import load
+from compiler.project.paths import beside, requirement_files
 from fretc.audit import fleet
 from fretc.audit.journal import Journal
 from fretc.audit.many_logs import Audit, Engine, audit_logs, locally

@@ -17,10 +17,10 @@ from compiler.files.edition import __version__
 from compiler.files.text_files import sha256
 from compiler.formalization.record import wording
 from compiler.project.folder import Project, load
+from fretc.audit.bases import bases
 from fretc.audit.evidence.basis import BINDINGS as BOUND
 from fretc.audit.evidence.basis import of_all
 from fretc.audit.evidence.schema import SCHEMA
-from fretc.audit.plan import bases
 from fretc.report.make import make
 
 BINDINGS = """\

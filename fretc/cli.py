@@ -21,9 +21,11 @@ from fretc.api.refusal import too_deep
 from fretc.commands.audit import audit
 from fretc.commands.bind import bind
 from fretc.commands.check import check
+from fretc.commands.completion import completion
 from fretc.commands.explain import explain
 from fretc.commands.formalize import compile_, fmt, import_
 from fretc.commands.info import info
+from fretc.commands.init import init
 from fretc.commands.report import report
 from fretc.commands.review import diff, lock
 from fretc.commands.sbom import sbom
@@ -31,6 +33,7 @@ from fretc.commands.sign import sign
 from fretc.commands.simulate import simulate
 from fretc.commands.verify import verify
 from fretc.commands.verify_evidence import verify_evidence
+from fretc.terminal.completion import answered
 from fretc.terminal.group import DEFAULT, Commands
 from fretc.terminal.output import BAD, INTERRUPTED, SHOWN, not_written, say, say_line
 from fretish.diagnostics.diagnostic import Code, Diagnostic
@@ -68,6 +71,7 @@ def cli(folders: tuple[str, ...]) -> None:
 
 for _command in (
     compile_,
+    init,
     fmt,
     import_,
     explain,
@@ -83,6 +87,7 @@ for _command in (
     sign,
     simulate,
     sbom,
+    completion,
 ):
     cli.add_command(_command)
 
@@ -139,6 +144,8 @@ def _prepare() -> None:
 
 def _run() -> None:
     """Not click's own `main`: that takes a closed pipe for exit status 1, a violation."""
+    if answered(cli):
+        return
     with cli.make_context("fretc", sys.argv[1:]) as context:
         cli.invoke(context)
 

@@ -7,6 +7,7 @@ from typing import assert_never
 
 from fretish import expressions as e
 from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
+from fretish.diagnostics.mends import Mend
 from fretish.diagnostics.source import Span
 from fretish.expressions import depth
 from fretish.reading.recursion import MOST
@@ -77,18 +78,17 @@ def has_units(sentence: Sentence) -> bool:
     return False
 
 
-def check_names(sentence: Sentence) -> Diagnostic | None:
-    """F109 for the first name that is a reserved word."""
+def check_names(sentence: Sentence) -> Iterator[Diagnostic]:
+    """F109 for each name that is a reserved word."""
     for expression in conditions(sentence):
         for id, span in _names(expression):
             if id in RESERVED:
-                return Diagnostic(
+                yield Diagnostic(
                     Code.RESERVED,
                     f"`{id}` is reserved by the languages that requirements are exported to",
                     span,
                     help=f"choose another name, such as `{id}_`",
                 )
-    return None
 
 
 def _names(expression: e.Expression) -> Iterator[tuple[str, Span | None]]:
@@ -100,25 +100,22 @@ def _names(expression: e.Expression) -> Iterator[tuple[str, Span | None]]:
         waiting.extend(reversed(e.children(part)))
 
 
-def check_response_kinds(sentence: Sentence) -> Diagnostic | None:
-    """F112 for the first place where a number meets a truth value."""
+def check_response_kinds(sentence: Sentence) -> Iterator[Diagnostic]:
+    """F112 for each place where a number meets a truth value."""
     for expression in conditions(sentence):
-        mistake = _check_kinds(expression, sentence.span)
-        if mistake is not None:
-            return mistake
-    return None
+        yield from _check_kinds(expression, sentence.span)
 
 
-def _check_kinds(expression: e.Expression, place: Span | None) -> Diagnostic | None:
+def _check_kinds(expression: e.Expression, place: Span | None) -> Iterator[Diagnostic]:
     """A name may be either: its kind is what its place asks for."""
     waiting: list[tuple[e.Expression, bool, Span | None]] = [(expression, True, place)]
     while waiting:
         part, boolean, near = waiting.pop()
         here = getattr(part, "span", None) or near
         if boolean is not _is_boolean(part, boolean):
-            return _wrong_kind(boolean, here)
+            yield _wrong_kind(boolean, here)
+            continue  # what is within is asked for by a place that is itself wrong
         waiting.extend((child, kind, here) for child, kind in _expected(part))
-    return None
 
 
 def _is_boolean(part: e.Expression, expected: bool) -> bool:
@@ -129,7 +126,7 @@ def _is_boolean(part: e.Expression, expected: bool) -> bool:
             return expected
         case e.Call(name):
             return expected and name not in _NUMERIC_PREDICATES | _NUMERIC_FUNCTIONS
-        case e.Number() | e.Quantity() | e.Negation() | e.Arithmetic():
+        case e.Number() | e.Quantity() | e.Word() | e.Negation() | e.Arithmetic():
             return False
         case (
             e.Truth()
@@ -173,14 +170,27 @@ def _takes_truth(name: str, arg: e.Expression, *, last: bool) -> bool:
 
 def _wrong_kind(boolean: bool, span: Span | None) -> Diagnostic:
     wanted, actual = ("truth value", "number") if boolean else ("number", "truth value")
+    mend = _at_least(span) if boolean and span is not None else None
+    words = (
+        "compare a number: `x > 3`"
+        if boolean
+        else "truth values are joined by `<->`, `&`, `|`; only numbers are compared"
+    )
     return Diagnostic(
         Code.WRONG_KIND,
         f"a {wanted} is needed here, and this is a {actual}",
         span,
-        help="compare a number: `x > 3`"
-        if boolean
-        else "truth values are joined by `<->`, `&`, `|`; only numbers are compared",
+        help=f"`=>` is an implication: {mend.help}" if mend is not None else words,
+        mend=mend,
     )
+
+
+def _at_least(number: Span) -> Mend | None:
+    """`>=` for the `=>` before a number; `x => 3` is an implication."""
+    text = number.source.text[: number.start].rstrip()
+    if not text.endswith("=>") or text.endswith("<=>"):
+        return None
+    return Mend(Span(number.source, len(text) - 2, len(text)), ">=")
 
 
 LOOK_BACK = frozenset("preBool persisted occurred prevOcc FTP".split())
@@ -203,7 +213,7 @@ def _not_formalized(id: str, span: Span | None) -> Diagnostic:
     if id in _NUMBERS_BACK:
         consequence, mend = (
             "it stays in the formulas as it is",
-            "a trace must give the comparison's value",
+            "a monitor keeps the number of the tick before; an audit needs a proposition",
         )
     elif id in LOOK_BACK:
         consequence = "PT says what it means, and in FT it stays a proposition"

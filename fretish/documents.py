@@ -12,7 +12,9 @@ from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.source import Source, Span
 from fretish.reading.toml_text import Tables, read, unknown_key
 
-FIELDS = ("id", "title", "text", "parents", "rationale", "status", "verify", "params", "fret")
+FIELDS = (
+    "id", "title", "text", "parents", "rationale", "status", "verify", "params", "accept", "fret",
+)  # fmt: skip
 STATUSES = ("draft", "approved", "retired")
 _ID = re.compile(r"[A-Za-z0-9][A-Za-z0-9_.-]*")
 _ID_LINE = re.compile(rf'^[ \t]*id[ \t]*=[ \t]*"(?P<id>{_ID.pattern})"', re.MULTILINE)
@@ -38,6 +40,8 @@ class Requirement:
     """The planned methods of verification."""
     params: Mapping[str, str] = field(default_factory=dict)
     """Numbers that the requirement states, by the proposition they belong to."""
+    accept: Mapping[str, str] = field(default_factory=dict)
+    """Code of a warning about the requirement → why it is accepted."""
     fret: Mapping[str, str] = field(default_factory=dict)
     """What FRET keeps beside the sentence and fretc does not use: project, comments, ..."""
     header: Tables | None = field(default=None, compare=False, repr=False)
@@ -48,6 +52,13 @@ class Requirement:
     def is_free_text(self) -> bool:
         """A text wholly in double quotes is kept, and not formalized."""
         return _FREE_TEXT.fullmatch(self.wording.text) is not None
+
+    def contains(self, place: Span | None) -> bool:
+        """Whether a place is in its header or its sentence."""
+        if place is None or place.source.name != self.wording.source.name:
+            return False
+        start = self.header.text.start if self.header else self.wording.start
+        return start <= place.start <= self.wording.end
 
     def place(self, *path: str) -> Span:
         """Where a header field stands; the sentence where there is no header."""
@@ -120,6 +131,7 @@ def _requirement(
             status=data.get("status", "draft"),
             verify=tuple(data.get("verify", ())),
             params=dict(data.get("params", {})),
+            accept=dict(data.get("accept", {})),
             fret=dict(data.get("fret", {})),
             header=tables,
         ),
@@ -166,7 +178,7 @@ def _fits(key: str, value: Any) -> bool:
     match key:
         case "parents" | "verify":
             return isinstance(value, list) and all(isinstance(item, str) for item in value)
-        case "params" | "fret":
+        case "params" | "accept" | "fret":
             return isinstance(value, dict) and all(isinstance(v, str) for v in value.values())
         case "id":
             return isinstance(value, str) and _ID.fullmatch(value) is not None
@@ -181,6 +193,7 @@ def _bad_field(tables: Tables, key: str) -> Diagnostic:
         "parents": 'a list of ids: `["HAZ-003"]`',
         "verify": 'a list of methods: `["audit", "ajpf"]`',
         "params": 'a table of quantities in quotes: `{ too_close = "5 cm" }`',
+        "accept": 'a table of reasons: `{ F206 = "the mode ends only by hand" }`',
         "fret": 'a table of texts: `{ project = "Rover" }`',
         "id": "letters, digits, `_`, `-` and `.` in quotes, beginning with a letter or digit",
         "status": f"one of {', '.join(STATUSES)}",

@@ -9,29 +9,25 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
+from dataclasses import replace
 from fractions import Fraction
 from functools import cache
 from importlib.resources import files
 from typing import Any, cast
 
-from lark import Lark, Token, v_args
+from lark import Lark, ParseTree, Token, v_args
 from lark.exceptions import UnexpectedCharacters, UnexpectedToken, VisitError
 from lark.visitors import Transformer_NonRecursive
 
 from fretish import expressions as e
 from fretish import syntax as s
 from fretish.checking import check_depth, check_names, check_response_kinds
-from fretish.diagnostics.diagnostic import Diagnostic
+from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.diagnostics.mends import Mended
 from fretish.diagnostics.source import Span
-from fretish.syntax_errors import (
-    Lexeme,
-    Unexpected,
-    bad_duration,
-    bad_probability,
-    explain,
-    no_sentence,
-    unknown_character,
-)
+from fretish.mistakes.operators import unknown_character
+from fretish.mistakes.unexpected import Lexeme, Unexpected
+from fretish.syntax_errors import bad_duration, bad_probability, explain, no_sentence
 from fretish.units import NAMES, number
 from fretish.units import split as split_quantity
 
@@ -54,21 +50,108 @@ def parse(text: Span) -> s.Sentence | Diagnostic:
     Returns:
         The tree, or the first thing that keeps the text from being a sentence.
     """
+    tree = _tree(text)
+    if isinstance(tree, Diagnostic):
+        return tree
+    return next(_against(tree), tree)
+
+
+MISTAKES = 10
+"""Of one sentence that are named at once."""
+_LONG = 10_000
+"""Characters; of a longer text only the first mistake is named: each is a reading of its own."""
+
+
+def mistakes(text: Span) -> tuple[Diagnostic, ...]:
+    """What keeps a text from being a sentence, in the order of the text.
+
+    Behind a mistake of the grammar reading goes on where it is sure how: with the text that its
+    mend gives, or with the sentence that begins there. A mend that leads no further is not sure.
+    """
+    found: list[Diagnostic] = []
+    read = Mended(text)
+    while len(found) < MISTAKES:
+        here = read.span
+        words = _words(here)
+        if isinstance(words, Diagnostic) and found and _at(_moved(words, read)) <= _at(found[-1]):
+            found[-1] = _unsure(found[-1])
+            break
+        tree = words if isinstance(words, Diagnostic) else _built(words, here)
+        wrong = _around(tree, here) if isinstance(tree, Diagnostic) else [*_against(tree)]
+        found.extend(_moved(each, read) for each in wrong)
+        mend = found[-1].mend if isinstance(tree, Diagnostic) else None
+        if len(text.text) > _LONG or mend is None or not mend.sure or read.touches(mend.span):
+            break
+        read = read.with_mend(mend)
+    return tuple(sorted(found[:MISTAKES], key=_at))
+
+
+def _tree(text: Span) -> s.Sentence | Diagnostic:
+    """What the grammar makes of a text."""
+    words = _words(text)
+    return words if isinstance(words, Diagnostic) else _built(words, text)
+
+
+def _words(text: Span) -> ParseTree | Diagnostic:
+    """The text as the grammar divides it."""
     if not text.text.strip():
         return no_sentence(text)
     try:
-        with _places_in(text):
-            sentence = cast(s.Sentence, _Build().transform(_lark().parse(text.text)))
+        return _lark().parse(text.text)
     except UnexpectedToken as error:
         return _unexpected(error, text)
     except UnexpectedCharacters as error:
         return unknown_character(text, error.pos_in_stream or 0)
+
+
+def _built(words: ParseTree, text: Span) -> s.Sentence | Diagnostic:
+    try:
+        with _places_in(text):
+            return cast(s.Sentence, _Build().transform(words))
     except VisitError as error:
         if isinstance(error.orig_exc, _MistakeError):
             return error.orig_exc.diagnostic
         raise
-    checks = (check_depth, check_names, check_response_kinds)
-    return next((mistake for check in checks if (mistake := check(sentence))), sentence)
+
+
+def _against(sentence: s.Sentence) -> Iterator[Diagnostic]:
+    """What is wrong with a sentence that the grammar has."""
+    deep = check_depth(sentence)
+    if deep is not None:
+        yield deep
+        return
+    yield from check_names(sentence)
+    yield from check_response_kinds(sentence)
+
+
+def _around(wrong: Diagnostic, text: Span) -> list[Diagnostic]:
+    """A mistake of the grammar; with those around it, where a second sentence begins there."""
+    if wrong.code is not Code.SEVERAL_SENTENCES or len(text.text) > _LONG:
+        return [wrong]
+    first, second = text.part(0, _at(wrong)), text.part(_at(wrong), text.end)
+    tree = _tree(first)
+    before = () if isinstance(tree, Diagnostic) else _against(tree)
+    return [*before, *mistakes(second), wrong]
+
+
+def _moved(wrong: Diagnostic, read: Mended) -> Diagnostic:
+    """A diagnostic of the mended text, with its places in the original one."""
+    assert wrong.span is not None
+    mend = wrong.mend and replace(wrong.mend, span=read.place(wrong.mend.span))
+    return replace(wrong, span=read.place(wrong.span), mend=mend)
+
+
+def _at(wrong: Diagnostic) -> int:
+    assert wrong.span is not None
+    return wrong.span.start
+
+
+def _unsure(wrong: Diagnostic) -> Diagnostic:
+    assert wrong.mend is not None
+    mend = replace(wrong.mend, sure=False)
+    return replace(
+        wrong, mend=mend, help=mend.help if wrong.help == wrong.mend.help else wrong.help
+    )
 
 
 class _MistakeError(Exception):
@@ -295,7 +378,9 @@ class _Build(Transformer_NonRecursive[Token, Any]):
         *digits, unit = children
         text = "".join(digits)
         if not text.isdigit() or len(text) > 15:
-            raise _MistakeError(bad_duration(_span(children[0], digits[-1])))
+            digits_span = _span(children[0], digits[-1])
+            unit_name = f"{_UNITS[unit.type]}s"
+            raise _MistakeError(bad_duration(digits_span, unit_name, _meta_span(meta)))
         return s.Duration(int(text), _UNITS[unit.type], _meta_span(meta))
 
     def start(self, meta: Any, children: list[Any]) -> s.Sentence:

@@ -5,48 +5,33 @@ Each rule looks at the first word that does not fit, the word before it, and wha
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
-from dataclasses import dataclass
+from fractions import Fraction
 
 from fretish.diagnostics.diagnostic import Code, Diagnostic, suggestion
+from fretish.diagnostics.mends import Mend, left_out
 from fretish.diagnostics.source import Span
 from fretish.keywords import KEYWORDS
-from fretish.units import unknown_unit
-
-
-@dataclass(frozen=True, slots=True)
-class Lexeme:
-    """A word of the text, and its kind in the grammar: `ID`, `NUMBER`, `SATISFY`, ..."""
-
-    kind: str
-    span: Span
-
-    @property
-    def word(self) -> str:
-        """As written."""
-        return self.span.text
-
-    @property
-    def at_end(self) -> bool:
-        """Whether it is not a word but the end of the text."""
-        return self.kind == "$END"
-
-
-@dataclass(frozen=True, slots=True)
-class Unexpected:
-    """The first word that does not fit."""
-
-    lexeme: Lexeme
-    before: Lexeme | None
-    accepts: frozenset[str]
-    """The kinds of word that would have fitted."""
-    text: Span
-    """The whole sentence."""
-
-    def wants(self, *kinds: str) -> bool:
-        """Whether a word of any of the kinds would have fitted."""
-        return not self.accepts.isdisjoint(kinds)
-
+from fretish.mistakes.operators import (
+    COMPARISONS,
+    chain,
+    join_of_expressions,
+    number_form,
+    other_language,
+    parenthesis,
+)
+from fretish.mistakes.order import (
+    TIMINGS,
+    article,
+    behind,
+    missing_part,
+    out_of_order,
+    second_sentence,
+    timing,
+)
+from fretish.mistakes.unexpected import STARTS_EXPRESSION, Unexpected, not_fretish
+from fretish.units import number, unknown_unit
 
 _GROUPS: tuple[tuple[str, frozenset[str]], ...] = (
     ("a scope (`in m`, `before m`, ...)", frozenset({"DURING", "EXCEPT", "ONLY", "WHILE"})),
@@ -74,19 +59,20 @@ _UNITS = ("TICK", "MICROSECOND", "MILLISECOND", "SECOND", "MINUTE", "HOUR")
 _UNIT_NAMES = {
     "ms": "milliseconds", "msec": "milliseconds", "us": "microseconds", "usec": "microseconds",
     "s": "seconds", "min": "minutes", "mins": "minutes", "h": "hours", "hr": "hours",
-    "step": "ticks", "steps": "ticks", "cycle": "ticks", "cycles": "ticks",
-    "timepoint": "ticks", "timepoints": "ticks",
 }  # fmt: skip
-_STARTS_EXPRESSION = frozenset(
-    {"ID", "QUOTED", "NUMBER", "TRUE", "FALSE", "_BANG", "LPAR", "MINUS"}
+_TICK_NAMES = frozenset({"step", "steps", "cycle", "cycles", "timepoint", "timepoints"})
+"""Of other tools: whether such a step is a tick, only the author knows."""
+_SHALL = ("should", "must", "will", "shal")
+_WEAKER = ("can", "may", "might", "could", "would", "has", "needs")
+"""What stands where `shall` does, and may say something else."""
+_TWO_WORDS = re.compile(
+    r"(?!(?:if|not|at)\b)[a-z]\w*\s+(?!(?:and|or|xor|mod|implies|iff|is)\b)[a-z]", re.IGNORECASE
 )
-_OPERATORS = {"not": "!", "true": "true", "false": "false"}
-_TIMINGS = frozenset(
-    {"IMMEDIATELY", "INITIALLY", "FINALLY", "EVENTUALLY", "ALWAYS", "NEVER", "WITHIN", "FOR"}
-)
-_COMPARISONS = ("LESS", "AT_MOST", "GREATER", "AT_LEAST", "EQUAL", "UNEQUAL")
-_AMOUNT = {"WITHIN": " N seconds", "FOR": " N seconds"}
-_SHALL = ("should", "must", "will", "shal", "has", "needs")
+_MICROSECONDS = {
+    "microseconds": 1, "milliseconds": 10**3, "seconds": 10**6, "minutes": 60 * 10**6,
+    "hours": 3600 * 10**6,
+}  # fmt: skip
+"""In each unit of time."""
 
 
 def explain(unexpected: Unexpected) -> Diagnostic:
@@ -108,34 +94,14 @@ def no_sentence(text: Span) -> Diagnostic:
     )
 
 
-def unknown_character(text: Span, at: int) -> Diagnostic:
-    """F101 for a character that no word of FRETish has."""
-    span = text.part(at, at + 1)
-    mends = {
-        "[": 'quote a name with brackets: `"a[3]"`',
-        "_": "a name begins with a letter",
-        '"': "close the quotes, or leave them out",
-        "\u201c": 'use straight quotes: `"`',
-        "\u201d": 'use straight quotes: `"`',
-        "'": 'use double quotes: `"`',
-        "\u2264": "write `<=`",
-        "\u2265": "write `>=`",
-        "\u2260": "write `!=`",
-        "\u2192": "write `->`",
-        "\u2227": "write `&`",
-        "\u2228": "write `|`",
-        "\u00ac": "write `!`",
-    }
-    return Diagnostic(
-        Code.NOT_FRETISH,
-        f"`{span.text}` is no character of FRETish",
-        span,
-        help=mends.get(span.text, "names are letters, digits, `_`, `.` and `%`"),
-    )
+def bad_duration(span: Span, unit: str, whole: Span) -> Diagnostic:
+    """F108 for a number that is negative, broken or in scientific notation.
 
-
-def bad_duration(span: Span) -> Diagnostic:
-    """F108 for a number that is negative, broken or in scientific notation."""
+    Args:
+        span: the number.
+        unit: as FRETish writes it, in the plural.
+        whole: the number and its unit.
+    """
     if span.text.startswith("-"):
         return Diagnostic(
             Code.BAD_DURATION,
@@ -150,12 +116,29 @@ def bad_duration(span: Span) -> Diagnostic:
             span,
             help="count a larger unit",
         )
+    mend = _whole(span.text, unit, whole)
+    words = "count a smaller unit, in whole numbers: 500 milliseconds, not 0.5 seconds"
     return Diagnostic(
         Code.BAD_DURATION,
         f"a duration counts whole units, and `{span.text}` is no whole number",
         span,
-        help="count a smaller unit, in whole numbers: 500 milliseconds, not 0.5 seconds",
+        help=mend.help if mend is not None else words,
+        mend=mend,
     )
+
+
+def _whole(digits: str, unit: str, whole: Span) -> Mend | None:
+    """The same duration in the largest unit of which it is a whole number; None: there is none."""
+    size = _MICROSECONDS.get(unit)
+    try:
+        length = (number(digits) or Fraction(1, 3)) * (size or Fraction(1, 3))
+    except ValueError:
+        return None
+    for name, other in reversed(_MICROSECONDS.items()) if size else ():
+        count = length / other
+        if count.denominator == 1 and count < 10**15:
+            return Mend(whole, f"{count} {name}", sure=True)
+    return None
 
 
 def bad_probability(span: Span) -> Diagnostic:
@@ -174,17 +157,16 @@ def bad_probability(span: Span) -> Diagnostic:
 def _unit(u: Unexpected) -> Diagnostic | None:
     if not u.wants(*_UNITS):
         return None
-    mend = "write ticks, microseconds, milliseconds, seconds, minutes or hours: `within 3 seconds`"
+    words = "write ticks, microseconds, milliseconds, seconds, minutes or hours: `within 3 seconds`"
     if u.lexeme.kind != "ID":
-        return Diagnostic(Code.BAD_DURATION, "a duration needs a unit", u.lexeme.span, help=mend)
-    near = _UNIT_NAMES.get(u.lexeme.word.lower()) or suggestion(
-        u.lexeme.word, [word for word in KEYWORDS if word.endswith("s")], cutoff=0.72
-    )
+        return Diagnostic(Code.BAD_DURATION, "a duration needs a unit", u.lexeme.span, help=words)
+    mend = _unit_mend(u.lexeme.span)
     return Diagnostic(
         Code.BAD_DURATION,
         f"a duration needs a unit, and `{u.lexeme.word}` is none",
         u.lexeme.span,
-        help=f"did you mean `{near}`?" if near else mend,
+        help=mend.help if mend is not None else words,
+        mend=mend,
     )
 
 
@@ -193,6 +175,15 @@ def _measured(u: Unexpected) -> Diagnostic | None:
     if u.before is None or u.before.kind != "NUMBER" or u.lexeme.kind != "ID":
         return None
     return unknown_unit(u.lexeme.word, u.lexeme.span)
+
+
+def _unit_mend(span: Span) -> Mend | None:
+    word = span.text.lower()
+    if word in _UNIT_NAMES:
+        return Mend(span, _UNIT_NAMES[word], sure=True)
+    plurals = [known for known in KEYWORDS if known.endswith("s")]
+    near = "ticks" if word in _TICK_NAMES else suggestion(word, plurals, cutoff=0.72)
+    return Mend(span, near) if near is not None else None
 
 
 def _number(u: Unexpected) -> Diagnostic | None:
@@ -209,68 +200,6 @@ def _number(u: Unexpected) -> Diagnostic | None:
     )
 
 
-def _other_language(u: Unexpected) -> Diagnostic | None:
-    """Operators as other languages spell them."""
-    before = u.before.word if u.before is not None else ""
-    doubled = {"&": "&", "|": "|", "=": "="}.get(u.lexeme.word) if before == u.lexeme.word else None
-    if doubled is not None and u.before is not None:
-        span = u.before.span.to(u.lexeme.span)
-        return _instead(span, doubled)
-    if u.lexeme.kind in ("AND", "OR"):
-        return _word_for_operator(u)
-    spelt = _OPERATORS.get(u.lexeme.word.lower())
-    if spelt is None or not u.wants("ID", "_AMPERSAND") or u.wants("SHALL", "WHENEVER"):
-        return None
-    return _instead(u.lexeme.span, spelt)
-
-
-def _word_for_operator(u: Unexpected) -> Diagnostic | None:
-    """`p and q`: the words join conditions only, each with a word of its own."""
-    if u.before is None or u.wants("ID"):
-        return None
-    return _instead(u.lexeme.span, "&" if u.lexeme.kind == "AND" else "|")
-
-
-def _instead(span: Span, spelt: str) -> Diagnostic:
-    return Diagnostic(
-        Code.NOT_FRETISH,
-        f"`{span.text}` is no operator of FRETish",
-        span,
-        help=f"write `{spelt}`",
-    )
-
-
-def _chain(u: Unexpected) -> Diagnostic | None:
-    """`3 < x < 5`."""
-    if u.lexeme.kind not in _COMPARISONS or not u.wants("_AMPERSAND"):
-        return None
-    return Diagnostic(
-        Code.NOT_FRETISH,
-        "comparisons do not chain",
-        u.lexeme.span,
-        help="write each by itself, and join them by `&`",
-    )
-
-
-def _number_form(u: Unexpected) -> Diagnostic | None:
-    """`.5` and `007`."""
-    if u.lexeme.kind == "_DOT" and u.wants("NUMBER"):
-        return Diagnostic(
-            Code.NOT_FRETISH,
-            "a number begins with a digit",
-            u.lexeme.span,
-            help="write a 0 before the point",
-        )
-    if u.lexeme.kind != "NUMBER" or u.before is None or u.before.kind != "NUMBER":
-        return None
-    return Diagnostic(
-        Code.NOT_FRETISH,
-        "a number does not begin with 0",
-        u.before.span.to(u.lexeme.span),
-        help="leave the leading zeros out",
-    )
-
-
 def _superfluous(u: Unexpected) -> Diagnostic | None:
     """Words that English has here and FRETish has not."""
     reasons = {
@@ -280,18 +209,14 @@ def _superfluous(u: Unexpected) -> Diagnostic | None:
     }
     fits = {
         "THEN": u.wants("SHALL", "WHENEVER"),
-        "THE": u.wants("MODE", "ID"),
+        "THE": u.wants("MODE", "ID") and not u.wants("SHALL") and u.follows("IN", "DURING", "MODE"),
         "MODE": u.wants("SHALL", "_AMPERSAND"),
     }
-    if not fits.get(u.lexeme.kind, False) or (u.lexeme.kind == "THE" and u.wants("SHALL")):
+    if not fits.get(u.lexeme.kind, False):
         return None
-    if u.lexeme.kind == "THE" and (
-        u.before is None or u.before.kind not in ("IN", "DURING", "MODE")
-    ):
+    if u.lexeme.kind == "MODE" and not re.search(r"\bwhile\b", u.read.text, re.IGNORECASE):
         return None
-    return Diagnostic(
-        Code.NOT_FRETISH, reasons[u.lexeme.kind], u.lexeme.span, help=f"leave `{u.lexeme.word}` out"
-    )
+    return not_fretish(reasons[u.lexeme.kind], u.lexeme.span, left_out(u.lexeme.span, sure=True))
 
 
 def _globally(u: Unexpected) -> Diagnostic | None:
@@ -299,37 +224,67 @@ def _globally(u: Unexpected) -> Diagnostic | None:
         return None
     if not u.wants("SHALL"):
         return None
-    return Diagnostic(
-        Code.NOT_FRETISH,
+    comma = u.lexeme.kind == "_COMMA"
+    return not_fretish(
         f"FRETish has no word for the scope `{u.before.word}`",
         u.before.span,
-        help="leave it out: without a scope a requirement is enforced everywhere",
+        left_out(u.before.span.to(u.lexeme.span) if comma else u.before.span, sure=True),
+        "leave it out: without a scope a requirement is enforced everywhere",
     )
 
 
 def _mode(u: Unexpected) -> Diagnostic | None:
     """`in p & q`."""
-    if u.lexeme.kind not in ("_AMPERSAND", "_BAR", *_COMPARISONS):
+    if u.lexeme.kind not in ("_AMPERSAND", "_BAR", *COMPARISONS):
         return None
     if not u.wants("MODE") or u.wants("NUMBER"):
         return None
-    return Diagnostic(
-        Code.NOT_FRETISH,
+    return not_fretish(
         "a mode is one name",
         u.lexeme.span,
-        help="for an expression write `while p & q` in place of `in`",
+        "for an expression write `while p & q` in place of `in`",
     )
 
 
 def _shall(u: Unexpected) -> Diagnostic | None:
-    if not u.wants("SHALL") or u.lexeme.word.lower() not in _SHALL:
+    word = u.lexeme.word.lower()
+    if not u.wants("SHALL") or word not in (*_SHALL, *_WEAKER):
         return None
+    mend = Mend(u.lexeme.span, "shall", sure=word in _SHALL)
     return Diagnostic(
         Code.MISSPELT,
         f"a requirement says `shall`, not `{u.lexeme.word}`",
         u.lexeme.span,
-        help="write `shall`",
+        help=mend.help,
+        mend=mend,
     )
+
+
+def _missing_shall(u: Unexpected) -> Diagnostic | None:
+    """`the sw satisfy p`, `the sw always satisfy p`."""
+    if not u.wants("SHALL") or u.wants("$END") or not u.follows("ID", "QUOTED"):
+        return None
+    if u.lexeme.kind not in ("SATISFY", *TIMINGS) or re.search(r"\bshall\b", u.rest.text, re.I):
+        return None
+    mend = Mend(u.lexeme.span.part(0, 0), "shall ", sure=u.lexeme.kind == "SATISFY")
+    return Diagnostic(
+        Code.NOT_FRETISH,
+        f"`shall` is missing before `{u.lexeme.word}`",
+        u.lexeme.span,
+        help=f"write `shall {u.lexeme.word}`",
+        mend=mend,
+    )
+
+
+def _component(u: Unexpected) -> Diagnostic | None:
+    """`the big robot shall`."""
+    if u.before is None or not (u.follows("ID") and u.lexeme.kind == "ID" and u.wants("SHALL")):
+        return None
+    if not re.match(r"[\w.%]+\s+shall\b", u.rest.text, re.IGNORECASE):
+        return None
+    both = u.before.span.to(u.lexeme.span)
+    mend = Mend(both, f"{u.before.word}_{u.lexeme.word}")
+    return not_fretish("a component is one name", both, mend)
 
 
 def _misspelt(u: Unexpected) -> Diagnostic | None:
@@ -340,57 +295,36 @@ def _misspelt(u: Unexpected) -> Diagnostic | None:
     for suspect in suspects:
         near = suggestion(suspect.word, KEYWORDS, cutoff=0.72)
         if suspect.kind == "ID" and near is not None:
+            mend = Mend(suspect.span, near)
             return Diagnostic(
                 Code.MISSPELT,
                 f"`{suspect.word}` is no word of FRETish here",
                 suspect.span,
-                help=f"did you mean `{near}`?",
+                help=mend.help,
+                mend=mend,
             )
     return None
 
 
-def _order(u: Unexpected) -> Diagnostic | None:
-    """The parts of a sentence have a fixed order."""
-    if u.lexeme.kind in _TIMINGS and u.before is not None and u.before.kind == "SATISFY":
-        return Diagnostic(
-            Code.NOT_FRETISH,
-            "the timing stands before `satisfy`",
-            u.lexeme.span,
-            help=f"write `{u.lexeme.word}{_AMOUNT.get(u.lexeme.kind, '')} satisfy ...`",
-        )
-    if u.lexeme.kind == "WITH" and u.wants("SHALL", "WHENEVER"):
-        return Diagnostic(
-            Code.NOT_FRETISH,
-            "the probability stands after `shall`",
-            u.lexeme.span,
-            help="write it there: `shall with probability ... satisfy ...`",
-        )
-    if u.lexeme.kind == "PROBABILITY":
-        return Diagnostic(
-            Code.NOT_FRETISH,
-            "`with` is missing before `probability`",
-            u.lexeme.span,
-            help="write `with probability ...`",
-        )
-    return None
-
-
 def _missing_satisfy(u: Unexpected) -> Diagnostic | None:
-    if not u.wants("SATISFY") or u.lexeme.kind not in _STARTS_EXPRESSION:
+    if not u.wants("SATISFY") or u.lexeme.kind not in STARTS_EXPRESSION:
         return None
-    end = len(u.text.text.rstrip().rstrip("."))
-    response = u.text.source.span(u.lexeme.span.start, max(u.lexeme.span.end, u.text.start + end))
+    response = u.rest
+    two_words = _TWO_WORDS.match(response.text) is not None
     return Diagnostic(
         Code.MISSING_SATISFY,
         f"missing `satisfy` before `{response.text}`",
         response,
         help=f"write `satisfy {response.text}`",
+        mend=Mend(response.part(0, 0), "satisfy ", sure=not two_words),
     )
 
 
 def _missing_component(u: Unexpected) -> Diagnostic | None:
+    if re.search(r"\bsatisfy\b", u.read.text, re.IGNORECASE):
+        return None
     starts = u.lexeme.kind == "SHALL" and u.wants("ID")
-    ends = u.before is not None and u.before.kind == "SHALL" and u.wants("ID")
+    ends = u.follows("SHALL") and u.wants("ID")
     if not starts and not (ends and u.lexeme.word.lower() in KEYWORDS):
         return None
     return Diagnostic(
@@ -431,17 +365,26 @@ def _alternatives(words: list[str]) -> str:
 
 
 _RULES: tuple[Callable[[Unexpected], Diagnostic | None], ...] = (
+    second_sentence,
     _unit,
     _measured,
     _number,
     _globally,
     _mode,
     _shall,
+    missing_part,
     _superfluous,
-    _order,
-    _other_language,
-    _chain,
-    _number_form,
+    out_of_order,
+    behind,
+    timing,
+    other_language,
+    join_of_expressions,
+    chain,
+    number_form,
+    parenthesis,
+    article,
+    _missing_shall,
+    _component,
     _misspelt,
     _missing_satisfy,
     _missing_component,

@@ -201,6 +201,8 @@ def readers(folder: Path) -> dict[str, Reader]:
     add("lock", "requirements/fretc.lock", made_in(folder, "requirements/fretc.lock"), report, kept)
     above = {**own, "a.json": NEEDS}
     add("settings", "pyproject.toml", '[tool.fretc]\nparents = ["a.json"]\n', ("check",), above)
+    accept = '[accept]\nF315 = { "/x" = "slow by design" }\n'
+    add("fretc.toml", "requirements/fretc.toml", accept, ("check",))
     add(
         "scenario",
         "s.toml",

@@ -14,7 +14,7 @@ from tests.each import each
 ROOT = Path(__file__).parent.parent
 ORDER = """
 monitors.kernel  monitors
-fretish.diagnostics  fretish.reading  fretish  fretish.bindings
+fretish.diagnostics  fretish.reading  fretish.mistakes  fretish  fretish.bindings
 compiler.files  compiler.logic  compiler.formalization  compiler.project  compiler.agents
 compiler.targets  compiler.targets.python  compiler.targets.automata  compiler.targets.ajpf
 compiler  compiler.explanation

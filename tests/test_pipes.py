@@ -35,7 +35,9 @@ def test_no_reader_waits_for_a_pipe(tmp_path: Path) -> None:
         with patience():
             status, text, _ = command(folder, *reader.args)
         refused = status == 2 and any(line.startswith("F") for line in text.splitlines())
-        left_alone = kind in ("settings", "metadata.yaml") and status == 0  # as if there were none
+        left_alone = (
+            kind in ("settings", "fretc.toml", "metadata.yaml") and status == 0
+        )  # as if there were none
         assert refused or left_alone, f"{kind}: {status} {text}"
 
 

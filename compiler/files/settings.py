@@ -1,24 +1,28 @@
-"""`[tool.fretc]` of `pyproject.toml`: settings of a whole project, wherever a command runs.
+"""`fretc.toml`, or `[tool.fretc]` of `pyproject.toml`: settings of a whole project.
 
-The search goes up to the root of the repository (`.git`) and no further: a folder above it may
-belong to somebody else. Outside of a repository it ends at the present folder.
+The nearest file upwards counts alone; in one folder it is `fretc.toml`. The search goes up to the
+root of the repository (`.git`) and no further: a folder above it may belong to somebody else.
+Outside of a repository it ends at the present folder.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextvars import ContextVar
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
 from compiler.files.text_files import read as read_text
 from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.diagnostics.source import Span
 from fretish.reading.toml_text import Tables, unknown_key
 from fretish.reading.toml_text import read as read_tables
 
-NAME = "pyproject.toml"
-_FIELDS = ("parents",)
+NAME, SHARED = "fretc.toml", "pyproject.toml"
+_TABLE = ("tool", "fretc")
+"""Of the settings in `pyproject.toml`, which is that of other tools, too."""
+_FIELDS = ("parents", "accept")
 OUTSIDE: ContextVar[tuple[str, ...]] = ContextVar("OUTSIDE", default=())
 """Folders outside of the project in which parents may be, as the command line names them."""
 
@@ -28,12 +32,21 @@ class Settings:
     """The settings of one project."""
 
     folder: Path
-    """Where `pyproject.toml` is; paths in it start there."""
+    """Where the file is; paths in it start there."""
     parents: tuple[str, ...] = ()
     """Documents of other tools in which parents of requirements live."""
+    accept: Mapping[str, str | Mapping[str, str]] = field(default_factory=dict)
+    """Code of a warning → why it is accepted: wherever it comes, or by what it is about."""
     tables: Tables | None = None
+    table: tuple[str, ...] = ()
+    """The table of the file that the settings are in."""
     root: Path | None = None
     """The project's outermost folder, which parents do not leave; None: `folder` is."""
+
+    def place(self, *path: str) -> Span:
+        """Where the value of a setting stands."""
+        assert self.tables is not None
+        return self.tables.value(*self.table, *path)
 
     def holds(self, path: Path) -> bool:
         """Whether a document is the project's, or in a folder that the command line names."""
@@ -46,14 +59,14 @@ def settings(folder: str) -> Settings | Diagnostic:
     """The settings that hold for a folder of requirements: the nearest upwards that there are.
 
     Returns:
-        Empty settings where no `pyproject.toml` speaks of fretc; or what is wrong with them.
+        Empty settings where no file speaks of fretc; or what is wrong with them.
     """
     start = Path(folder).resolve()
     places = list(_project(start))
     for place in places:
-        path = place / NAME
-        if path.is_file():
-            result = _read(path, places[-1])
+        for name, table in ((NAME, ()), (SHARED, _TABLE)):
+            path = place / name
+            result = _read(path, places[-1], table) if path.is_file() else None
             if result is not None:
                 return result
     return Settings(start)
@@ -69,18 +82,22 @@ def _project(start: Path) -> Iterator[Path]:
     yield from around[: around.index(root) + 1]
 
 
-def _read(path: Path, root: Path) -> Settings | Diagnostic | None:
-    """None where the file has no `[tool.fretc]`."""
+def _read(path: Path, root: Path, table: tuple[str, ...]) -> Settings | Diagnostic | None:
+    """None where the file has no such table."""
     source = read_text(_display_path(path))
     if isinstance(source, Diagnostic):
         return source
-    if "tool.fretc" not in source.text:
+    if ".".join(table) not in source.text:
         return None
-    tables = read_tables(source.span(), Code.BAD_SETTINGS, NAME)
+    tables = read_tables(source.span(), Code.BAD_SETTINGS, path.name)
     if isinstance(tables, Diagnostic):
         return tables
-    table = tables.data.get("tool", {}).get("fretc")
-    return None if table is None else _settings(path.parent, root, tables, table)
+    found: Any = tables.data
+    for key in table:
+        found = found.get(key)
+        if found is None:
+            return None
+    return _settings(Settings(path.parent, tables=tables, table=table, root=root), found)
 
 
 def _display_path(path: Path) -> str:
@@ -91,23 +108,39 @@ def _display_path(path: Path) -> str:
         return str(path)
 
 
-def _settings(folder: Path, root: Path, tables: Tables, table: Any) -> Settings | Diagnostic:
+def _settings(empty: Settings, table: Any) -> Settings | Diagnostic:
+    """The settings of the table.
+
+    Args:
+        empty: with the file that the table is in.
+        table: its value.
+    """
     if not isinstance(table, dict):
-        return _bad_settings(
-            tables, "`fretc` must be a table", "write `[tool.fretc]`", "tool", "fretc"
-        )
+        return _bad_settings(empty, "`fretc` must be a table", "write `[tool.fretc]`")
+    assert empty.tables is not None
     for key in table:
         if key not in _FIELDS:
-            span = tables.place("tool", "fretc", key)
-            return unknown_key(Code.BAD_SETTINGS, key, _FIELDS, span, "[tool.fretc]")
-    parents = table.get("parents", [])
+            span = empty.tables.place(*empty.table, key)
+            where = f"[{'.'.join(empty.table)}]" if empty.table else NAME
+            return unknown_key(Code.BAD_SETTINGS, key, _FIELDS, span, where)
+    parents, accept = table.get("parents", []), table.get("accept", {})
     if not isinstance(parents, list) or not all(isinstance(path, str) for path in parents):
         mend = 'write `parents = ["build/hazards/json/index.json"]`'
-        return _bad_settings(
-            tables, "`parents` must be a list of paths", mend, "tool", "fretc", "parents"
-        )
-    return Settings(folder, tuple(parents), tables, root)
+        return _bad_settings(empty, "`parents` must be a list of paths", mend, "parents")
+    if not isinstance(accept, dict):
+        return _bad_settings(empty, "`accept` must be a table", f"write {_ACCEPT}", "accept")
+    for code, reason in accept.items():
+        reasons = reason.values() if isinstance(reason, dict) else [reason]
+        if not all(isinstance(each, str) for each in reasons):
+            told = f"`{code}` must have a reason, or a table of reasons"
+            return _bad_settings(empty, told, f"write {_ACCEPT}", "accept", code)
+    return replace(empty, parents=tuple(parents), accept=accept)
 
 
-def _bad_settings(tables: Tables, message: str, mend: str, *path: str) -> Diagnostic:
-    return Diagnostic(Code.BAD_SETTINGS, message, tables.place(*path), help=mend)
+_ACCEPT = '`F631 = "the reason"`, or `F315 = { "/battery" = "the reason" }`, under `[accept]`'
+
+
+def _bad_settings(settings: Settings, message: str, mend: str, *path: str) -> Diagnostic:
+    assert settings.tables is not None
+    place = settings.tables.place(*settings.table, *path)
+    return Diagnostic(Code.BAD_SETTINGS, message, place, help=mend)

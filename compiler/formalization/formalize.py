@@ -22,7 +22,7 @@ from fretish.checking import temporal_predicates, too_deep
 from fretish.clock import Clock, assumed_ticks, in_ticks
 from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
 from fretish.documents import Requirement
-from fretish.parser import parse
+from fretish.parser import mistakes, parse
 from fretish.pitfalls import surprises
 from fretish.reading.limits import within
 from fretish.reading.recursion import deep
@@ -51,7 +51,7 @@ def _formalized(
         return None, (_free_text(requirement),)
     written = parse(requirement.wording)
     if isinstance(written, Diagnostic):
-        return None, (written,)
+        return None, mistakes(requirement.wording)
     place = requirement.wording
     sentence = in_own_units(written, declarations, place) if declarations else written
     if isinstance(sentence, Diagnostic):
@@ -70,6 +70,20 @@ def _formalized(
     if isinstance(bound, Diagnostic):
         return None, (bound,)
     return bound, tuple(_remarks(sentence, declarations))
+
+
+@deep
+def unreadable_sentence(requirement: Requirement) -> tuple[Diagnostic, ...]:
+    """The mistakes of the sentence of a requirement whose header has some, too.
+
+    None where the header does not end: nothing says where the sentence begins.
+    """
+    wording = requirement.wording
+    codes = {mistake.code for mistake in requirement.mistakes}
+    if not codes or Code.UNCLOSED_HEADER in codes or requirement.is_free_text:
+        return ()
+    found = within(wording.end - wording.start, wording, partial(mistakes, wording))
+    return (found,) if isinstance(found, Diagnostic) else found
 
 
 def clashes(rules: Sequence[Formalized]) -> Iterator[Diagnostic]:

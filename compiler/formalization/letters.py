@@ -115,7 +115,8 @@ def excluded(rule: Formalized) -> tuple[Exclusion, ...]:
     """The comparisons of a rule that cannot have these values together, whatever is measured."""
     signals = rule.declarations.signals if rule.declarations else {}
     scales = {name: signal.scale for name, signal in signals.items()}
-    return exclusions(comparisons(rule), scales)
+    words = {name: signal.values for name, signal in signals.items() if signal.values}
+    return exclusions(comparisons(rule), scales, words)
 
 
 def exclusion_in_words(exclusion: Exclusion) -> str:

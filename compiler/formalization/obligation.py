@@ -18,6 +18,7 @@ from compiler.logic import formula as f
 from compiler.logic.printing import identifier, is_compound
 from fretish import expressions as e
 from fretish import syntax as s
+from fretish.printer import identifier as quoted
 
 
 class Kind(Enum):
@@ -239,7 +240,7 @@ def boolean(expression: e.Expression, expand: Expand) -> f.Formula:
             return f.implies(read(left), read(right))
         case e.Iff(left, right):
             return f.iff(read(left), read(right))
-        case e.Number() | e.Quantity() | e.Negation() | e.Arithmetic() | e.Persistence():
+        case e.Number() | e.Quantity() | e.Word() | e.Negation() | e.Arithmetic() | e.Persistence():
             raise AssertionError(f"not a truth value of a sentence: {expression}")
         case _:
             assert_never(expression)
@@ -268,6 +269,8 @@ def atom(expression: e.Expression) -> str:
             return digits
         case e.Quantity(digits, unit):
             return f"{digits} {unit}"
+        case e.Word(text):
+            return quoted(text)
         case e.Truth(value):
             return str(value).upper()
         case _:

@@ -77,6 +77,7 @@ def record(rule: Formalized) -> dict[str, Any]:
         "status": requirement.status,
         "verify": list(requirement.verify),
         "params": dict(requirement.params),
+        **({"accept": dict(requirement.accept)} if requirement.accept else {}),
         "source": requirement.wording.source.name,
         "line": requirement.wording.line,
     }

@@ -41,18 +41,21 @@ _MIRRORED: Mapping[e.ComparisonOperator, e.ComparisonOperator] = {
 
 @deep
 def exclusions(
-    comparisons: Mapping[str, e.Comparison], scales: Mapping[str, Fraction]
+    comparisons: Mapping[str, e.Comparison],
+    scales: Mapping[str, Fraction],
+    words: Mapping[str, Sequence[str]] | None = None,
 ) -> tuple[Exclusion, ...]:
     """The least sets of literals that no numbers make true; each other valuation may occur.
 
     Args:
         comparisons: by their names; a bare number is in the unit of what it is compared with.
         scales: of the signals, from their units to base units; a name without one is a number.
+        words: what each enumerated signal may be.
     """
     read = {name: _relation(each, scales) for name, each in comparisons.items()}
     found: list[Exclusion] = []
     for group in _groups(read):
-        _Search({name: read[name] for name in read if name in group}, found).run()
+        _Search({name: read[name] for name in read if name in group}, words or {}, found).run()
     return tuple(found)
 
 
@@ -117,7 +120,7 @@ class _Relation:
     def terms(self) -> Iterator[_Term]:
         """Those of its points that are no constants, and what they are the magnitudes of."""
         for point in (self.left, self.right):
-            if isinstance(point, _Term):
+            if isinstance(point, _Term) and not _is_word(point):
                 yield point
                 yield from (each for each in (_of_magnitude(point),) if each is not None)
 
@@ -133,7 +136,10 @@ def _relation(comparison: e.Comparison, scales: Mapping[str, Fraction]) -> _Rela
         return _measured(comparison.right, mirrored, left, is_base)
     if right is not None:
         return _measured(comparison.left, comparison.op, right, is_base)
-    sides = [_Term(side, is_base) for side in (comparison.left, comparison.right)]
+    sides = [
+        _Term(side, is_base and not isinstance(side, e.Word))
+        for side in (comparison.left, comparison.right)
+    ]
     return _Relation(sides[0], comparison.op, sides[1])
 
 
@@ -230,10 +236,12 @@ class _Order:
     """Point i is at most point j."""
     less: list[int]
     apart: list[tuple[int, int]] = field(default_factory=list)
+    choices: Sequence[tuple[int, Sequence[int]]] = ()
+    """Points that are equal to one of several others."""
 
     def copy(self) -> _Order:
         """One of its own."""
-        return _Order([*self.at_most], [*self.less], [*self.apart])
+        return _Order([*self.at_most], [*self.less], [*self.apart], self.choices)
 
     def add(self, i: int, j: int, *, strict: bool) -> None:
         """Point i is at most point j, or less."""
@@ -245,17 +253,28 @@ class _Order:
 
     @property
     def is_impossible(self) -> bool:
-        """Whether a point is less than itself, or two that are apart are equal."""
-        return any(less >> i & 1 for i, less in enumerate(self.less)) or any(
-            self.at_most[i] >> j & 1 and self.at_most[j] >> i & 1 for i, j in self.apart
+        """Whether a point is less than itself, two are equal and apart, or no choice is left."""
+        return (
+            any(less >> i & 1 for i, less in enumerate(self.less))
+            or any(self.at_most[i] >> j & 1 and self.at_most[j] >> i & 1 for i, j in self.apart)
+            or any(
+                all((i, j) in self.apart or (j, i) in self.apart for j in each)
+                for i, each in self.choices
+            )
         )
 
 
 class _Search:
     """The valuations of a group, one comparison after the other, as long as they are possible."""
 
-    def __init__(self, relations: Mapping[str, _Relation], found: list[Exclusion]) -> None:
+    def __init__(
+        self,
+        relations: Mapping[str, _Relation],
+        words: Mapping[str, Sequence[str]],
+        found: list[Exclusion],
+    ) -> None:
         self._relations, self._found = relations, found
+        self._words = words
         self._names = tuple(relations)
         points = dict.fromkeys(_points(relations.values()))
         self._places = {point: place for place, point in enumerate(points)}
@@ -328,7 +347,23 @@ class _Search:
             if arg is not None:
                 for less in (_ZERO, arg, _negative(arg)):
                     order.add(self._places[less], self._places[point], strict=False)
+        spoken = [p for point, p in self._places.items() if _is_word(point)]
+        order.apart.extend(combinations(spoken, 2))
+        order.choices = tuple(self._choices())
         return order
+
+    def _choices(self) -> Iterator[tuple[int, Sequence[int]]]:
+        """Enumerated signals with all their words, where all are spoken of."""
+        for point, place in self._places.items():
+            match point:
+                case _Term(e.Name(id)) if id in self._words:
+                    words = [_Term(e.Word(word), is_base=False) for word in self._words[id]]
+                    if all(word in self._places for word in words):
+                        yield place, [self._places[word] for word in words]
+
+
+def _is_word(point: _Point) -> bool:
+    return isinstance(point, _Term) and isinstance(point.text, e.Word)
 
 
 _ZERO = _Constant(Fraction(0))

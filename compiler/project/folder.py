@@ -1,46 +1,29 @@
-"""A requirements folder as one thing: the rules, the declarations and the hazards in it."""
+"""A requirements folder read as one thing: a `Project`."""
 
 from __future__ import annotations
 
-import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import chain
 from pathlib import Path
-from typing import Any
 
-from compiler.files.settings import settings
-from compiler.files.text_files import read, unreadable
-from compiler.formalization.formalize import duplicates, formalize
+from compiler.files.settings import Settings, settings
+from compiler.files.text_files import read
+from compiler.formalization.formalize import duplicates, formalize, unreadable_sentence
 from compiler.formalization.formalized import Formalized
 from compiler.formalization.resolution import extended
+from compiler.project.acceptances import Acceptance, acceptances, answered
 from compiler.project.ancestry import circles, unknown_parents
+from compiler.project.hazards import Hazard
+from compiler.project.hazards import hazards as read_hazards
 from compiler.project.parents import Parent
 from compiler.project.parents import parents as read_parents
+from compiler.project.paths import BINDINGS, HAZARDS, beside, beside_first, requirement_files
 from compiler.project.stated_numbers import disagreements
 from fretish.bindings.declarations import Declarations
 from fretish.bindings.reader import read_bindings
 from fretish.diagnostics.diagnostic import Code, Diagnostic, has_errors
-from fretish.diagnostics.source import Source
 from fretish.documents import Requirement, requirements
-from fretish.reading.natural_order import natural
-from fretish.reading.toml_text import Tables
-from fretish.reading.toml_text import read as read_tables
-
-BINDINGS = "bindings.toml"
-HAZARDS = "hazards.toml"
-_HAZARD_FIELDS = ("title", "text", "severity", "source")
-
-
-@dataclass(frozen=True, slots=True)
-class Hazard:
-    """What a requirement is there to prevent."""
-
-    id: str
-    title: str
-    text: str = ""
-    severity: str = ""
-    source: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,6 +32,9 @@ class Failed:
 
     requirement: Requirement
     diagnostic: Diagnostic
+    """The first error; the note where it is free text."""
+    diagnostics: tuple[Diagnostic, ...] = ()
+    """All there is to say of it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,11 +56,17 @@ class Project:
     id with another one, or its `params` name what is not there."""
     parents: Mapping[str, Parent] = field(default_factory=dict)
     """What other tools have, by its id; read where hazards are."""
+    acceptances: tuple[Acceptance, ...] = ()
+    """The warnings that are accepted, and why; those among `diagnostics` are marked."""
 
     @property
     def without_rule(self) -> tuple[Requirement, ...]:
         """The requirements that have an error, or are free text."""
         return tuple(each.requirement for each in self.failed)
+
+    def answered(self, diagnostics: Iterable[Diagnostic]) -> tuple[Diagnostic, ...]:
+        """The same, with the reason of each warning that is accepted."""
+        return answered(diagnostics, self.acceptances)
 
 
 def load(
@@ -92,10 +84,11 @@ def load(
         hazards: their `hazards.toml`; None: no hazards are read.
         parents: whether parents in other tools are read, as the settings name them.
     """
-    declarations, said = _declarations(bindings or _beside(paths, BINDINGS))
-    known, told = _hazards(hazards) if hazards else ({}, ())
+    declarations, said = _declarations(bindings or beside_first(paths, BINDINGS))
+    known, told = read_hazards(hazards) if hazards else ({}, ())
     written, unread = _written(paths)
-    above, elsewhere = _above(paths) if parents else ({}, ())
+    chosen = _settings(paths)
+    above, elsewhere = _above(chosen) if parents else ({}, ())
     broken = declarations is None and has_errors(said)
     rules, failed, mistaken, remarks = _formalized(written, declarations, broken=broken)
     upward = [*told, *elsewhere]
@@ -106,16 +99,21 @@ def load(
     mistakes = declarations.mistakes.values() if declarations else ()
     single = frozenset(chain.from_iterable(mistakes))
     general = (*(each for each in said if each not in single), *unread, *upward)
+    accepted, unanswered = acceptances(written, chosen if isinstance(chosen, Settings) else None)
+    if isinstance(chosen, Diagnostic) and not parents:
+        unanswered = (*unanswered, chosen)
+    everything = (*said, *unread, *remarks, *upward, *unanswered)
     return Project(
         tuple(written),
         rules,
         failed,
         declarations,
         known,
-        (*said, *unread, *remarks, *upward),
+        answered(everything, accepted),
         general,
         mistaken,
         above,
+        accepted,
     )
 
 
@@ -157,14 +155,14 @@ def _formalized(
     mistaken = dict(duplicates(written))
     rules, failed, said = [], [], list(dict.fromkeys(mistaken.values()))
     for requirement in written:
-        rule, remarks = None, requirement.mistakes
-        if not remarks:
+        rule, remarks = None, (*requirement.mistakes, *unreadable_sentence(requirement))
+        if not requirement.mistakes:
             rule, remarks = formalize(requirement, declarations)
         if rule is not None and rule.declarations is not None:
             remarks = (*remarks, *disagreements(rule, rule.declarations))
         said.extend(remark for remark in remarks if remark.code not in unsaid)
         if rule is None:
-            failed.append(Failed(requirement, _reason(remarks)))
+            failed.append(Failed(requirement, _reason(remarks), remarks))
             continue
         rules.append(rule)
         if has_errors(remarks):
@@ -193,76 +191,24 @@ def whole(
     )
 
 
-def _above(paths: Sequence[str]) -> tuple[Mapping[str, Parent], tuple[Diagnostic, ...]]:
-    """The parents that live in other tools, by the settings of the project."""
+def _settings(paths: Sequence[str]) -> Settings | Diagnostic | None:
+    """The settings of the project; None where it is read from standard input."""
     first = next((path for path in paths if path != "-"), None)
-    told = settings(str(Path(first).parent)) if first else None
-    if isinstance(told, Diagnostic):
-        return {}, (told,)
-    return read_parents(told) if told is not None else ({}, ())
+    return settings(str(Path(first).parent)) if first else None
+
+
+def _above(
+    chosen: Settings | Diagnostic | None,
+) -> tuple[Mapping[str, Parent], tuple[Diagnostic, ...]]:
+    """The parents that live in other tools, by the settings of the project."""
+    if isinstance(chosen, Diagnostic):
+        return {}, (chosen,)
+    return read_parents(chosen) if chosen is not None else ({}, ())
 
 
 def _reason(remarks: Sequence[Diagnostic]) -> Diagnostic:
     """The error among them; the note where the requirement is free text."""
     return next((remark for remark in remarks if remark.is_error), remarks[0])
-
-
-def requirement_files(folder: str) -> list[str] | Diagnostic:
-    """The `.fret` files of a folder, `r2` before `r10`; or the one file, where it is a file."""
-    try:
-        if not _is_folder(folder):
-            return [folder] if Path(folder).is_file() else _absent(folder, "there is no folder")
-        listed = (name for name in os.listdir(folder) if name.endswith(".fret"))
-        names = sorted(listed, key=natural)
-    except OSError as error:
-        return unreadable(folder, error)
-    found = [str(Path(folder) / name) for name in names]
-    return [path for path in found if not _is_folder(path)] or _absent(
-        folder, "no requirement (`*.fret`) is in"
-    )
-
-
-def _absent(folder: str, what: str) -> Diagnostic:
-    return Diagnostic(
-        Code.NO_SUCH_FILE,
-        f"{what} `{folder}`",
-        Source(folder, "").span(),
-        help="name the folder that your requirements are in",
-    )
-
-
-def _is_folder(path: str) -> bool:
-    """An empty name is none, though Python takes it for the present folder."""
-    return bool(path) and path != "-" and os.path.isdir(path)
-
-
-def listed(paths: Sequence[str]) -> list[str] | Diagnostic:
-    """The files, with those of a folder in its place; each once, however it is spelt."""
-    found: dict[str, str] = {}
-    for path in paths:
-        files = requirement_files(path) if _is_folder(path) else [path]
-        if isinstance(files, Diagnostic):
-            return files
-        for file in files:
-            found.setdefault(os.path.realpath(file) if file != "-" else file, file)
-    return list(found.values())
-
-
-def beside(folder: str, name: str) -> str | None:
-    """The path of a file in the requirements folder, where it is there."""
-    return _beside([folder if os.path.isfile(folder) else str(Path(folder) / "any")], name)
-
-
-def companions(paths: Sequence[str]) -> tuple[str, ...]:
-    """What stands beside the first requirement and is read with it; no output may replace it."""
-    names = (BINDINGS, HAZARDS, "fretc.lock", "waivers.toml", "allowed_signers")
-    return tuple(path for path in (_beside(paths, name) for name in names) if path is not None)
-
-
-def _beside(paths: Sequence[str], name: str) -> str | None:
-    first = next((path for path in paths if path != "-"), None)
-    path = str(Path(first).parent / name) if first else None
-    return path if path is not None and os.path.exists(path) else None
 
 
 def _declarations(
@@ -272,35 +218,3 @@ def _declarations(
         return None, ()
     source = read(path)
     return (None, (source,)) if isinstance(source, Diagnostic) else read_bindings(source)
-
-
-def _hazards(path: str) -> tuple[dict[str, Hazard], tuple[Diagnostic, ...]]:
-    """`[HAZ-001]` tables with `title`, and perhaps `text`, `severity`, `source`."""
-    source = read(path)
-    if isinstance(source, Diagnostic):
-        return {}, (source,)
-    tables = read_tables(source.span(), Code.BAD_HAZARDS, "the hazards file")
-    if isinstance(tables, Diagnostic):
-        return {}, (tables,)
-    wrong = [d for id, fields in tables.data.items() for d in _hazard_mistakes(tables, id, fields)]
-    if has_errors(wrong):
-        return {}, tuple(wrong)
-    return {id: Hazard(id, **fields) for id, fields in tables.data.items()}, ()
-
-
-def _hazard_mistakes(tables: Tables, id: str, fields: Any) -> list[Diagnostic]:
-    def wrong(message: str, mend: str, *path: str) -> Diagnostic:
-        return Diagnostic(Code.BAD_HAZARDS, message, tables.place(*path), help=mend)
-
-    if not isinstance(fields, dict):
-        return [wrong(f"`{id}` is no hazard", f'write `[{id}]`, then `title = "..."`', id)]
-    found = []
-    for key, value in fields.items():
-        if key not in _HAZARD_FIELDS:
-            known = ", ".join(_HAZARD_FIELDS)
-            found.append(wrong(f"`{key}` is no field of a hazard", f"it may have {known}", id, key))
-        elif not isinstance(value, str):
-            found.append(wrong(f"`{key}` must be a text", "write it in quotes", id, key))
-    if "title" not in fields:
-        found.append(wrong(f"the hazard {id} has no title", 'add `title = "..."`', id))
-    return found

@@ -10,6 +10,7 @@ from pathlib import PurePosixPath
 from compiler.files.text_files import read
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.documents import requirements
+from fretish.parser import mistakes as of_sentence
 from fretish.parser import parse
 from fretish.printer import sentence
 
@@ -47,7 +48,7 @@ def formatted(paths: Sequence[str]) -> tuple[tuple[Formatted, ...], tuple[Diagno
                 continue
             tree = parse(requirement.wording)
             if isinstance(tree, Diagnostic):
-                diagnostics.append(tree)
+                diagnostics.extend(of_sentence(requirement.wording))
                 continue
             span = requirement.wording
             text = text[: span.start] + _wrapped(sentence(tree)) + text[span.end :]

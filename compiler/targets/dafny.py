@@ -304,5 +304,9 @@ def _loop(rule: Formalized, declarations: Declarations | None) -> str:
 
 
 TARGET = Target(
-    "dafny", "monitor step, interceptor and closed loop with proofs, for Dafny", emit, refuse
+    "dafny",
+    "monitor step, interceptor and closed loop with proofs, for Dafny",
+    emit,
+    refuse,
+    next_step="`dafny verify {}` proves it",
 )

@@ -63,6 +63,8 @@ class Target:
     """Warnings about the whole output, beside the `remark` on each rule."""
     per_rule: bool = True
     """False where all rules go into one file, for exchange with another tool."""
+    next_step: str = ""
+    """A command for the first file, `{}`, and what it does; for whoever makes one anew."""
     weak: Target | None = None
     """The same target where weakening is allowed: it refuses less, and remarks what is lost."""
 

@@ -61,9 +61,9 @@ def audit_logs(
     Raises:
         Refusal: there is no log, no such file, or no requirement that can be judged.
     """
-    wrong = _bad_choice(integrity, confidence, jobs)
-    if wrong is not None:
-        raise Refusal((wrong,))
+    error = _bad_choice(integrity, confidence, jobs)
+    if error is not None:
+        raise Refusal((error,))
     named = accepted(logs_of([os.fspath(log) for log in logs]))
     if not named:
         raise Refusal((_nothing(),))
@@ -73,21 +73,21 @@ def audit_logs(
     return _audit(plan, accepted(audited(plan, named, locally(jobs))))
 
 
-def _audit(plan: Plan, found: Run) -> Audit:
+def _audit(plan: Plan, run: Run) -> Audit:
     return Audit(
-        found.results,
-        found.estimates,
-        tuple(dict.fromkeys((*plan.refusals, *found.diagnostics))),
-        found.violated,
-        found.shown,
-        found.evidence,
+        run.results,
+        run.estimates,
+        tuple(dict.fromkeys((*plan.refusals, *run.diagnostics))),
+        run.violated,
+        run.shown,
+        run.evidence,
     )
 
 
 def _bad_choice(integrity: str, confidence: float, jobs: int) -> Diagnostic | None:
     if integrity not in list(Integrity):
-        known = ", ".join(Integrity)
-        return _bad(f"there is no integrity `{integrity}`", f"name one of {known}")
+        names = ", ".join(Integrity)
+        return _bad(f"there is no integrity `{integrity}`", f"name one of {names}")
     if not 0.5 < confidence < 1:
         return _bad(f"no confidence is {confidence}", "give a number between 0.5 and 1")
     if jobs < 1:

@@ -43,9 +43,9 @@ def verify(
     """
     if has_errors(project.diagnostics):
         raise Refusal(each for each in project.diagnostics if each.is_error)
-    asked = _named("layer", layers, tuple(map(str, Layer)))
-    helpers = _named("prover", provers, PROVERS)
-    if not project.rules or not asked:
+    chosen_layers = _named("layer", layers, tuple(map(str, Layer)))
+    chosen_provers = _named("prover", provers, PROVERS)
+    if not project.rules or not chosen_layers:
         raise Refusal((Diagnostic(Code.NOTHING_TO_DO, "there is nothing to verify"),))
     if limit < 1:
         raise Refusal((_bad(f"no proof ends in {limit} seconds", "give 1 or more"),))
@@ -53,22 +53,25 @@ def verify(
     if has_errors(remarks):
         raise Refusal(remarks)
     request = Request(
-        [Layer(name) for name in asked], Limits(seconds=limit), provers=helpers, ajpf=results
+        [Layer(name) for name in chosen_layers],
+        Limits(seconds=limit),
+        provers=chosen_provers,
+        ajpf=results,
     )
-    wrong = refusals(project, request)
-    if wrong:
-        raise Refusal(wrong)
+    errors = refusals(project, request)
+    if errors:
+        raise Refusal(errors)
     return accepted(prove(project, request))
 
 
-def _named(what: str, names: Iterable[str], known: tuple[str, ...]) -> tuple[str, ...]:
-    found = tuple(dict.fromkeys([names] if isinstance(names, str) else names))
-    for name in found:
-        if name not in known:
+def _named(what: str, choice: Iterable[str], names: tuple[str, ...]) -> tuple[str, ...]:
+    chosen = tuple(dict.fromkeys([choice] if isinstance(choice, str) else choice))
+    for name in chosen:
+        if name not in names:
             raise Refusal(
-                (_bad(f"there is no {what} `{name}`", f"name some of {', '.join(known)}"),)
+                (_bad(f"there is no {what} `{name}`", f"name some of {', '.join(names)}"),)
             )
-    return found
+    return chosen
 
 
 def _bad(what: str, mend: str) -> Diagnostic:

@@ -9,6 +9,7 @@ from typing import ParamSpec, TypeVar
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.rendering import render_all
 from fretish.reading.limits import ExceededError, exceeded
+from fretish.reading.natural_order import by_place
 
 P = ParamSpec("P")
 R = TypeVar("R")
@@ -26,7 +27,7 @@ class Refusal(Exception):  # noqa: N818 - as its users speak of it
 
     def __str__(self) -> str:
         """What the command would print."""
-        return render_all(self.diagnostics)
+        return render_all(by_place(self.diagnostics))
 
 
 def accepted(value: R | Diagnostic) -> R:

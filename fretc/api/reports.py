@@ -6,7 +6,8 @@ import os
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-from compiler.project.folder import Project, beside
+from compiler.project.folder import Project
+from compiler.project.paths import beside
 from fretc.api.refusal import Refusal, bounded
 from fretc.attestation.signatures import SIGNERS
 from fretc.report.make import ReportBuild, make

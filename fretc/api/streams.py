@@ -71,18 +71,20 @@ class Stream:
     def add(self, signal: str, time_ns: int, value: object) -> None:
         """One sample of a signal.
 
-        What its field holds is given, in the unit of the field: a number; for a path with `[:]` or
-        an index, the whole array; None where it is unknown. The signal's `valid`, `invalid` and
-        `reduce` say what that means. A sample of a signal that no requirement reads is passed by.
+        What its field holds is given, in the unit of the field: a number, or a word; for a path
+        with `[:]` or an index, the whole array; None where it is unknown. The signal's `values`,
+        `valid`, `invalid` and `reduce` say what that means. A sample of a signal that no
+        requirement reads is passed by.
 
         Raises:
-            Refusal: there is no such signal, the value is no number, it needs other fields of its
-                message (then use `add_message`), or it comes late. The stream is as it was.
+            Refusal: there is no such signal, the value is no number and no word, it needs other
+                fields of its message (then use `add_message`), or it comes late. The stream is as
+                it was.
         """
         if self._signal(signal) is not None:
-            wrong = self._truths.add(signal, index(time_ns), value)
-            if wrong is not None:
-                raise Refusal((wrong,))
+            error = self._truths.add(signal, index(time_ns), value)
+            if error is not None:
+                raise Refusal((error,))
 
     def add_message(self, topic: str, time_ns: int, message: object) -> None:
         """One message: a sample of each signal that reads its topic.
@@ -94,9 +96,14 @@ class Stream:
             Refusal: a field is missing, is no number, or the message comes late. The stream is as
                 it was.
         """
-        wrong = self._truths.message(topic, index(time_ns), message)
-        if wrong is not None:
-            raise Refusal((wrong,))
+        error = self._truths.message(topic, index(time_ns), message)
+        if error is not None:
+            raise Refusal((error,))
+
+    @property
+    def findings(self) -> tuple[Diagnostic, ...]:
+        """About samples that are unknown: none of the values of their signal, or no truth value."""
+        return self._truths.findings
 
     @property
     def waiting(self) -> tuple[str, ...]:
@@ -165,9 +172,9 @@ def _plan(project: Project) -> Plan:
         raise Refusal(plan.refusals)
     claimed = {claim.id for claim in plan.claims}
     refused = (python.refuse(rule) for rule in project.rules if rule.id in claimed)
-    wrong = [diagnostic for diagnostic in refused if diagnostic is not None]
-    if wrong:
-        raise Refusal(wrong)
+    errors = [diagnostic for diagnostic in refused if diagnostic is not None]
+    if errors:
+        raise Refusal(errors)
     return plan
 
 
@@ -207,10 +214,10 @@ def _copy(monitor: Monitor) -> Monitor:
     return other
 
 
-def _no_signal(name: str, known: tuple[str, ...]) -> Diagnostic:
-    near = suggestion(name, known)
+def _no_signal(name: str, names: tuple[str, ...]) -> Diagnostic:
+    near = suggestion(name, names)
     return Diagnostic(
         Code.UNKNOWN_NAME,
         f"the bindings declare no signal `{name}`",
-        help=f"did you mean `{near}`?" if near else f"they declare {', '.join(known)}",
+        help=f"did you mean `{near}`?" if near else f"they declare {', '.join(names)}",
     )

@@ -173,8 +173,8 @@ def _why(error: Exception) -> str:
     """What a library says, as the end of a sentence."""
     if isinstance(error, UnusableKeyError):
         return str(error)
-    said = str(error).strip().rstrip(".") or type(error).__name__
-    return f"{said[:1].lower()}{said[1:]}"
+    message = str(error).strip().rstrip(".") or type(error).__name__
+    return f"{message[:1].lower()}{message[1:]}"
 
 
 # Envelopes -------------------------------------------------------------------------------------
@@ -193,20 +193,20 @@ def opened(line: str) -> Sealed:
     Raises:
         MisshapenError: it is none.
     """
-    whole = Shape(plain(line))
-    whole.only("payload", "payloadType", "signatures")
-    whole.field("payloadType").one_of((PAYLOAD_TYPE,))
-    signatures = whole.field("signatures").items()
+    shape = Shape(plain(line))
+    shape.only("payload", "payloadType", "signatures")
+    shape.field("payloadType").one_of((PAYLOAD_TYPE,))
+    signatures = shape.field("signatures").items()
     if not signatures:
-        raise whole.field("signatures").wrong("a list of signatures")
+        raise shape.field("signatures").wrong("a list of signatures")
     for signature in signatures:
         signature.only("keyid", "sig")
         signature.field("keyid").text()
         _bytes(signature.field("sig"))
     keys = tuple(signature.field("keyid").text() for signature in signatures)
     if len(set(keys)) < len(keys):
-        raise whole.field("signatures").wrong("one signature for each key")
-    payload = _bytes(whole.field("payload"))
+        raise shape.field("signatures").wrong("one signature for each key")
+    payload = _bytes(shape.field("payload"))
     return Sealed(payload, keys, Envelope.from_dict(json.loads(line)))
 
 

@@ -76,18 +76,18 @@ def closure(root: str = TOOL) -> Mapping[str, tuple[str, ...]]:
 
     What an extra of the root needs counts where all of it is installed.
     """
-    found: dict[str, set[str]] = {}
+    needs: dict[str, set[str]] = {}
     waiting: list[Name] = [(_canonical(root), frozenset(_installed_extras(root)))]
-    seen: set[Name] = set()
+    visited: set[Name] = set()
     while waiting:
         name, extras = one = waiting.pop()
-        if one in seen:
+        if one in visited:
             continue
-        seen.add(one)
+        visited.add(one)
         needed = [each for each in _needed(name, extras) if _is_installed(each)]
-        found.setdefault(name, set()).update(map(_name, needed))
+        needs.setdefault(name, set()).update(map(_name, needed))
         waiting.extend((_name(each), frozenset(each.extras)) for each in needed)
-    return {name: tuple(sorted(found[name] - {name})) for name in sorted(found)}
+    return {name: tuple(sorted(needs[name] - {name})) for name in sorted(needs)}
 
 
 def _installed_extras(root: str) -> Iterator[str]:
@@ -101,10 +101,10 @@ def _needed(name: str, extras: Iterable[str]) -> Iterator[Requirement]:
     """What a distribution needs here, with these extras."""
     from packaging.requirements import Requirement
 
-    asked = ("", *extras)
+    contexts = ("", *extras)
     for text in distribution(name).requires or ():
         one = Requirement(text)
-        if one.marker is None or any(one.marker.evaluate({"extra": extra}) for extra in asked):
+        if one.marker is None or any(one.marker.evaluate({"extra": extra}) for extra in contexts):
             yield one
 
 
@@ -145,5 +145,5 @@ def _licences(one: Distribution) -> list[str]:
         text = (one.metadata[field] or "").strip() if field in one.metadata else ""
         if text and text != "UNKNOWN" and len(text) <= _SHORT and "\n" not in text:
             return [text]
-    told = one.metadata.get_all("Classifier", [])
-    return [each.rpartition(" :: ")[2] for each in told if each.startswith("License :: ")]
+    classifiers = one.metadata.get_all("Classifier", [])
+    return [each.rpartition(" :: ")[2] for each in classifiers if each.startswith("License :: ")]

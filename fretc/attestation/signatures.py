@@ -64,7 +64,7 @@ def read(path: str) -> tuple[Envelope, ...] | Diagnostic:
 def _envelopes(source: Source) -> tuple[Envelope, ...] | Diagnostic:
     from fretc.attestation.keys import opened
 
-    found = []
+    envelopes = []
     start = 0
     for line in source.text.split("\n"):
         place = source.span(start, start + len(line))
@@ -73,14 +73,14 @@ def _envelopes(source: Source) -> tuple[Envelope, ...] | Diagnostic:
             continue
         try:
             sealed = opened(line)
-            found.append(Envelope(sealed, read_statement(sealed.payload), place))
+            envelopes.append(Envelope(sealed, read_statement(sealed.payload), place))
         except MisshapenError as error:
             return _wrong(place, f"the line is no signed statement of fretc: {error}")
-    return tuple(found)
+    return tuple(envelopes)
 
 
 def envelope(line: str) -> Envelope:
-    """One that was just made."""
+    """The envelope of a new line."""
     from fretc.attestation.keys import opened
 
     sealed = opened(line)
@@ -96,25 +96,25 @@ def _wrong(place: Span, what: str) -> Diagnostic:
     )
 
 
-def appended(known: Sequence[Envelope], new: Envelope, current: frozenset[Subject]) -> str:
+def appended(envelopes: Sequence[Envelope], new: Envelope, current: frozenset[Subject]) -> str:
     """The file with one envelope more.
 
     Args:
-        known: those that are there. One of the same key about nothing else is replaced; one
+        envelopes: of the file. The new one replaces one of the same key about nothing else; one
             about nothing that is still there is left out.
-        new: the one more.
+        new: one more.
         current: everything that can be signed now.
     """
-    return "".join(f"{one.text}\n" for one in (*kept(known, new, current), new))
+    return "".join(f"{one.text}\n" for one in (*kept(envelopes, new, current), new))
 
 
 def kept(
-    known: Sequence[Envelope], new: Envelope, current: frozenset[Subject]
+    envelopes: Sequence[Envelope], new: Envelope, current: frozenset[Subject]
 ) -> tuple[Envelope, ...]:
     """The envelopes that stay beside a new one."""
     return tuple(
         one
-        for one in known
+        for one in envelopes
         if (about := one.statement.main & current)
         and not (one.sealed.keys == new.sealed.keys and about <= new.statement.main)
     )
@@ -147,7 +147,7 @@ class Signing:
 
 
 @dataclass(frozen=True, slots=True)
-class _Judged:
+class _CheckedEnvelope:
     """An envelope, the signers of whom a signature verifies, and those of whom none does."""
 
     envelope: Envelope
@@ -158,11 +158,11 @@ class _Judged:
 
 @dataclass(frozen=True, slots=True)
 class Book:
-    """All signatures of a project, judged."""
+    """All signatures of a project, checked against the signers."""
 
     signers: Signers | None
     """None: there is no list, and no key counts."""
-    judged: tuple[_Judged, ...] = ()
+    envelopes: tuple[_CheckedEnvelope, ...] = ()
 
     def of(self, subject: Subject, name: str | None = None) -> Signing:
         """Who signed exactly this.
@@ -171,26 +171,26 @@ class Book:
             subject: what it is now.
             name: whoever must have signed it; None: any of the signers.
         """
-        about = [one for one in self.judged if subject in one.subjects]
+        about = [one for one in self.envelopes if subject in one.subjects]
         return self._of(about, subject, name)
 
     def of_file(self, kind: str, sha256: str) -> Signing:
         """Who signed a file of this content, whatever it is called."""
-        about = [one for one in self.judged if _has(one, kind, sha256)]
+        about = [one for one in self.envelopes if _has(one, kind, sha256)]
         return self._of(about, Subject(kind, "", sha256), None)
 
     def agreed(self, evidence: Evidence) -> Signing:
         """Who signed evidence with a statement that says the same as the file."""
         now = attestation.evidence(evidence, None)
-        whole = [one for one in self.judged if _agrees(one.envelope.statement, now)]
-        found = self.of_file(attestation.EVIDENCE, evidence.sha256)
-        if not found.is_good:
-            return found
-        if not any(one.by for one in whole):
+        agreeing = [one for one in self.envelopes if _agrees(one.envelope.statement, now)]
+        signing = self.of_file(attestation.EVIDENCE, evidence.sha256)
+        if not signing.is_good:
+            return signing
+        if not any(one.by for one in agreeing):
             return Signing(State.CHANGED, "the statement that was signed says something else")
-        return Book(self.signers, tuple(whole)).of_file(attestation.EVIDENCE, evidence.sha256)
+        return Book(self.signers, tuple(agreeing)).of_file(attestation.EVIDENCE, evidence.sha256)
 
-    def _of(self, about: Sequence[_Judged], subject: Subject, name: str | None) -> Signing:
+    def _of(self, about: Sequence[_CheckedEnvelope], subject: Subject, name: str | None) -> Signing:
         by = list(dict.fromkeys(signer for one in about for signer in one.by))
         good = [signer for signer in by if name is None or signer.goes_by(name)]
         if good:
@@ -199,32 +199,34 @@ class Book:
             return Signing(State.ANOTHER, f"signed by {_names(by)}, who is not {name}")
         if about:
             return Signing(State.UNKNOWN, self._unknown(about))
-        before = [signer for one in self.judged if _has_another(one, subject) for signer in one.by]
+        before = [
+            signer for one in self.envelopes if _has_another(one, subject) for signer in one.by
+        ]
         if before:
-            told = _names(dict.fromkeys(before))
-            return Signing(State.CHANGED, f"{told} signed it before it was changed")
+            names = _names(dict.fromkeys(before))
+            return Signing(State.CHANGED, f"{names} signed it before it was changed")
         return Signing(State.NONE, "nobody signed it")
 
-    def _unknown(self, about: Sequence[_Judged]) -> str:
+    def _unknown(self, about: Sequence[_CheckedEnvelope]) -> str:
         keys = dict.fromkeys(key for one in about for key in one.envelope.sealed.keys)
         names = {signer.key.fingerprint for one in about for signer in one.broken}
-        told = ", ".join(key for key in keys if key not in names)
-        if not told:
+        unknown_keys = ", ".join(key for key in keys if key not in names)
+        if not unknown_keys:
             return "its signature does not verify"
         if self.signers is None:
-            return f"there is a signature ({told}), and no list of signers"
-        return f"there is a signature with a key that is not among the signers ({told})"
+            return f"there is a signature ({unknown_keys}), and no list of signers"
+        return f"there is a signature with a key that is not among the signers ({unknown_keys})"
 
     def diagnostics(self) -> Iterator[Diagnostic]:
         """F557 for each signature that does not verify, and what is wrong with the signers."""
         yield from self.signers.remarks if self.signers else ()
-        for one in self.judged:
+        for one in self.envelopes:
             for signer in one.broken:
                 yield _broken(one.envelope, signer)
 
 
 def _agrees(signed: Statement, now: Statement) -> bool:
-    """Whether a statement of evidence says what is made of the file now, but for the proofs."""
+    """Whether a signed statement equals the present one, but for the proofs."""
     says = {**signed.says, "proofs": now.says["proofs"]}
     return signed.of(attestation.LOG) == now.of(attestation.LOG) and says == now.says
 
@@ -232,11 +234,11 @@ def _agrees(signed: Statement, now: Statement) -> bool:
 NO_SIGNATURES = Book(None)
 
 
-def _has(one: _Judged, kind: str, sha256: str) -> bool:
+def _has(one: _CheckedEnvelope, kind: str, sha256: str) -> bool:
     return any((each.kind, each.sha256) == (kind, sha256) for each in one.subjects)
 
 
-def _has_another(one: _Judged, subject: Subject) -> bool:
+def _has_another(one: _CheckedEnvelope, subject: Subject) -> bool:
     """Whether the envelope is about an earlier content of it; of a file, the kind is enough."""
     return any(
         each.kind == subject.kind and subject.name in ("", each.name) for each in one.subjects
@@ -270,7 +272,7 @@ def missing() -> Diagnostic | None:
 
 
 def gathered(files: Sequence[str], signers: str | None) -> Book | Diagnostic:
-    """The signatures beside files, judged by a list of signers.
+    """The signatures beside files, checked against a list of signers.
 
     Args:
         files: that may have been signed.
@@ -288,18 +290,18 @@ def gathered(files: Sequence[str], signers: str | None) -> Book | Diagnostic:
 
 
 def book(files: Sequence[str], signers: Signers | None) -> Book | Diagnostic:
-    """The signatures beside files, judged."""
-    found: list[_Judged] = []
+    """The signatures beside files, checked."""
+    checked: list[_CheckedEnvelope] = []
     for path in files:
         envelopes = read(path)
         if isinstance(envelopes, Diagnostic):
             return envelopes
-        found.extend(_judged(one, signers.signers if signers else ()) for one in envelopes)
-    return Book(signers, tuple(found))
+        checked.extend(_checked(one, signers.signers if signers else ()) for one in envelopes)
+    return Book(signers, tuple(checked))
 
 
-def _judged(envelope: Envelope, signers: Sequence[Signer]) -> _Judged:
+def _checked(envelope: Envelope, signers: Sequence[Signer]) -> _CheckedEnvelope:
     named = [one for one in signers if one.key.fingerprint in envelope.sealed.keys]
     good = tuple(one for one in named if envelope.sealed.is_signed_by(one.key))
     bad = tuple(one for one in named if one not in good)
-    return _Judged(envelope, frozenset(envelope.statement.subjects), good, bad)
+    return _CheckedEnvelope(envelope, frozenset(envelope.statement.subjects), good, bad)

@@ -38,7 +38,7 @@ class Signer:
 
     @property
     def name(self) -> str:
-        """As it is shown, with the key."""
+        """The name and the key, for a person."""
         named = ", ".join(self.principals)
         return f"{named} ({self.key.fingerprint})" if named else self.key.fingerprint
 
@@ -98,7 +98,7 @@ def bad_key(path: str, error: UnusableKeyError) -> Diagnostic:
 
 
 def _read(source: Source) -> Signers | Diagnostic:
-    found: list[Signer] = []
+    signers: list[Signer] = []
     remarks: list[Diagnostic] = []
     for line in _lines(source):
         one = _signer(line)
@@ -107,8 +107,8 @@ def _read(source: Source) -> Signers | Diagnostic:
         if isinstance(one, Diagnostic):
             remarks.append(one)
         elif one is not None:
-            found.append(one)
-    return Signers(source.name, sha256(source.text), tuple(found), tuple(remarks))
+            signers.append(one)
+    return Signers(source.name, sha256(source.text), tuple(signers), tuple(remarks))
 
 
 def _lines(source: Source) -> Iterator[Span]:
@@ -123,24 +123,24 @@ def _lines(source: Source) -> Iterator[Span]:
 
 def _signer(line: Span) -> Signer | Diagnostic | None:
     """None where the key is for something else."""
-    found = _LINE.fullmatch(line.text)
-    if found is None:
+    match = _LINE.fullmatch(line.text)
+    if match is None:
         return _wrong(line, "the line is not `NAME KEY-TYPE KEY`")
-    options = list(_OPTION.finditer(found["options"] or ""))
-    if "".join(option[0] for option in options) != (found["options"] or ""):
-        return _wrong(line, f"`{found['options']}` are no options")
+    options = list(_OPTION.finditer(match["options"] or ""))
+    if "".join(option[0] for option in options) != (match["options"] or ""):
+        return _wrong(line, f"`{match['options']}` are no options")
     for option in options:
         if option["name"].lower() != "namespaces":
             return _unused(line, f"fretc does not know `{option['name']}`")
         if not _is_for_us(option["value"] or ""):
             return None
-    if found["type"] not in KEY_TYPES:
-        return _unused(line, f"fretc does not take `{found['type']}`")
+    if match["type"] not in KEY_TYPES:
+        return _unused(line, f"fretc does not take `{match['type']}`")
     try:
-        key = public_key(f"{found['type']} {found['key']}")
+        key = public_key(f"{match['type']} {match['key']}")
     except UnusableKeyError as error:
         return _wrong(line, f"the key cannot be used: {error}")
-    return Signer(tuple((found["quoted"] or found["plain"]).split(",")), key)
+    return Signer(tuple((match["quoted"] or match["plain"]).split(",")), key)
 
 
 def _is_for_us(namespaces: str) -> bool:

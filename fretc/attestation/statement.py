@@ -1,4 +1,4 @@
-"""What is signed, as a statement: things with their SHA-256, and what is said of them.
+"""A statement to be signed: things with their SHA-256, and what it says of them.
 
 A statement of evidence names the evidence, its logs and proofs, and repeats what they say; one of
 reviews or waivers names each of them by itself, so that a later one leaves the others signed.
@@ -104,15 +104,15 @@ def read(payload: bytes) -> Statement:
         MisshapenError: it is none that fretc makes.
     """
     try:
-        whole = Shape(plain(payload.decode()))
+        shape = Shape(plain(payload.decode()))
     except UnicodeDecodeError:
         raise MisshapenError("the payload is not UTF-8 text") from None
-    whole.only("_type", "subject", "predicateType", "predicate")
-    whole.field("_type").one_of((TYPE,))
-    uri = whole.field("predicateType").one_of(tuple(map(_uri, _KINDS)))
+    shape.only("_type", "subject", "predicateType", "predicate")
+    shape.field("_type").one_of((TYPE,))
+    uri = shape.field("predicateType").one_of(tuple(map(_uri, _KINDS)))
     about = next(kind for kind in _KINDS if _uri(kind) == uri)
-    subjects = tuple(_subject(each, about) for each in whole.field("subject").items())
-    predicate = whole.field("predicate").fields()
+    subjects = tuple(_subject(each, about) for each in shape.field("subject").items())
+    predicate = shape.field("predicate").fields()
     says = {key: each.value for key, each in predicate.items() if key != "tool"}
     return Statement(about, subjects, says)
 
@@ -157,13 +157,13 @@ def evidence(file: Evidence, proofs: Proofs | None) -> Statement:
 
 def _requirements(results: Sequence[Result]) -> list[dict[str, Any]]:
     """Of each requirement what its verdicts rest on, and the verdicts."""
-    found: dict[str, dict[str, Any]] = {}
+    verdicts_of: dict[str, dict[str, Any]] = {}
     for result in results:
         rests_on = {kind: result.hashes[kind] for kind in KINDS if kind in result.hashes}
         key = json.dumps([result.requirement, rests_on], sort_keys=True)
         one = {"id": result.requirement, "rests_on": rests_on, "verdicts": []}
-        found.setdefault(key, one)["verdicts"].append([result.run, result.verdict])
-    return [*found.values()]
+        verdicts_of.setdefault(key, one)["verdicts"].append([result.run, result.verdict])
+    return [*verdicts_of.values()]
 
 
 def proofs(file: Proofs) -> Statement:
@@ -188,24 +188,24 @@ def _proved(proofs: Sequence[Proof]) -> list[dict[str, Any]]:
     ]
 
 
-def reviews(found: Iterable[Review]) -> Statement:
+def reviews(all_reviews: Iterable[Review]) -> Statement:
     """Of reviews, each by its seal."""
-    return Statement(REVIEW, tuple(map(review, found)))
+    return Statement(REVIEW, tuple(map(review, all_reviews)))
 
 
-def review(found: Review) -> Subject:
+def review(one: Review) -> Subject:
     """One review."""
-    return Subject(REVIEW, found.requirement, found.seal)
+    return Subject(REVIEW, one.requirement, one.seal)
 
 
-def waivers(found: Iterable[Waiver]) -> Statement:
+def waivers(all_waivers: Iterable[Waiver]) -> Statement:
     """Of waivers, each by its content."""
-    return Statement(WAIVER, tuple(map(waiver, found)))
+    return Statement(WAIVER, tuple(map(waiver, all_waivers)))
 
 
-def waiver(found: Waiver) -> Subject:
+def waiver(one: Waiver) -> Subject:
     """One waiver."""
-    return Subject(WAIVER, found.requirement, found.seal)
+    return Subject(WAIVER, one.requirement, one.seal)
 
 
 def report(path: str, sha256: str) -> Statement:

@@ -20,7 +20,7 @@ from urllib.parse import urlsplit
 
 from compiler.files.edition import edition
 from compiler.files.processes import shield
-from fretc.audit.many_logs import EVALUATIONS, Audited, Engine, Found, audited, given_up
+from fretc.audit.many_logs import EVALUATIONS, Engine, LogAudit, LogAudits, audited, given_up
 from fretc.audit.plan import Plan, packed, unpacked
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 
@@ -56,7 +56,7 @@ def _is_address(netloc: str) -> bool:
     return bool(host and colon) and "@" not in host and port.isdecimal() and int(port) < 2**16
 
 
-def _audit(connected: Any, plan: Plan, logs: Sequence[str]) -> Found:
+def _audit(connected: Any, plan: Plan, logs: Sequence[str]) -> LogAudits:
     """An engine, but for its first parameter: gives a context with a client."""
     if not logs:
         return
@@ -167,26 +167,26 @@ def _deaf_worker() -> WorkerPlugin:
 # Tasks ----------------------------------------------------------------------------------------
 
 
-def _tasks(client: Client, plan: Plan, logs: Sequence[str]) -> Found:
+def _tasks(client: Client, plan: Plan, logs: Sequence[str]) -> LogAudits:
     """Each log as a task; one whose workers died runs once more when nothing else does."""
     # A task, not scattered data: Dask makes it anew when all who have it are dead.
-    sent = client.submit(bytes, packed(plan), key=f"fretc-plan-{secrets.token_hex(8)}")
+    remote_plan = client.submit(bytes, packed(plan), key=f"fretc-plan-{secrets.token_hex(8)}")
     again: list[str] = []
-    with contextlib.closing(_results(client, sent, logs)) as done:
-        for log, found in done:
-            if found is None:
+    with contextlib.closing(_results(client, remote_plan, logs)) as done:
+        for log, result in done:
+            if result is None:
                 again.append(log)
             else:
-                yield log, found
+                yield log, result
     for log in again:
-        with contextlib.closing(_results(client, sent, [log])) as done:
-            for _, found in done:
-                yield log, found or given_up(plan, log, "all workers of Dask that tried it died")
+        with contextlib.closing(_results(client, remote_plan, [log])) as done:
+            for _, result in done:
+                yield log, result or given_up(plan, log, "all workers of Dask that tried it died")
 
 
 def _results(
     client: Client, plan: Future, logs: Sequence[str]
-) -> Generator[tuple[str, Audited | None], None, None]:
+) -> Generator[tuple[str, LogAudit | None], None, None]:
     """Logs as they are done; None for one whose workers died.
 
     Raises:
@@ -207,12 +207,12 @@ def _results(
             client.cancel(list(waiting), force=True)
 
 
-def _result(future: Future) -> Audited | None:
+def _result(future: Future) -> LogAudit | None:
     from distributed import KilledWorker
 
     if future.status == "finished":
         result = future.result()
-        if isinstance(result, Audited):
+        if isinstance(result, LogAudit):
             return result
         raise _FleetError(_other_edition(f"the worker {result} has another fretc than this one"))
     if future.status != "error":
@@ -230,11 +230,11 @@ _ALONE = threading.Lock()
 """A worker may have many threads; a monitor has a state, and the present folder is of all."""
 
 
-def _work(plan: bytes, log: str, folder: str, wanted: str) -> Audited | str:
+def _work(plan: bytes, log: str, folder: str, client_edition: str) -> LogAudit | str:
     """Audit a log, in a worker; the worker's address, where its edition is another one."""
     from distributed import get_worker
 
-    if edition() != wanted:
+    if edition() != client_edition:
         return str(get_worker().address)
     with _ALONE, _in(folder):
         return audited(_plan(plan), log)

@@ -1,4 +1,4 @@
-"""What an audit has finished, kept beside its evidence until that is written.
+"""The finished logs of an audit, in a file beside its evidence until that is written.
 
 JSON lines: a head that names the plan, then one line for each log. A line is appended whole, so
 that whatever stops the audit, all lines but the last are good, and a last one without its end does
@@ -23,7 +23,7 @@ from compiler.files.checked_json import MisshapenError
 from compiler.files.records import decoded, plain
 from compiler.files.text_files import Stamp, destination, file_sha256, stamp
 from fretc.audit.evidence.schema import Result
-from fretc.audit.many_logs import Audited
+from fretc.audit.many_logs import LogAudit
 from fretc.audit.plan import Plan
 from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
 from fretish.diagnostics.source import Source, Span
@@ -54,12 +54,12 @@ class Journal:
         self._good = 0
         """Bytes at the beginning of the file that are kept."""
         self.stale = False
-        """Whether what was found is of another plan."""
+        """Whether the journal on disk is of another plan."""
         self.foreign = False
-        """Whether some of what was found was not kept by this user, in this place."""
+        """Whether lines on disk were not written by this user, for this place."""
 
-    def finished(self, logs: Sequence[str]) -> dict[str, Audited] | Diagnostic:
-        """Those of the logs that need not be audited again, with what was shown of them.
+    def finished(self, logs: Sequence[str]) -> dict[str, LogAudit] | Diagnostic:
+        """Those of the logs that need not be audited again, with their audits.
 
         A log is the same when its stamp is the same, or else its SHA-256: what an audit shows
         depends on the bytes of the log, its name and the plan, and on nothing else.
@@ -71,16 +71,16 @@ class Journal:
             lines = list(self._lines())
         except OSError as error:
             return self._wrong(error)
-        wanted = set(logs)
+        names = set(logs)
         entries = {entry["log"]: entry for entry in map(json.loads, lines)}
-        kept = {
+        audits = {
             log: self._audited(entry)
             for log, entry in entries.items()
-            if log in wanted and _unchanged(entry)
+            if log in names and _unchanged(entry)
         }
-        return {log: found for log, found in kept.items() if found is not None}
+        return {log: audit for log, audit in audits.items() if audit is not None}
 
-    def keep(self, log: str, audited: Audited) -> bool | Diagnostic:
+    def keep(self, log: str, audited: LogAudit) -> bool | Diagnostic:
         """Add a log; one that could not be read, or has changed meanwhile, is to be tried again.
 
         Returns:
@@ -163,24 +163,24 @@ class Journal:
                 Code.BUSY,
                 f"another audit is at work on `{self.path}`",
                 Source(str(self.path), "").span(),
-                help="wait for it, or name another file with `--evidence`",
+                help="wait for it, or name another file with `-o`",
             )
         return Diagnostic(
             Code.NOT_WRITTEN,
             f"`{self.path}` cannot be written: {error.strerror or error}",
-            help="name another place with `--evidence`, or mend this one",
+            help="name another place with `-o`, or mend this one",
         )
 
-    def _audited(self, entry: Mapping[str, Any]) -> Audited | None:
+    def _audited(self, entry: Mapping[str, Any]) -> LogAudit | None:
         """None where a number is too large to be read back: a damaged log can have such times."""
         bindings = self._plan.declarations.source
         try:
             results = decoded(entry["results"], tuple[Result, ...])
         except MisshapenError:
             return None
-        return Audited(
+        return LogAudit(
             results,
-            tuple(_diagnostic(found, bindings) for found in entry["diagnostics"]),
+            tuple(_diagnostic(finding, bindings) for finding in entry["diagnostics"]),
             read=True,
             stamp=Stamp(*entry["stamp"]),
         )
@@ -218,7 +218,7 @@ def _line(value: Mapping[str, Any], key: bytes) -> bytes:
     return f"{json.dumps({**value, 'check': check}, allow_nan=False)}\n".encode()
 
 
-def _entry(log: str, audited: Audited, plan: Plan) -> dict[str, Any]:
+def _entry(log: str, audited: LogAudit, plan: Plan) -> dict[str, Any]:
     assert audited.stamp is not None
     bindings = plan.declarations.source
     return {
@@ -238,6 +238,7 @@ def _plain(diagnostic: Diagnostic, bindings: Source) -> dict[str, Any]:
         "message": diagnostic.message,
         "help": diagnostic.help,
         "severity": str(diagnostic.severity),
+        "subject": diagnostic.subject,
         "span": span
         and {
             "name": span.source.name,
@@ -256,6 +257,7 @@ def _diagnostic(plain: Mapping[str, Any], bindings: Source) -> Diagnostic:
         _place(plain["span"], bindings) if plain["span"] else None,
         plain["help"],
         Severity(plain["severity"]),
+        subject=plain["subject"],
     )
 
 

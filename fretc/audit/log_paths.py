@@ -29,7 +29,7 @@ def logs(paths: Sequence[str]) -> list[str] | Diagnostic:
     Args:
         paths: as the user names them; what is no folder and no pattern is taken for a file.
     """
-    found: dict[str, str] = {}
+    by_real_path: dict[str, str] = {}
     for path in paths:
         try:
             files = list(_named(path))
@@ -38,9 +38,9 @@ def logs(paths: Sequence[str]) -> list[str] | Diagnostic:
         for file in files:
             if isinstance(file, Diagnostic):
                 return file
-            found.setdefault(file if _elsewhere(file) else os.path.realpath(file), file)
+            by_real_path.setdefault(file if _elsewhere(file) else os.path.realpath(file), file)
     try:
-        return _whole(found)
+        return _whole(by_real_path)
     except OSError as error:
         return unreadable(error.filename or METADATA, error)
 
@@ -83,7 +83,7 @@ def _named(path: str) -> Iterator[str | Diagnostic]:
                 yield match
 
 
-def _below(path: Path, seen: dict[str, None] | None = None) -> Iterator[str | Diagnostic]:
+def _below(path: Path, visited: dict[str, None] | None = None) -> Iterator[str | Diagnostic]:
     """The logs in a folder; a link that leads to none is one that cannot be read, and never lost.
 
     A link may lead to a folder elsewhere, but not to one that the named folder lies in: that would
@@ -91,14 +91,14 @@ def _below(path: Path, seen: dict[str, None] | None = None) -> Iterator[str | Di
 
     Args:
         path: the folder.
-        seen: folders that were looked into already, the named one first: links may lead in circles.
+        visited: folders that have been listed, the named one first: links may lead in circles.
     """
     real = os.path.realpath(path)
-    if seen is None:
-        seen = {}
-    elif real in seen or os.path.commonpath([real, next(iter(seen))]) == real:
+    if visited is None:
+        visited = {}
+    elif real in visited or os.path.commonpath([real, next(iter(visited))]) == real:
         return
-    seen[real] = None
+    visited[real] = None
     entries = sorted(path.iterdir())
     logs = [entry for entry in entries if not entry.name.endswith(ANNOTATIONS)]
     files = [
@@ -117,33 +117,37 @@ def _below(path: Path, seen: dict[str, None] | None = None) -> Iterator[str | Di
         if entry in files:
             yield str(entry)
         elif entry.is_dir():
-            yield from _below(entry, seen)
+            yield from _below(entry, visited)
 
 
-def _whole(found: dict[str, str]) -> list[str]:
+def _whole(by_real_path: dict[str, str]) -> list[str]:
     """The logs, with a folder of rosbag2 in place of its files where all of them are there."""
-    runs = {os.path.dirname(real): os.path.dirname(file) or "." for real, file in found.items()}
+    runs = {
+        os.path.dirname(real): os.path.dirname(file) or "." for real, file in by_real_path.items()
+    }
     for real, path in runs.items():
         about = folder(path) if is_folder(path) else None
         if not isinstance(about, Folder) or len(about.files) < 2:
             continue
         parts = [os.path.realpath(os.path.join(real, name)) for name in about.files]
-        if all(part in found for part in parts):
-            found = {real if key == parts[0] else key: log for key, log in found.items()}
-            found[real] = path
-            found = {key: log for key, log in found.items() if key not in parts}
-    return list(_joined(found))
+        if all(part in by_real_path for part in parts):
+            by_real_path = {
+                real if key == parts[0] else key: log for key, log in by_real_path.items()
+            }
+            by_real_path[real] = path
+            by_real_path = {key: log for key, log in by_real_path.items() if key not in parts}
+    return list(_joined(by_real_path))
 
 
-def _joined(found: dict[str, str]) -> Iterator[str]:
+def _joined(by_real_path: dict[str, str]) -> Iterator[str]:
     """The logs, with the run in place of its bags where all of them are there."""
     passed: set[str] = set()
-    for real, log in found.items():
+    for real, log in by_real_path.items():
         if real in passed:
             continue
         run = split(log) if log.endswith((".bag", ACTIVE)) and not _elsewhere(log) else None
         parts = run and {os.path.realpath(os.path.join(run.path, name)) for name in run.files}
-        if run and parts and parts <= found.keys():
+        if run and parts and parts <= by_real_path.keys():
             passed |= parts
             yield run_name(run)
         else:

@@ -24,7 +24,7 @@ from fretc.audit.measurements.confidence_intervals import REFUTED, SUPPORTED
 from fretc.audit.measurements.judgement import Engine as Evaluation
 from fretc.audit.one_log import audit, examined, signals_of
 from fretc.audit.phases.advice import findings
-from fretc.audit.plan import Plan, watched
+from fretc.audit.plan import Plan, monitored_requirements
 from fretc.audit.pool import Killed, each, was_killed
 from fretc.logs.reader import read
 from fretc.logs.storage.inputs import STDIN
@@ -36,7 +36,7 @@ from monitors import kernel
 
 @dataclass(frozen=True, slots=True)
 class Audit:
-    """What an audit has shown: one result for each run and requirement, runs in their order."""
+    """The outcome of an audit: one result for each run and requirement, runs in their order."""
 
     results: tuple[Result, ...]
     evidence: str
@@ -57,11 +57,11 @@ class Audit:
     @property
     def shown(self) -> bool:
         """Whether every requirement is satisfied in every run, or supported by all of them."""
-        together = {one.requirement for one in self.estimates}
+        of_all_runs = {one.requirement for one in self.estimates}
         return all(one.answer == SUPPORTED for one in self.estimates) and all(
             result.verdict == kernel.SATISFIED
             for result in self.results
-            if result.requirement not in together
+            if result.requirement not in of_all_runs
         )
 
     @property
@@ -105,8 +105,8 @@ EVALUATIONS: Mapping[str, Evaluation] = {"columns": kernel.evaluate, "online": k
 
 
 @dataclass(frozen=True, slots=True)
-class Audited:
-    """What the audit of one log has shown."""
+class LogAudit:
+    """The outcome of the audit of one log."""
 
     results: tuple[Result, ...]
     """The record of each claim, in their order."""
@@ -117,25 +117,28 @@ class Audited:
     """The file's before its audit; None where it is no file, or has changed since."""
 
 
-Found = Generator[tuple[str, Audited] | Diagnostic, None, None]
-"""Logs with what was shown of them, as they are done; a diagnostic where it gives up."""
+LogAudits = Generator[tuple[str, LogAudit] | Diagnostic, None, None]
+"""Each log with its audit, as soon as that is complete; a diagnostic where the engine gives up."""
 
-Engine = Callable[[Plan, Sequence[str]], Found]
+Engine = Callable[[Plan, Sequence[str]], LogAudits]
 """Where logs are audited. Closing what it gives ends all work at once."""
 
 
 def locally(jobs: int) -> Engine:
     """On this machine, in some processes."""
 
-    def engine(plan: Plan, logs: Sequence[str]) -> Found:
-        watched(plan)  # before the processes are born: they inherit it
+    def engine(plan: Plan, logs: Sequence[str]) -> LogAudits:
+        monitored_requirements(plan)  # before the processes are born: they inherit it
         if STDIN in logs:  # another process does not have it
             yield STDIN, audited(plan, STDIN)
         files = [log for log in logs if log != STDIN]
         with closing(each(partial(audited, plan), files, jobs)) as done:
-            for place, found in done:
+            for place, result in done:
                 log = files[place]
-                yield log, given_up(plan, log, str(found)) if isinstance(found, Killed) else found
+                if isinstance(result, Killed):
+                    yield log, given_up(plan, log, str(result))
+                else:
+                    yield log, result
 
     return engine
 
@@ -148,106 +151,106 @@ def audit_logs(
     plan: Plan,
     logs: Sequence[str],
     engine: Engine = IN_TURN,
-    known: Mapping[str, Audited] = MappingProxyType({}),
-    tell: Callable[[str, Audited], None] = lambda log, audited: None,
+    finished: Mapping[str, LogAudit] = MappingProxyType({}),
+    tell: Callable[[str, LogAudit], None] = lambda log, audited: None,
 ) -> Audit | Diagnostic:
     """Audit every log against every claim.
 
     Args:
         plan: what the logs are judged by.
         logs: files, folders of rosbag2, URLs, or `-` for standard input, each once.
-        engine: where; what is shown is the same.
-        known: logs that have been audited by this plan already.
+        engine: where; the results do not depend on it.
+        finished: logs that have been audited by this plan already.
         tell: is called with each other log when it is done.
 
     Returns:
         The audit, which depends on neither the engine nor the order in which logs were done; or
         why the engine gave up.
     """
-    done = {log: known[log] for log in logs if log in known}
-    with closing(engine(plan, [log for log in logs if log not in done])) as finished:
-        for found in finished:
-            if isinstance(found, Diagnostic):
-                return found
-            log, shown = found
+    done = {log: finished[log] for log in logs if log in finished}
+    with closing(engine(plan, [log for log in logs if log not in done])) as items:
+        for item in items:
+            if isinstance(item, Diagnostic):
+                return item
+            log, one = item
             assert log not in done
-            done[log] = shown
-            tell(log, shown)
+            done[log] = one
+            tell(log, one)
     return gathered(plan, [done[log] for log in logs])
 
 
-def gathered(plan: Plan, found: Sequence[Audited]) -> Audit:
-    """What was shown of all logs, in their order, as one."""
-    results = [result for shown in found for result in shown.results]
-    told = _told(found)
-    together = estimates(plan.claims, results, plan.confidence)
-    constant = never_changed(tallies_of(results), plan.declarations, told)
+def gathered(plan: Plan, audits: Sequence[LogAudit]) -> Audit:
+    """One audit of the audits of single logs, in their order."""
+    results = [result for one in audits for result in one.results]
+    diagnostics = _diagnostics(audits)
+    of_all_runs = estimates(plan.claims, results, plan.confidence)
+    constant = never_changed(tallies_of(results), plan.declarations, diagnostics)
     return Audit(
         tuple(results),
-        written(_evidence(plan, results, together)),
-        (*told, *constant, *warnings(together)),
-        sum(shown.read for shown in found),
-        together,
+        written(_evidence(plan, results, of_all_runs)),
+        (*diagnostics, *constant, *warnings(of_all_runs)),
+        sum(one.read for one in audits),
+        of_all_runs,
     )
 
 
-def _told(found: Sequence[Audited]) -> tuple[Diagnostic, ...]:
-    """What there is to say of the logs; what is true of many, at a place in the bindings, once."""
+def _diagnostics(audits: Sequence[LogAudit]) -> tuple[Diagnostic, ...]:
+    """The diagnostics of all logs. One that several logs share is given once."""
     runs: dict[Diagnostic, list[str]] = {}
-    for shown in found:
-        for diagnostic in shown.diagnostics:
-            runs.setdefault(diagnostic, []).append(shown.results[0].run)
-    return tuple(_of(diagnostic, of, len(found)) for diagnostic, of in runs.items())
+    for one in audits:
+        for diagnostic in one.diagnostics:
+            runs.setdefault(diagnostic, []).append(one.results[0].run)
+    return tuple(_of(diagnostic, of, len(audits)) for diagnostic, of in runs.items())
 
 
 def _of(diagnostic: Diagnostic, runs: Sequence[str], count: int) -> Diagnostic:
-    """With the logs that it is about, where its place is none of them."""
+    """The diagnostic. Unless its place is in one log, the message says in which logs it is."""
     if count == 1 or (diagnostic.span and diagnostic.span.source.name == runs[0]):
         return diagnostic
     which = f"in {len(runs)} of {count} logs, first in `{runs[0]}`"
     return replace(diagnostic, message=f"{diagnostic.message} ({which})")
 
 
-def audited(plan: Plan, log: str) -> Audited:
+def audited(plan: Plan, log: str) -> LogAudit:
     """Audit one log; all that is needed for it is in the plan."""
-    declarations, monitors = plan.declarations, watched(plan)
+    declarations, requirements = plan.declarations, monitored_requirements(plan)
     before = stamp(log)
-    names = tuple(dict.fromkeys(name for w in monitors for name in w.propositions))
+    names = tuple(dict.fromkeys(name for each in requirements for name in each.propositions))
     recording = read(log, declarations, signals_of(declarations, names), plan.integrity)
     if isinstance(recording, Diagnostic):
         return _unread(plan, log, recording, before)
     recording = examined(recording, declarations, names)
-    evidence = audit(recording, declarations, monitors, EVALUATIONS[plan.evaluation])
+    evidence = audit(recording, declarations, requirements, EVALUATIONS[plan.evaluation])
     phased = {e.requirement: e.phases for e in evidence if e.phases is not None}
     records = [as_record(e) for e in evidence]
-    return Audited(
-        (*records, *_left_out(plan, records[0])),
+    return LogAudit(
+        (*records, *_refused_results(plan, records[0])),
         (*recording.findings, *findings(phased, declarations)),
         read=True,
         stamp=before if before == stamp(log) else None,
     )
 
 
-def _left_out(plan: Plan, beside: Result) -> Iterator[Result]:
-    """What is shown of each refused requirement in a run: nothing, and why.
+def _refused_results(plan: Plan, sibling: Result) -> Iterator[Result]:
+    """The result of each refused requirement in a run: no data, and the reason.
 
     Args:
         plan: which requirements it refuses.
-        beside: what is shown of another one in the run, whose log was read.
+        sibling: the result of a judged requirement in the same run.
     """
-    log = {name: sha for name, sha in beside.hashes.items() if name.startswith("log")}
+    log = {name: sha for name, sha in sibling.hashes.items() if name.startswith("log")}
     for refused in plan.refused:
         yield unjudged(
-            beside.run,
+            sibling.run,
             refused.id,
             f"not judged: {'; '.join(f'{d.code.number} {d.message}' for d in refused.why)}",
             {**log, **refused.basis},
-            beside.health,
+            sibling.health,
         )
 
 
-def given_up(plan: Plan, log: str, how: str) -> Audited:
-    """What is shown of a log whose audit has killed its process twice: nothing.
+def given_up(plan: Plan, log: str, how: str) -> LogAudit:
+    """The results of a log whose audit killed its process twice: no data.
 
     Args:
         plan: what it was to be judged by.
@@ -257,8 +260,8 @@ def given_up(plan: Plan, log: str, how: str) -> Audited:
     return _unread(plan, log, was_killed(log, how), None)
 
 
-def _unread(plan: Plan, log: str, why: Diagnostic, before: Stamp | None) -> Audited:
-    """What is shown of a log that cannot be read.
+def _unread(plan: Plan, log: str, why: Diagnostic, before: Stamp | None) -> LogAudit:
+    """The results of a log that cannot be read.
 
     Args:
         plan: what it was to be judged by.
@@ -268,7 +271,7 @@ def _unread(plan: Plan, log: str, why: Diagnostic, before: Stamp | None) -> Audi
     """
     hashes = _hash_of(log, before)
     records = [unread(called(log), each.id, why, {**hashes, **each.basis}) for each in plan.named]
-    return Audited(tuple(records), (why,), read=False)
+    return LogAudit(tuple(records), (why,), read=False)
 
 
 def _hash_of(log: str, before: Stamp | None) -> dict[str, str]:
@@ -278,7 +281,7 @@ def _hash_of(log: str, before: Stamp | None) -> dict[str, str]:
     return {} if digest is None or changed else {"log": digest}
 
 
-def _evidence(plan: Plan, results: Sequence[Result], together: Sequence[Estimated]) -> Document:
+def _evidence(plan: Plan, results: Sequence[Result], of_all_runs: Sequence[Estimated]) -> Document:
     return Document(
         schema=SCHEMA,
         fretc=__version__,
@@ -290,5 +293,5 @@ def _evidence(plan: Plan, results: Sequence[Result], together: Sequence[Estimate
             Requirement(each.id, each.sentence, each.basis[SENTENCE]) for each in plan.named
         ),
         results=tuple(results),
-        probabilities=tuple(together) or UNSET,
+        probabilities=tuple(of_all_runs) or UNSET,
     )

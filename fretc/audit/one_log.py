@@ -1,4 +1,4 @@
-"""Run generated monitors over one recorded log and say what was shown."""
+"""Run generated monitors over one recorded log and gather the evidence."""
 
 from __future__ import annotations
 
@@ -7,21 +7,27 @@ from dataclasses import dataclass, field, replace
 from functools import partial
 from statistics import median
 
+import numpy as np
+
 from fretc.audit.evidence.writer import Evidence, health
-from fretc.audit.measurements.judgement import SHOWN, Engine, judged
+from fretc.audit.measurements.judgement import WITHOUT_VIOLATION, Engine, judged
 from fretc.audit.measurements.margins import Margin, margins, worst
 from fretc.audit.measurements.states import states
 from fretc.audit.measurements.tallies import tally
 from fretc.audit.measurements.trials import Count, Trials
 from fretc.audit.measurements.violations import Demand, Moment, violations
 from fretc.audit.phases.by_shift import Phases, phases
+from fretc.logs import log_diagnostics
 from fretc.logs.likeness import fingerprint
 from fretc.logs.signals.rates import slow_topics
 from fretc.logs.signals.samples import Recording
 from fretc.logs.signals.signals import blind_zones
 from fretc.logs.signals.traces import Timeline, Trace, trace
+from fretc.logs.signals.words import Foreign, shown
+from fretish import expressions as e
 from fretish.bindings.amounts import scaled, shared_unit, value
 from fretish.bindings.declarations import Declarations, Signal
+from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.printer import expression
 from fretish.units import base_name
 from monitors import kernel
@@ -29,8 +35,8 @@ from monitors.kernel import Column, Monitor
 
 
 @dataclass(frozen=True, slots=True)
-class Watched:
-    """A requirement's monitor, with the hashes of what it was made from."""
+class MonitoredRequirement:
+    """A requirement with its monitor, and the hashes of what the monitor was made from."""
 
     monitor: Monitor
     hashes: Mapping[str, str]
@@ -60,74 +66,100 @@ def signals_of(declarations: Declarations, propositions: Sequence[str]) -> tuple
 def examined(
     recording: Recording, declarations: Declarations, propositions: Sequence[str]
 ) -> Recording:
-    """The recording, with what its sensors cannot see and which of its topics are too slow."""
+    """The recording, with further findings about the signals that the propositions read.
+
+    What sensors cannot see, which topics are too slow, and which samples are no truth value.
+    """
     slow = slow_topics(declarations, recording, signals_of(declarations, propositions))
     blind = (
         finding
         for name in propositions
         for finding in blind_zones(declarations.propositions[name], declarations, recording.nearest)
     )
-    return replace(recording, findings=(*recording.findings, *blind, *slow))
+    expressions = [declarations.propositions[name].expression for name in propositions]
+    flags = dict.fromkeys(name.id for each in expressions for name in e.truths(each))
+    untrue = (_untrue(declarations.signals[name], recording) for name in flags)
+    found = (*recording.findings, *filter(None, untrue), *blind, *slow)
+    return replace(recording, findings=found)
+
+
+def _untrue(signal: Signal, recording: Recording) -> Diagnostic | None:
+    """F424 where samples of a signal that stands for a truth value are neither 0 nor 1."""
+    samples = recording.samples.get(signal.name)
+    if samples is None:
+        return None
+    values = samples.values
+    (rows,) = np.nonzero(~np.isnan(values) & (values != 0) & (values != 1))
+    if not len(rows):
+        return None
+    foreign = Foreign(len(rows), int(rows[0]), shown(values[rows[0]]))
+    after = int(samples.times[rows[0]]) - recording.start_ns
+    return log_diagnostics.no_truth(signal, foreign, len(values), after)
 
 
 def audit(
     recording: Recording,
     declarations: Declarations,
-    watched: Sequence[Watched],
+    requirements: Sequence[MonitoredRequirement],
     engine: Engine = kernel.evaluate,
 ) -> tuple[Evidence, ...]:
-    """The evidence of one run for each monitor, in their order.
+    """The evidence of one run for each requirement, in their order.
 
     Args:
         recording: read with all signals of all the monitors' propositions.
         declarations: every proposition of the monitors is declared.
-        watched: the monitors, each of one requirement.
-        engine: how the monitors are run; what they show is the same.
+        requirements: with their monitors.
+        engine: how the monitors are run; the verdicts are the same.
     """
-    names = dict.fromkeys(name for w in watched for name in w.propositions)
-    seen = trace(declarations, recording, tuple(names))
-    found = {
-        name: margins(declarations.propositions[name], declarations, recording, seen.timeline.times)
+    names = dict.fromkeys(name for each in requirements for name in each.propositions)
+    truths = trace(declarations, recording, tuple(names))
+    margins_of = {
+        name: margins(
+            declarations.propositions[name], declarations, recording, truths.timeline.times
+        )
         for name in names
     }
-    shifted = phases(declarations, recording, [w.monitor for w in watched])
-    evidence = [_evidence(recording, declarations, seen, found, w, engine) for w in watched]
-    return tuple(_phased(each, shifted.get(each.requirement)) for each in evidence)
+    phases_of = phases(declarations, recording, [each.monitor for each in requirements])
+    evidence = [
+        _evidence(recording, declarations, truths, margins_of, each, engine)
+        for each in requirements
+    ]
+    return tuple(_phased(each, phases_of.get(each.requirement)) for each in evidence)
 
 
-def _phased(evidence: Evidence, found: Phases | None) -> Evidence:
+def _phased(evidence: Evidence, phases: Phases | None) -> Evidence:
     """The evidence, with what other phases of the ticks make of the run."""
-    if found is None:
+    if phases is None:
         return evidence
-    alone = evidence.trials is not None
-    assert alone or found.verdict == evidence.verdict, "two verdicts at one phase"
-    told = f"; {'this run alone ' if alone else ''}{found.text}" if found.text else ""
-    return replace(evidence, phases=found, reason=f"{evidence.reason}{told}")
+    probabilistic = evidence.trials is not None
+    assert probabilistic or phases.verdict == evidence.verdict, "two verdicts at one phase"
+    addition = f"; {'this run alone ' if probabilistic else ''}{phases.text}" if phases.text else ""
+    return replace(evidence, phases=phases, reason=f"{evidence.reason}{addition}")
 
 
 def _evidence(
     recording: Recording,
     declarations: Declarations,
-    seen: Trace,
-    found: Mapping[str, tuple[Margin, ...]],
-    watched: Watched,
+    truths: Trace,
+    margins_of: Mapping[str, tuple[Margin, ...]],
+    requirement: MonitoredRequirement,
     engine: Engine,
 ) -> Evidence:
-    monitor = watched.monitor
-    columns = {name: seen.columns[name] for name in watched.propositions}
-    ticks = len(seen.timeline.times)
+    monitor = requirement.monitor
+    columns = {name: truths.columns[name] for name in requirement.propositions}
+    ticks = len(truths.timeline.times)
     judgement = judged(
         monitor,
         columns,
-        seen.cut,
+        truths.cut,
         ticks,
         intact=recording.intact,
         end=str(declarations.clock.end),
         engine=engine,
     )
     outcome = judgement.outcome
-    at = partial(_moment, seen.timeline)
-    signals = signals_of(declarations, watched.propositions)
+    at = partial(_moment, truths.timeline)
+    signals = signals_of(declarations, requirement.propositions)
     latencies = tuple(at(k).seconds - at(t).seconds for t, k in outcome.answers)
     evidence = Evidence(
         run=recording.name,
@@ -137,34 +169,34 @@ def _evidence(
         outcome=outcome,
         start_ns=recording.start_ns,
         end_ns=recording.end_ns,
-        first_ns=int(seen.timeline.times[0]) if ticks else recording.start_ns,
+        first_ns=int(truths.timeline.times[0]) if ticks else recording.start_ns,
         clock=f"{declarations.clock}, by {declarations.clock.time}",
         answers=tuple((at(t), at(k)) for t, k in outcome.answers),
         states=tuple((at(tick), state) for tick, state in states(outcome)),
         triggers=tuple(at(t) for t in outcome.triggers),
         violations=violations(
-            outcome, watched.demand, monitor.REQUIREMENTS[0].horizon, at, recording, signals
+            outcome, requirement.demand, monitor.REQUIREMENTS[0].horizon, at, recording, signals
         ),
         open=tuple(at(t) for t, _ in outcome.open),
         latencies=tuple(round(latency, 9) for latency in latencies),
         propositions={name: tally(column, ticks) for name, column in columns.items()},
-        margins=tuple(margin for name in columns for margin in found[name]),
+        margins=tuple(margin for name in columns for margin in margins_of[name]),
         units={name: base_name(declarations.signals[name].unit.dimension) for name in signals},
-        hashes={_hashed(recording): recording.sha256, **watched.hashes},
+        hashes={_hashed(recording): recording.sha256, **requirement.hashes},
         health=health(recording),
-        assumptions=declarations.reading(watched.propositions).assumptions,
+        assumptions=declarations.reading(requirement.propositions).assumptions,
     )
     evidence = replace(evidence, reason=_reason(evidence, recording, declarations))
-    if watched.count is None:
+    if requirement.count is None:
         return evidence
-    alike = fingerprint(recording)
-    if alike is not None:
-        evidence = replace(evidence, hashes={**evidence.hashes, "messages": alike})
-    return _counted(evidence, _trials(watched.count, columns, seen))
+    messages = fingerprint(recording)
+    if messages is not None:
+        evidence = replace(evidence, hashes={**evidence.hashes, "messages": messages})
+    return _counted(evidence, _trials(requirement.count, columns, truths))
 
 
 def _counted(evidence: Evidence, trials: Trials) -> Evidence:
-    """The evidence, where one run decides nothing: what was shown of it is counted.
+    """The evidence, where one run decides nothing: the triggers of it are counted.
 
     A trigger may have failed where the monitor still waits: `finally` asks nothing of an endless
     run, so its monitor gives up at the end only, even what no end can meet.
@@ -177,13 +209,13 @@ def _counted(evidence: Evidence, trials: Trials) -> Evidence:
     return replace(evidence, trials=trials, verdict=kernel.INCONCLUSIVE, reason=reason)
 
 
-def _trials(count: Count, columns: Mapping[str, Column], seen: Trace) -> Trials:
-    ticks = len(seen.timeline.times)
-    whole = count(columns, ticks)
-    if seen.cut is None or not ticks:
-        return whole
-    longer = {name: column.followed(seen.cut[name], ticks) for name, column in columns.items()}
-    return whole.before(count(longer, ticks + 1))
+def _trials(count: Count, columns: Mapping[str, Column], truths: Trace) -> Trials:
+    ticks = len(truths.timeline.times)
+    of_whole_ticks = count(columns, ticks)
+    if truths.cut is None or not ticks:
+        return of_whole_ticks
+    longer = {name: column.followed(truths.cut[name], ticks) for name, column in columns.items()}
+    return of_whole_ticks.before(count(longer, ticks + 1))
 
 
 def _hashed(recording: Recording) -> str:
@@ -204,7 +236,7 @@ def _reason(evidence: Evidence, recording: Recording, declarations: Declarations
             return _broken(evidence)
         case kernel.NO_DATA:
             return _unknown(evidence, recording)
-        case kernel.INCONCLUSIVE if evidence.outcome.verdict in SHOWN:
+        case kernel.INCONCLUSIVE if evidence.outcome.verdict in WITHOUT_VIOLATION:
             return "what came after the last whole tick leaves it open"
         case kernel.INCONCLUSIVE:
             last = evidence.open[-1] if evidence.open else None

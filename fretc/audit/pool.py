@@ -6,9 +6,7 @@ Each process has a pipe of its own, so that it is certain which thing it worked 
 from __future__ import annotations
 
 import multiprocessing
-import pickle
 import signal
-import traceback
 from collections import deque
 from collections.abc import Callable, Generator, Iterator, Sequence
 from contextlib import closing, contextmanager, suppress
@@ -17,6 +15,7 @@ from multiprocessing.connection import Connection, wait
 from multiprocessing.context import ForkProcess
 from typing import Any, TypeVar
 
+from compiler.files.processes import reply
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.source import Source
 
@@ -116,17 +115,17 @@ class _Crew:
 
     def done(self) -> Iterator[tuple[int, Any]]:
         """Wait for results; there is at least one, and their processes are free again."""
-        for found in wait(list(self.busy)):
-            assert isinstance(found, Connection)
-            process, place = self.busy.pop(found)
+        for connection in wait(list(self.busy)):
+            assert isinstance(connection, Connection)
+            process, place = self.busy.pop(connection)
             try:
-                fine, result = found.recv()
+                fine, result = connection.recv()
             except (EOFError, OSError):
-                found.close()
+                connection.close()
                 process.join()
                 yield place, Killed(process.exitcode or 0)
                 continue
-            self._idle.append((found, process))
+            self._idle.append((connection, process))
             if not fine:
                 raise result
             yield place, result
@@ -178,21 +177,4 @@ def _serve(
         other.close()
     with suppress(EOFError, OSError):
         while True:
-            connection.send(_answer(function, things[connection.recv()]))
-
-
-def _answer(function: Callable[[Any], Any], thing: Any) -> tuple[bool, Any]:
-    try:
-        return True, function(thing)
-    except Exception as error:
-        error.add_note(traceback.format_exc())
-        return False, _sendable(error)
-
-
-def _sendable(error: Exception) -> Exception:
-    """The error, or one that says the same, where it would not arrive."""
-    try:
-        pickle.loads(pickle.dumps(error))
-    except Exception:
-        return RuntimeError(f"{type(error).__name__}: {error}")
-    return error
+            connection.send(reply(function, things[connection.recv()]))

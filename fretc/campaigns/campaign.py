@@ -13,7 +13,7 @@ from compiler.files.edition import __version__
 from compiler.project.interceptor_options import ticks
 from fretc.audit.many_logs import audited
 from fretc.audit.measurements.binomial import highest, lowest
-from fretc.audit.plan import watched
+from fretc.audit.plan import monitored_requirements
 from fretc.audit.pool import Killed, each
 from fretc.campaigns.experiment import interceptor, plan, safety_function
 from monitors import kernel
@@ -28,7 +28,7 @@ CONFIDENCE = 0.95
 
 @dataclass(frozen=True, slots=True)
 class Run:
-    """What one mission was, and what its log has shown."""
+    """One mission: what happened in the world, and the verdicts on its log."""
 
     scenario: str
     seed: int
@@ -73,8 +73,8 @@ def simulated(scenario: Scenario, seed: int, out: Path) -> Run:
     decision = safety_function(scenario.safety.threshold)
     node = intercepted(scenario.interceptor)
     mission = record(out, scenario, node, seed, decision, versions={"fretc": __version__})
-    shown = audited(plan(), str(out))
-    return _run(mission, {r.requirement: r.verdict for r in shown.results})
+    audit = audited(plan(), str(out))
+    return _run(mission, {r.requirement: r.verdict for r in audit.results})
 
 
 def intercepted(options: Interceptor) -> MakeInterceptor:
@@ -87,14 +87,14 @@ def intercepted(options: Interceptor) -> MakeInterceptor:
     def counted(seconds: float) -> int:
         return ticks(round(seconds * 10**9), round(options.period * 10**9))
 
-    made = Options(
+    gate_options = Options(
         hold=counted(options.hold),
         stop_timeout=counted(options.safety_timeout),
         scan_timeout=0,
         command_timeout=counted(options.command_timeout),
         latching=options.latching,
     )
-    return partial(interceptor, made)
+    return partial(interceptor, gate_options)
 
 
 def _run(mission: Mission, verdicts: Mapping[str, str]) -> Run:
@@ -135,18 +135,18 @@ def campaign(
     Raises:
         RuntimeError: the process of a mission was killed twice.
     """
-    watched(plan())  # before the processes are born: they inherit it
+    monitored_requirements(plan())  # before the processes are born: they inherit it
     things = [(scenario, seed) for scenario in scenarios for seed in seeds]
-    found: dict[int, Run] = {}
+    runs: dict[int, Run] = {}
     with _place(folder, things) as logs:
         function = partial(_one, logs, folder is not None)
         with closing(each(function, things, jobs)) as done:
             for place, run in done:
                 if isinstance(run, Killed):
                     raise RuntimeError(f"the process of a mission was killed: {run}")
-                found[place] = run
-                tell(len(found))
-    return [found[place] for place in sorted(found)]
+                runs[place] = run
+                tell(len(runs))
+    return [runs[place] for place in sorted(runs)]
 
 
 @contextmanager
@@ -228,8 +228,10 @@ def _violations(groups: Mapping[str, Sequence[Run]]) -> Iterator[str]:
         counts = {
             id: sum(run.verdicts[id] == kernel.VIOLATED for run in runs) for id in runs[0].verdicts
         }
-        told = [f"{id} {share(count, len(runs))}" for id, count in counts.items() if count]
-        yield f"  {name}: {', '.join(told) or 'none'}"
+        shares = [f"{id} {share(count, len(runs))}" for id, count in counts.items() if count]
+        yield f"  {name}: {', '.join(shares) or 'none'}"
     for run in (run for runs in groups.values() for run in runs if run.wrong):
-        wrong = ", ".join(f"{i} is {run.verdicts.get(i)}, not {v}" for i, v in run.wrong.items())
-        yield f"not as stated: {run.scenario}, seed {run.seed}: {wrong}"
+        differences = ", ".join(
+            f"{i} is {run.verdicts.get(i)}, not {v}" for i, v in run.wrong.items()
+        )
+        yield f"not as stated: {run.scenario}, seed {run.seed}: {differences}"

@@ -12,7 +12,8 @@ from typing import Any
 
 import numpy as np
 
-from compiler.project.folder import Project, load, requirement_files
+from compiler.project.folder import Project, load
+from compiler.project.paths import requirement_files
 from compiler.targets.python import interceptor as interceptors
 from compiler.targets.python import monitor as monitors
 from compiler.targets.target import Options as TargetOptions
@@ -49,9 +50,9 @@ def folder() -> Path:
 @lru_cache(maxsize=1)
 def project() -> Project:
     """The requirements of a whole mission with their bindings and hazards."""
-    found = requirement_files(str(folder()))
-    assert not isinstance(found, Diagnostic), found
-    read = load(found, str(folder() / "bindings.toml"), str(folder() / "hazards.toml"))
+    requirements = requirement_files(str(folder()))
+    assert not isinstance(requirements, Diagnostic), requirements
+    read = load(requirements, str(folder() / "bindings.toml"), str(folder() / "hazards.toml"))
     assert not has_errors(read.diagnostics), read.diagnostics
     return read
 
@@ -59,9 +60,9 @@ def project() -> Project:
 @lru_cache(maxsize=1)
 def plan() -> Plan:
     """What the logs of missions are audited by."""
-    made = planned(project())
-    assert isinstance(made, Plan), made
-    return made
+    audit_plan = planned(project())
+    assert isinstance(audit_plan, Plan), audit_plan
+    return audit_plan
 
 
 def safety_function(threshold: float = 0.05) -> SafetyFunction:
@@ -78,7 +79,7 @@ def interceptor(options: Options, publish: Callable[[Sequence[float]], None]) ->
 
     Args:
         options: in place of those of the bindings.
-        publish: takes what is said to the wheels: m/s along x, y, z, and rad/s around them.
+        publish: takes the command to the wheels: m/s along x, y, z, and rad/s around them.
     """
     text, source = _interceptor()
     module = executed(text, source)
@@ -108,10 +109,10 @@ def _declarations(threshold: float) -> Declarations:
     text = declared.source.text
     assert _THRESHOLD in text
     changed = text.replace(_THRESHOLD, f"clearance < {threshold * 100:g} cm")
-    found, wrong = read_bindings(Source(declared.source.name, changed))
-    assert found is not None, wrong
-    assert not has_errors(wrong), wrong
-    return found
+    declarations, diagnostics = read_bindings(Source(declared.source.name, changed))
+    assert declarations is not None, diagnostics
+    assert not has_errors(diagnostics), diagnostics
+    return declarations
 
 
 class SafetyFunction:
@@ -125,12 +126,12 @@ class SafetyFunction:
     def __init__(self, text: str, declarations: Declarations) -> None:
         self._monitor: Any = loaded("safety_function", text)
         names = tuple(self._monitor.PROPOSITIONS)
-        used = [declarations.propositions[name] for name in names]
-        self._inputs = [one for one in used if one.role == "input"]
-        self._outputs = [one for one in used if one.role != "input"]
+        propositions = [declarations.propositions[name] for name in names]
+        self._inputs = [one for one in propositions if one.role == "input"]
+        self._outputs = [one for one in propositions if one.role != "input"]
         self._declarations = declarations
         self._demanded = False
-        read = dict.fromkeys(name for one in used for name in one.signals)
+        read = dict.fromkeys(name for one in propositions for name in one.signals)
         self._signals = [declarations.signals[name] for name in read]
         self._times: dict[str, deque[int]] = {name: deque() for name in read}
         self._values: dict[str, deque[float]] = {name: deque() for name in read}
@@ -151,14 +152,14 @@ class SafetyFunction:
         """Whether the robot must stop now; `time` in nanoseconds."""
         recording = self._recording(time)
         truths = {one.name: self._truth(one, recording, time, unknown=True) for one in self._inputs}
-        asked = self._demanded or any(truths.values())  # else no answer is waited for
+        awaited = self._demanded or any(truths.values())  # else no answer is waited for
         for one in self._outputs:
-            stands = asked and self._truth(one, recording, time, unknown=False)
+            stands = awaited and self._truth(one, recording, time, unknown=False)
             truths[one.name] = stands
         self._last = time
-        self._monitor.step(**{self._monitor.PROPOSITIONS[name]: t for name, t in truths.items()})
-        (told,) = self._monitor.must.signals()
-        self._demanded = bool(told.trigger or told.owed)
+        self._monitor.advance([truths])
+        (signal,) = self._monitor.must.signals()
+        self._demanded = bool(signal.trigger or signal.owed)
         return self._demanded
 
     def _recording(self, time: int) -> Recording:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -11,6 +12,16 @@ import click
 from fretc.commands.audit_progress import audit_all
 from fretc.commands.summary import summarize
 from fretc.terminal.group import Grouped
+from fretc.terminal.options import (
+    PATH,
+    Renamed,
+    bindings_option,
+    format_option,
+    jobs_option,
+    output_option,
+    path_option,
+    requirements_option,
+)
 from fretc.terminal.output import (
     BAD,
     NOT_SHOWN,
@@ -22,6 +33,7 @@ from fretc.terminal.output import (
     protect,
     say,
     say_also,
+    say_briefly,
     stop,
 )
 from fretish.diagnostics.diagnostic import Code, Diagnostic, has_errors
@@ -37,7 +49,7 @@ if TYPE_CHECKING:
 
 _AUDIT = {
     "Judged by": ("requirements", "bindings", "integrity", "evaluation", "confidence"),
-    "Printed and written": ("form", "evidence", "parquet", "annotate", "annotations"),
+    "Printed and written": ("form", "output", "parquet", "annotate", "annotations"),
     "Many logs": ("jobs", "resume", "engine"),
     "Questions to tables and evidence: LOG is one of them, nothing is audited": (
         "summary",
@@ -49,30 +61,27 @@ _AUDIT = {
 @click.command(
     cls=Grouped, headings=_AUDIT, short_help="Audit recorded runs against all requirements."
 )
-@click.argument("paths", nargs=-1, required=True, metavar="LOG...")
-@click.option(
-    "--requirements", default="requirements", show_default=True, help="Folder, or one file."
-)
-@click.option("--bindings", help="bindings.toml; the one in the requirements' folder if not given.")
-@click.option(
-    "--evidence",
+@click.argument("paths", nargs=-1, required=True, type=PATH, metavar="LOG...")
+@requirements_option
+@bindings_option
+@output_option(
+    cls=Renamed,
+    earlier="--evidence",
     default="build/evidence.json",
     show_default=True,
-    help="Where evidence goes; - prints it.",
+    help="Where evidence goes; `-` prints it.",
 )
 @click.option("--annotate", is_flag=True, help="Also write its verdicts as a log, for Foxglove.")
-@click.option(
+@path_option(
     "--annotations",
     metavar="FOLDER",
     help="Where these go: build/annotations, if not given. Implies --annotate.",
 )
-@click.option(
-    "--format",
-    "form",
-    type=click.Choice(("text", "json", "junit", "github", "sarif")),
-    default="text",
-    show_default=True,
-    help="What is printed: for a person, as JSON, as JUnit XML, as annotations of GitHub Actions, "
+@format_option(
+    "junit",
+    "github",
+    "sarif",
+    text="What is printed: for a person, as JSON, as JUnit XML, as annotations of GitHub Actions, "
     "as SARIF.",
 )
 @click.option(
@@ -97,12 +106,7 @@ _AUDIT = {
     show_default=True,
     help="Of what all logs together say of a requirement with a probability.",
 )
-@click.option(
-    "--jobs",
-    type=click.IntRange(min=1),
-    default=os.cpu_count() or 1,
-    help="Processes that share the logs; as many as there are cores, if not given.",
-)
+@jobs_option
 @click.option(
     "--engine",
     default="local",
@@ -110,7 +114,7 @@ _AUDIT = {
     help="Where logs are audited: local, dask (a cluster of this machine), dask://HOST:PORT.",
 )
 @click.option("--resume", is_flag=True, help="Go on with an audit that was stopped.")
-@click.option("--parquet", help="Where a table goes, too: a row for each run and requirement.")
+@path_option("--parquet", help="Where a table goes, too: a row for each run and requirement.")
 @click.option(
     "--summary", is_flag=True, help="How many of which verdict, worst runs, slowest answers."
 )
@@ -119,7 +123,7 @@ def audit(
     paths: tuple[str, ...],
     requirements: str,
     bindings: str | None,
-    evidence: str,
+    output: str,
     annotate: bool,
     annotations: str | None,
     form: str,
@@ -145,8 +149,9 @@ def audit(
     """
     if summary or query is not None:
         summarize(paths, query, form)
-    _check_outputs(evidence, parquet, resume=resume)
-    from compiler.project.folder import beside, companions, load, requirement_files
+    _check_outputs(output, parquet, resume=resume)
+    from compiler.project.folder import load
+    from compiler.project.paths import beside, companions, requirement_files
     from fretc.audit.log_paths import files_of
     from fretc.audit.log_paths import logs as logs_of
     from fretc.audit.plan import Plan, planned
@@ -158,32 +163,35 @@ def audit(
     files = requirement_files(requirements)
     if isinstance(files, Diagnostic):
         stop(files)
-    outputs = [Path(path) for path in (evidence, f"{evidence}.journal", parquet) if path]
+    outputs = [Path(path) for path in (output, f"{output}.journal", parquet) if path]
     inputs = (*files_of(logs), *files, *companions(files), *([bindings] if bindings else []))
     protect(outputs, inputs)
     project = load(files, bindings or beside(requirements, "bindings.toml"))
-    say(project.diagnostics)
+    say_briefly(project.diagnostics, requirements)
     if has_errors(project.general):
         raise SystemExit(BAD)
     plan = planned(project, evaluation, Integrity(integrity), confidence)
     if not isinstance(plan, Plan):
         stop(*(reason for reason in plan if reason not in project.diagnostics))
-    journal = _journal(evidence, plan) if evidence != "-" and len(logs) > 1 else None
-    refused = [reason for reason in plan.refusals if reason not in project.diagnostics]
-    say_also(refused, project.diagnostics)
+    journal = _journal(output, plan) if output != "-" and len(logs) > 1 else None
+    refusals = [reason for reason in plan.refusals if reason not in project.diagnostics]
+    say_also(refusals, project.diagnostics)
     result = audit_all(plan, logs, _engine(engine, jobs), journal, resume=resume)
-    say_also(result.diagnostics, (*project.diagnostics, *refused))
+    result = replace(result, diagnostics=project.answered(result.diagnostics))
+    say_also(result.diagnostics, (*project.diagnostics, *refusals))
     if result.read:  # a mistyped name must not cost the evidence of the last audit
-        marked = _marked(result, project, annotations) if annotate or annotations else {}
-        forms: dict[Path, str | bytes] = {Path(evidence): result.evidence}
+        annotation_files = (
+            _annotation_files(result, project, annotations) if annotate or annotations else {}
+        )
+        forms: dict[Path, str | bytes] = {Path(output): result.evidence}
         if parquet is not None:
             forms[Path(parquet)] = _table(result)
-        if {*map(os.path.realpath, forms)} & {*map(os.path.realpath, marked)}:
-            stop(not_written(evidence, "two outputs would go there"))
-        deliver({**forms, **marked}, inputs)
+        if {*map(os.path.realpath, forms)} & {*map(os.path.realpath, annotation_files)}:
+            stop(not_written(output, "two outputs would go there"))
+        deliver({**forms, **annotation_files}, inputs)
         if journal is not None:
             journal.remove()
-    click.echo(_printed(result, project, refused, form), nl=False)
+    click.echo(_text(result, project, refusals, form), nl=False)
     if plan.refused or has_errors((*project.diagnostics, *result.diagnostics)):
         raise SystemExit(BAD)
     raise SystemExit(VIOLATION if result.violated else SHOWN if result.shown else NOT_SHOWN)
@@ -201,13 +209,13 @@ def _journal(evidence: str, plan: Plan) -> Journal | None:
     return Journal(Path(evidence), plan, key)
 
 
-def _marked(result: Audit, project: Project, folder: str | None) -> dict[Path, bytes]:
+def _annotation_files(result: Audit, project: Project, folder: str | None) -> dict[Path, bytes]:
     from fretc.audit.outputs.annotations import sidecars
 
     return sidecars(result.results, project.rules, Path(folder or "build/annotations"))
 
 
-def _printed(result: Audit, project: Project, refused: Sequence[Diagnostic], form: str) -> str:
+def _text(result: Audit, project: Project, refusals: Sequence[Diagnostic], form: str) -> str:
     from fretc.audit.outputs.junit import github, junit
     from fretc.audit.outputs.sarif import AllRuns, OneRun, sarif
 
@@ -220,11 +228,11 @@ def _printed(result: Audit, project: Project, refused: Sequence[Diagnostic], for
         case "github":
             return github(result.results, project.requirements, result.estimates)
         case "sarif":
-            said = (*project.diagnostics, *refused, *result.diagnostics)
-            left = project.without_rule
+            diagnostics = (*project.diagnostics, *refusals, *result.diagnostics)
+            without_rule = project.without_rule
             together = [AllRuns.of(one) for one in result.estimates]
             results = [OneRun.of(one) for one in result.results]
-            return sarif(results, project.rules, said, together, left)
+            return sarif(results, project.rules, diagnostics, together, without_rule)
         case _:
             return coloured(result.text)
 
@@ -272,5 +280,5 @@ def _nothing_kept() -> Diagnostic:
     return Diagnostic(
         Code.BAD_USAGE,
         "`--resume` goes on with evidence in a file, and this is printed",
-        help="name a file with `--evidence`",
+        help="name a file with `-o`",
     )

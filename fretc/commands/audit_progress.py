@@ -13,7 +13,7 @@ from fretish.diagnostics.diagnostic import Diagnostic
 
 if TYPE_CHECKING:
     from fretc.audit.journal import Journal
-    from fretc.audit.many_logs import Audit, Audited, Engine
+    from fretc.audit.many_logs import Audit, Engine, LogAudit
     from fretc.audit.plan import Plan
 
 
@@ -31,43 +31,43 @@ def audit_all(
     """
     from fretc.audit.many_logs import audit_logs
 
-    known = journal.finished(logs) if journal is not None and resume else {}
-    if isinstance(known, Diagnostic):
-        stop(known)
+    finished = journal.finished(logs) if journal is not None and resume else {}
+    if isinstance(finished, Diagnostic):
+        stop(finished)
     if resume:
         stale = journal is not None and journal.stale
-        say_line(_resumed(len(known), len(logs), stale=stale))
+        say_line(_resumed(len(finished), len(logs), stale=stale))
         if journal is not None and journal.foreign:
             say_line(f"`{journal.path}` was not kept by you in this place: that is not used")
-    kept = len(known)
+    count = len(finished)
 
-    def keep(log: str, audited: Audited) -> None:
-        nonlocal kept
+    def keep(log: str, audited: LogAudit) -> None:
+        nonlocal count
         added = journal.keep(log, audited) if journal is not None else False
         if isinstance(added, Diagnostic):
             stop(added)
-        kept += added
+        count += added
         show(log)
 
     try:
-        with _shown([log for log in logs if log not in known]) as show:
-            result = audit_logs(plan, logs, engine, known, keep)
+        with _shown([log for log in logs if log not in finished]) as show:
+            result = audit_logs(plan, logs, engine, finished, keep)
     except KeyboardInterrupt:
-        say_line(f"stopped{_kept(kept, len(logs))}")
+        say_line(f"stopped{_kept(count, len(logs))}")
         raise SystemExit(INTERRUPTED) from None
     if isinstance(result, Diagnostic):
         say([result])
-        if kept:
-            say_line(f"not finished{_kept(kept, len(logs))}")
+        if count:
+            say_line(f"not finished{_kept(count, len(logs))}")
         raise SystemExit(BAD)
     return result
 
 
-def _resumed(known: int, count: int, *, stale: bool) -> str:
-    if not known and not stale:
+def _resumed(finished: int, count: int, *, stale: bool) -> str:
+    if not finished and not stale:
         return "no stopped audit was found: all logs are audited"
     why = ": requirements, bindings or fretc have changed since then" if stale else ""
-    return f"{known} of {count} logs are audited already{why}"
+    return f"{finished} of {count} logs are audited already{why}"
 
 
 def _kept(kept: int, count: int) -> str:

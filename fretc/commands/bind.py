@@ -8,37 +8,32 @@ from typing import TYPE_CHECKING
 
 import click
 
-from fretc.terminal.output import BAD, NOT_SHOWN, SHOWN, coloured, deliver, say, stop
+from fretc.terminal.options import (
+    PATH,
+    bindings_option,
+    format_option,
+    jobs_option,
+    output_option,
+    path_option,
+    requirements_option,
+)
+from fretc.terminal.output import BAD, NOT_SHOWN, SHOWN, coloured, deliver, say, say_briefly, stop
 from fretish.diagnostics.diagnostic import Code, Diagnostic, has_errors
 
 if TYPE_CHECKING:
     from compiler.project.folder import Project
 
-_FOLDER = "requirements"
-
 
 @click.command(short_help="Draft bindings from a log, or check what they see in logs.")
-@click.argument("paths", nargs=-1, metavar="[LOG...]")
-@click.option("--from", "source", metavar="LOG", help="Draft bindings of what is in this log.")
+@click.argument("paths", nargs=-1, type=PATH, metavar="[LOG...]")
+@path_option("--from", "source", metavar="LOG", help="Draft bindings of what is in this log.")
 @click.option("--check", is_flag=True, help="Tell what each proposition was in each LOG.")
-@click.option("--requirements", default=_FOLDER, show_default=True, help="Folder, or one file.")
-@click.option("--bindings", help="bindings.toml; the one in the requirements' folder if not given.")
-@click.option("-o", "--output", default="-", show_default=True, help="Where a draft goes.")
+@requirements_option
+@bindings_option
+@output_option(default="-", show_default=True, help="Where a draft goes.")
 @click.option("--force", is_flag=True, help="Write over a file that is there.")
-@click.option(
-    "--format",
-    "form",
-    type=click.Choice(("text", "json")),
-    default="text",
-    show_default=True,
-    help="How a check is printed.",
-)
-@click.option(
-    "--jobs",
-    type=click.IntRange(min=1),
-    default=os.cpu_count() or 1,
-    help="Processes that share the logs of a check; as many as there are cores, if not given.",
-)
+@format_option(text="How a check is printed.")
+@jobs_option
 def bind(
     paths: tuple[str, ...],
     source: str | None,
@@ -53,10 +48,10 @@ def bind(
     """Draft bindings from a log, or check what they see in logs.
 
     `--from LOG` prints a bindings.toml: the clock, a signal for each field whose meaning is known,
-    all other numbers as comments, and each proposition that the requirements name and no bindings
-    define, to be filled in. `--check LOG...` tells in how many ticks each proposition was true,
-    false and unknown, and how often it changed. Exit status of a check: 0 each proposition took
-    both values in some log, 3 one did not, 2 bad input.
+    all other numbers and texts as comments, and each proposition that the requirements name and no
+    bindings define, to be filled in. `--check LOG...` tells in how many ticks each proposition was
+    true, false and unknown, and how often it changed. Exit status of a check: 0 each proposition
+    took both values in some log, 3 one did not, 2 bad input.
     """
     if (source is None) == (not check):
         stop(_one_of_both())
@@ -69,7 +64,8 @@ def bind(
     elif not paths:
         stop(Diagnostic(Code.NOTHING_TO_DO, "no log was given to check", help="name the logs"))
     else:
-        _check(paths, _project(requirements, bindings, given=given), form, jobs)
+        project = _project(requirements, bindings, given=given)
+        _check(paths, project, requirements, form, jobs)
 
 
 def _is_given(name: str) -> bool:
@@ -82,7 +78,8 @@ def _project(requirements: str, bindings: str | None, *, given: bool, unread: st
 
     What is wrong with the bindings does not matter where they are the file that is to be replaced.
     """
-    from compiler.project.folder import beside, load, requirement_files
+    from compiler.project.folder import load
+    from compiler.project.paths import beside, requirement_files
 
     files = requirement_files(requirements)
     if isinstance(files, Diagnostic):
@@ -105,16 +102,17 @@ def _project(requirements: str, bindings: str | None, *, given: bool, unread: st
 
 
 def _draft(log: str, project: Project, output: str, *, force: bool) -> None:
-    from fretc.audit.bindings.draft import draft, wanted
+    from fretc.audit.bindings.draft import draft, durations, missing_propositions
     from fretc.logs.reader import look
 
     if output != "-" and not force and os.path.lexists(output):
         stop(_exists(output))
-    found = look(log)
-    if isinstance(found, Diagnostic):
-        stop(found)
-    say(found.recording.findings)
-    deliver({Path(output): draft(found, wanted(project))}, (log,))
+    contents = look(log, words=True)
+    if isinstance(contents, Diagnostic):
+        stop(contents)
+    say(contents.recording.findings)
+    text = draft(contents, missing_propositions(project), durations(project))
+    deliver({Path(output): text}, (log,))
     raise SystemExit(SHOWN)
 
 
@@ -145,7 +143,9 @@ def _one_log(path: str) -> Diagnostic:
 # Checks
 
 
-def _check(paths: tuple[str, ...], project: Project, form: str, jobs: int) -> None:
+def _check(
+    paths: tuple[str, ...], project: Project, requirements: str, form: str, jobs: int
+) -> None:
     from fretc.audit.bindings.coverage import coverage
     from fretc.audit.log_paths import logs as logs_of
     from fretc.audit.plan import Plan, planned
@@ -156,13 +156,13 @@ def _check(paths: tuple[str, ...], project: Project, form: str, jobs: int) -> No
     if project.declarations is None:
         stop(_no_bindings())
     plan = planned(project)
-    found = coverage(project.declarations, logs, jobs, plan if isinstance(plan, Plan) else None)
-    if isinstance(found, Diagnostic):
-        stop(found)
-    said = [*_unbound(project), *project.diagnostics, *found.diagnostics]
-    say(said)
-    click.echo(found.as_json if form == "json" else coloured(found.text), nl=False)
-    raise SystemExit(BAD if has_errors(said) else SHOWN if found.shown else NOT_SHOWN)
+    result = coverage(project.declarations, logs, jobs, plan if isinstance(plan, Plan) else None)
+    if isinstance(result, Diagnostic):
+        stop(result)
+    diagnostics = [*_unbound(project), *project.diagnostics, *project.answered(result.diagnostics)]
+    say_briefly(diagnostics, requirements)
+    click.echo(result.as_json if form == "json" else coloured(result.text), nl=False)
+    raise SystemExit(BAD if has_errors(diagnostics) else SHOWN if result.shown else NOT_SHOWN)
 
 
 def _unbound(project: Project) -> list[Diagnostic]:

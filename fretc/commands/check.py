@@ -2,27 +2,43 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import click
 
-from fretc.terminal.output import BAD, NOT_SHOWN, SHOWN, say, say_line, stop
-from fretish.diagnostics.diagnostic import Diagnostic, Severity, has_errors
+from fretc.terminal.options import (
+    PATH,
+    bindings_option,
+    evidence_option,
+    format_option,
+    hazards_option,
+    places,
+    requirements_option,
+    verification_option,
+)
+from fretc.terminal.output import BAD, NOT_SHOWN, SHOWN, deliver, say_all, say_line, stop
+from fretish.diagnostics.diagnostic import Diagnostic, has_errors
+from fretish.diagnostics.rendering import as_json, visible
 
 
 @click.command(short_help="Say what is wrong or missing in a project, before any run.")
-@click.argument("requirements", default="requirements", metavar="[FOLDER]")
-@click.option("--bindings", help="bindings.toml; the one in the folder if not given.")
-@click.option("--hazards", help="hazards.toml; the one in the folder if not given.")
-@click.option("--evidence", default="build/evidence.json", show_default=True)
-@click.option(
-    "--verification",
-    help="What `fretc verify` found; build/verification.json, if it is there and none is given.",
-)
+@click.argument("folder", required=False, type=PATH, metavar="")
+@requirements_option
+@bindings_option
+@hazards_option
+@evidence_option
+@verification_option
+@click.option("--fix", is_flag=True, help="Write the mends that are sure, then check.")
+@format_option()
 def check(
+    folder: str | None,
     requirements: str,
     bindings: str | None,
     hazards: str | None,
     evidence: str,
     verification: str | None,
+    fix: bool,
+    form: str,
 ) -> None:
     """Say what is wrong or missing in a project, before any run.
 
@@ -30,24 +46,32 @@ def check(
     refuse; numbers that have drifted apart; requirements that hold whatever happens; planned
     methods that can give no result; links that are missing; what has changed since its review,
     or since its audit; what was reviewed and is claimed no more; waivers that cover nothing.
-    Exit status: 0 nothing to say, 3 warnings, 2 mistakes.
+    Warnings that are accepted are listed with their reasons.
+    `--fix` mends what can mean one thing only (`should`, `and`, `=<`) and names each mend.
+    Exit status: 0 no warning but accepted ones, 3 warnings, 2 mistakes.
     """
     from compiler.files.dates import today
-    from compiler.project.folder import beside, whole
+    from compiler.project.folder import whole
+    from compiler.project.paths import beside
+    from compiler.project.stated_numbers import first_unit
     from fretc.audit.evidence.reader import read as read_evidence
-    from fretc.audit.plan import refusals
+    from fretc.audit.refusals import refusals
     from fretc.report.diagnostics import idle_waivers, stale_evidence
     from fretc.report.model.assessments import assessments
-    from fretc.report.traceability.checks import checks, unreviewed
+    from fretc.report.traceability.acceptances import warnings
     from fretc.report.traceability.lock import Lock, withdrawal_warnings, withdrawn_requirements
     from fretc.report.traceability.lock import read as read_lock
     from fretc.report.traceability.waivers import read as read_waivers
     from fretc.verification.reader import known as proven
 
+    (requirements,) = places([folder] if folder is not None else [], requirements)
+    if fix:
+        _mend(requirements)
     project = whole(requirements, bindings, hazards)
     if isinstance(project, Diagnostic):
         stop(project)
-    said = list(project.diagnostics)
+    units = first_unit(project.rules)
+    said = [*project.diagnostics, *([units] if units is not None else [])]
     audited = read_evidence(evidence)
     if isinstance(audited, Diagnostic) and audited.is_error:
         said.append(audited)
@@ -77,21 +101,47 @@ def check(
     flawed = has_errors(said)
     said.extend(reason for _, why in refusals(project) for reason in why)
     if not flawed:
-        said.extend(checks(project, standings))
-        said.extend(unreviewed(project, standings) if lock is not None and lock.reviews else ())
-    _finish(tuple(dict.fromkeys(said)), len(project.requirements))
+        said.extend(warnings(project, standings, lock, results))
+    _finish(tuple(dict.fromkeys(said)), len(project.requirements), form)
 
 
-def _finish(said: tuple[Diagnostic, ...], count: int) -> None:
-    """Say it, and exit with what it means."""
-    say(said)
-    errors = sum(d.is_error for d in said)
-    warnings = sum(d.severity is Severity.WARNING for d in said)
-    if said:
+def _mend(folder: str) -> None:
+    """Write what can be mended for sure, all files or none, and name each mend."""
+    from compiler.project.mending import mended
+    from compiler.project.paths import requirement_files
+
+    paths = requirement_files(folder)
+    files = () if isinstance(paths, Diagnostic) else mended(paths)
+    deliver({Path(file.path): file.text for file in files})
+    for mend in (mend for file in files for mend in file.mends):
+        place = f"{mend.span.source.name}:{mend.span.line}:{mend.span.column}"
+        say_line(visible(f"mended {place}: {mend.change}"))
+    if files:
         say_line("")
-    say_line(
-        f"{_many(count, 'requirement')}: {_many(errors, 'mistake')}, {_many(warnings, 'warning')}"
-    )
+
+
+def _finish(diagnostics: tuple[Diagnostic, ...], count: int, form: str) -> None:
+    """Print them, and exit with what they mean."""
+    from compiler.files.templating import to_json
+
+    accepted = [d for d in diagnostics if d.accepted]
+    errors = sum(d.is_error for d in diagnostics)
+    warnings = sum(d.is_open for d in diagnostics)
+    if form == "json":
+        counts = {
+            "requirements": count,
+            "mistakes": errors,
+            "warnings": warnings,
+            "accepted": len(accepted),
+        }
+        click.echo(to_json({**counts, "diagnostics": [as_json(d) for d in diagnostics]}))
+    else:
+        say_all([d for d in diagnostics if not d.accepted], accepted)
+        if diagnostics:
+            say_line("")
+        counts_in_words = f"{_many(errors, 'mistake')}, {_many(warnings, 'warning')}"
+        also = f", {len(accepted)} accepted" if accepted else ""
+        say_line(f"{_many(count, 'requirement')}: {counts_in_words}{also}")
     raise SystemExit(BAD if errors else NOT_SHOWN if warnings else SHOWN)
 
 

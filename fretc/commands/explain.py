@@ -10,6 +10,14 @@ from typing import TYPE_CHECKING
 
 import click
 
+from fretc.terminal.group import is_sentence
+from fretc.terminal.options import (
+    PATH,
+    bindings_option,
+    format_option,
+    path_option,
+    requirements_option,
+)
 from fretc.terminal.output import BAD, NOT_SHOWN, deliver, say, stop
 from fretish.diagnostics.diagnostic import Code, Diagnostic, has_errors, suggestion
 
@@ -22,25 +30,20 @@ if TYPE_CHECKING:
 
 
 @click.command(short_help="Explain a requirement with traces and a picture, or a code.")
-@click.argument("what", metavar="WHAT")
-@click.option(
-    "--requirements",
-    "folder",
-    default="requirements",
-    show_default=True,
-    help="Folder of the requirements.",
-)
-@click.option("--bindings", help="bindings.toml; the one beside the requirements if not given.")
-@click.option(
-    "--format", "form", type=click.Choice(("text", "json")), default="text", show_default=True
-)
-@click.option("--svg", "picture", help="Write the picture of the meaning to this file; `-` prints.")
-def explain(what: str, folder: str, bindings: str | None, form: str, picture: str | None) -> None:
+@click.argument("what", type=PATH, metavar="WHAT")
+@requirements_option
+@bindings_option
+@format_option()
+@path_option("--svg", "picture", help="Write the picture of the meaning to this file; `-` prints.")
+def explain(
+    what: str, requirements: str, bindings: str | None, form: str, picture: str | None
+) -> None:
     """Explain a requirement, or what a diagnostic means.
 
-    WHAT is the id of a requirement, a `.fret` file or folder, or the code of a diagnostic
-    (`F203`). Of a requirement: its meaning, its formulas, a picture of when its response matters,
-    and short traces that satisfy and violate it, each with the reason and the tick that decides.
+    WHAT is the id of a requirement, a `.fret` file or folder, a sentence in quotes, or the code of
+    a diagnostic (`F203`). Of a requirement: its meaning, its formulas, a picture of when its
+    response matters, and short traces that satisfy and violate it, each with the reason and the
+    tick that decides.
     """
     is_file = what == "-" or what.endswith(".fret") or _is_path(what)
     code = None if is_file else _code(what)
@@ -49,7 +52,10 @@ def explain(what: str, folder: str, bindings: str | None, form: str, picture: st
             stop(Diagnostic(Code.BAD_USAGE, "a code has no picture", help="leave `--svg` out"))
         _explain_code(code, form)
         return
-    rules = _rules(what, folder, bindings, is_file=is_file)
+    if is_sentence(what):
+        rules = _typed(what, requirements, bindings)
+    else:
+        rules = _rules(what, requirements, bindings, is_file=is_file)
     if picture is not None and len(rules) > 1:
         mend = f"name one of them: `fretc explain {quote(rules[0].id)}`"
         stop(Diagnostic(Code.BAD_USAGE, f"`{what}` holds several requirements", help=mend))
@@ -107,41 +113,60 @@ def _explain_rules(rules: Sequence[Formalized], form: str, picture: str | None) 
         deliver({Path(picture): svg(explained[0].picture)}, protected=sources)
 
 
+def _typed(sentence: str, folder: str, bindings: str | None) -> list[Formalized]:
+    """The rule of a sentence; the project's clock, if there is one, says what a second is."""
+    from compiler.formalization.formalize import formalize
+    from compiler.project.folder import load
+    from compiler.project.paths import BINDINGS, beside
+    from fretish.diagnostics.source import Source
+    from fretish.documents import Requirement
+
+    project = load([], bindings or beside(folder, BINDINGS))
+    requirement = Requirement("sentence", Source("<sentence>", sentence.strip()).span())
+    rule, remarks = formalize(requirement, project.declarations)
+    diagnostics = [*project.diagnostics, *remarks]
+    say(diagnostics)
+    if rule is None or has_errors(diagnostics):
+        raise SystemExit(BAD)
+    return [rule]
+
+
 def _rules(what: str, folder: str, bindings: str | None, *, is_file: bool) -> list[Formalized]:
     """The rules asked for; exits where there is none."""
-    from compiler.project.folder import listed, load
+    from compiler.project.folder import load
+    from compiler.project.paths import listed, requirement_files
 
-    paths = listed([what if is_file else folder])
+    paths = listed([what]) if is_file else requirement_files(folder)
     if isinstance(paths, Diagnostic):
         stop(paths)
     project = load(paths, bindings)
     ids = [requirement.id for requirement in project.requirements]
-    wanted = ids if is_file else [id for id in ids if id.casefold() == what.casefold()]
-    if not wanted:
-        _said(project, ())
+    matches = ids if is_file else [id for id in ids if id.casefold() == what.casefold()]
+    if not matches:
+        _say_of(project, ())
         stop(_unknown(what, ids, folder, is_file=is_file))
-    chosen = [r for r in project.requirements if r.id in wanted]
-    _said(project, chosen)
-    rules = [rule for rule in project.rules if rule.id in wanted]
+    subjects = [r for r in project.requirements if r.id in matches]
+    _say_of(project, subjects)
+    rules = [rule for rule in project.rules if rule.id in matches]
     if not rules:
         raise SystemExit(NOT_SHOWN)  # free text
     return rules
 
 
-def _said(project: Project, chosen: Sequence[Requirement]) -> None:
+def _say_of(project: Project, subjects: Sequence[Requirement]) -> None:
     """What there is to say of the chosen requirements and of the bindings; exits at an error."""
     others = {
         diagnostic
         for requirement in project.requirements
-        if requirement not in chosen
+        if requirement not in subjects
         for diagnostic in project.diagnostics
         if diagnostic.span is not None
         and diagnostic.span.source == requirement.wording.source
         and _nearest(project, diagnostic) is requirement
     }
-    kept = [diagnostic for diagnostic in project.diagnostics if diagnostic not in others]
-    say(kept)
-    if has_errors(kept):
+    own = [diagnostic for diagnostic in project.diagnostics if diagnostic not in others]
+    say(own)
+    if has_errors(own):
         raise SystemExit(BAD)
 
 
@@ -170,10 +195,16 @@ def _unknown(what: str, ids: Sequence[str], folder: str, *, is_file: bool) -> Di
             f"no diagnostic has the code `{what.upper()}`, and no requirement that id",
             help=f"there are {', '.join(sorted(area))}" if area else "codes begin with F1 to F9",
         )
+    if any(character.isspace() for character in what):
+        return Diagnostic(
+            Code.NO_SUCH_REQUIREMENT,
+            f"`{what}` is no id",
+            help='pipe a sentence in: `echo "the robot shall ..." | fretc explain -`',
+        )
     near = suggestion(what, ids)
-    known = f"there are {', '.join(ids[:8])}{', ...' if len(ids) > 8 else ''}"
+    listing = f"there are {', '.join(ids[:8])}{', ...' if len(ids) > 8 else ''}"
     return Diagnostic(
         Code.NO_SUCH_REQUIREMENT,
         f"no requirement in `{folder}` has the id `{what}`",
-        help=f"did you mean `{near}`?" if near else known if ids else "name a `.fret` file",
+        help=f"did you mean `{near}`?" if near else listing if ids else "name a `.fret` file",
     )

@@ -4,14 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
+from shlex import quote
 from typing import TYPE_CHECKING
 
 import click
 
 from compiler.emit import TARGETS
 from fretc.terminal.group import DEFAULT, Compile
-from fretc.terminal.output import BAD, SHOWN, VIOLATION, deliver, say, say_line, stop
+from fretc.terminal.options import PATH, format_option, output_option, path_option
+from fretc.terminal.output import BAD, FOLDER, SHOWN, VIOLATION, deliver, say, say_line, stop
 from fretish.diagnostics.diagnostic import Code, Diagnostic, has_errors
+from fretish.diagnostics.rendering import visible
 
 if TYPE_CHECKING:
     from compiler.formalization.formalized import Formalized
@@ -22,7 +25,7 @@ _NOTATIONS = ("plain", "fret", "spot", "nusmv", "latex")
 
 
 @click.command(DEFAULT, cls=Compile, hidden=True)
-@click.argument("files", nargs=-1, required=True, metavar="FILE...")
+@click.argument("files", nargs=-1, required=True, type=PATH, metavar="FILE...")
 @click.option(
     "--emit",
     "kinds",
@@ -30,16 +33,9 @@ _NOTATIONS = ("plain", "fret", "spot", "nusmv", "latex")
     type=click.Choice([*TARGETS]),
     help="Make this kind of file; may be given several times.",
 )
-@click.option("-o", "--output", default="build", show_default=True, help="Folder; `-` prints.")
-@click.option("--bindings", help="bindings.toml; the one beside the first FILE if not given.")
-@click.option(
-    "--format",
-    "form",
-    type=click.Choice(("text", "json")),
-    default="text",
-    show_default=True,
-    help="Form of the formulas.",
-)
+@output_option(default="build", show_default=True, help="Folder; `-` prints.")
+@path_option("--bindings", help="bindings.toml; the one beside the first FILE if not given.")
+@format_option(text="Form of the formulas.")
 @click.option(
     "--notation",
     type=click.Choice(_NOTATIONS),
@@ -67,7 +63,8 @@ def compile_(
 
     FILE holds one or more requirements, or is a folder of such files; `-` is standard input.
     """
-    from compiler.project.folder import listed, load
+    from compiler.project.folder import load
+    from compiler.project.paths import listed
 
     if one_file and "monitor" not in kinds:
         stop(Diagnostic(Code.BAD_USAGE, "`--one-file` is for `--emit monitor`", help="add it"))
@@ -77,7 +74,8 @@ def compile_(
     if isinstance(paths, Diagnostic):
         stop(paths)
     project = load(paths, bindings)
-    say(project.diagnostics)
+    undecided = _undecided(project.rules)
+    say([*project.diagnostics, *undecided])
     as_json = form == "json" and set(kinds) <= {"ltl"}
     if as_json and _only_failed(project):
         _deliver_formulas(project, output if kinds else "-")
@@ -89,25 +87,34 @@ def compile_(
     free_texts = tuple(f.requirement for f in project.failed)
     options = Options(notation, simplify, one_file, free_texts, weaken, project.declarations)
     if kinds:
-        _emit(project, dict.fromkeys(kinds), output, options)
+        _emit(project, dict.fromkeys(kinds), output, options, undecided)
     else:
         _print_formulas(project, options)
+
+
+def _undecided(rules: Sequence[Formalized]) -> list[Diagnostic]:
+    """F203 for each rule that no run decides: the same, whatever is made of it."""
+    monitor = TARGETS["monitor"]
+    remarks = [monitor.remark(rule) for rule in rules if monitor.refuse(rule) is None]
+    return [remark for remark in remarks if remark is not None]
 
 
 def _check_weaken(kinds: Sequence[str]) -> None:
     """F907 where no kind of file that is asked for has a weaker form."""
     weak = [f"`--emit {name}`" for name, target in TARGETS.items() if target.weak is not None]
     if not any(TARGETS[kind].weak for kind in kinds):
-        told = f"`--weaken` is for {' and '.join(weak)}"
+        message = f"`--weaken` is for {' and '.join(weak)}"
         stop(
-            Diagnostic(Code.BAD_USAGE, told, help="nothing else may say less than its requirement")
+            Diagnostic(
+                Code.BAD_USAGE, message, help="nothing else may say less than its requirement"
+            )
         )
 
 
 def _only_failed(project: Project) -> bool:
     """Whether every error is that of a sentence: the list of formulas then carries it."""
-    told = [failed.diagnostic for failed in project.failed]
-    return all(d in told for d in project.diagnostics if d.is_error)
+    reasons = {diagnostic for failed in project.failed for diagnostic in failed.diagnostics}
+    return all(d in reasons for d in project.diagnostics if d.is_error)
 
 
 def _deliver_formulas(project: Project, output: str) -> None:
@@ -115,9 +122,9 @@ def _deliver_formulas(project: Project, output: str) -> None:
     from compiler.files.templating import to_json
     from compiler.formalization.record import failed, formulas
 
-    found = {id(rule.requirement): formulas(rule) for rule in project.rules}
-    found |= {id(f.requirement): failed(f.requirement, f.diagnostic) for f in project.failed}
-    text = to_json([found[id(r)] for r in project.requirements])
+    records = {id(rule.requirement): formulas(rule) for rule in project.rules}
+    records |= {id(f.requirement): failed(f.requirement, f.diagnostic) for f in project.failed}
+    text = to_json([records[id(r)] for r in project.requirements])
     deliver({Path(output) / "ltl.json" if output != "-" else Path("-"): f"{text}\n"})
 
 
@@ -127,20 +134,55 @@ def _print_formulas(project: Project, options: Options) -> None:
     click.echo("\n".join(text(rule, options) for rule in project.rules), nl=False)
 
 
-def _emit(project: Project, kinds: dict[str, None], output: str, options: Options) -> None:
+def _emit(
+    project: Project,
+    kinds: dict[str, None],
+    output: str,
+    options: Options,
+    remarks: Sequence[Diagnostic],
+) -> None:
     """Write whatever can be; what a target refuses is told and keeps nothing else from it."""
     named = [TARGETS[kind] for kind in kinds]
     targets = [(options.weaken and target.weak) or target for target in named]
-    made = [(target, *_emitted(target, project.rules, options)) for target in targets]
-    refused = [diagnostic for _, _, wrong in made for diagnostic in wrong]
-    kept = [(target, rules) for target, rules, _ in made if rules is not None]
-    say(refused)
-    say([d for target, rules in kept for rule in rules if (d := target.remark(rule))])
-    say([diagnostic for target, _ in kept for diagnostic in target.remarks(options)])
-    files = [artifact for target, rules in kept for artifact in target.emit(rules, options)]
-    _deliver_all({str(artifact.path): artifact.text for artifact in files}, output)
-    if refused:
+    outputs = [(target, *_emitted(target, project.rules, options)) for target in targets]
+    refusals = [diagnostic for _, _, wrong in outputs for diagnostic in wrong]
+    jobs = [(target, rules) for target, rules, _ in outputs if rules is not None]
+    say(refusals)
+    of_rules = [d for target, rules in jobs for rule in rules if (d := target.remark(rule))]
+    say(project.answered(remark for remark in of_rules if remark not in remarks))
+    say(project.answered(d for target, _ in jobs for d in target.remarks(options)))
+    files = {
+        target.name: {str(a.path): a.text for a in target.emit(rules, options)}
+        for target, rules in jobs
+    }
+    texts = {path: text for each in files.values() for path, text in each.items()}
+    first_time = output != "-" and not any((Path(output) / path).exists() for path in texts)
+    _deliver_all(texts, output)
+    if first_time and texts:
+        say_line(
+            _next_steps(project, {kind: next(iter(f)) for kind, f in files.items() if f}, output)
+        )
+    if refusals:
         raise SystemExit(BAD)
+
+
+def _next_steps(project: Project, firsts: Mapping[str, str], output: str) -> str:
+    """What can be done with files that are made for the first time.
+
+    Args:
+        project: of which they are made.
+        firsts: name of each target → the first of its files.
+        output: the folder of the files.
+    """
+    steps = [
+        TARGETS[kind].next_step.format(quote(str(Path(output) / path)))
+        for kind, path in firsts.items()
+        if TARGETS[kind].next_step
+    ]
+    source = project.requirements[0].wording.source.name
+    if source != "<stdin>":
+        steps.append(f"`fretc explain {quote(source)}` shows what is meant, with a picture")
+    return "\n".join(visible(f"next: {step}") for step in steps)
 
 
 def _emitted(
@@ -152,36 +194,36 @@ def _emitted(
     """
     from compiler.formalization.formalize import clashes
 
-    found = [(rule, target.refuse(rule)) for rule in rules]
-    wrong = [diagnostic for _, diagnostic in found if diagnostic is not None]
+    answers = [(rule, target.refuse(rule)) for rule in rules]
+    wrong = [diagnostic for _, diagnostic in answers if diagnostic is not None]
     whole = [diagnostic] if (diagnostic := target.refuse_project(options)) else []
     one_file = options.one_file and target.name == "monitor"
     if one_file:
         whole += clashes(rules)
     if whole or (wrong and (one_file or not target.per_rule)):
         return None, [*wrong, *whole]
-    kept = [rule for rule, diagnostic in found if diagnostic is None]
-    return (kept or None) if wrong else kept, wrong
+    expressible = [rule for rule, diagnostic in answers if diagnostic is None]
+    return (expressible or None) if wrong else expressible, wrong
 
 
 @click.command(short_help="Put sentences into their canonical wording.")
-@click.argument("files", nargs=-1, required=True, metavar="FILE...")
+@click.argument("files", nargs=-1, required=True, type=PATH, metavar="FILE...")
 @click.option("--check", is_flag=True, help="Write nothing; exit with 1 if a file would change.")
 @click.option("-o", "--output", type=click.Choice(("-",)), help="`-` prints in place of writing.")
 def fmt(files: tuple[str, ...], check: bool, output: str | None) -> None:
     """Put the sentences of requirement files into their canonical wording."""
-    from compiler.project.folder import listed
     from compiler.project.formatting import formatted
+    from compiler.project.paths import listed
 
     paths = listed(files)
     if isinstance(paths, Diagnostic):
         stop(paths)
-    done, wrong = formatted(paths)
+    texts, wrong = formatted(paths)
     if wrong:
         stop(*wrong)
-    changed = [file for file in done if file.before != file.after]
+    changed = [file for file in texts if file.before != file.after]
     if output == "-" or files == ("-",):
-        click.echo("".join(file.after for file in done), nl=False)
+        click.echo("".join(file.after for file in texts), nl=False)
     elif check:
         for file in changed:
             say_line(f"would change {file.path}")
@@ -193,10 +235,8 @@ def fmt(files: tuple[str, ...], check: bool, output: str | None) -> None:
 
 
 @click.command("import", short_help="Read requirements that FRET exported.")
-@click.argument("file", metavar="FILE")
-@click.option(
-    "-o", "--output", default="requirements", show_default=True, help="Folder; `-` prints."
-)
+@click.argument("file", type=PATH, metavar="FILE")
+@output_option(default=FOLDER, show_default=True, help="Folder; `-` prints.")
 @click.option("--id-column", help="CSV: the column of the ids.")
 @click.option("--text-column", help="CSV: the column of the sentences or texts.")
 @click.option("--project-column", help="CSV: the column of the projects.")
@@ -221,15 +261,15 @@ def import_(
     source = read(file)
     if isinstance(source, Diagnostic):
         stop(source)
-    asked = {"id": id_column, "text": text_column, "project": project_column}
-    result = read_export(source, {part: name for part, name in asked.items() if name})
+    columns = {"id": id_column, "text": text_column, "project": project_column}
+    result = read_export(source, {part: name for part, name in columns.items() if name})
     say(result.diagnostics)
     if has_errors(result.diagnostics):
         raise SystemExit(BAD)
     files = {str(artifact.path): artifact.text for artifact in result.artifacts}
-    there = [path for path in files if (Path(output) / path).exists()]
-    if there and output != "-" and not force:
-        stop(_exists(str(Path(output) / there[0])))
+    clashes = [path for path in files if (Path(output) / path).exists()]
+    if clashes and output != "-" and not force:
+        stop(_exists(str(Path(output) / clashes[0])))
     _deliver_all(files, output)
     counts = f"{result.requirements} requirements, {result.variables} variables"
     say_line(f"imported {counts}")

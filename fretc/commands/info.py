@@ -4,16 +4,15 @@ from __future__ import annotations
 
 import click
 
+from fretc.terminal.options import PATH, format_option
 from fretc.terminal.output import BAD, NOT_SHOWN, SHOWN, say, stop
 from fretish.diagnostics.diagnostic import Diagnostic
 
 
 @click.command(short_help="Say what is in recorded runs, and how healthy they are.")
-@click.argument("paths", nargs=-1, required=True, metavar="LOG...")
+@click.argument("paths", nargs=-1, required=True, type=PATH, metavar="LOG...")
 @click.option("--all", "whole", is_flag=True, help="Name every field that a signal can read.")
-@click.option(
-    "--format", "form", type=click.Choice(("text", "json")), default="text", show_default=True
-)
+@format_option()
 def info(paths: tuple[str, ...], whole: bool, form: str) -> None:
     """Say what is in recorded runs, and how healthy they are.
 
@@ -30,13 +29,13 @@ def info(paths: tuple[str, ...], whole: bool, form: str) -> None:
     logs = logs_of(paths)
     if isinstance(logs, Diagnostic):
         stop(logs)
-    found = [look(log) for log in logs]
-    wrong = [one for one in found if isinstance(one, Diagnostic)]
-    read = [one for one in found if not isinstance(one, Diagnostic)]
-    say([*wrong, *(finding for one in read for finding in one.recording.findings)])
+    answers = [look(log) for log in logs]
+    wrong = [one for one in answers if isinstance(one, Diagnostic)]
+    contents = [one for one in answers if not isinstance(one, Diagnostic)]
+    say([*wrong, *(finding for one in contents for finding in one.recording.findings)])
     if form == "json":
-        click.echo(to_json([as_record(one) for one in read]))
+        click.echo(to_json([as_record(one) for one in contents]))
     else:
-        click.echo("\n".join(text(one, whole=whole) for one in read), nl=False)
-    intact = all(one.recording.intact for one in read)
+        click.echo("\n".join(text(one, whole=whole) for one in contents), nl=False)
+    intact = all(one.recording.intact for one in contents)
     raise SystemExit(BAD if wrong else SHOWN if intact else NOT_SHOWN)

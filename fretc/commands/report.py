@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -10,7 +10,17 @@ import click
 
 from fretc.report.forms.forms import FORMS, Form, Subject
 from fretc.terminal.group import Grouped
-from fretc.terminal.output import BAD, NOT_SHOWN, SHOWN, VIOLATION, deliver, say, stop
+from fretc.terminal.options import (
+    bindings_option,
+    evidence_option,
+    hazards_option,
+    is_given,
+    output_option,
+    path_option,
+    requirements_option,
+    verification_option,
+)
+from fretc.terminal.output import BAD, NOT_SHOWN, SHOWN, VIOLATION, deliver, say_briefly, stop
 from fretish.diagnostics.diagnostic import Diagnostic, has_errors
 
 if TYPE_CHECKING:
@@ -27,7 +37,7 @@ _HEADINGS = {
         "waivers",
         "signers",
     ),
-    "Forms": tuple(FORMS),
+    "Forms: one by `--format` and `-o`, or each to a file of its own": ("form", "output", *FORMS),
 }
 
 
@@ -35,7 +45,7 @@ def _forms(command: Callable[..., None]) -> Callable[..., None]:
     """The option of each form."""
     for form in FORMS.values():
         shown = form.default is not None
-        option = click.option(
+        option = path_option(
             f"--{form.name}", default=form.default, show_default=shown, help=form.help
         )
         command = option(command)
@@ -45,25 +55,27 @@ def _forms(command: Callable[..., None]) -> Callable[..., None]:
 @click.command(
     cls=Grouped, headings=_HEADINGS, short_help="Trace hazard to verdict in one HTML file."
 )
+@click.option(
+    "--format",
+    "form",
+    type=click.Choice([*FORMS]),
+    help="The form that is printed, or goes to `-o`; html if only `-o` is given.",
+)
+@output_option(help="Where it goes; `-` prints it.")
 @_forms
-@click.option(
-    "--requirements", default="requirements", show_default=True, help="Folder, or one file."
-)
-@click.option("--bindings", help="bindings.toml; the one in the requirements' folder if not given.")
-@click.option("--hazards", help="hazards.toml; the one in the requirements' folder if not given.")
-@click.option("--evidence", default="build/evidence.json", show_default=True)
-@click.option(
-    "--verification",
-    help="What `fretc verify` found; build/verification.json, if it is there and none is given.",
-)
-@click.option(
+@requirements_option
+@bindings_option
+@hazards_option
+@evidence_option
+@verification_option
+@path_option(
     "--ajpf",
     multiple=True,
     help="A result of AJPF; each build/*_ajpf/result.json if none is given.",
 )
-@click.option("--lock", help="fretc.lock; the one in the requirements' folder if not given.")
-@click.option("--waivers", help="waivers.toml; the one in the requirements' folder if not given.")
-@click.option(
+@path_option("--lock", help="fretc.lock; the one in the requirements' folder if not given.")
+@path_option("--waivers", help="waivers.toml; the one in the requirements' folder if not given.")
+@path_option(
     "--signers", help="Whose keys count; allowed_signers in the requirements' folder if not given."
 )
 @click.option(
@@ -82,6 +94,8 @@ def report(
     waivers: str | None,
     signers: str | None,
     strict: bool,
+    form: str | None,
+    output: str | None,
     **places: str | None,
 ) -> None:
     """Trace hazard, requirement, formula, artefact, run and verdict in one HTML file.
@@ -89,15 +103,16 @@ def report(
     All forms say the same. The same inputs give the same bytes; waivers count by the day of
     SOURCE_DATE_EPOCH, where that is set.
     """
-    from compiler.project.folder import beside, companions, requirement_files, whole
+    from compiler.project.folder import whole
+    from compiler.project.paths import beside, companions, requirement_files
     from fretc.attestation.signatures import SIGNERS
     from fretc.report.make import make
     from fretc.verification.ajpf_results import written as results
     from fretc.verification.reader import written
 
-    wanted = [(form, path) for name, form in FORMS.items() if (path := places[name]) is not None]
-    for form, _ in wanted:
-        absent = form.missing()
+    outputs = _outputs(form, output, places)
+    for kind, _ in outputs:
+        absent = kind.missing()
         if absent is not None:
             stop(absent)
     files = requirement_files(requirements)
@@ -110,38 +125,51 @@ def report(
     waivers = waivers or beside(requirements, "waivers.toml")
     signers = signers or beside(requirements, SIGNERS)
     verification = verification or written()
-    said = ajpf or results()
-    made = make(
+    ajpf_results = ajpf or results()
+    outcome = make(
         project,
         evidence,
         lock=lock,
         waivers=waivers,
         verification=verification,
-        ajpf=said,
+        ajpf=ajpf_results,
         signers=signers,
     )
-    say([*project.diagnostics, *made.diagnostics])
-    if made.report is None:
+    say_briefly([*project.diagnostics, *outcome.diagnostics], requirements)
+    if outcome.report is None:
         raise SystemExit(BAD)
-    subject = Subject(made.report, project, made.results, made.diagnostics)
-    read = filter(None, (bindings, hazards, verification, lock, waivers, signers, *said))
-    logs = [result.run for result in made.results]
-    _deliver(wanted, subject, [evidence, *files, *companions(files), *read, *dict.fromkeys(logs)])
-    if has_errors([*project.diagnostics, *made.diagnostics]):
+    subject = Subject(outcome.report, project, outcome.results, outcome.diagnostics)
+    inputs = filter(None, (bindings, hazards, verification, lock, waivers, signers, *ajpf_results))
+    logs = [result.run for result in outcome.results]
+    _deliver(
+        outputs, subject, [evidence, *files, *companions(files), *inputs, *dict.fromkeys(logs)]
+    )
+    if has_errors([*project.diagnostics, *outcome.diagnostics]):
         raise SystemExit(BAD)
-    raise SystemExit(_status(made.report) if strict else SHOWN)
+    raise SystemExit(_status(outcome.report) if strict else SHOWN)
 
 
-def _deliver(wanted: Sequence[tuple[Form, str]], subject: Subject, read: Sequence[str]) -> None:
+def _outputs(
+    form: str | None, output: str | None, places: Mapping[str, str | None]
+) -> list[tuple[Form, str]]:
+    """Each form that is asked for, and its place; the default one only where none is."""
+    named = [(kind, path) for name, kind in FORMS.items() if (path := places[name]) is not None]
+    if form is None and output is None:
+        return named
+    chosen = [(kind, path) for kind, path in named if is_given(kind.name)]
+    return [(FORMS[form or "html"], output or "-"), *chosen]
+
+
+def _deliver(outputs: Sequence[tuple[Form, str]], subject: Subject, inputs: Sequence[str]) -> None:
     """Each form to its own place."""
     from fretc.terminal.output import not_written
 
     paths: dict[Path, str] = {}
-    for form, path in wanted:
+    for form, path in outputs:
         if Path(path) in paths:
             stop(not_written(path, "two outputs would go there"))
         paths[Path(path)] = form.text(subject)
-    deliver(paths, read)
+    deliver(paths, inputs)
 
 
 def _status(whole: Report) -> int:
@@ -155,6 +183,6 @@ def _status(whole: Report) -> int:
         return VIOLATION
     if whole.withdrawn:
         return VIOLATION
-    claimed = [mark for mark in marks if mark.word != RETIRED]
-    shown = all(mark.shows or mark.word == WAIVED for mark in claimed)
-    return SHOWN if claimed and shown else NOT_SHOWN
+    in_force = [mark for mark in marks if mark.word != RETIRED]
+    shown = all(mark.shows or mark.word == WAIVED for mark in in_force)
+    return SHOWN if in_force and shown else NOT_SHOWN

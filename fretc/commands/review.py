@@ -8,7 +8,15 @@ from typing import TYPE_CHECKING
 
 import click
 
-from fretc.terminal.output import BAD, NOT_SHOWN, SHOWN, deliver, say, say_line, stop
+from fretc.terminal.options import (
+    PATH,
+    evidence_option,
+    format_option,
+    path_option,
+    requirements_option,
+    verification_option,
+)
+from fretc.terminal.output import BAD, NOT_SHOWN, SHOWN, deliver, say_briefly, say_line, stop
 from fretish.diagnostics.diagnostic import (
     Code,
     Diagnostic,
@@ -26,15 +34,6 @@ if TYPE_CHECKING:
     from fretc.report.traceability.chain import Chain
     from fretc.report.traceability.lock import Lock, Review
 
-_REQUIREMENTS = click.option(
-    "--requirements", default="requirements", show_default=True, help="Folder, or one file."
-)
-_EVIDENCE = click.option("--evidence", default="build/evidence.json", show_default=True)
-_VERIFICATION = click.option(
-    "--verification",
-    help="What `fretc verify` found; build/verification.json, if it is there and none is given.",
-)
-
 
 @click.command(short_help="Accept the present state of requirements, as their reviewer.")
 @click.argument("ids", nargs=-1, metavar="[ID]...")
@@ -42,12 +41,13 @@ _VERIFICATION = click.option(
 @click.option("--role", required=True, help="As what: `safety engineer`.")
 @click.option("--comment", required=True, help="What was looked at, and why it is accepted.")
 @click.option("--date", "day", help="As 2026-11-22; today, or the day of SOURCE_DATE_EPOCH.")
-@_REQUIREMENTS
-@_EVIDENCE
-@_VERIFICATION
-@click.option("--lock", "path", help="The lock; `fretc.lock` in the requirements' folder.")
-@click.option("--key", help="Your private key, to sign the reviews with: ~/.ssh/id_ed25519.")
+@requirements_option
+@evidence_option
+@verification_option
+@path_option("--lock", "path", help="The lock; `fretc.lock` in the requirements' folder.")
+@path_option("--key", help="Your private key, to sign the reviews with: ~/.ssh/id_ed25519.")
 @click.option("--accept-violations", is_flag=True, help="Also where a run violates a requirement.")
+@format_option()
 def lock(
     ids: tuple[str, ...],
     reviewer: str,
@@ -60,6 +60,7 @@ def lock(
     path: str | None,
     key: str | None,
     accept_violations: bool,
+    form: str,
 ) -> None:
     """Accept the present state of requirements, as their reviewer.
 
@@ -71,46 +72,54 @@ def lock(
     that is not there any more stays until its ID is given, or none.
     """
     from compiler.files.dates import is_date, is_to_come, today
+    from compiler.files.templating import to_json
     from fretc.audit.evidence.reader import refuted
     from fretc.report.traceability.lock import (
+        Acceptance,
         Lock,
         accepted,
         outdated_results,
         text,
         unnamed_violations,
         verdicts_of,
+        warnings_of,
     )
 
-    for name, said in (("--reviewer", reviewer), ("--role", role), ("--comment", comment)):
-        if not said.strip():
+    for name, words in (("--reviewer", reviewer), ("--role", role), ("--comment", comment)):
+        if not words.strip():
             stop(Diagnostic(Code.BAD_USAGE, f"`{name}` says nothing", help="fill it in"))
     day = day or today()
     if not is_date(day):
         stop(Diagnostic(Code.BAD_USAGE, f"`{day}` is no date", help="write it as `2026-11-22`"))
     if is_to_come(day):
-        told = f"`{day}` is still to come, and nobody can have reviewed then"
-        stop(Diagnostic(Code.BAD_USAGE, told, help="leave `--date` out: then it is today"))
+        message = f"`{day}` is still to come, and nobody can have reviewed then"
+        stop(Diagnostic(Code.BAD_USAGE, message, help="leave `--date` out: then it is today"))
     project, chains = _chains(requirements, evidence, verification)
     if has_errors(project.diagnostics):
         raise SystemExit(BAD)
     where = path or _beside(requirements)
     before = _read(where, must=False)
-    kept = before.reviews if before is not None else {}
-    gone = kept.keys() - {chain.requirement for chain in chains}
-    chosen = _chosen(chains, ids, gone)
-    violations = () if accept_violations else unnamed_violations(chosen, refuted(evidence))
-    refused = (*outdated_results(chosen), *violations)
-    if refused:
-        stop(*refused)
-    left = {id for id in gone if not ids or id in ids}
-    reviews = {id: review for id, review in kept.items() if id not in left}
-    reviews |= {c.requirement: accepted(c, reviewer, role, day, comment) for c in chosen}
-    signatures = _signatures(where, reviews, chosen, key) if key is not None else {}
+    old_reviews = before.reviews if before is not None else {}
+    orphans = old_reviews.keys() - {chain.requirement for chain in chains}
+    subjects = _chosen(chains, ids, orphans)
+    violations = () if accept_violations else unnamed_violations(subjects, refuted(evidence))
+    refusals = (*outdated_results(subjects), *violations)
+    if refusals:
+        stop(*refusals)
+    removals = {id for id in orphans if not ids or id in ids}
+    reviews = {id: review for id, review in old_reviews.items() if id not in removals}
+    reviews |= {c.requirement: accepted(c, reviewer, role, day, comment) for c in subjects}
+    signatures = _signatures(where, reviews, subjects, key) if key is not None else {}
     deliver({Path(where): text(Lock(reviews)), **signatures})
-    for chain in chosen:
-        say_line(visible(f"accepted {chain.requirement}: {verdicts_of(chain)}"))
-    for id in sorted(left, key=natural):
+    counts = Acceptance.of(subjects, refuted(evidence))
+    if form == "json":
+        click.echo(to_json({**counts.as_record, "left_out": sorted(removals, key=natural)}))
+        return
+    for chain in subjects:
+        say_line(visible(f"accepted {chain.requirement}: {verdicts_of(chain)}{warnings_of(chain)}"))
+    for id in sorted(removals, key=natural):
         say_line(f"left out {id}: it is not among the requirements")
+    say_line(counts.text)
 
 
 def _signatures(
@@ -125,13 +134,11 @@ def _signatures(
 
 
 @click.command(short_help="Say what has changed since a review, verdicts included.")
-@click.argument("baseline", required=False, metavar="[BASELINE]")
-@_REQUIREMENTS
-@_EVIDENCE
-@_VERIFICATION
-@click.option(
-    "--format", "form", type=click.Choice(("text", "json")), default="text", show_default=True
-)
+@click.argument("baseline", required=False, type=PATH, metavar="[BASELINE]")
+@requirements_option
+@evidence_option
+@verification_option
+@format_option()
 def diff(
     baseline: str | None, requirements: str, evidence: str, verification: str | None, form: str
 ) -> None:
@@ -147,16 +154,16 @@ def diff(
     project, chains = _chains(requirements, evidence, verification)
     if has_errors(project.diagnostics):
         raise SystemExit(BAD)
-    known = _read(baseline or _beside(requirements), must=True)
-    assert known is not None
-    found = differences(standings(chains, known), known)
+    base = _read(baseline or _beside(requirements), must=True)
+    assert base is not None
+    changes = differences(standings(chains, base), base)
     if form == "json":
-        click.echo(to_json([as_record(difference) for difference in found]))
+        click.echo(to_json([as_record(difference) for difference in changes]))
     else:
-        for difference in found:
+        for difference in changes:
             for line in text(difference):
                 click.echo(visible(line))
-    raise SystemExit(SHOWN if all(d.state == "same" for d in found) else NOT_SHOWN)
+    raise SystemExit(SHOWN if all(d.state == "same" for d in changes) else NOT_SHOWN)
 
 
 def _chains(
@@ -175,19 +182,19 @@ def _chains(
         stop(proofs)
     audited = read(evidence)
     if isinstance(audited, Diagnostic):
-        say([*project.diagnostics, audited])
+        say_briefly([*project.diagnostics, audited], requirements)
         if audited.is_error:
             raise SystemExit(BAD)
         return project, chains(project, None, proofs=proofs)
-    say(project.diagnostics)
+    say_briefly(project.diagnostics, requirements)
     return project, chains(project, audited, proofs=proofs)
 
 
 def _chosen(
-    chains: Sequence[Chain], ids: tuple[str, ...], gone: Collection[str]
+    chains: Sequence[Chain], ids: tuple[str, ...], orphans: Collection[str]
 ) -> Sequence[Chain]:
     """The requirements that are named, or all; one that is gone may be named, to let it go."""
-    known = [*(chain.requirement for chain in chains), *gone]
+    known = [*(chain.requirement for chain in chains), *orphans]
     for id in ids:
         if id not in known:
             near = suggestion(id, known)
@@ -207,9 +214,9 @@ def _read(path: str, *, must: bool) -> Lock | None:
     """The lock; where there is none yet, None, unless there must be one."""
     from fretc.report.traceability.lock import read
 
-    found = read(path)
-    if not isinstance(found, Diagnostic):
-        return found
-    if must or found.is_error:
-        stop(replace(found, severity=Severity.ERROR))
+    lock_ = read(path)
+    if not isinstance(lock_, Diagnostic):
+        return lock_
+    if must or lock_.is_error:
+        stop(replace(lock_, severity=Severity.ERROR))
     return None

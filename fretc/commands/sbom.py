@@ -6,11 +6,12 @@ from pathlib import Path
 
 import click
 
+from fretc.terminal.options import output_option
 from fretc.terminal.output import deliver, stop
 
 
 @click.command(short_help="Say what the installed fretc consists of, as CycloneDX.")
-@click.option("-o", "--output", default="-", show_default=True, help="File; `-` prints it.")
+@output_option(default="-", show_default=True, help="File; `-` prints it.")
 def sbom(output: str) -> None:
     """Say what the installed fretc consists of, as CycloneDX.
 

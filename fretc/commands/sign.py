@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 
 import click
 
+from fretc.terminal.options import PATH, path_option
 from fretc.terminal.output import VIOLATION, deliver, say, say_line, stop
 from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
 from fretish.diagnostics.rendering import visible
@@ -42,14 +43,14 @@ class Signable:
 
 
 @click.command(short_help="Sign evidence, proofs, reviews, waivers or a report with your key.")
-@click.argument("files", nargs=-1, required=True, metavar="FILE...")
-@click.option("--key", required=True, metavar="FILE", help="Your private key: ~/.ssh/id_ed25519.")
+@click.argument("files", nargs=-1, required=True, type=PATH, metavar="FILE...")
+@path_option("--key", required=True, metavar="FILE", help="Your private key: ~/.ssh/id_ed25519.")
 @click.option(
     "--reviewer",
     help="Whose reviews or waivers to sign; if not given, those that `allowed_signers` beside FILE "
     "says are yours, or those of the only person who is named.",
 )
-@click.option(
+@path_option(
     "--verification",
     help="What `fretc verify` found, signed with evidence; build/verification.json, if it is there "
     "and none is given.",
@@ -63,12 +64,12 @@ def sign(files: tuple[str, ...], key: str, reviewer: str | None, verification: s
     statement (in-toto). Signatures of others stay.
     """
     _installed()
-    found = [_signable(path, key, reviewer, verification) for path in dict.fromkeys(files)]
-    for each in found:
+    signables = [_signable(path, key, reviewer, verification) for path in dict.fromkeys(files)]
+    for each in signables:
         for line in each.lines:
             say_line(visible(line))
     mine = private(key)
-    deliver(_merged(signed(each, mine) for each in found), [*files, key])
+    deliver(_merged(signed(each, mine) for each in signables), [*files, key])
     say_line(f"signed with {mine.public.text}")
 
 
@@ -122,15 +123,17 @@ def signed(what: Signable, key: PrivateKey) -> dict[Path, str]:
     from fretc.attestation.signatures import appended, beside, envelope, kept, read
     from fretc.attestation.statement import text
 
-    known = read(what.path)
-    if isinstance(known, Diagnostic):
-        stop(known)
+    envelopes = read(what.path)
+    if isinstance(envelopes, Diagnostic):
+        stop(envelopes)
     new = envelope(sealed(text(what.statement), key))
-    left = len(known) - len(kept(known, new, what.current))
-    if left:
-        told = "earlier signature is" if left == 1 else "earlier signatures are"
-        say_line(f"{left} {told} left out: yours of the same, or of what is not there any more")
-    return {Path(beside(what.path)): appended(known, new, what.current)}
+    omissions = len(envelopes) - len(kept(envelopes, new, what.current))
+    if omissions:
+        noun = "earlier signature is" if omissions == 1 else "earlier signatures are"
+        say_line(
+            f"{omissions} {noun} left out: yours of the same, or of what is not there any more"
+        )
+    return {Path(beside(what.path)): appended(envelopes, new, what.current)}
 
 
 # What is signed --------------------------------------------------------------------------------
@@ -215,19 +218,19 @@ def _evidence(audited: Evidence, proofs: Proofs | None) -> Signable:
     if not audited.results:
         stop(_usage(f"`{audited.file}` tells of no run", "audit one: `fretc audit LOG...`"))
     statement = attestation.evidence(audited, proofs)
-    lines = (*_said(audited), *(_said_of_proofs(proofs) if proofs else ()))
+    lines = (*_summary_of_evidence(audited), *(_summary_of_proofs(proofs) if proofs else ()))
     return Signable(audited.file, statement, statement.main, lines)
 
 
-def _said(audited: Evidence) -> Iterator[str]:
+def _summary_of_evidence(audited: Evidence) -> Iterator[str]:
     from fretc.audit.measurements.confidence_intervals import REFUTED
     from fretc.report.model.audits import SingleAudit
     from monitors import kernel
 
     verdicts = [SingleAudit(result, ()).verdict for result in audited.results]
     counts = Counter(verdicts)
-    told = ", ".join(f"{count} {verdict}" for verdict, count in sorted(counts.items()))
-    yield f"evidence {audited.file}: {told}"
+    totals = ", ".join(f"{count} {verdict}" for verdict, count in sorted(counts.items()))
+    yield f"evidence {audited.file}: {totals}"
     for result, verdict in zip(audited.results, verdicts, strict=True):
         if verdict == kernel.VIOLATED:
             yield f"  {result.requirement} is violated in {result.run}"
@@ -241,28 +244,28 @@ def _said(audited: Evidence) -> Iterator[str]:
 def _proofs(path: str) -> Proofs:
     from fretc.verification.reader import read
 
-    found = read(path)
-    if isinstance(found, Diagnostic):
-        stop(found)
-    _same_bytes(path, found.sha256)
-    return found
+    proofs = read(path)
+    if isinstance(proofs, Diagnostic):
+        stop(proofs)
+    _same_bytes(path, proofs.sha256)
+    return proofs
 
 
 def _proved(path: str) -> Signable:
     from fretc.attestation import statement as attestation
 
-    found = _proofs(path)
-    statement = attestation.proofs(found)
-    return Signable(path, statement, statement.main, tuple(_said_of_proofs(found)))
+    proofs = _proofs(path)
+    statement = attestation.proofs(proofs)
+    return Signable(path, statement, statement.main, tuple(_summary_of_proofs(proofs)))
 
 
-def _said_of_proofs(found: Proofs) -> Iterator[str]:
+def _summary_of_proofs(proofs: Proofs) -> Iterator[str]:
     from compiler.logic.claims import Result
 
-    counts = Counter(proof.result for proof in found.proofs)
-    told = ", ".join(f"{count} {result}" for result, count in sorted(counts.items()))
-    yield f"proofs {found.file}: {told or 'none'}"
-    for proof in found.proofs:
+    counts = Counter(proof.result for proof in proofs.proofs)
+    totals = ", ".join(f"{count} {result}" for result, count in sorted(counts.items()))
+    yield f"proofs {proofs.file}: {totals or 'none'}"
+    for proof in proofs.proofs:
         if proof.result is Result.COUNTEREXAMPLE:
             yield f"  {proof.requirement}, {proof.layer}: a counterexample to: {proof.claim}"
 
@@ -287,22 +290,22 @@ def _report(path: str) -> Signable:
     from compiler.files.text_files import file_sha256, unreadable
     from fretc.attestation import statement as attestation
 
-    found = file_sha256(path)
-    if found is None:
+    digest = file_sha256(path)
+    if digest is None:
         stop(unreadable(path, FileNotFoundError()))
-    statement = attestation.report(path, found)
+    statement = attestation.report(path, digest)
     return Signable(path, statement, statement.main, (f"report {path}",))
 
 
 def _lock(path: str, key: str, reviewer: str | None) -> Signable:
     from fretc.report.traceability.lock import read
 
-    found = read(path)
-    if isinstance(found, Diagnostic):
-        stop(_as_error(found))
-    names = _names(path, [each.reviewer for each in found.reviews.values()], key, reviewer)
-    mine = [each for each in found.reviews.values() if each.reviewer in names]
-    return of_reviews(path, mine, found.reviews.values())
+    lock = read(path)
+    if isinstance(lock, Diagnostic):
+        stop(_as_error(lock))
+    names = _names(path, [each.reviewer for each in lock.reviews.values()], key, reviewer)
+    mine = [each for each in lock.reviews.values() if each.reviewer in names]
+    return of_reviews(path, mine, lock.reviews.values())
 
 
 def of_reviews(path: str, mine: Iterable[Review], all_: Iterable[Review]) -> Signable:
@@ -326,20 +329,20 @@ def _waivers(path: str, key: str, reviewer: str | None) -> Signable:
     from fretc.attestation import statement as attestation
     from fretc.report.traceability.waivers import read
 
-    found, wrong = read(path, None, today())
+    waivers, wrong = read(path, None, today())
     if any(each.is_error for each in wrong):
         stop(*wrong)
-    names = _names(path, [each.by for each in found.values()], key, reviewer)
-    chosen = [each for each in found.values() if each.by in names]
+    names = _names(path, [each.by for each in waivers.values()], key, reviewer)
+    mine = [each for each in waivers.values() if each.by in names]
     return Signable(
         path,
-        attestation.waivers(chosen),
-        frozenset(map(attestation.waiver, found.values())),
-        tuple(map(_granted, chosen)),
+        attestation.waivers(mine),
+        frozenset(map(attestation.waiver, waivers.values())),
+        tuple(map(_waiver_line, mine)),
     )
 
 
-def _granted(waiver: Waiver) -> str:
+def _waiver_line(waiver: Waiver) -> str:
     until = f"until {waiver.expires}"
     return f"waiver of {waiver.requirement} by {waiver.by} {until}: covers {waiver.verdict}"
 
@@ -347,14 +350,14 @@ def _granted(waiver: Waiver) -> str:
 def _names(path: str, written: Sequence[str], key: str, reviewer: str | None) -> Sequence[str]:
     """By whom the reviews or waivers are that are to be signed."""
     names = list(dict.fromkeys(written))
-    listed = ", ".join(f"`{name}`" for name in names) or "nobody"
+    authors = ", ".join(f"`{name}`" for name in names) or "nobody"
     if reviewer is not None:
         if reviewer not in names:
-            stop(_usage(f"nothing in `{path}` is by `{reviewer}`", f"it is by {listed}"))
+            stop(_usage(f"nothing in `{path}` is by `{reviewer}`", f"it is by {authors}"))
         return [reviewer]
     mine = _by_key(path, names, key) if len(names) > 1 else names
     if not mine:
-        what = f"`{path}` does not say what is yours: it is by {listed}"
+        what = f"`{path}` does not say what is yours: it is by {authors}"
         stop(_usage(what, "add `--reviewer NAME`"))
     return mine
 
@@ -368,11 +371,11 @@ def _by_key(path: str, names: Sequence[str], key: str) -> Sequence[str]:
     public = Path(f"{key}.pub")
     if not place.exists() or not public.exists():
         return []
-    found, mine = read(str(place)), _public(str(public))
-    if isinstance(found, Diagnostic):
-        stop(found)
-    known = [signer for signer in found.signers if signer.key.fingerprint == mine]
-    return [name for name in names if any(signer.goes_by(name) for signer in known)]
+    signers, mine = read(str(place)), _public(str(public))
+    if isinstance(signers, Diagnostic):
+        stop(signers)
+    own = [signer for signer in signers.signers if signer.key.fingerprint == mine]
+    return [name for name in names if any(signer.goes_by(name) for signer in own)]
 
 
 def _public(path: str) -> str:
@@ -404,22 +407,22 @@ def demand(evidence: Evidence, by: str, others: Mapping[str, str | None]) -> Non
     keys = trusted(by)
     if isinstance(keys, Diagnostic):
         stop(keys)
-    named = {kind: path for kind, path in others.items() if path is not None}
-    known = book([evidence.file, *named.values()], keys)
-    if isinstance(known, Diagnostic):
-        stop(known)
-    wrong = list(known.diagnostics())
-    found = known.agreed(evidence)
-    if not found.is_good:
-        wrong.append(_unsigned(evidence.file, by, found.text))
-    for kind, path in named.items():
-        one = known.of_file(kind, file_sha256(path) or "")
+    companions = {kind: path for kind, path in others.items() if path is not None}
+    signatures = book([evidence.file, *companions.values()], keys)
+    if isinstance(signatures, Diagnostic):
+        stop(signatures)
+    mistakes = list(signatures.diagnostics())
+    signature = signatures.agreed(evidence)
+    if not signature.is_good:
+        mistakes.append(_unsigned(evidence.file, by, signature.text))
+    for kind, path in companions.items():
+        one = signatures.of_file(kind, file_sha256(path) or "")
         if not one.is_good:
-            wrong.append(_unsigned(path, by, one.text))
-    say(wrong)
-    if any(each.is_error for each in wrong):
+            mistakes.append(_unsigned(path, by, one.text))
+    say(mistakes)
+    if any(each.is_error for each in mistakes):
         raise SystemExit(VIOLATION)
-    say_line(visible(f"{evidence.file} is {found.text}"))
+    say_line(visible(f"{evidence.file} is {signature.text}"))
 
 
 def _unsigned(path: str, by: str, why: str) -> Diagnostic:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import math
-import os
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict
@@ -13,6 +12,14 @@ from typing import TYPE_CHECKING
 
 import click
 
+from fretc.terminal.options import (
+    PATH,
+    Renamed,
+    format_option,
+    jobs_option,
+    output_option,
+    path_option,
+)
 from fretc.terminal.output import SHOWN, VIOLATION, deliver, not_written, say_line, stop
 from fretc.terminal.progress import progress
 from fretish.diagnostics.diagnostic import Code, Diagnostic
@@ -23,8 +30,12 @@ if TYPE_CHECKING:
 
 
 @click.command(short_help="Record missions of the simulated robot.")
-@click.argument("scenarios", nargs=-1, metavar="[SCENARIO]...")
-@click.option("--out", help="The MCAP file to record; of a campaign, the folder for all logs.")
+@click.argument("scenarios", nargs=-1, type=PATH, metavar="[SCENARIO]...")
+@output_option(
+    cls=Renamed,
+    earlier="--out",
+    help="The MCAP file to record; of a campaign, the folder for all logs.",
+)
 @click.option("--seed", default=1, show_default=True, type=click.IntRange(min=0))
 @click.option(
     "--duration",
@@ -32,22 +43,20 @@ if TYPE_CHECKING:
     help="Simulated seconds after which the mission is given up; else what the scenario says.",
 )
 @click.option("--encoding", type=click.Choice(("ros2", "ros1")), default="ros2", show_default=True)
-@click.option("--png", metavar="FILE", help="Also draw the mission.")
-@click.option("--gif", metavar="FILE", help="Also draw it as it went on.")
+@path_option("--png", metavar="FILE", help="Also draw the mission.")
+@path_option("--gif", metavar="FILE", help="Also draw it as it went on.")
 @click.option(
     "--campaign",
     type=click.IntRange(min=1),
     metavar="N",
     help="Run each scenario with N seeds, audit each log, print one table.",
 )
-@click.option("--jobs", default=os.cpu_count() or 1, type=click.IntRange(min=1), metavar="J")
-@click.option(
-    "--format", "form", type=click.Choice(("text", "json")), default="text", show_default=True
-)
+@jobs_option
+@format_option()
 @click.option("--list", "listing", is_flag=True, help="Name the scenarios, and record nothing.")
 def simulate(
     scenarios: Sequence[str],
-    out: str | None,
+    output: str | None,
     seed: int,
     duration: float | None,
     encoding: str,
@@ -74,13 +83,13 @@ def simulate(
     if campaign is not None:
         if png or gif or duration is not None or encoding != "ros2":
             raise click.UsageError("a campaign takes no --png, --gif, --duration or --encoding")
-        _count([_scenario(n) for n in scenarios or names()], seed, campaign, jobs, out, form)
+        _count([_scenario(n) for n in scenarios or names()], seed, campaign, jobs, output, form)
     if len(scenarios) > 1:
         raise click.UsageError("several scenarios need --campaign")
-    if out is None:
-        raise click.UsageError("missing option '--out'")
+    if output is None:
+        raise click.UsageError("missing option '--output'")
     scenario = _scenario(scenarios[0] if scenarios else NOMINAL)
-    _record(scenario, out, seed, duration, encoding, {"png": png, "gif": gif})
+    _record(scenario, output, seed, duration, encoding, {"png": png, "gif": gif})
 
 
 def _installed() -> None:
@@ -115,11 +124,11 @@ def _known(scenario: Scenario) -> None:
     from fretc.campaigns.experiment import project
     from simulation.world.scenario import ScenarioError
 
-    known = [rule.id for rule in project().rules]
+    ids = [rule.id for rule in project().rules]
     for id, verdict in scenario.expect.verdicts.items():
-        if id not in known:
+        if id not in ids:
             where = f"`expect.{verdict.replace(' ', '_')}`"
-            there = ", ".join(known)
+            there = ", ".join(ids)
             raise ScenarioError(f"{where} names `{id}`, which is no requirement; there are {there}")
 
 
@@ -134,8 +143,8 @@ def _place(name: str, why: str) -> Span | None:
     text = source.text
     header = re.search(rf"^\s*\[+\s*{re.escape(tables[0])}\b", text, re.M) if tables else None
     begin = header.end() if header else 0
-    found = re.compile(rf"(?<![\w-]){re.escape(key)}(?=\s*=)").search(text, begin) if key else None
-    return source.span(*found.span()) if found else source.span(0, 0)
+    match = re.compile(rf"(?<![\w-]){re.escape(key)}(?=\s*=)").search(text, begin) if key else None
+    return source.span(*match.span()) if match else source.span(0, 0)
 
 
 def _bad_scenario(name: str, why: str) -> Diagnostic:
@@ -187,14 +196,14 @@ def _record(
     from simulation.recording import Encoding
 
     path = _file(out)
-    drawn = {form: _file(name) for form, name in pictures.items() if name is not None}
-    if len({path, *drawn.values()}) <= len(drawn):
+    images = {form: _file(name) for form, name in pictures.items() if name is not None}
+    if len({path, *images.values()}) <= len(images):
         stop(not_written(out, "two outputs would go there"))
     limit = scenario.duration if duration is None else duration
     if not math.isfinite(limit):
         stop(not_written(out, "a mission ends"))
     decision = safety_function(scenario.safety.threshold)
-    with progress(int(limit), "simulating") as tell:
+    with progress(int(limit), "simulating") as show:
         try:
             mission = record(
                 path,
@@ -204,17 +213,17 @@ def _record(
                 decision,
                 Encoding(encoding),
                 limit,
-                lambda now: tell(int(now), f"{now:.0f} s"),
+                lambda now: show(int(now), f"{now:.0f} s"),
                 {"fretc": __version__},
             )
         except OSError as error:
             stop(not_written(out, error.strerror or str(error)))
     say_line(f"wrote {out}")
-    if drawn:
+    if images:
         from simulation.picture import animate, draw
 
         painters = {"png": draw, "gif": animate}
-        deliver({Path(str(pictures[form])): painters[form](mission) for form in drawn})
+        deliver({Path(str(pictures[form])): painters[form](mission) for form in images})
     click.echo(
         f"{scenario.name}, seed {mission.seed}: {mission.duration:.1f} s, "
         f"{mission.goals_reached} of {mission.goals_total} goals, {len(mission.stops)} stops, "
@@ -254,8 +263,8 @@ def _count(
     raise SystemExit(VIOLATION if any(run.wrong for run in runs) else SHOWN)
 
 
-def _missing_extra(absent: Sequence[str]) -> Diagnostic:
-    names = " and ".join(f"`{name}`" for name in absent)
+def _missing_extra(packages: Sequence[str]) -> Diagnostic:
+    names = " and ".join(f"`{name}`" for name in packages)
     return Diagnostic(
         Code.MISSING_EXTRA,
         f"the simulated robot needs {names}",

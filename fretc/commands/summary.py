@@ -140,11 +140,11 @@ def _aligned(head: list[str], rows: list[list[str]]) -> Iterator[str]:
     widths = [max(map(len, column)) for column in columns]
     right = [all(_is_number(cell) for cell in column[1:]) for column in columns]
     for row in cells:
-        told = [
+        padded = [
             cell.rjust(width) if number else cell.ljust(width)
             for cell, width, number in zip(row, widths, right, strict=True)
         ]
-        yield f"  {'  '.join(told)}".rstrip()
+        yield f"  {'  '.join(padded)}".rstrip()
 
 
 def _is_number(cell: str) -> bool:

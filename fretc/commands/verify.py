@@ -9,6 +9,15 @@ import click
 
 from compiler.logic.claims import PROVERS, Layer
 from fretc.terminal.group import Grouped
+from fretc.terminal.options import (
+    PATH,
+    format_option,
+    limit_option,
+    output_option,
+    path_option,
+    places,
+    requirements_option,
+)
 from fretc.terminal.output import (
     BAD,
     NOT_SHOWN,
@@ -17,6 +26,7 @@ from fretc.terminal.output import (
     coloured,
     deliver,
     say,
+    say_briefly,
     stop,
 )
 from fretc.verification.layers.table import OF_MONITOR, in_words
@@ -32,7 +42,7 @@ if TYPE_CHECKING:
 
 _LAYERS = tuple(map(str, Layer))
 _HEADINGS = {
-    "What is looked at": ("layers", "monitor", "provers", "bindings", "limit"),
+    "What is looked at": ("layers", "monitor", "provers", "requirements", "bindings", "limit"),
     "Texts in place of new ones": ("path", "interceptor", "agent", "properties", "percepts"),
     "Found by others": ("ajpf",),
     "Printed and written": ("form", "output", "traces"),
@@ -40,6 +50,8 @@ _HEADINGS = {
 
 
 _HELP = f"""Prove that what is made of requirements keeps them, layer by layer.
+
+FILE holds requirements, or is a folder of such files: in place of `--requirements`.
 
 {in_words()}
 
@@ -54,7 +66,7 @@ is vacuous, not checked, or stays stopped.
     help=_HELP,
     short_help="Prove that what is made of requirements keeps them.",
 )
-@click.argument("files", nargs=-1, required=True, metavar="FILE...")
+@click.argument("files", nargs=-1, type=PATH, metavar="[FILE]...")
 @click.option(
     "--layer",
     "layers",
@@ -70,37 +82,26 @@ is vacuous, not checked, or stays stopped.
     type=click.Choice(PROVERS),
     help="A prover to ask as well, if it is installed.",
 )
-@click.option("--file", "path", help="A monitor that was made before.")
-@click.option("--interceptor", help="An interceptor that was made before.")
-@click.option("--agent", help="An agent in Gwendolen; with --properties.")
-@click.option("--properties", help="The properties of the agent, as AJPF reads them.")
+@path_option("--file", "path", help="A monitor that was made before.")
+@path_option("--interceptor", help="An interceptor that was made before.")
+@path_option("--agent", help="An agent in Gwendolen; with --properties.")
+@path_option("--properties", help="The properties of the agent, as AJPF reads them.")
 @click.option(
     "--percept", "percepts", multiple=True, help="A percept that the agent's environment draws."
 )
-@click.option(
+@path_option(
     "--ajpf",
     multiple=True,
     help="A result of AJPF; each build/*_ajpf/result.json if none is given.",
 )
-@click.option("--bindings", help="bindings.toml; the one beside the first FILE if not given.")
-@click.option(
-    "--limit",
-    type=click.IntRange(min=1),
-    default=60,
-    show_default=True,
-    help="Seconds of a processor for each claim.",
+@requirements_option
+@path_option("--bindings", help="bindings.toml; the one beside the first FILE if not given.")
+@limit_option
+@format_option()
+@output_option(
+    default="build/verification.json", show_default=True, help="Where evidence goes; `-` prints it."
 )
-@click.option(
-    "--format", "form", type=click.Choice(("text", "json")), default="text", show_default=True
-)
-@click.option(
-    "-o",
-    "--output",
-    default="build/verification.json",
-    show_default=True,
-    help="Where evidence goes; - prints it.",
-)
-@click.option("--traces", help="A folder for each counterexample as a table that monitors read.")
+@path_option("--traces", help="A folder for each counterexample as a table that monitors read.")
 def verify(
     files: tuple[str, ...],
     layers: tuple[str, ...],
@@ -112,6 +113,7 @@ def verify(
     properties: str | None,
     percepts: tuple[str, ...],
     ajpf: tuple[str, ...],
+    requirements: str,
     bindings: str | None,
     limit: int,
     form: str,
@@ -119,7 +121,7 @@ def verify(
     traces: str | None,
 ) -> None:
     """Prove that what is made of requirements keeps them."""
-    from compiler.project.folder import companions
+    from compiler.project.paths import companions
     from fretc.terminal.progress import at_work
     from fretc.verification.ajpf_results import written
     from fretc.verification.engines.sandbox import Limits
@@ -131,9 +133,9 @@ def verify(
     named = dict.fromkeys((*layers, *(["monitor"] if monitor else [])))
     if path is not None and not named:
         named = {"monitor": None}
-    project = _project(files, bindings)
+    project = _project(files, requirements, bindings)
     results = ajpf or (written() if "ajpf" in (named or _LAYERS) else ())
-    asked = Request(
+    request = Request(
         [Layer(name) for name in named or _LAYERS],
         Limits(seconds=limit),
         _read(path),
@@ -142,47 +144,49 @@ def verify(
         _read(properties),
         percepts,
         provers,
-        _said_by_ajpf(project, results),
+        _ajpf_evidence(project, results),
         at_work,
     )
-    wrong = refusals(project, asked)
-    if wrong:
-        stop(*wrong)
-    found = _evidence(project, asked)
-    given = (path, interceptor, agent, properties, bindings, *results)
-    read = [requirement.wording.source.name for requirement in project.requirements]
-    inputs = [*read, *companions(read), *(name for name in given if name is not None)]
-    _tell(found, form, output, traces, inputs)
-    raise SystemExit(_status(found))
+    mistakes = refusals(project, request)
+    if mistakes:
+        stop(*mistakes)
+    proofs = _evidence(project, request)
+    others = (path, interceptor, agent, properties, bindings, *results)
+    sources = [requirement.wording.source.name for requirement in project.requirements]
+    inputs = [*sources, *companions(sources), *(name for name in others if name is not None)]
+    _deliver(proofs, form, output, traces, inputs)
+    raise SystemExit(_status(proofs))
 
 
-def _said_by_ajpf(project: Project, results: Sequence[str]) -> Sequence[Proof]:
+def _ajpf_evidence(project: Project, results: Sequence[str]) -> Sequence[Proof]:
     from fretc.verification.ajpf_results import evidence
 
-    lines, said = evidence(project.rules, results)
-    say(said)
-    if has_errors(said):
+    lines, diagnostics = evidence(project.rules, results)
+    say(diagnostics)
+    if has_errors(diagnostics):
         raise SystemExit(BAD)
     return lines
 
 
 def _half(agent: str | None) -> Diagnostic:
-    given, missing = ("properties", "agent") if agent is None else ("agent", "properties")
+    present, missing = ("properties", "agent") if agent is None else ("agent", "properties")
     return Diagnostic(
         Code.BAD_USAGE,
-        f"`--{given}` is of no use without `--{missing}`",
+        f"`--{present}` is of no use without `--{missing}`",
         help="name both: `--agent FILE.gwen --properties FILE.psl`",
     )
 
 
-def _project(files: tuple[str, ...], bindings: str | None) -> Project:
-    from compiler.project.folder import listed, load
+def _project(files: Sequence[str], requirements: str, bindings: str | None) -> Project:
+    from compiler.project.folder import load
+    from compiler.project.paths import listed, requirement_files
 
-    paths = listed(files)
+    (first, *_) = places(files, requirements)
+    paths = listed(files) if files else requirement_files(requirements)
     if isinstance(paths, Diagnostic):
         stop(paths)
     project = load(paths, bindings)
-    say(project.diagnostics)
+    say_briefly(project.diagnostics, first)
     if has_errors(project.diagnostics):
         raise SystemExit(BAD)
     if not project.rules:
@@ -201,29 +205,29 @@ def _read(path: str | None) -> Source | None:
     return source
 
 
-def _evidence(project: Project, asked: Request) -> Sequence[Proof]:
+def _evidence(project: Project, request: Request) -> Sequence[Proof]:
     from fretc.verification.monitor.verifying import NotAMonitorError
     from fretc.verification.verify import prove
 
     try:
-        found = prove(project, asked)
+        proofs = prove(project, request)
     except NotAMonitorError as error:
-        assert asked.monitor is not None
+        assert request.monitor is not None
         stop(
             Diagnostic(
                 Code.BAD_MONITOR,
-                f"`{asked.monitor.name}` is no generated monitor: {error}",
-                asked.monitor.span(0, 0),
+                f"`{request.monitor.name}` is no generated monitor: {error}",
+                request.monitor.span(0, 0),
                 help="name a file that `--emit monitor` wrote",
             )
         )
-    if isinstance(found, Diagnostic):
-        stop(found)
-    return found
+    if isinstance(proofs, Diagnostic):
+        stop(proofs)
+    return proofs
 
 
-def _tell(
-    found: Sequence[Proof], form: str, output: str, traces: str | None, inputs: Iterable[str]
+def _deliver(
+    proofs: Sequence[Proof], form: str, output: str, traces: str | None, inputs: Iterable[str]
 ) -> None:
     """Print it, and write the evidence and the runs."""
     from compiler.files.edition import __version__
@@ -232,24 +236,24 @@ def _tell(
     from compiler.logic.claims import SCHEMA, Document
     from fretc.verification.text_output import lines
 
-    text = f"{to_json(plain(Document(SCHEMA, __version__, tuple(found))))}\n"
+    text = f"{to_json(plain(Document(SCHEMA, __version__, tuple(proofs))))}\n"
     if output != "-" or form == "json":
-        click.echo(text if form == "json" else coloured([*lines(found)]), nl=False)
+        click.echo(text if form == "json" else coloured([*lines(proofs)]), nl=False)
     files: dict[Path, str | bytes] = {}
     if output != "-" or form != "json":
         files[Path(output)] = text
     if traces is not None:
-        files.update(_tables(found, Path(traces)))
+        files.update(_tables(proofs, Path(traces)))
     deliver(files, inputs)
 
 
-def _tables(found: Sequence[Proof], folder: Path) -> dict[Path, str]:
+def _tables(proofs: Sequence[Proof], folder: Path) -> dict[Path, str]:
     """Each run that a monitor can step, under the requirement, the layer and a number."""
     from fretc.verification.loop.replay import EXTRA
     from fretc.verification.text_output import as_csv
 
     files: dict[Path, str] = {}
-    for one in found:
+    for one in proofs:
         if one.layer not in OF_MONITOR:
             continue
         if one.run is not None:
@@ -260,10 +264,10 @@ def _tables(found: Sequence[Proof], folder: Path) -> dict[Path, str]:
     return files
 
 
-def _status(found: Sequence[Proof]) -> int:
+def _status(proofs: Sequence[Proof]) -> int:
     from compiler.logic.claims import Result
     from fretc.verification.loop.layer import RELEASED
 
-    if any(one.result is Result.COUNTEREXAMPLE and one.claim != RELEASED for one in found):
+    if any(one.result is Result.COUNTEREXAMPLE and one.claim != RELEASED for one in proofs):
         return VIOLATION
-    return SHOWN if all(one.result is Result.PROVED for one in found) else NOT_SHOWN
+    return SHOWN if all(one.result is Result.PROVED for one in proofs) else NOT_SHOWN

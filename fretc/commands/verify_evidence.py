@@ -2,14 +2,23 @@
 
 from __future__ import annotations
 
-import os
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
 
 from fretc.commands.sign import demand
-from fretc.terminal.output import BAD, NOT_SHOWN, SHOWN, VIOLATION, coloured, say, stop
+from fretc.terminal.options import (
+    PATH,
+    bindings_option,
+    format_option,
+    jobs_option,
+    limit_option,
+    path_option,
+    requirements_option,
+    verification_option,
+)
+from fretc.terminal.output import BAD, NOT_SHOWN, SHOWN, VIOLATION, coloured, say, say_briefly, stop
 from fretish.diagnostics.diagnostic import (
     Code,
     Diagnostic,
@@ -28,17 +37,15 @@ if TYPE_CHECKING:
     from fretc.report.traceability.lock import Lock
     from fretc.reproduction.completeness import Scope
     from fretc.reproduction.manifest import Manifest
-    from fretc.reproduction.outcome import Rechecked
+    from fretc.reproduction.outcome import Recheck
     from fretc.verification.reader import Proofs
 
 
 @click.command("verify-evidence", short_help="Make evidence again, and say whether it stands.")
-@click.argument("file", default="build/evidence.json", metavar="[FILE]")
-@click.option(
-    "--requirements", default="requirements", show_default=True, help="Folder, or one file."
-)
-@click.option("--bindings", help="bindings.toml; the one in the requirements' folder if not given.")
-@click.option(
+@click.argument("file", type=PATH, default="build/evidence.json", metavar="[FILE]")
+@requirements_option
+@bindings_option
+@path_option(
     "--logs",
     "places_named",
     multiple=True,
@@ -47,7 +54,7 @@ if TYPE_CHECKING:
     "begins so. Else only files below the present folder are opened, and https.",
 )
 @click.option("--offline", is_flag=True, help="Ask nothing of any server.")
-@click.option(
+@path_option(
     "--manifest",
     metavar="FILE",
     help="What `sha256sum LOG...` wrote: FILE has these logs, with these hashes, and no other.",
@@ -57,29 +64,18 @@ if TYPE_CHECKING:
     metavar="ID,...",
     help="Look at these requirements only; else at all in force. A part never stands as a whole.",
 )
-@click.option("--report", help="An HTML report: it is made again from FILE, and compared.")
-@click.option(
-    "--verification",
-    help="What `fretc verify` found; build/verification.json, if it is there and none is given.",
-)
-@click.option(
+@path_option("--report", help="An HTML report: it is made again from FILE, and compared.")
+@verification_option
+@path_option(
     "--signed-by",
     metavar="KEY",
     help="A public key (id_ed25519.pub), or a list of signers: one of them must have signed FILE, "
     "and what --report and --verification name.",
 )
 @click.option("--no-proofs", is_flag=True, help="Prove nothing again: proofs are not checked.")
-@click.option(
-    "--limit",
-    type=click.IntRange(min=1),
-    default=60,
-    show_default=True,
-    help="Seconds of a processor for each proof.",
-)
-@click.option("--jobs", type=click.IntRange(min=1), default=os.cpu_count() or 1)
-@click.option(
-    "--format", "form", type=click.Choice(("text", "json")), default="text", show_default=True
-)
+@limit_option
+@jobs_option
+@format_option()
 def verify_evidence(
     file: str,
     requirements: str,
@@ -107,34 +103,34 @@ def verify_evidence(
     from fretc.audit.evidence.reader import required
     from fretc.verification.reader import written
 
-    audited = required(file)
-    if isinstance(audited, Diagnostic):
-        stop(audited)
-    whole = audited.document
+    evidence = required(file)
+    if isinstance(evidence, Diagnostic):
+        stop(evidence)
+    whole = evidence.document
     if signed_by is not None:
-        demand(audited, signed_by, {"report": report, "proofs": verification})
+        demand(evidence, signed_by, {"report": report, "proofs": verification})
     project, plan = _plan(requirements, bindings)
     scope = _scope(plan, only, requirements)
     verification = verification or written()
     proofs = _proofs(verification)
-    listed = _manifest(manifest)
+    log_hashes = _manifest(manifest)
     places = _places(_runs(whole), places_named, offline=offline)
-    found = [*_rechecked(whole, plan, places, scope, listed, jobs)]
-    found += _reproved(project, proofs, scope, limit, skip=no_proofs)
-    made_from = (file, verification, requirements)
-    same = _report(project, report, *made_from) if report is not None else None
+    results = [*_rechecked(whole, plan, places, scope, log_hashes, jobs)]
+    results += _reproved(project, proofs, scope, limit, skip=no_proofs)
+    sources = (file, verification, requirements)
+    same = _report(project, report, *sources) if report is not None else None
     against = _against(scope, requirements, manifest)
     if form == "json":
-        _print_json(found, same, scope, against)
+        _print_json(results, same, scope, against)
     else:
-        _print(found, same, against)
-    raise SystemExit(_status(found, same, scope))
+        _print(results, same, against)
+    raise SystemExit(_status(results, same, scope))
 
 
-def _status(found: Sequence[Rechecked], same: bool | None, scope: Scope) -> int:
+def _status(results: Sequence[Recheck], same: bool | None, scope: Scope) -> int:
     from fretc.reproduction.outcome import Finding
 
-    kinds = {one.finding for one in found}
+    kinds = {one.finding for one in results}
     if Finding.DIFFERS in kinds or same is False:
         return VIOLATION
     return NOT_SHOWN if Finding.UNKNOWN in kinds or scope.part else SHOWN
@@ -151,7 +147,7 @@ def _plan(requirements: str, bindings: str | None) -> tuple[Project, Plan]:
     project = whole(requirements, bindings)
     if isinstance(project, Diagnostic):
         stop(project)
-    say(project.diagnostics)
+    say_briefly(project.diagnostics, requirements)
     if has_errors(project.diagnostics):
         raise SystemExit(BAD)
     plan = planned(project)
@@ -173,26 +169,26 @@ def _places(runs: Sequence[str], named: Sequence[str], *, offline: bool) -> dict
         if not Path(folder).is_dir():
             mend = "name the folder that the logs are in"
             stop(Diagnostic(Code.NO_SUCH_FILE, f"there is no folder `{folder}`", help=mend))
-    found: dict[str, str] = {}
+    places: dict[str, str] = {}
     for folder in folders:
-        found = {**located(runs, folder), **found}
+        places = {**located(runs, folder), **places}
     if not folders or len(folders) < len(named):
-        found = {**located(runs, None), **found}
+        places = {**located(runs, None), **places}
     policy = Places(named, offline)
-    refused = {run: why for run, place in found.items() if (why := policy.refusal(place))}
+    refusals = {run: why for run, place in places.items() if (why := policy.refusal(place))}
     mend = "name its folder, or the beginning of its URL, with `--logs`, if you trust it"
     say(
         [
             Diagnostic(
                 Code.FOREIGN_PLACE,
-                f"`{shown(found[run])}` is not opened: {why}",
+                f"`{shown(places[run])}` is not opened: {why}",
                 help=mend,
                 severity=Severity.WARNING,
             )
-            for run, why in refused.items()
+            for run, why in refusals.items()
         ]
     )
-    return {run: place for run, place in found.items() if run not in refused}
+    return {run: place for run, place in places.items() if run not in refusals}
 
 
 # What it is held against ------------------------------------------------------------------------
@@ -201,27 +197,27 @@ def _places(runs: Sequence[str], named: Sequence[str], *, offline: bool) -> dict
 def _scope(plan: Plan, only: str | None, requirements: str) -> Scope:
     from fretc.reproduction.completeness import Scope
 
-    claimed = tuple(claim.id for claim in plan.claims)
+    claims = tuple(claim.id for claim in plan.claims)
     if only is None:
-        return Scope(claimed, _lock(requirements))
-    asked = tuple(dict.fromkeys(name.strip() for name in only.split(",")))
-    for name in asked:
-        if name not in claimed:
-            near = suggestion(name, claimed)
-            mend = f"did you mean `{near}`?" if near else f"there are {', '.join(claimed)}"
+        return Scope(claims, _lock(requirements))
+    ids = tuple(dict.fromkeys(name.strip() for name in only.split(",")))
+    for name in ids:
+        if name not in claims:
+            near = suggestion(name, claims)
+            mend = f"did you mean `{near}`?" if near else f"there are {', '.join(claims)}"
             stop(Diagnostic(Code.BAD_USAGE, f"no requirement `{name}` is in force", help=mend))
-    return Scope(asked, _lock(requirements), part=True)
+    return Scope(ids, _lock(requirements), part=True)
 
 
 def _lock(requirements: str) -> Lock | None:
-    from compiler.project.folder import beside
+    from compiler.project.paths import beside
     from fretc.report.traceability.lock import NAME, read
 
     path = beside(requirements, NAME)
-    found = read(path) if path is not None else None
-    if isinstance(found, Diagnostic):
-        stop(found)
-    return found
+    lock = read(path) if path is not None else None
+    if isinstance(lock, Diagnostic):
+        stop(lock)
+    return lock
 
 
 def _manifest(path: str | None) -> Manifest | None:
@@ -229,30 +225,30 @@ def _manifest(path: str | None) -> Manifest | None:
 
     if path is None:
         return None
-    found = read(path)
-    if not isinstance(found, Manifest):
-        stop(*found)
-    return found
+    manifest = read(path)
+    if not isinstance(manifest, Manifest):
+        stop(*manifest)
+    return manifest
 
 
 def _proofs(path: str | None) -> Proofs | None:
     from fretc.verification.reader import read
 
-    found = read(path) if path is not None else None
-    if isinstance(found, Diagnostic):
-        stop(found)
-    return found
+    proofs = read(path) if path is not None else None
+    if isinstance(proofs, Diagnostic):
+        stop(proofs)
+    return proofs
 
 
 def _against(scope: Scope, requirements: str, manifest: str | None) -> str:
     """What was asked, in words: nothing that was not asked is said to stand."""
     count = len(scope.claimed)
     whole = f"{count} requirement{'' if count == 1 else 's'} of `{requirements}`"
-    asked = f"only {', '.join(scope.claimed)}, a part" if scope.part else whole
+    extent = f"only {', '.join(scope.claimed)}, a part" if scope.part else whole
     lock = "`fretc.lock`" if scope.lock is not None else ""
     naming = " and ".join(filter(None, (lock, f"`{manifest}`" if manifest else "")))
     runs = f"runs by {naming}" if naming else "no lock and no manifest says which runs there are"
-    return f"{asked}; {runs}"
+    return f"{extent}; {runs}"
 
 
 # Made again -------------------------------------------------------------------------------------
@@ -265,33 +261,33 @@ def _rechecked(
     scope: Scope,
     manifest: Manifest | None,
     jobs: int,
-) -> tuple[Rechecked, ...]:
+) -> tuple[Recheck, ...]:
     from fretc.audit.many_logs import locally
-    from fretc.reproduction.results import rechecked
+    from fretc.reproduction.results import recheck
 
-    found = rechecked(whole, plan, places, locally(jobs), scope, manifest)
-    if isinstance(found, Diagnostic):
-        stop(found)
-    return found
+    results = recheck(whole, plan, places, locally(jobs), scope, manifest)
+    if isinstance(results, Diagnostic):
+        stop(results)
+    return results
 
 
 def _reproved(
     project: Project, proofs: Proofs | None, scope: Scope, limit: int, *, skip: bool
-) -> Sequence[Rechecked]:
+) -> Sequence[Recheck]:
     from fretc.reproduction.outcome import PROOFS, unknown
-    from fretc.reproduction.proofs import reproved, unproved
+    from fretc.reproduction.proofs import prove_again, unproved_plans
     from fretc.terminal.progress import at_work
     from fretc.verification.engines.sandbox import Limits
 
-    missing = tuple(unproved(project, proofs.proofs if proofs else (), scope.claimed))
+    missing = tuple(unproved_plans(project, proofs.proofs if proofs else (), scope.claimed))
     if proofs is None:
         return missing
     if skip:
         return (unknown(PROOFS, "", "no proof was made again: `--no-proofs`"), *missing)
-    found = reproved(project, proofs, Limits(seconds=limit), scope.claimed, at_work)
-    if isinstance(found, Diagnostic):
-        stop(found)
-    return (*found, *missing)
+    results = prove_again(project, proofs, Limits(seconds=limit), scope.claimed, at_work)
+    if isinstance(results, Diagnostic):
+        stop(results)
+    return (*results, *missing)
 
 
 def _report(
@@ -299,15 +295,15 @@ def _report(
 ) -> bool:
     """Whether the report that is made now is the one in the file, byte for byte."""
     from compiler.files.text_files import read
-    from compiler.project.folder import beside
+    from compiler.project.paths import beside
     from fretc.attestation.signatures import SIGNERS
     from fretc.report.make import make
 
-    there = read(path)
-    if isinstance(there, Diagnostic):
-        stop(there)
+    source = read(path)
+    if isinstance(source, Diagnostic):
+        stop(source)
     names = [beside(requirements, name) for name in ("fretc.lock", "waivers.toml", SIGNERS)]
-    made = make(
+    current = make(
         project,
         evidence,
         lock=names[0],
@@ -315,51 +311,51 @@ def _report(
         verification=verification,
         signers=names[2],
     )
-    return made.html == there.text
+    return current.html == source.text
 
 
-def _print(found: Sequence[Rechecked], same: bool | None, against: str) -> None:
+def _print(results: Sequence[Recheck], same: bool | None, against: str) -> None:
     from fretc.reproduction.outcome import SIGNS, Finding
 
     lines: list[tuple[str, str | None]] = []
-    width = max((len(one.requirement) for one in found), default=0)
+    width = max((len(one.requirement) for one in results), default=0)
     run = None
-    for one in found:
+    for one in results:
         if one.run != run:
             run = one.run
             lines.append((run, None))
         sign = SIGNS[one.finding]
-        told = ": ".join(filter(None, (one.finding, one.claim, "; ".join(one.reasons))))
-        lines.append((f"  {sign.glyph} {one.requirement:<{width}}  {told}", sign.colour))
+        text = ": ".join(filter(None, (one.finding, one.claim, "; ".join(one.reasons))))
+        lines.append((f"  {sign.glyph} {one.requirement:<{width}}  {text}", sign.colour))
     if same is not None:
         sign = SIGNS[Finding.STANDS if same else Finding.DIFFERS]
-        told = "the same, byte for byte" if same else "another one is made now"
-        lines.append((f"{sign.glyph} report  {told}", sign.colour))
-    counted = ", ".join(f"{finding} {count}" for finding, count in _counts(found, same).items())
-    lines.append((f"{counted} ({against})", None))
+        text = "the same, byte for byte" if same else "another one is made now"
+        lines.append((f"{sign.glyph} report  {text}", sign.colour))
+    totals = ", ".join(f"{finding} {count}" for finding, count in _counts(results, same).items())
+    lines.append((f"{totals} ({against})", None))
     click.echo(coloured([(visible(line), colour) for line, colour in lines]), nl=False)
 
 
-def _counts(found: Sequence[Rechecked], same: bool | None) -> dict[str, int]:
+def _counts(results: Sequence[Recheck], same: bool | None) -> dict[str, int]:
     """How many of each finding, the report among them."""
     from fretc.reproduction.outcome import Finding, counts
 
-    known = {str(finding): count for finding, count in counts(found).items()}
+    totals = {str(finding): count for finding, count in counts(results).items()}
     if same is not None:
-        known[Finding.STANDS if same else Finding.DIFFERS] += 1
-    return known
+        totals[Finding.STANDS if same else Finding.DIFFERS] += 1
+    return totals
 
 
-def _print_json(found: Sequence[Rechecked], same: bool | None, scope: Scope, against: str) -> None:
+def _print_json(results: Sequence[Recheck], same: bool | None, scope: Scope, against: str) -> None:
     from dataclasses import asdict
 
     from compiler.files.templating import to_json
 
-    told = {
-        "results": [asdict(one) for one in found],
+    record = {
+        "results": [asdict(one) for one in results],
         "report_is_the_same": same,
-        "counts": _counts(found, same),
+        "counts": _counts(results, same),
         "only": list(scope.claimed) if scope.part else None,
         "against": against,
     }
-    click.echo(to_json(told))
+    click.echo(to_json(record))

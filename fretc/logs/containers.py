@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 
-from fretc.logs import findings
+from fretc.logs import log_diagnostics
 from fretc.logs.mcap.container import MAGIC
 from fretc.logs.mcap.contents import contents
 from fretc.logs.mcap.damage import Damage
 from fretc.logs.mcap.messages import Sink
 from fretc.logs.signals.integrity import Integrity
 from fretc.logs.signals.samples import Gap
-from fretc.logs.storage import bags, refusals
+from fretc.logs.storage import bags, storage_diagnostics
 from fretc.logs.storage.bags import NOWHERE
 from fretc.logs.storage.inputs import Input
 from fretc.logs.storage.parts import Part
@@ -29,27 +29,27 @@ def part(log: Input, sink: Sink, integrity: Integrity, place: Span) -> Part | Di
     """
     grant(log.size)
     found = _read(log, sink, integrity, place)
-    return findings.changed(place) if log.changed() else found
+    return log_diagnostics.changed(place) if log.changed() else found
 
 
 def _read(log: Input, sink: Sink, integrity: Integrity, place: Span) -> Part | Diagnostic:
     log.stream.seek(0)
     start = log.stream.read(_BEGINNING)
     if not start:
-        return findings.empty(place)
+        return log_diagnostics.empty(place)
     if integrity is not Integrity.INDEX:
         log.begin()
     for magic, read in CONTAINERS.items():
         if start.startswith(magic):
             return read(log, start, sink, integrity, place)
-    return findings.not_a_log(start, place)
+    return log_diagnostics.not_a_log(start, place)
 
 
 def _bag(
     log: Input, start: bytes, sink: Sink, integrity: Integrity, place: Span
 ) -> Part | Diagnostic:
     if log.file is None or log.same is None:
-        return refusals.bag_of_no_file(place)
+        return storage_diagnostics.bag_of_no_file(place)
     found = bags.read(log.file, log.same, start, sink, place)
     if isinstance(found, Diagnostic):
         return found
@@ -74,12 +74,12 @@ def _mcap(
     held = contents(log.stream, log.size, sink, integrity)
     if held.span is not None:
         digest = log.sha256() if held.checked.hashed else held.summary_sha256
-        notes = (refusals.without_crc(place),) if held.unprotected else ()
+        notes = (storage_diagnostics.without_crc(place),) if held.unprotected else ()
         return Part(digest, log.size, held.span, held.damages, notes, held.checked)
     if held.cut is not None:
-        return findings.truncated(held.cut, place)
+        return log_diagnostics.truncated(held.cut, place)
     if held.damages:
-        return findings.nothing_whole(held.damages[0][0], place)
+        return log_diagnostics.nothing_whole(held.damages[0][0], place)
     return Part(log.sha256(), log.size, None, ())
 
 

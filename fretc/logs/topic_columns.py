@@ -6,13 +6,13 @@ Times are nanoseconds. Only the messages of topics that the bindings name are de
 from __future__ import annotations
 
 from array import array
-from collections.abc import Sequence
-from dataclasses import dataclass, field
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from fretc.logs import findings
+from fretc.logs import log_diagnostics
 from fretc.logs.extraction import Extract, Extraction
 from fretc.logs.mcap.container import Stream
 from fretc.logs.mcap.damage import LATEST
@@ -20,6 +20,7 @@ from fretc.logs.mcap.messages import Messages, Stamps
 from fretc.logs.mcap.payloads import Payloads
 from fretc.logs.signals.samples import Gap, Series, Times, Values
 from fretc.logs.signals.stamps import JUMP, placed, unset
+from fretc.logs.signals.words import Foreign
 from fretish.bindings.declarations import Declarations, Signal, short_type
 from fretish.clock import TimeSource
 from fretish.diagnostics.diagnostic import Diagnostic
@@ -73,6 +74,8 @@ class Column:
     values: dict[str, Series] = field(default_factory=dict)
     diagnostics: dict[str, Diagnostic] = field(default_factory=dict)
     """Why there are no samples of a signal."""
+    foreign: dict[str, Foreign] = field(default_factory=dict)
+    """Of a signal of words the samples that are none of them."""
     types: dict[str, None] = field(default_factory=dict)
     """The types of its messages, in the order in which they came."""
     pending: Pending | None = None
@@ -97,6 +100,7 @@ class Column:
         self.signals.remove(signal)
         self.diagnostics[signal.name] = diagnostic
         self.values.pop(signal.name, None)
+        self.foreign.pop(signal.name, None)
 
     def raw(self) -> tuple[Times, Times]:
         """Log times, and the times in the messages; in the order of the file."""
@@ -162,7 +166,7 @@ class Columns:
         for signal in tuple(column.signals):
             declared = signal.type and short_type(signal.type)
             if stream.schema and declared and declared != short_type(type_):
-                column.refuse(signal, findings.wrong_type(signal, type_))
+                column.refuse(signal, log_diagnostics.wrong_type(signal, type_))
 
     def add(self, stream: Stream, log_time: int, publish_time: int, payload: memoryview) -> None:
         """One message; messages of bound topics wait for others of their stream."""
@@ -247,11 +251,17 @@ class Columns:
         times, dated = self._times(column, extract, logs, publishes)
         usable = times < LATEST
         column.undecoded += int((~usable).sum())
+        before = len(column.times)
         column.logs.frombytes(logs[usable].tobytes())
         column.times.frombytes(times[usable].tobytes())
         column.timeless.extend((~dated[usable]).tobytes())
         for signal in column.signals:
             column.values.setdefault(signal.name, Series()).add(extract.values[signal.name][usable])
+            foreign = extract.foreign_of(signal.name, usable)
+            if foreign is not None:
+                later = replace(foreign, first=before + foreign.first)
+                earlier = column.foreign.get(signal.name)
+                column.foreign[signal.name] = earlier.followed(later) if earlier else later
 
     def _extract(self, column: Column, stream: Stream, payloads: Payloads) -> Extract:
         """The data of the signals; a signal with a diagnostic gets no samples."""
@@ -341,7 +351,16 @@ class Columns:
         for topic, signal in {signal.path.topic: signal for signal in self._wanted}.items():
             if topic in self.topics:
                 diagnostics += self._oddities(self.topics[topic], signal)
-        return diagnostics
+        return [*diagnostics, *self._foreign_values()]
+
+    def _foreign_values(self) -> Iterator[Diagnostic]:
+        """About samples of signals of words that are none of them."""
+        for signal in self._wanted:
+            column = self.topics.get(signal.path.topic)
+            foreign = column.foreign.get(signal.name) if column else None
+            if column is not None and foreign is not None:
+                after = column.times[foreign.first] - self.span((0, 0))[0]
+                yield log_diagnostics.foreign_value(signal, foreign, column.count, after)
 
     def _problem(self, signal: Signal) -> Diagnostic | None:
         column = self.topics.get(signal.path.topic)
@@ -351,8 +370,8 @@ class Columns:
 
     def _absent(self, topic: str, span: Span | None) -> Diagnostic:
         if topic in self.topics:
-            return findings.no_message(topic, span)
-        return findings.no_topic(topic, self.topics, span)
+            return log_diagnostics.no_message(topic, span)
+        return log_diagnostics.no_topic(topic, self.topics, span)
 
     def readers(self) -> dict[str, Span | None]:
         """The wanted bound topics, each with the place that binds it."""
@@ -367,13 +386,13 @@ class Columns:
     def _oddities(self, column: Column, signal: Signal) -> list[Diagnostic]:
         diagnostics, count = [], len(column.logs)
         if len(column.types) > 1 and signal.type is None:
-            diagnostics.append(findings.several_types(signal, list(column.types)))
+            diagnostics.append(log_diagnostics.several_types(signal, list(column.types)))
         if column.undecoded:
-            diagnostics.append(findings.bad_messages(signal, column.undecoded, count))
+            diagnostics.append(log_diagnostics.bad_messages(signal, column.undecoded, count))
         if late := column.late():
-            diagnostics.append(findings.out_of_order(signal, late, count))
+            diagnostics.append(log_diagnostics.out_of_order(signal, late, count))
         if column.unstamped:
-            diagnostics.append(findings.unstamped(signal, self._shift()))
+            diagnostics.append(log_diagnostics.unstamped(signal, self._shift()))
         return diagnostics
 
     def _shift(self) -> int:

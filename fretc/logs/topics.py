@@ -7,9 +7,10 @@ from statistics import median
 
 import numpy as np
 
-from fretc.logs import findings
+from fretc.logs import log_diagnostics
 from fretc.logs.first_messages import Examples
-from fretc.logs.messages.json_messages import message_paths as stated_fields
+from fretc.logs.messages.json_messages import message_leaves
+from fretc.logs.messages.leaves import Kind
 from fretc.logs.signals.samples import Samples, Topic
 from fretc.logs.signals.stamps import JUMP, Stamps, stamps, still
 from fretc.logs.topic_columns import Column, Columns
@@ -27,9 +28,10 @@ def never_stated(
         payloads = examples.of(signal.path.topic)
         if not payloads or not len(values) or not np.isnan(values).all():
             continue
-        known = stated_fields(payloads)
+        leaves = message_leaves(payloads)
+        known = [p for p, leaf in leaves.items() if signal.values or leaf.kind is not Kind.TEXT]
         if ".".join(signal.path.fields) not in {path.removesuffix("[:]") for path in known}:
-            found.append(findings.never_stated(signal, known))
+            found.append(log_diagnostics.never_stated(signal, known))
     return found
 
 
@@ -44,14 +46,14 @@ def clocks(columns: Columns, wanted: Sequence[Signal]) -> list[Diagnostic]:
         column = columns.topics[topic]
         clock = _stamps(column)
         if clock is not None and clock.jumps:
-            found.append(findings.clock_jumps(signal, clock.jumps, clock.largest))
+            found.append(log_diagnostics.clock_jumps(signal, clock.jumps, clock.largest))
         if clock is not None and not column.unstamped:
             ahead[topic] = clock.ahead
     middle = median(ahead.values()) if ahead else 0
     true = min(ahead, key=lambda topic: (abs(ahead[topic] - middle), abs(ahead[topic])), default="")
     for topic, shift in ahead.items():
         if abs(shift - ahead[true]) > JUMP:
-            found.append(findings.mixed_clocks(signals[topic], true, shift - ahead[true]))
+            found.append(log_diagnostics.mixed_clocks(signals[topic], true, shift - ahead[true]))
     return found
 
 
@@ -60,9 +62,9 @@ def _unmoved(columns: Columns) -> Iterator[Diagnostic]:
     for topic, place in columns.readers().items():
         column, time = columns.topics[topic], columns.clock.time
         if zero := int(column.unset.sum()):
-            yield findings.zero_stamps(topic, place, zero, column.count, time)
+            yield log_diagnostics.zero_stamps(topic, place, zero, column.count, time)
         if same := still(column.stamps()[~column.unset]):
-            yield findings.still_clock(topic, place, same, column.count, time)
+            yield log_diagnostics.still_clock(topic, place, same, column.count, time)
 
 
 def _stamps(column: Column) -> Stamps | None:

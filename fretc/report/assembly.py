@@ -39,8 +39,8 @@ from fretc.report.sections.reproduction import commands, folder_of, manifest
 from fretc.report.sections.requirement import remark, section
 from fretc.report.sections.runs import run_views, runs
 from fretc.report.sections.signatures import idle_signatures, signatures
+from fretc.report.traceability.acceptances import warnings
 from fretc.report.traceability.artefacts import shared_products
-from fretc.report.traceability.checks import checks
 from fretc.report.traceability.lock import Lock, withdrawn_requirements
 from fretc.report.traceability.waivers import Waiver
 from fretc.verification.ajpf_results import merged
@@ -98,6 +98,7 @@ def report(
         *(line for assessment in assessed for line in reviews.reservations(assessment)),
     )
     signature_list = signatures(book, assessed, evidence, proofs)
+    checked = _checks(project, assessed, lock, evidence)
     return Report(
         schema=SCHEMA,
         fretc=__version__,
@@ -116,7 +117,7 @@ def report(
         planned=tuple(plan for view in sections for plan in view.planned if view.status != RETIRED),
         proofs=proof_views((one for one in all_proofs if one.requirement in SHARED), shared),
         verification=phrases.place(proofs.file) if proofs else "",
-        remarks=tuple(remark(diagnostic) for diagnostic in _remarks(project, assessed)),
+        remarks=tuple(remark(diagnostic) for diagnostic in (*project.diagnostics, *checked)),
         hazards=hazard_views(project),
         matrix=matrix(project, assessed, sections, runs_by_key),
         orphans=orphans(project, assessed, evidence),
@@ -130,6 +131,7 @@ def report(
         commands=commands(project, sections, all_runs, path, proofs, _confidence(evidence)),
         manifest=manifest(project, sections, all_runs, evidence, proofs, book.signers),
     ), (
+        *(each for each in checked if each.accepted),
         *stale_evidence(assessed, evidence, path),
         *idle_waivers(assessed),
         *book.diagnostics(),
@@ -142,18 +144,17 @@ def _confidence(evidence: Evidence | None) -> float:
     return next((one.confidence for one in estimations), CONFIDENCE)
 
 
-def _remarks(project: Project, assessed: Sequence[Assessment]) -> Sequence[Diagnostic]:
-    """The diagnostics of the project and of `fretc check`.
-
-    Changes since a review are left out: they have a part of their own.
-    """
+def _checks(
+    project: Project, assessed: Sequence[Assessment], lock: Lock | None, evidence: Evidence | None
+) -> Sequence[Diagnostic]:
+    """What `fretc check` finds beside mistakes; reviews have a part of their own."""
     if has_errors(project.diagnostics):
-        return project.diagnostics
-    warnings = checks(project, [assessment.standing for assessment in assessed])
-    return [
-        *project.diagnostics,
-        *(each for each in warnings if each.code is not Code.CHANGED_SINCE_REVIEW),
-    ]
+        return ()
+    found = warnings(project, [each.standing for each in assessed], lock, evidence)
+    return [each for each in found if each.accepted or each.code not in _OF_REVIEWS]
+
+
+_OF_REVIEWS = (Code.CHANGED_SINCE_REVIEW, Code.NOT_REVIEWED)
 
 
 def _not_shown(view: RequirementView) -> NotShown:

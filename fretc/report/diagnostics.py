@@ -17,18 +17,24 @@ from fretish.diagnostics.source import Source
 def stale_evidence(
     assessments: Sequence[Assessment], evidence: Evidence | None, path: str
 ) -> tuple[Diagnostic, ...]:
-    """F504 for each requirement with evidence of something else, and each id that is unknown."""
-    again = f"audit again: `fretc audit LOG... --evidence {path}`"
+    """F504 for requirements with evidence of something else, and for each id that is unknown.
+
+    Requirements whose evidence is suspect for one and the same reason share a message.
+    """
+    again = f"audit again: `fretc audit LOG... -o {path}`"
+    suspicions: dict[tuple[int, str], list[Assessment]] = {}
+    for assessment in assessments:
+        suspicions.setdefault(_suspicions(assessment), []).append(assessment)
     suspect = [
         Diagnostic(
             Code.STALE_EVIDENCE,
-            f"the evidence of {assessment.id} is suspect in {phrases.times(count, 'run')}: {why}",
-            assessment.requirement.wording,
+            f"the evidence of {phrases.joined([each.id for each in some])} is suspect in "
+            f"{phrases.times(count, 'run')}{' each' if len(some) > 1 else ''}: {why}",
+            some[0].requirement.wording,
             help=again,
             severity=Severity.WARNING,
         )
-        for assessment in assessments
-        for count, why in [_suspicions(assessment)]
+        for (count, why), some in suspicions.items()
         if count
     ]
     strange = [

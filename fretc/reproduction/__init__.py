@@ -1,1 +1,1 @@
-"""Evidence and proofs made again, and held against the project, the lock and a manifest."""
+"""Evidence and proofs are made again, and compared with the project, the lock and a manifest."""

@@ -13,7 +13,7 @@ from functools import cache, partial
 from fretc.audit.evidence.schema import Document, Result
 from fretc.report.traceability.chain import LOG
 from fretc.report.traceability.lock import Lock, Review
-from fretc.reproduction.outcome import FILE, Rechecked, differs, unknown
+from fretc.reproduction.outcome import FILE, Recheck, differs, unknown
 from fretish.reading.natural_order import natural
 
 Prints = Callable[[str], Collection[str]]
@@ -22,7 +22,7 @@ Prints = Callable[[str], Collection[str]]
 
 @dataclass(frozen=True, slots=True)
 class Scope:
-    """What evidence is held against."""
+    """What evidence is compared with."""
 
     claimed: tuple[str, ...]
     """The requirements in force, or those of them that are asked for."""
@@ -32,26 +32,26 @@ class Scope:
 
 
 def incomplete(
-    whole: Document, scope: Scope, places: Mapping[str, str], prints: Prints
-) -> Iterator[Rechecked]:
+    document: Document, scope: Scope, places: Mapping[str, str], prints: Prints
+) -> Iterator[Recheck]:
     """All that is missing, there twice, or not what is known of it.
 
     Args:
-        whole: the evidence.
-        scope: what it is held against.
+        document: the evidence.
+        scope: what it is compared with.
         places: run → where its log is now.
         prints: for logs that were looked at more or less closely when they were reviewed.
     """
-    yield from _requirements(whole, scope)
-    yield from _results(whole, scope)
+    yield from _requirements(document, scope)
+    yield from _results(document, scope)
     if scope.lock is not None:
         once = cache(prints)
-        known = {run: partial(once, place) for run, place in places.items()}
-        yield from _reviewed(whole, scope, scope.lock, known)
+        prints_of = {run: partial(once, place) for run, place in places.items()}
+        yield from _reviewed(document, scope, scope.lock, prints_of)
 
 
-def _requirements(whole: Document, scope: Scope) -> Iterator[Rechecked]:
-    named = Counter(told.id for told in whole.requirements)
+def _requirements(document: Document, scope: Scope) -> Iterator[Recheck]:
+    named = Counter(each.id for each in document.requirements)
     for id in scope.claimed:
         if not named[id]:
             yield differs(FILE, id, f"{id} is claimed and the evidence does not name it")
@@ -60,14 +60,14 @@ def _requirements(whole: Document, scope: Scope) -> Iterator[Rechecked]:
             yield differs(FILE, id, "it is named twice")
 
 
-def _results(whole: Document, scope: Scope) -> Iterator[Rechecked]:
-    """Each run tells of each requirement, once."""
-    found = Counter((result.run, result.requirement) for result in whole.results)
-    named = {told.id for told in whole.requirements}
-    for run in dict.fromkeys(run for run, _ in found):
-        here = {id for other, id in found if other == run}
+def _results(document: Document, scope: Scope) -> Iterator[Recheck]:
+    """Each run has one result of each requirement."""
+    counts = Counter((result.run, result.requirement) for result in document.results)
+    named = {each.id for each in document.requirements}
+    for run in dict.fromkeys(run for run, _ in counts):
+        here = {id for other, id in counts if other == run}
         for id in sorted(named | here | {*scope.claimed}, key=natural):
-            count = found[run, id]
+            count = counts[run, id]
             if count > 1:
                 yield differs(run, id, "it is told twice")
             elif not count and id in scope.claimed:
@@ -81,33 +81,35 @@ def _results(whole: Document, scope: Scope) -> Iterator[Rechecked]:
 # The lock ---------------------------------------------------------------------------------------
 
 
-_Known = Mapping[str, Callable[[], Collection[str]]]
+_PrintsOf = Mapping[str, Callable[[], Collection[str]]]
 """Run whose log is there → each SHA-256 that it is known by."""
 
 
-def _reviewed(whole: Document, scope: Scope, lock: Lock, prints: _Known) -> Iterator[Rechecked]:
+def _reviewed(
+    document: Document, scope: Scope, lock: Lock, prints_of: _PrintsOf
+) -> Iterator[Recheck]:
     for id, review in lock.reviews.items():
         if id in scope.claimed:
-            told = [result for result in whole.results if result.requirement == id]
-            yield from _runs(review, told, prints)
+            results = [result for result in document.results if result.requirement == id]
+            yield from _runs(review, results, prints_of)
         elif review.was_in_force and not scope.part:
             yield differs(FILE, id, "it was claimed when it was reviewed, and is not any more")
 
 
-def _runs(review: Review, told: Sequence[Result], prints: _Known) -> Iterator[Rechecked]:
+def _runs(review: Review, results: Sequence[Result], prints_of: _PrintsOf) -> Iterator[Recheck]:
     """The runs of one review; a log may have another name by now."""
-    known = {sha for result in told for sha in _hashes(result)}
-    runs = {result.run for result in told}
+    hashes = {sha for result in results for sha in _hashes(result)}
+    runs = {result.run for result in results}
     for node, sha in review.prints.items():
-        if node.kind != LOG or (sha and sha in known):
+        if node.kind != LOG or (sha and sha in hashes):
             continue
         if node.name not in runs:
             why = "the lock names this run and the evidence has no result of it"
             yield differs(node.name, review.requirement, why)
-        elif node.name not in prints:
+        elif node.name not in prints_of:
             why = "its log is not found, to be held against the lock"
             yield unknown(node.name, review.requirement, why)
-        elif sha not in prints[node.name]():
+        elif sha not in prints_of[node.name]():
             why = "its log is not the one that was reviewed"
             yield differs(node.name, review.requirement, why)
 

@@ -16,7 +16,7 @@ from fretc.audit.evidence.schema import Document
 from fretc.logs.storage.folders import METADATA, Folder, folder, is_folder
 from fretc.logs.storage.inputs import is_url
 from fretc.logs.storage.splits import split
-from fretc.reproduction.outcome import Rechecked, differs, unknown
+from fretc.reproduction.outcome import Recheck, differs, unknown
 from fretish.diagnostics.diagnostic import Code, Diagnostic, has_errors
 from fretish.diagnostics.source import Source
 
@@ -44,16 +44,16 @@ def read(path: str) -> Manifest | tuple[Diagnostic, ...]:
     source = read_text(path)
     if isinstance(source, Diagnostic):
         return (source,)
-    found = list(_lines(source))
-    wrong = [one for one in found if isinstance(one, Diagnostic)]
-    logs = [one for one in found if not isinstance(one, Diagnostic)]
-    if not found:
-        wrong.append(_wrong(source, 0, 0, f"`{path}` names no log"))
-    return tuple(wrong) if has_errors(wrong) else Manifest(path, dict(logs))
+    entries = list(_lines(source))
+    errors = [one for one in entries if isinstance(one, Diagnostic)]
+    logs = [one for one in entries if not isinstance(one, Diagnostic)]
+    if not entries:
+        errors.append(_wrong(source, 0, 0, f"`{path}` names no log"))
+    return tuple(errors) if has_errors(errors) else Manifest(path, dict(logs))
 
 
 def _lines(source: Source) -> Iterator[tuple[str, str] | Diagnostic]:
-    known: set[str] = set()
+    names: set[str] = set()
     start = 0
     for line in source.text.split("\n"):
         end = start + len(line)
@@ -64,9 +64,9 @@ def _lines(source: Source) -> Iterator[tuple[str, str] | Diagnostic]:
                 yield _wrong(source, start, end, "this is no line of `sha256sum`")
         else:
             name = _normal(_unescaped(match["path"]) if match["escape"] else match["path"])
-            if name in known:
+            if name in names:
                 yield _wrong(source, start, end, "the manifest names this log twice")
-            known.add(name)
+            names.add(name)
             yield name, match["sha256"].lower()
         start = end + 1
 
@@ -89,37 +89,40 @@ def _wrong(source: Source, start: int, end: int, what: str) -> Diagnostic:
 
 @dataclass(frozen=True, slots=True)
 class Match:
-    """What became of one run, or of one log that is no run."""
+    """The comparison of one run with the manifest, or of one log that is no run."""
 
     run: str
-    wrong: tuple[Rechecked, ...]
+    differences: tuple[Recheck, ...]
     """Empty where all of its bytes are those of the manifest."""
 
 
-def matches(whole: Document, manifest: Manifest, places: Mapping[str, str]) -> tuple[Match, ...]:
+def matches(document: Document, manifest: Manifest, places: Mapping[str, str]) -> tuple[Match, ...]:
     """Every run of evidence beside the manifest, then the logs that no run is of.
 
     A log counts by its name. Of those whose name is no run's, one of the same hash counts.
 
     Args:
-        whole: the evidence; that its hashes are right is for others to say.
+        document: the evidence; that its hashes are right is for others to say.
         manifest: what it must have.
         places: run → where its log is now.
     """
-    left = dict(manifest.logs)
-    told = {result.run: result.hashes.get("log") for result in whole.results}
-    parts = {run: _parts(run, places.get(run)) for run in told}
-    named = {run: {path: left.pop(path) for path in parts[run] if path in left} for run in told}
+    unmatched = dict(manifest.logs)
+    sha_of = {result.run: result.hashes.get("log") for result in document.results}
+    parts = {run: _parts(run, places.get(run)) for run in sha_of}
+    named = {
+        run: {path: unmatched.pop(path) for path in parts[run] if path in unmatched}
+        for run in sha_of
+    }
     for run, listed in named.items():
-        same = next((path for path, sha in left.items() if sha == told[run]), None)
+        same = next((path for path, sha in unmatched.items() if sha == sha_of[run]), None)
         if not listed and same is not None:
-            listed[_normal(run)] = left.pop(same)
-    found = [
-        Match(run, tuple(_wrong_of(run, told[run], named[run], parts[run], places.get(run))))
-        for run in told
+            listed[_normal(run)] = unmatched.pop(same)
+    runs = [
+        Match(run, tuple(_differences(run, sha_of[run], named[run], parts[run], places.get(run))))
+        for run in sha_of
     ]
     why = "the manifest names it and the evidence has no result of it"
-    return (*found, *(Match(path, (differs(path, "", why),)) for path in left))
+    return (*runs, *(Match(path, (differs(path, "", why),)) for path in unmatched))
 
 
 def _parts(run: str, place: str | None) -> Mapping[str, str | None]:
@@ -143,13 +146,13 @@ def _folder(place: str) -> Folder | Diagnostic | None:
     return None if os.path.lexists(place) else split(place)
 
 
-def _wrong_of(
+def _differences(
     run: str,
-    told: str | None,
+    claim: str | None,
     listed: Mapping[str, str],
     parts: Mapping[str, str | None],
     place: str | None,
-) -> Iterator[Rechecked]:
+) -> Iterator[Recheck]:
     """What is wrong with one run."""
     if not listed:
         yield differs(run, "", "the manifest does not name it")
@@ -159,7 +162,7 @@ def _wrong_of(
             if os.path.basename(path) != METADATA:
                 yield differs(run, "", f"the manifest does not name `{path}`")
             continue
-        sha = told if now == place and told is not None else file_sha256(now) if now else None
+        sha = claim if now == place and claim is not None else file_sha256(now) if now else None
         if sha is None:
             yield unknown(run, "", "its hash cannot be taken, to be held against the manifest")
         elif sha != listed[path]:

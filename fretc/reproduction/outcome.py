@@ -1,4 +1,4 @@
-"""What became of each thing that is made again: it stands, it differs, or it was not checked."""
+"""The outcome of making a thing again: it stands, it differs, or it was not checked."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ FILE, ALL_RUNS, PROOFS = "the file", "all runs", "proofs"
 
 
 class Finding(StrEnum):
-    """What became of one thing."""
+    """The outcome for one thing."""
 
     STANDS = "stands"
     DIFFERS = "differs"
@@ -30,8 +30,8 @@ SIGNS: Mapping[Finding, Sign] = {
 
 
 @dataclass(frozen=True, slots=True)
-class Rechecked:
-    """One run and requirement of the evidence, made again; or what is missing of them."""
+class Recheck:
+    """The comparison of one run and requirement with the evidence; or what is missing there."""
 
     run: str
     requirement: str
@@ -43,17 +43,17 @@ class Rechecked:
     """What is proved of the requirement; empty where it is about no proof."""
 
 
-def differs(run: str, requirement: str, *reasons: str, claim: str = "") -> Rechecked:
-    """Something is otherwise now."""
-    return Rechecked(run, requirement, Finding.DIFFERS, reasons, claim)
+def differs(run: str, requirement: str, *reasons: str, claim: str = "") -> Recheck:
+    """The present thing differs."""
+    return Recheck(run, requirement, Finding.DIFFERS, reasons, claim)
 
 
-def unknown(run: str, requirement: str, *reasons: str, claim: str = "") -> Rechecked:
+def unknown(run: str, requirement: str, *reasons: str, claim: str = "") -> Recheck:
     """It could not be made again."""
-    return Rechecked(run, requirement, Finding.UNKNOWN, reasons, claim)
+    return Recheck(run, requirement, Finding.UNKNOWN, reasons, claim)
 
 
-def counts(found: Iterable[Rechecked]) -> Mapping[Finding, int]:
+def counts(rechecks: Iterable[Recheck]) -> Mapping[Finding, int]:
     """How many there are of each finding."""
-    known = Counter(one.finding for one in found)
-    return {finding: known[finding] for finding in Finding}
+    number = Counter(one.finding for one in rechecks)
+    return {finding: number[finding] for finding in Finding}

@@ -1,4 +1,4 @@
-"""Whether proofs still stand: each claim of `fretc verify` proved again, and compared.
+"""Whether proofs still stand: each claim of `fretc verify` is proved again, and compared.
 
 Only what fretc makes itself is proved again, in the layers and by the provers that the file names.
 A claim about another text, or of a prover that is not installed, is not checked; so is what AJPF
@@ -16,7 +16,7 @@ from compiler.files.records import plain
 from compiler.logic.claims import ALL, METHODS, PROVERS, Layer, Proof, Result
 from compiler.project.folder import Project
 from compiler.targets.python import monitor
-from fretc.reproduction.outcome import PROOFS, Finding, Rechecked, differs, unknown
+from fretc.reproduction.outcome import PROOFS, Finding, Recheck, differs, unknown
 from fretc.verification.ajpf_results import evidence as results_of_ajpf
 from fretc.verification.ajpf_results import written
 from fretc.verification.engines.sandbox import Limits
@@ -29,9 +29,9 @@ AGENT = "agent"
 """What claims about an agent of the user's own are filed under."""
 
 
-def reproved(
+def prove_again(
     project: Project, proofs: Proofs, limits: Limits, claimed: Collection[str], progress: Progress
-) -> tuple[Rechecked, ...] | Diagnostic:
+) -> tuple[Recheck, ...] | Diagnostic:
     """Prove every claim of a file again.
 
     Args:
@@ -41,27 +41,31 @@ def reproved(
         claimed: the requirements that are asked for.
         progress: is called before each claim that takes its time.
     """
-    records = [one for one in proofs.proofs if _asked(one, project, claimed)]
-    made = _again(project, records, limits, progress)
-    if isinstance(made, Diagnostic):
-        return made
+    records = [one for one in proofs.proofs if _is_asked_for(one, project, claimed)]
+    proofs_now = _prove(project, records, limits, progress)
+    if isinstance(proofs_now, Diagnostic):
+        return proofs_now
     return (
         *_beginning(proofs),
-        *(_compared(told, made) for told in records),
+        *(_compared(record, proofs_now) for record in records),
         *_twice(records),
-        *_left_out(records, made),
+        *_left_out(records, proofs_now),
     )
 
 
-def unproved(
+def unproved_plans(
     project: Project, proofs: Sequence[Proof], claimed: Collection[str]
-) -> Iterator[Rechecked]:
-    """The methods that requirements plan, that could be asked again, and that no claim is of."""
+) -> Iterator[Recheck]:
+    """The repeatable methods that requirements plan and that no claim is of."""
     for requirement in project.requirements:
         for method in dict.fromkeys(requirement.verify):
-            known = method in METHODS and method != Layer.AJPF
+            repeatable = method in METHODS and method != Layer.AJPF
             own = [one for one in proofs if one.requirement in (requirement.id, *_SHARED)]
-            if requirement.id in claimed and known and not any(_is_of(one, method) for one in own):
+            if (
+                requirement.id in claimed
+                and repeatable
+                and not any(_is_of(one, method) for one in own)
+            ):
                 why = f"{requirement.id} plans `{method}` and no proof says anything of it"
                 yield unknown(PROOFS, requirement.id, why)
 
@@ -81,33 +85,33 @@ def _prover(engine: str) -> str:
     return name if name in PROVERS else ""
 
 
-def _asked(record: Proof, project: Project, claimed: Collection[str]) -> bool:
+def _is_asked_for(record: Proof, project: Project, claimed: Collection[str]) -> bool:
     """Whether a claim is about what is asked for; one about an unknown requirement always is."""
-    known = {requirement.id for requirement in project.requirements}
-    return record.requirement in claimed or record.requirement not in known
+    ids = {requirement.id for requirement in project.requirements}
+    return record.requirement in claimed or record.requirement not in ids
 
 
 # Again ------------------------------------------------------------------------------------------
 
 
-def _again(
-    project: Project, told: Sequence[Proof], limits: Limits, progress: Progress
+def _prove(
+    project: Project, records: Sequence[Proof], limits: Limits, progress: Progress
 ) -> Sequence[Proof] | Diagnostic:
-    """What is found now, of the requirements, in the layers and by the provers that are named."""
-    named = {record.requirement for record in told}
-    own = [record for record in told if not _prover(record.engine)]
+    """The present proofs of the requirements, by the layers and provers that the file names."""
+    named = {record.requirement for record in records}
+    own = [record for record in records if not _prover(record.engine)]
     layers = [layer for layer in Layer if any(record.layer == layer for record in own)]
     if AGENT in named:
         layers = [layer for layer in layers if layer != Layer.AGENT]
     rules = [rule for rule in project.rules if rule.id in named and monitor.refuse(rule) is None]
-    asked = Request(
+    request = Request(
         layers,
         limits,
-        provers=sorted({_prover(record.engine) for record in told} - {""}),
+        provers=sorted({_prover(record.engine) for record in records} - {""}),
         ajpf=results_of_ajpf(rules, written())[0] if Layer.AJPF in layers else (),
         progress=progress,
     )
-    return prove(replace(project, rules=tuple(rules)), asked)
+    return prove(replace(project, rules=tuple(rules)), request)
 
 
 def _key(record: Proof) -> tuple[str, ...]:
@@ -117,53 +121,53 @@ def _key(record: Proof) -> tuple[str, ...]:
 # Compared ---------------------------------------------------------------------------------------
 
 
-def _beginning(proofs: Proofs) -> Iterator[Rechecked]:
+def _beginning(proofs: Proofs) -> Iterator[Recheck]:
     if proofs.fretc != __version__:
         yield differs(PROOFS, "", f"this is fretc {__version__}")
     if not proofs.proofs:
         yield unknown(PROOFS, "", f"`{proofs.file}` tells of no claim")
 
 
-def _compared(told: Proof, made: Sequence[Proof]) -> Rechecked:
-    requirement, claim = told.requirement, f"{told.layer}: {told.claim}"
-    now = next((record for record in made if _key(record) == _key(told)), None)
+def _compared(record: Proof, proofs_now: Sequence[Proof]) -> Recheck:
+    requirement, claim = record.requirement, f"{record.layer}: {record.claim}"
+    now = next((one for one in proofs_now if _key(one) == _key(record)), None)
     if now is None:
-        return _gone(told, claim)
-    others = told.artefacts.keys() - now.artefacts.keys()
+        return _absence(record, claim)
+    others = record.artefacts.keys() - now.artefacts.keys()
     if others:
         why = f"it is about `{min(others)}`, which is not made here"
         return unknown(PROOFS, requirement, why, claim=claim)
     if now.result is Result.NOT_CHECKED:
         return unknown(PROOFS, requirement, now.detail, claim=claim)
-    reasons = tuple(_differences(told, now))
-    if told.result is Result.NOT_CHECKED and now.result is not Result.COUNTEREXAMPLE:
+    reasons = tuple(_differences(record, now))
+    if record.result is Result.NOT_CHECKED and now.result is not Result.COUNTEREXAMPLE:
         why = f"it was not checked, says the file; it is {now.result} now"
         return unknown(PROOFS, requirement, why, claim=claim)
     if reasons:
         return differs(PROOFS, requirement, *reasons, claim=claim)
-    if told.layer == Layer.AJPF:
+    if record.layer == Layer.AJPF:
         return unknown(PROOFS, requirement, "AJPF itself is not asked again", claim=claim)
-    return Rechecked(PROOFS, requirement, Finding.STANDS, (), claim)
+    return Recheck(PROOFS, requirement, Finding.STANDS, (), claim)
 
 
-def _gone(told: Proof, claim: str) -> Rechecked:
+def _absence(record: Proof, claim: str) -> Recheck:
     """A claim that was not made again."""
-    if told.layer == Layer.AJPF:
+    if record.layer == Layer.AJPF:
         why = "the file of AJPF's result is not there"
-    elif told.layer == Layer.AGENT and told.requirement == AGENT:
+    elif record.layer == Layer.AGENT and record.requirement == AGENT:
         why = "it is about an agent that is not made here"
     else:
-        return differs(PROOFS, told.requirement, "no such claim is made now", claim=claim)
-    return unknown(PROOFS, told.requirement, why, claim=claim)
+        return differs(PROOFS, record.requirement, "no such claim is made now", claim=claim)
+    return unknown(PROOFS, record.requirement, why, claim=claim)
 
 
-def _differences(told: Proof, now: Proof) -> Iterator[str]:
-    if told.result != now.result:
-        yield f"it is {now.result}, and was {told.result}"
-    if told.artefacts != now.artefacts:
+def _differences(before: Proof, now: Proof) -> Iterator[str]:
+    if before.result != now.result:
+        yield f"it is {now.result}, and was {before.result}"
+    if before.artefacts != now.artefacts:
         yield "it is about other texts than those that are made now"
-    names = [name for name in sorted(plain(told) | plain(now)) if name not in _COMPARED]
-    others = [name for name in names if getattr(told, name) != getattr(now, name)]
+    names = [name for name in sorted(plain(before) | plain(now)) if name not in _COMPARED]
+    others = [name for name in names if getattr(before, name) != getattr(now, name)]
     if others:
         yield f"it differs in {', '.join(others)}"
 
@@ -171,15 +175,15 @@ def _differences(told: Proof, now: Proof) -> Iterator[str]:
 _COMPARED = ("result", "artefacts")
 
 
-def _twice(told: Sequence[Proof]) -> Iterator[Rechecked]:
-    for (requirement, layer, claim, _), count in Counter(map(_key, told)).items():
+def _twice(records: Sequence[Proof]) -> Iterator[Recheck]:
+    for (requirement, layer, claim, _), count in Counter(map(_key, records)).items():
         if count > 1:
             yield differs(PROOFS, requirement, "it is told twice", claim=f"{layer}: {claim}")
 
 
-def _left_out(told: Sequence[Proof], made: Sequence[Proof]) -> Iterator[Rechecked]:
-    known = {_key(record) for record in told}
-    for record in made:
-        if _key(record) not in known:
+def _left_out(records: Sequence[Proof], proofs_now: Sequence[Proof]) -> Iterator[Recheck]:
+    keys = {_key(record) for record in records}
+    for record in proofs_now:
+        if _key(record) not in keys:
             claim = f"{record.layer}: {record.claim}"
             yield differs(PROOFS, record.requirement, "it is left out", claim=claim)

@@ -4,10 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
+from shlex import quote
 from typing import Any
 
 import click
+from click.shell_completion import CompletionItem
 
+from fretc.terminal.options import PATH
 from fretc.terminal.output import stop
 from fretish.diagnostics.diagnostic import Code, Diagnostic, suggestion
 
@@ -23,10 +26,15 @@ class Commands(click.Group):
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
         """Put the default command before a file."""
         if args and args[0] not in self.commands and args[0].partition("=")[0] not in _OWN:
-            if not args[0].startswith("-") and not _is_path(args[0]):
+            named = args[0].startswith("-") or _is_path(args[0])
+            if not named and not ctx.resilient_parsing:  # a shell asks what could come next
                 stop(_unknown_command(args[0], [*self.commands]))
             args = [DEFAULT, *args]
         return super().parse_args(ctx, args)
+
+    def shell_complete(self, ctx: click.Context, incomplete: str) -> list[CompletionItem[Any]]:
+        """Commands, own options, and files: these first, for bash forgets what comes before."""
+        return [*PATH.files(incomplete), *super().shell_complete(ctx, incomplete)]
 
     def list_commands(self, ctx: click.Context) -> list[str]:
         """All commands that have a name."""
@@ -61,15 +69,29 @@ class Grouped(click.Command):
                 formatter.write_dl([r for o in some if (r := o.get_help_record(ctx)) is not None])
 
 
+def is_sentence(words: str) -> bool:
+    """Whether it is a requirement itself, perhaps misspelt, and not the name of something."""
+    shall = any(suggestion(word, ("shall", "should", "must"), 0.8) for word in words.split()[1:])
+    return shall and not Path(words).exists()
+
+
 def _is_path(word: str) -> bool:
+    if is_sentence(word):
+        return False
     return word == "-" or "/" in word or "." in word or Path(word).exists()
 
 
 def _unknown_command(word: str, commands: Sequence[str]) -> Diagnostic:
+    if is_sentence(word):
+        return Diagnostic(
+            Code.UNKNOWN_COMMAND,
+            "a sentence is neither a command of fretc nor a file",
+            help=f"type `fretc explain {quote(word)}`, or `fretc -` and then the sentence",
+        )
     near = suggestion(word, [c for c in commands if c != DEFAULT])
-    known = ", ".join(c for c in commands if c != DEFAULT)
+    names = ", ".join(c for c in commands if c != DEFAULT)
     return Diagnostic(
         Code.UNKNOWN_COMMAND,
         f"`{word}` is no command of fretc, and no file",
-        help=f"did you mean `fretc {near}`?" if near else f"there are {known}; or name a file",
+        help=f"did you mean `fretc {near}`?" if near else f"there are {names}; or name a file",
     )

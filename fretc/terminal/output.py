@@ -4,16 +4,21 @@ from __future__ import annotations
 
 import os
 import sys
+from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from contextlib import suppress
 from pathlib import Path
-from typing import NoReturn
+from shlex import quote
+from typing import Any, NoReturn, TextIO
 
 import click
 
 from fretish.diagnostics.diagnostic import Code, Diagnostic
-from fretish.diagnostics.rendering import render_all, visible
+from fretish.diagnostics.rendering import Part, plain, render_all, visible
+from fretish.reading.natural_order import by_place
 
+FOLDER = "requirements"
+"""Where the requirements of a project are, if nobody says otherwise."""
 SHOWN, VIOLATION, BAD, NOT_SHOWN, INTERRUPTED = 0, 1, 2, 3, 130
 """Exit status: all shown, a violation, bad use or input, something not shown, Ctrl-C."""
 
@@ -25,9 +30,71 @@ def stop(*diagnostics: Diagnostic) -> NoReturn:
 
 
 def say(diagnostics: Sequence[Diagnostic]) -> None:
-    """Print them on standard error."""
-    if diagnostics:
-        say_line(render_all(diagnostics))
+    """Print them on standard error; of the warnings that are accepted, how many there are.
+
+    They are ordered by their places, and in colours where it is a terminal.
+    """
+    accepted = sum(bool(diagnostic.accepted) for diagnostic in diagnostics)
+    open_ones = [diagnostic for diagnostic in diagnostics if not diagnostic.accepted]
+    say_all(open_ones)
+    if accepted:
+        count = "1 warning is" if accepted == 1 else f"{accepted} warnings are"
+        gap = "\n" if open_ones else ""
+        say_line(f"{gap}{count} accepted: `fretc check` lists the reasons")
+
+
+def say_all(*groups: Sequence[Diagnostic]) -> None:
+    """Print groups of diagnostics on standard error, each ordered by their places."""
+    paint = _painted if _has_colours(sys.stderr) else plain
+    blocks = [render_all(by_place(group), paint) for group in groups if group]
+    if blocks:
+        say_line("\n\n".join(blocks))
+
+
+_STYLES: Mapping[Part, Mapping[str, Any]] = {
+    Part.ERROR: {"fg": "red", "bold": True},
+    Part.WARNING: {"fg": "yellow", "bold": True},
+    Part.NOTE: {"fg": "blue", "bold": True},
+    Part.MESSAGE: {"bold": True},
+    Part.FRAME: {"fg": "blue"},
+    Part.HELP: {"fg": "cyan", "bold": True},
+}
+
+
+def _painted(text: str, part: Part) -> str:
+    return click.style(text, **_STYLES[part])
+
+
+def _has_colours(stream: TextIO) -> bool:
+    """Whether it is a terminal that shows colours, and the user wants them (no-color.org)."""
+    return stream.isatty() and "NO_COLOR" not in os.environ and os.environ.get("TERM") != "dumb"
+
+
+def say_briefly(diagnostics: Sequence[Diagnostic], requirements: str) -> None:
+    """Print them, with one line for all warnings about sentences: those are `check`'s matter.
+
+    Args:
+        diagnostics: of a project.
+        requirements: where its requirements are, as the user names it.
+    """
+    warnings = [each for each in diagnostics if _is_about_a_sentence(each)]
+    others = [each for each in diagnostics if each not in warnings]
+    say(others)
+    if not warnings:
+        return
+    counts = Counter(each.code.number for each in warnings)
+    codes = ", ".join(f"{count} {code}" for code, count in sorted(counts.items()))
+    noun = "warning about a sentence" if len(warnings) == 1 else "warnings about sentences"
+    place = "" if requirements == FOLDER else f" --requirements {quote(requirements)}"
+    if others:
+        say_line("")
+    say_line(visible(f"{len(warnings)} {noun} ({codes}): see `fretc check{place}`"))
+
+
+def _is_about_a_sentence(diagnostic: Diagnostic) -> bool:
+    """Whether it warns of what a sentence means; it is the same whatever is bound or recorded."""
+    about_meaning = diagnostic.code.number.startswith("F2")
+    return about_meaning and diagnostic.is_open
 
 
 def say_also(diagnostics: Sequence[Diagnostic], earlier: Sequence[Diagnostic]) -> None:
@@ -79,9 +146,9 @@ def protect(outputs: Iterable[Path], protected: Iterable[str]) -> None:
 
 def coloured(lines: Sequence[tuple[str, str | None]]) -> str:
     """The lines, each in its colour where standard output is a terminal that wants colours."""
-    plain = not sys.stdout.isatty() or "NO_COLOR" in os.environ
+    colours = _has_colours(sys.stdout)
     return "".join(
-        f"{text if plain or colour is None else click.style(text, fg=colour)}\n"
+        f"{click.style(text, fg=colour) if colours and colour is not None else text}\n"
         for text, colour in lines
     )
 

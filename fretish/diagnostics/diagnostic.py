@@ -6,11 +6,13 @@ that needs it; the codes live here, because a number is for life: never moved, n
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable
 from dataclasses import dataclass
 from difflib import get_close_matches
 from enum import Enum, StrEnum
 
+from fretish.diagnostics.mends import Mend
 from fretish.diagnostics.source import Span
 
 
@@ -44,6 +46,7 @@ class Code(Enum):
     UNCLOSED_HEADER = ("F113", "the header has no closing `+++`")
     TOO_DEEP = ("F115", "the sentence is nested too deep")
     NAME_CLASH = ("F116", "two names become one in formulas")
+    SEVERAL_SENTENCES = ("F117", "a second sentence stands without a line `+++` before it")
     FREE_TEXT = ("F114", "free text is kept and not formalized")
 
     DUPLICATE_ID = ("F201", "two requirements have the same id")
@@ -74,6 +77,7 @@ class Code(Enum):
     MESSAGE_CLOCK = ("F313", "a clock that ticks by message cannot count seconds")
     NEVER_CHANGED = ("F314", "a proposition never changed in the logs")
     SLOW_TOPIC = ("F315", "a topic comes less often than the bindings need it")
+    UNKNOWN_BETWEEN = ("F318", "a signal is unknown between the messages of its topic")
     BAD_MODALITY = ("F316", "the modality of a proposition cannot be emitted")
 
     SAME_TOPIC = ("F320", "two ends of the interceptor are one topic")
@@ -84,8 +88,11 @@ class Code(Enum):
     BAD_PHASE = ("F337", "the phase of the clock is not within a tick")
     PLAIN_PERCENT = ("F338", "a plain number stands beside a signal in percent")
     WHICH_UNIT = ("F350", "a bare number stands beside signals in several units")
+    UNIT_IN_SENTENCE = ("F352", "a number of a sentence has a unit, which FRET does not know")
     PROSE_DRIFT = ("F351", "title or text state another number than the requirement")
     AMBIGUOUS_UNIT = ("F339", "a part of a unit is the name of a signal too")
+    UNKNOWN_WORD = ("F340", "a word is none of the values of its signal")
+    AMBIGUOUS_WORD = ("F341", "a word is the name of a signal too")
 
     UNREADABLE_LOG = ("F401", "the log cannot be read")
     NOT_A_LOG = ("F402", "the file is not an MCAP log")
@@ -109,6 +116,8 @@ class Code(Enum):
     STILL_CLOCK = ("F420", "the clock of a topic stands still")
     SEVERAL_TYPES = ("F421", "a topic has messages of several types")
     REINDEXED = ("F422", "a bag was reindexed, and has lost what was being written")
+    FOREIGN_VALUE = ("F423", "samples are none of the values that their signal may have")
+    NO_TRUTH = ("F424", "samples that stand for a truth value are neither 0 nor 1")
 
     PHASE_DEPENDENT = ("F425", "a verdict depends on where the grid of ticks begins")
     PHASES_NOT_JUDGED = ("F426", "a verdict was not computed for all phases of the ticks")
@@ -142,6 +151,8 @@ class Code(Enum):
     UNKNOWN_LOG = ("F542", "a lock would accept a verdict on a log that nothing identifies")
     IDLE_WAIVER = ("F543", "a waiver covers nothing")
     NOT_REVIEWED = ("F544", "a requirement was never reviewed, and others were")
+    BAD_ACCEPTANCE = ("F549", "an acceptance can answer no warning")
+    IDLE_ACCEPTANCE = ("F550", "an acceptance answers no warning that is there")
     BAD_MANIFEST = ("F545", "the manifest cannot be read")
     BAD_SIGNERS = ("F548", "the list of signers cannot be read")
     BAD_SIGNATURES = ("F556", "signatures cannot be read")
@@ -215,11 +226,22 @@ class Diagnostic:
     severity: Severity = Severity.ERROR
     paste: str = ""
     """Lines to put into a file as they are, which `help` speaks of."""
+    subject: str = ""
+    """The topic or the hazard that a warning is about, by which it can be accepted."""
+    accepted: str = ""
+    """The reason for which the project accepts a warning; it stays one, and is shown."""
+    mend: Mend | None = None
+    """What `help` says, where that is another text in the place of a span."""
 
     @property
     def is_error(self) -> bool:
         """Whether it stops the command."""
         return self.severity is Severity.ERROR
+
+    @property
+    def is_open(self) -> bool:
+        """Whether it is a warning that nobody has accepted."""
+        return self.severity is Severity.WARNING and not self.accepted
 
 
 def has_errors(diagnostics: Iterable[Diagnostic]) -> bool:
@@ -230,11 +252,19 @@ def has_errors(diagnostics: Iterable[Diagnostic]) -> bool:
 def suggestion(word: str, known: Iterable[str], cutoff: float = 0.6) -> str | None:
     """The known word that is nearest to a misspelt one, if one is near.
 
+    It has the same numbers and operators: `battery < 10` is another claim than `battery < 20`.
+
     Args:
         word: what was written.
         known: what may be written.
         cutoff: how near, from 0 (anything) to 1 (equal), as `difflib` measures it.
     """
-    by_folded = {name.casefold(): name for name in known}
+    by_folded = {name.casefold(): name for name in known if _claim(name) == _claim(word)}
     near = get_close_matches(word.casefold(), by_folded, n=1, cutoff=cutoff)
     return by_folded[near[0]] if near else None
+
+
+def _claim(word: str) -> list[str]:
+    """The numbers and operators of a word, in its order."""
+    found: list[str] = re.findall(r"\d+|[<>=!&|]+", word)
+    return [part.lstrip("0") if part.isdigit() else part for part in found]

@@ -28,6 +28,21 @@ class Explanation:
     mended: str = ""
     declared: str = ""
     """The bindings that the example stands beside."""
+    accept: str = ""
+    """What a warning of the code is about, and so how it is accepted: a key of `ACCEPTANCES`.
+
+    Empty where it cannot be: an error, and a warning that a verdict may be wrong, unknown, or about
+    something else, have to be mended; a change since a review has to be reviewed.
+    """
+
+
+ACCEPTANCES = {
+    "requirement": ("the header of the requirement", 'accept = {{ {0} = "the reason" }}'),
+    "topic": ("fretc.toml", '[accept]\n{0} = {{ "/topic" = "the reason" }}'),
+    "hazard": ("fretc.toml", '[accept]\n{0} = {{ "HAZ-1" = "the reason" }}'),
+    "project": ("fretc.toml", '[accept]\n{0} = "the reason"'),
+}
+"""Where a warning is accepted, and what is written there, by what it is about."""
 
 
 @cache
@@ -49,6 +64,9 @@ def text(code: Code) -> str:
         return blocks[0]
     blocks.append(_block(_wrapped(explanation.cause)))
     blocks.append(_block(_wrapped(f"To mend it: {explanation.mend}")))
+    if explanation.accept:
+        place, example = ACCEPTANCES[explanation.accept]
+        blocks.append(_example(f"to accept it, in {place}", example.format(code.number)))
     if explanation.declared:
         blocks.append(_example("bindings.toml", explanation.declared))
     if explanation.wrong:
@@ -96,5 +114,6 @@ def as_record(code: Code) -> dict[str, Any]:
         "summary": code.summary,
         "cause": explanation.cause if explanation else None,
         "mend": explanation.mend if explanation else None,
+        "accept": (explanation.accept or None) if explanation else None,
         "example": example,
     }

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Iterable
+from enum import StrEnum
 from typing import Any
 
 from fretish.diagnostics.diagnostic import Diagnostic, Severity
@@ -13,22 +14,55 @@ _WIDTH = 160
 """Of a longer line the reader sees a part, from a little before the caret on."""
 
 
-def render(diagnostic: Diagnostic) -> str:
+class Part(StrEnum):
+    """A part of a diagnostic that a terminal may show in a colour of its own."""
+
+    ERROR = "error"
+    WARNING = "warning"
+    NOTE = "note"
+    MESSAGE = "message"
+    FRAME = "frame"
+    HELP = "help"
+
+
+Paint = Callable[[str, Part], str]
+"""Gives a text its colour."""
+
+
+def plain(text: str, part: Part) -> str:
+    """No colour."""
+    return text
+
+
+def render(diagnostic: Diagnostic, paint: Paint = plain) -> str:
     """Several lines: code and message, place, the line with a caret, and the mend."""
+    if diagnostic.accepted:
+        return _accepted(diagnostic, paint)
+    part = Part(diagnostic.severity.value)
     kind = "" if diagnostic.severity is Severity.ERROR else f" {diagnostic.severity.value}:"
-    lines = [f"{diagnostic.code.number}{kind} {visible(diagnostic.message)}"]
+    head = paint(f"{diagnostic.code.number}{kind}", part)
+    lines = [f"{head} {paint(visible(diagnostic.message), Part.MESSAGE)}"]
     if diagnostic.span is not None:
-        lines.extend(_place(diagnostic.span))
+        lines.extend(_place(diagnostic.span, paint, part))
     if diagnostic.help:
-        lines.append(f"help: {visible(diagnostic.help)}")
+        lines.append(f"{paint('help:', Part.HELP)} {visible(diagnostic.help)}")
     if diagnostic.paste:
         lines += ["", *map(visible, diagnostic.paste.rstrip("\n").split("\n"))]
     return "\n".join(lines)
 
 
-def render_all(diagnostics: Sequence[Diagnostic]) -> str:
+def _accepted(diagnostic: Diagnostic, paint: Paint) -> str:
+    """The reason in the place of the mend; nobody has to look at the line again."""
+    head = paint(f"{diagnostic.code.number} accepted:", Part.NOTE)
+    lines = [f"{head} {visible(diagnostic.message)}"]
+    if diagnostic.span is not None:
+        lines.append(_place(diagnostic.span, paint, Part.NOTE)[0])
+    return "\n".join([*lines, f"reason: {visible(diagnostic.accepted)}"])
+
+
+def render_all(diagnostics: Iterable[Diagnostic], paint: Paint = plain) -> str:
     """One block each, with an empty line between."""
-    return "\n\n".join(render(diagnostic) for diagnostic in diagnostics)
+    return "\n\n".join(render(diagnostic, paint) for diagnostic in diagnostics)
 
 
 def as_json(diagnostic: Diagnostic) -> dict[str, Any]:
@@ -49,10 +83,11 @@ def as_json(diagnostic: Diagnostic) -> dict[str, Any]:
     }
 
 
-def _place(span: Span) -> list[str]:
+def _place(span: Span, paint: Paint, part: Part) -> list[str]:
     name = visible(span.source.name)
+    arrow, bar = paint("  -->", Part.FRAME), paint("   |", Part.FRAME)
     if not span.source.text:
-        return [f"  --> {name}"]
+        return [f"{arrow} {name}"]
     line, column = span.line_text, span.column
     width = max(1, min(span.end, span.start + len(line) - column + 1) - span.start)
     start = 0 if column <= _WIDTH - 40 else column - 60
@@ -61,9 +96,9 @@ def _place(span: Span) -> list[str]:
     under = visible(window[column - 1 - start : column - 1 - start + width])
     after = visible(window[column - 1 - start + width :])
     return [
-        f"  --> {name}:{span.line}:{column}",
-        f"   | {before}{under}{after}".rstrip(),
-        f"   | {' ' * len(before)}{'^' * max(1, len(under))}",
+        f"{arrow} {name}:{span.line}:{column}",
+        f"{bar} {before}{under}{after}".rstrip(),
+        f"{bar} {' ' * len(before)}{paint('^' * max(1, len(under)), part)}",
     ]
 
 

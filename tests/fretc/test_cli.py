@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -15,6 +16,13 @@ from tests.command import Fretc, Run, runner, write
 
 ROOT = Path(__file__).parents[2]
 R1 = "whenever too_close agilex_agent shall eventually satisfy stopped"
+UNDECIDED = (
+    "F203 warning: no run, however long, can violate r1 or confirm it: it sets no bound\n"
+    "  --> r1.fret:1:39\n"
+    f"   | {R1}\n"
+    "   |                                       ^^^^^^^^^^\n"
+    "help: state a bound: `within ...` in place of `eventually`\n"
+)
 
 
 # Formulas ------------------------------------------------------------------------------------
@@ -31,7 +39,7 @@ def test_a_requirement_alone_shows_its_meaning_and_its_formulas(fretc: Fretc) ->
         "  FT           G(too_close -> F stopped)\n"
         "  FT, finite   LAST R (too_close -> !LAST U stopped)\n"
         "  PT           !(!stopped S (too_close & !stopped))\n",
-        "",
+        UNDECIDED,
     )
 
 
@@ -87,6 +95,27 @@ def test_one_bad_sentence_among_several_is_an_error_object_in_the_array(fretc: F
     }
 
 
+def test_a_sentence_in_place_of_a_file_is_told_where_it_belongs(fretc: Fretc) -> None:
+    assert fretc("the rover shall satisfy speed <= 1.5") == Run(
+        2,
+        "",
+        "F906 a sentence is neither a command of fretc nor a file\n"
+        "help: type `fretc explain 'the rover shall satisfy speed <= 1.5'`, or `fretc -` and then "
+        "the sentence\n",
+    )
+
+
+@pytest.mark.parametrize("kinds", [("ltl",), ("ajpf",), ("monitor",), ("json", "monitor")])
+def test_a_file_has_one_opinion_whatever_is_made_of_it(
+    fretc: Fretc, kinds: tuple[str, ...]
+) -> None:
+    path = write("r1.fret", R1)
+    bare = fretc(path)
+    made = fretc(path, *(word for kind in kinds for word in ("--emit", kind)))
+    assert made.err.startswith(bare.err)
+    assert made.err.count("F203") == bare.err.count("F203") == 1
+
+
 # Files -----------------------------------------------------------------------------------------
 
 
@@ -95,14 +124,14 @@ def test_emitted_files_go_to_build_and_are_named(fretc: Fretc) -> None:
     assert run == Run(
         0,
         "",
-        "F203 warning: no run, however long, can violate r1 or confirm it: it sets no bound\n"
-        "  --> r1.fret:1:39\n"
-        f"   | {R1}\n"
-        "   |                                       ^^^^^^^^^^\n"
-        "help: state a bound: `within ...` in place of `eventually`\n"
-        "wrote build/r1_monitor.py\nwrote build/r1.psl\n",
+        UNDECIDED + "wrote build/r1_monitor.py\nwrote build/r1.psl\n"
+        "next: `python build/r1_monitor.py TRACE.csv` judges a table with a column for each "
+        "of its names\n"
+        "next: `fretc explain r1.fret` shows what is meant, with a picture\n",
     )
     assert sorted(path.name for path in Path("build").iterdir()) == ["r1.psl", "r1_monitor.py"]
+    again = fretc("r1.fret", "--emit", "monitor", "--emit", "ajpf")
+    assert again.err == f"{UNDECIDED}wrote build/r1_monitor.py\nwrote build/r1.psl\n"
 
 
 def test_minus_prints_in_place_of_writing(fretc: Fretc) -> None:
@@ -121,9 +150,7 @@ def test_what_a_target_refuses_keeps_nothing_else_from_being_written(fretc: Fret
     assert run.status == 2
     assert "F601 AJPF cannot express the timing `within 3 ticks` of a\n" in run.err
     assert "F323 there are no bindings, and so no interceptor\n" in run.err
-    assert run.err.endswith(
-        "wrote build/b.psl\nwrote build/a_monitor.py\nwrote build/b_monitor.py\n"
-    )
+    assert "wrote build/b.psl\nwrote build/a_monitor.py\nwrote build/b_monitor.py\n" in run.err
     assert sorted(path.name for path in Path("build").iterdir()) == [
         "a_monitor.py", "b.psl", "b_monitor.py",
     ]  # fmt: skip
@@ -172,6 +199,7 @@ def test_within_is_emitted_for_ajpf_where_weakening_is_allowed(fretc: Fretc) -> 
         "   |                        ^^^^^^^^^^^^^^\n"
         "help: check the bound with `--emit monitor`\n"
         "wrote build/r.psl\nwrote build/r.ltl\n"
+        "next: `fretc explain r.fret` shows what is meant, with a picture\n"
     )
     text = Path("build/r.psl").read_text()
     assert "\n# WEAKER than the requirement: `within 3 ticks` has lost its bound" in text
@@ -191,7 +219,9 @@ def test_an_output_that_cannot_be_written_leaves_nothing_behind(fretc: Fretc) ->
     write("build/r1.psl/in_the_way", "")
     run = fretc(write("r1.fret", R1), "--emit", "json", "--emit", "ajpf")
     assert run.status == 2
-    assert run.err.startswith("F905 `build/r1.psl` cannot be written: there is a directory")
+    assert run.err.startswith(
+        f"{UNDECIDED}F905 `build/r1.psl` cannot be written: there is a directory"
+    )
     assert [path.name for path in Path("build").iterdir()] == ["r1.psl"]
 
 
@@ -221,8 +251,8 @@ def test_a_mistyped_command_gets_a_suggestion(fretc: Fretc) -> None:
 
 def test_a_missing_file_is_named_with_its_neighbour(fretc: Fretc) -> None:
     write("r1.fret", R1)
-    assert fretc("r2.fret") == Run(
-        2, "", "F901 there is no file `r2.fret`\n  --> r2.fret\nhelp: did you mean `r1.fret`?\n"
+    assert fretc("rr1.fret") == Run(
+        2, "", "F901 there is no file `rr1.fret`\n  --> rr1.fret\nhelp: did you mean `r1.fret`?\n"
     )
 
 
@@ -238,7 +268,7 @@ def test_a_directory_without_requirements_is_refused(fretc: Fretc) -> None:
         2,
         "",
         "F901 no requirement (`*.fret`) is in `folder`\n  --> folder\n"
-        "help: name the folder that your requirements are in\n",
+        "help: name files, or a folder that has some\n",
     )
 
 
@@ -287,7 +317,7 @@ def test_two_requirements_with_one_id_are_refused(fretc: Fretc) -> None:
     text = f'+++\nid = "A"\n+++\n{R1}\n+++\nid = "a"\n+++\n{R1}\n'
     run = fretc(write("two.fret", text))
     assert run.status == 2
-    assert run.err.startswith("F201 the id `a` is taken: two.fret:2\n  --> two.fret:6:6\n")
+    assert "F201 the id `a` is taken: two.fret:2\n  --> two.fret:6:6\n" in run.err
 
 
 # Bindings and clock ------------------------------------------------------------------------------
@@ -332,6 +362,7 @@ def test_a_number_of_the_requirement_that_its_binding_does_not_have_is_drift(fre
         '   | expr = "d < 0.9 m"\n'
         "   |        ^^^^^^^^^^^\n"
         "help: make the binding or `params` say what is meant\n"
+        "\n" + UNDECIDED.replace("r1 or", "R1 or").replace("r1.fret:1", "r1.fret:5")
     )
 
 
@@ -470,3 +501,22 @@ def test_h_is_help_everywhere(fretc: Fretc, command: str) -> None:
     short, long = fretc(*name, "-h"), fretc(*name, "--help")
     assert (short.status, short.out, short.err) == (0, long.out, long.err)
     assert "-h, --help" in short.out
+
+
+def test_all_mistakes_of_a_file_are_told_and_each_sentence_has_its_first_in_json(
+    fretc: Fretc,
+) -> None:
+    text = (
+        '+++\nid = "A"\nverify = 3\n+++\nthe sw must satisfy p and q\n'
+        '+++\nid = "B"\n+++\nthe sw shall satisfy p && q == 3\n'
+    )
+    run = fretc(write("two.fret", text), "--emit", "ltl", "--format", "json", "-o", "-")
+    codes = [line[:4] for line in run.err.splitlines() if re.match(r"F\d{3} ", line)]
+    assert (run.status, codes) == (2, ["F105", "F107", "F101", "F101", "F101"])
+    first, second = json.loads(run.out)
+    assert (first["error"]["code"], second["error"]["column"]) == ("F105", 24)
+
+
+def test_what_follows_an_unclosed_header_is_not_read_as_a_sentence(fretc: Fretc) -> None:
+    run = fretc(write("r1.fret", '+++\nid = "A"\nthe sw must satisfy p\n'))
+    assert [line[:4] for line in run.err.splitlines() if line.startswith("F")] == ["F113"]

@@ -556,7 +556,7 @@ def test_a_fraction_of_a_unit_is_refused() -> None:
         "  --> r.fret:1:21\n"
         "   | the sw shall within 2.5 seconds satisfy q\n"
         "   |                     ^^^\n"
-        "help: count a smaller unit, in whole numbers: 500 milliseconds, not 0.5 seconds"
+        "help: write `2500 milliseconds`"
     )
 
 
@@ -602,11 +602,11 @@ def test_an_empty_text_is_told() -> None:
 
 def test_an_open_parenthesis_is_told_at_the_end() -> None:
     assert message_of("the sw shall satisfy p & (q | r") == (
-        "F101 the sentence ends too early\n"
+        "F101 1 `(` is not closed\n"
         "  --> r.fret:1:32\n"
         "   | the sw shall satisfy p & (q | r\n"
         "   |                                ^\n"
-        "help: expected `)`"
+        "help: write `)` here, or where the part ends that is meant"
     )
 
 
@@ -622,9 +622,9 @@ def test_a_number_as_response_is_told_with_its_place() -> None:
 
 def test_a_second_sentence_is_told() -> None:
     assert message_of("the sw shall satisfy q the sw shall satisfy r") == (
-        "F101 `the` does not fit here\n"
+        "F117 a second sentence begins here\n"
         "  --> r.fret:1:24\n"
         "   | the sw shall satisfy q the sw shall satisfy r\n"
         "   |                        ^^^\n"
-        "help: expected the end of the sentence"
+        "help: give each a header, with an `id` between two lines `+++`, or a file of its own"
     )

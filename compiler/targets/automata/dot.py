@@ -18,8 +18,8 @@ from compiler.logic import formula as f
 from compiler.logic import printing
 from compiler.logic.implicants import Term
 from compiler.targets.automata.chart import PLACES, chart
+from compiler.targets.automata.expressibility import refusal
 from compiler.targets.automata.folding import OPEN, SATISFIED, VIOLATED, Edge, Node, folded
-from compiler.targets.automata.refusals import refusal
 from compiler.targets.comparison_names import comparison_names, notes, renamed
 from compiler.targets.target import DEFAULT, Options, Target, stem
 from fretish.diagnostics.diagnostic import Diagnostic
@@ -121,4 +121,10 @@ def _lines(texts: Iterable[str]) -> str:
     return '"' + r"\n".join(escaped) + '"'
 
 
-TARGET = Target("dot", "a picture of the automaton, for Graphviz", emit, refuse)
+TARGET = Target(
+    "dot",
+    "a picture of the automaton, for Graphviz",
+    emit,
+    refuse,
+    next_step="`dot -Tsvg -O {}` draws it",
+)

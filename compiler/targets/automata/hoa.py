@@ -22,7 +22,7 @@ from compiler.logic import formula as f
 from compiler.logic import printing
 from compiler.logic.implicants import Term
 from compiler.targets.automata.chart import PLACES, Chart, chart, kind, words
-from compiler.targets.automata.refusals import refusal
+from compiler.targets.automata.expressibility import refusal
 from compiler.targets.comparison_names import comparison_names, notes
 from compiler.targets.target import DEFAULT, Options, Target, stem
 from fretish.diagnostics.diagnostic import Diagnostic

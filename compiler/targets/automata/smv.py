@@ -22,7 +22,7 @@ from compiler.formalization.record import wording
 from compiler.logic import printing
 from compiler.logic.identifiers import legal_names
 from compiler.logic.orders import Exclusion
-from compiler.targets.automata.refusals import no_automaton
+from compiler.targets.automata.expressibility import no_automaton
 from compiler.targets.automata.smv_symbols import monitor
 from compiler.targets.comparison_names import comparison_names, in_words
 from compiler.targets.target import DEFAULT, Options, Target, stem
@@ -129,4 +129,10 @@ def _specs(
     return specs
 
 
-TARGET = Target("smv", "a model with the monitor as a module, for NuSMV and nuXmv", emit, refuse)
+TARGET = Target(
+    "smv",
+    "a model with the monitor as a module, for NuSMV and nuXmv",
+    emit,
+    refuse,
+    next_step="`NuSMV {}` checks its properties",
+)

@@ -16,7 +16,7 @@ from fretc.audit.measurements.tallies import NOTHING, Tally, tally
 from fretc.audit.one_log import examined, signals_of
 from fretc.audit.phases.advice import Runs, proposal
 from fretc.audit.phases.by_shift import Phases, phases
-from fretc.audit.plan import Plan, watched
+from fretc.audit.plan import Plan, monitored_requirements
 from fretc.audit.pool import Killed, each, was_killed
 from fretc.logs.reader import read
 from fretc.logs.signals.samples import Recording
@@ -28,7 +28,7 @@ from fretish.diagnostics.rendering import as_json, visible
 
 
 @dataclass(frozen=True, slots=True)
-class Seen:
+class LogCoverage:
     """One log: its ticks, and the tally of each proposition (None: it could not be read)."""
 
     run: str
@@ -44,12 +44,12 @@ class Coverage:
     """What each proposition was in each log."""
 
     declarations: Declarations
-    logs: tuple[Seen, ...]
+    logs: tuple[LogCoverage, ...]
 
     @property
     def diagnostics(self) -> tuple[Diagnostic, ...]:
         """What there is to say: of each log, and then of all of them."""
-        return (*self._told, *self._of_all)
+        return (*self._findings, *self._of_all)
 
     @property
     def _of_all(self) -> tuple[Diagnostic, ...]:
@@ -61,12 +61,12 @@ class Coverage:
         return [(log.run, log.phases) for log in self.logs if log.phases]
 
     @property
-    def _told(self) -> tuple[Diagnostic, ...]:
+    def _findings(self) -> tuple[Diagnostic, ...]:
         return tuple(finding for log in self.logs for finding in log.findings)
 
     @property
     def _constant(self) -> tuple[Diagnostic, ...]:
-        return tuple(never_changed(self._tallies, self.declarations, self._told))
+        return tuple(never_changed(self._tallies, self.declarations, self._findings))
 
     @property
     def shown(self) -> bool:
@@ -91,7 +91,7 @@ class Coverage:
         return {name: [log[name] for log in read] for name in self.declarations.propositions}
 
     def _took_both(self, name: str) -> bool:
-        return any(counted.true and counted.false for counted in self._tallies[name])
+        return any(tally.true and tally.false for tally in self._tallies[name])
 
     def _lines(self, name: str) -> Iterator[tuple[str, str | None]]:
         took_both = self._took_both(name)
@@ -101,24 +101,24 @@ class Coverage:
             yield f"    {_bound(self.declarations.signals[signal])}", None
         width = max((len(log.run) for log in self.logs), default=0)
         for log in self.logs:
-            counted = "cannot be read" if log.tallies is None else _counted(log.tallies[name])
-            yield f"  {log.run:<{width}}  {counted}", None
+            counts = "cannot be read" if log.tallies is None else _counted(log.tallies[name])
+            yield f"  {log.run:<{width}}  {counts}", None
         if len(self.logs) > 1:
             yield f"  {'all logs':<{width}}  {_counted(sum(self._tallies[name], NOTHING))}", None
 
     def _phase_lines(self) -> Iterator[tuple[str, str | None]]:
-        told = [
+        lines = [
             f"  {run}  {id} {phases.verdict}, {phases.text}"
-            for run, found in self._phased
-            for id, phases in found.items()
+            for run, phases_of in self._phased
+            for id, phases in phases_of.items()
             if phases.text
         ]
-        if told:
+        if lines:
             yield (
                 f"{signs.UNKNOWN.glyph} phase of the ticks: verdicts depend on it",
                 signs.UNKNOWN.colour,
             )
-            yield from ((line, None) for line in told)
+            yield from ((line, None) for line in lines)
         elif self._phased:
             yield (
                 f"{signs.GOOD.glyph} phase of the ticks: no verdict depends on it",
@@ -135,7 +135,7 @@ class Coverage:
                     "ticks": log.ticks,
                     "findings": [as_json(finding) for finding in log.findings],
                     "phases": {
-                        id: plain(phase_verdicts(found)) for id, found in log.phases.items()
+                        id: plain(phase_verdicts(phases)) for id, phases in log.phases.items()
                     },
                 }
                 for log in self.logs
@@ -170,11 +170,11 @@ def _bound(signal: Signal) -> str:
     return f"{signal.name} = {reduced}{signal.path} {signal.unit_name}".rstrip()
 
 
-def _counted(counted: Tally) -> str:
-    ticks = counted.true + counted.false + counted.unknown
-    times = f"{counted.changes} time{'' if counted.changes == 1 else 's'}"
+def _counted(tally: Tally) -> str:
+    ticks = tally.true + tally.false + tally.unknown
+    times = f"{tally.changes} time{'' if tally.changes == 1 else 's'}"
     return (
-        f"true {counted.true}, false {counted.false}, unknown {counted.unknown} "
+        f"true {tally.true}, false {tally.false}, unknown {tally.unknown} "
         f"of {ticks} ticks; changed {times}"
     )
 
@@ -199,35 +199,35 @@ def coverage(
             declarations.source.span(0, 0),
             help=f"add `{mend}`; `fretc bind --from LOG` drafts it",
         )
-    look = partial(_seen, declarations=declarations, plan=plan)
+    look = partial(_log_coverage, declarations=declarations, plan=plan)
     logs = tuple(dict.fromkeys(logs))
-    seen = {
-        place: Seen(logs[place], 0, None, (was_killed(logs[place], str(found)),))
-        if isinstance(found, Killed)
-        else found
-        for place, found in each(look, logs, jobs)
+    of_logs = {
+        place: LogCoverage(logs[place], 0, None, (was_killed(logs[place], str(result)),))
+        if isinstance(result, Killed)
+        else result
+        for place, result in each(look, logs, jobs)
     }
-    return Coverage(declarations, tuple(seen[place] for place in range(len(logs))))
+    return Coverage(declarations, tuple(of_logs[place] for place in range(len(logs))))
 
 
-def _seen(log: str, declarations: Declarations, plan: Plan | None) -> Seen:
+def _log_coverage(log: str, declarations: Declarations, plan: Plan | None) -> LogCoverage:
     names = tuple(declarations.propositions)
     recording = read(log, declarations, signals_of(declarations, names))
     if isinstance(recording, Diagnostic):
-        return Seen(log, 0, None, (recording,))
+        return LogCoverage(log, 0, None, (recording,))
     recording = examined(recording, declarations, names)
-    seen = trace(declarations, recording, names)
-    ticks = len(seen.timeline.times)
-    tallies = {name: tally(column, ticks) for name, column in seen.columns.items()}
-    found = _phases(log, declarations, recording, plan) if plan is not None else {}
-    return Seen(log, ticks, tallies, recording.findings, found)
+    truths = trace(declarations, recording, names)
+    ticks = len(truths.timeline.times)
+    tallies = {name: tally(column, ticks) for name, column in truths.columns.items()}
+    phases_of = _phases(log, declarations, recording, plan) if plan is not None else {}
+    return LogCoverage(log, ticks, tallies, recording.findings, phases_of)
 
 
 def _phases(
     log: str, declarations: Declarations, recording: Recording, plan: Plan
 ) -> Mapping[str, Phases]:
     """By the ticks of an audit: they begin with the messages that the requirements read."""
-    monitors = [w.monitor for w in watched(plan)]
+    monitors = [each.monitor for each in monitored_requirements(plan)]
     if _topics(plan.declarations) != _topics(declarations):
         names = tuple(plan.declarations.signals)
         again = read(log, plan.declarations, names)

@@ -1,1 +1,1 @@
-"""What an audit has shown, as values, as a file, and over many runs."""
+"""The results of an audit, as values, as a file, and over many runs."""

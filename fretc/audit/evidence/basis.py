@@ -69,14 +69,14 @@ def outdated(recorded: Mapping[str, str], now: Basis) -> tuple[str, ...]:
         recorded: by an audit; what it does not have was not known to it.
         now: what is compared is what this has.
     """
-    asked = [kind for kind in (FRETC, *KINDS) if kind in now]
-    changed = {kind for kind in asked if recorded.get(kind) != now[kind]}
+    kinds = [kind for kind in (FRETC, *KINDS) if kind in now]
+    changed = {kind for kind in kinds if recorded.get(kind) != now[kind]}
     follows = set()
     if changed & {FRETC, SENTENCE, CLOCK}:
         follows.add(MONITOR)
     if now.get(CLOCK) == "":  # there are no bindings at all
         follows |= {CLOCK, TOPICS}
-    return tuple(kind for kind in asked if kind in changed - follows)
+    return tuple(kind for kind in kinds if kind in changed - follows)
 
 
 def why(kind: str) -> str:

@@ -1,4 +1,4 @@
-"""Evidence in the units that the bindings declare, for whatever is shown of it."""
+"""Evidence in the units that the bindings declare, for every output."""
 
 from __future__ import annotations
 
@@ -42,13 +42,14 @@ def _violation(violation: Violation, units: _Units) -> Violation:
     def own(name: str) -> Fraction:
         return units.get(name, _ONE)[1]
 
-    known = violation.surroundings
+    surroundings = violation.surroundings
     return replace(
         violation,
         values={name: scaled(number, own(name)) for name, number in violation.values.items()},
-        surroundings=known
+        surroundings=surroundings
         and replace(
-            known, samples={name: _series(each, own(name)) for name, each in known.samples.items()}
+            surroundings,
+            samples={name: _series(each, own(name)) for name, each in surroundings.samples.items()},
         ),
     )
 

@@ -41,9 +41,9 @@ def estimates(
     )
 
 
-def warnings(found: Sequence[Estimated]) -> Iterator[Diagnostic]:
+def warnings(estimates: Sequence[Estimated]) -> Iterator[Diagnostic]:
     """F506 for each that so few logs cannot support, whatever their triggers came to."""
-    for one in found:
+    for one in estimates:
         least = odds.fewest(one.operator, Fraction(one.bound), one.confidence)
         if one.answer == INCONCLUSIVE and one.logs.counted < least:
             yield Diagnostic(
@@ -62,26 +62,26 @@ def _estimated(claim: Claim, results: Sequence[Result], level: float) -> Estimat
     distinct = _distinct(results)
     runs = [_trials(result) for result in distinct]
     damaged = sum(not result.health.intact for result in distinct)
-    found = odds.estimated(runs, odds.both_sides(op, level))
-    answer = odds.answer(found, op, bound)
-    lost = answer == SUPPORTED and damaged > 0
+    estimate = odds.estimated(runs, odds.both_sides(op, level))
+    answer = odds.answer(estimate, op, bound)
+    undecided = answer == SUPPORTED and damaged > 0
     return Estimated(
         requirement=claim.id,
         operator=op,
         bound=claim.chance.bound,
-        answer=cast("AnswerWord", INCONCLUSIVE if lost else answer),
-        reason=_damaged(damaged) if lost else _reason(found, answer, claim.chance.text),
+        answer=cast("AnswerWord", INCONCLUSIVE if undecided else answer),
+        reason=_damaged(damaged) if undecided else _reason(estimate, answer, claim.chance.text),
         confidence=level,
-        triggers=Outcomes(found.trials.answered, found.trials.failed, found.trials.open),
+        triggers=Outcomes(estimate.trials.answered, estimate.trials.failed, estimate.trials.open),
         logs=Logs(
-            counted=found.runs,
+            counted=estimate.runs,
             silent=sum(result.health.intact for result in distinct) - _intact(distinct),
             damaged=damaged,
             copies=len(results) - len(distinct),
         ),
-        estimate=None if found.share is None else round(found.share, 9),
-        bounds=found.bounds,
-        needed=odds.needed(found, op, bound) if answer == INCONCLUSIVE else None,
+        estimate=None if estimate.share is None else round(estimate.share, 9),
+        bounds=estimate.bounds,
+        needed=odds.needed(estimate, op, bound) if answer == INCONCLUSIVE else None,
         meaning=AVERAGE,
     )
 
@@ -98,8 +98,8 @@ def _distinct(results: Sequence[Result]) -> list[Result]:
     """
     first: dict[str, Result] = {}
     for place, result in enumerate(results):
-        known = result.fingerprints
-        first.setdefault(known.messages or known.log or known.log_summary or f"{place}", result)
+        prints = result.fingerprints
+        first.setdefault(prints.messages or prints.log or prints.log_summary or f"{place}", result)
     return list(first.values())
 
 
@@ -110,15 +110,15 @@ def _trials(result: Result) -> Trials:
 # In words --------------------------------------------------------------------------------------
 
 
-def _reason(found: odds.Estimate, answer: str, text: str) -> str:
-    least, most = low(found.bounds.low), high(found.bounds.high)
-    if not found.trials.count:
+def _reason(estimate: odds.Estimate, answer: str, text: str) -> str:
+    least, most = low(estimate.bounds.low), high(estimate.bounds.high)
+    if not estimate.trials.count:
         return "there was no trigger"
     if answer != INCONCLUSIVE:
         return (
             f"it lies between {least} and {most}, so {'' if answer == SUPPORTED else 'not '}{text}"
         )
-    if found.runs < 2:
+    if estimate.runs < 2:
         return "one log does not tell a probability: its triggers depend on each other"
     return f"it lies between {least} and {most}, which leaves {text} open"
 

@@ -82,11 +82,11 @@ class Estimated(Record, frozen=True):
         return tuple(self._lines())
 
     def _lines(self) -> Iterator[str]:
-        known, logs = self.triggers, self.logs
-        count = known.answered + known.failed + known.open
+        triggers, logs = self.triggers, self.logs
+        count = triggers.answered + triggers.failed + triggers.open
         yield f"{self.answer:<12}  {self.reason}"
-        told = f"{known.answered} of {count} triggers answered, {known.failed} failed"
-        yield f"{told}, {known.open} open, in {times(logs.counted, 'log')}{_others(logs)}"
+        outcomes = f"{triggers.answered} of {count} triggers answered, {triggers.failed} failed"
+        yield f"{outcomes}, {triggers.open} open, in {times(logs.counted, 'log')}{_others(logs)}"
         share = "not known" if self.estimate is None else f"{self.estimate:.4f}"
         each = odds.both_sides(self.operator, self.confidence)
         stretch = f"bounds, by whole logs, at {_percent(each)} each: {shown(self.bounds)}"
@@ -98,12 +98,12 @@ class Estimated(Record, frozen=True):
 
 
 def _others(logs: Logs) -> str:
-    found = (
+    groups = (
         (logs.silent, "without a trigger"),
         (logs.damaged, "damaged or not readable"),
         (logs.copies, "not counted: of the same content as another"),
     )
-    return "".join(f", {count} {what}" for count, what in found if count)
+    return "".join(f", {count} {what}" for count, what in groups if count)
 
 
 def shown(bounds: Bounds) -> str:

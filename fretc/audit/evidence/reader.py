@@ -1,4 +1,4 @@
-"""The evidence file as checked values: what audits have found, or why that cannot be read.
+"""The evidence file as checked values: the results of audits, or why that cannot be read.
 
 Nothing in the file is trusted: what its types (`fretc.audit.evidence.schema`) do not have is F503,
 never a report about half of it.
@@ -32,17 +32,17 @@ VERDICTS = (
 
 def by_requirement(evidence: Evidence | None) -> Mapping[str, Sequence[Result]]:
     """The results of each requirement that has any, in the order of the evidence."""
-    found: dict[str, list[Result]] = {}
+    results_of: dict[str, list[Result]] = {}
     for result in evidence.results if evidence else ():
-        found.setdefault(result.requirement, []).append(result)
-    return found
+        results_of.setdefault(result.requirement, []).append(result)
+    return results_of
 
 
 def refuted(path: str) -> frozenset[str]:
     """The requirements that all runs together refute; none where there is no evidence."""
-    found = read(path)
-    told = () if isinstance(found, Diagnostic) else found.probabilities
-    return frozenset(one.requirement for one in told if one.answer == REFUTED)
+    evidence = read(path)
+    estimates = () if isinstance(evidence, Diagnostic) else evidence.probabilities
+    return frozenset(one.requirement for one in estimates if one.answer == REFUTED)
 
 
 def read(path: str) -> Evidence | Diagnostic:
@@ -69,16 +69,18 @@ def _parsed(source: Source) -> Evidence | Diagnostic:
 
 def required(path: str) -> Evidence | Diagnostic:
     """The same; an error where there is none."""
-    found = read(path)
-    return replace(found, severity=Severity.ERROR) if isinstance(found, Diagnostic) else found
+    evidence = read(path)
+    return (
+        replace(evidence, severity=Severity.ERROR) if isinstance(evidence, Diagnostic) else evidence
+    )
 
 
 def _not_audited(path: str) -> Diagnostic:
-    """F901 as a note: a report before the first audit is a report of what is not shown."""
+    """F901 as a note: a report before the first audit has no results."""
     return Diagnostic(
         Code.NO_SUCH_FILE,
         f"no run has been audited: there is no evidence in `{path}`",
-        help=f"audit a run: `fretc audit LOG... --evidence {path}`",
+        help=f"audit a run: `fretc audit LOG... -o {path}`",
         severity=Severity.NOTE,
     )
 
@@ -89,7 +91,7 @@ def _not_json(source: Source, error: json.JSONDecodeError) -> Diagnostic:
         Code.BAD_EVIDENCE,
         f"the evidence is not JSON: {error.msg[:1].lower()}{error.msg[1:]}",
         source.span(at, at + 1),
-        help=f"audit again: `fretc audit LOG... --evidence {source.name}`",
+        help=f"audit again: `fretc audit LOG... -o {source.name}`",
     )
 
 
@@ -98,7 +100,7 @@ def _wrong(path: str, what: str) -> Diagnostic:
         Code.BAD_EVIDENCE,
         f"`{path}` {what}",
         Source(path, "").span(),
-        help=f"audit again: `fretc audit LOG... --evidence {path}`",
+        help=f"audit again: `fretc audit LOG... -o {path}`",
     )
 
 

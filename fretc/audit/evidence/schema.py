@@ -32,7 +32,7 @@ from compiler.files.records import (
     replace,
 )
 from fretc.audit.evidence.probabilities import Estimated, Outcomes
-from fretc.audit.evidence.samples import Reading, Surroundings, Window, window
+from fretc.audit.evidence.samples import Reading, Surroundings, Window, Word, window
 from fretc.audit.measurements.tallies import Tally
 from fretc.audit.measurements.trials import Trials
 from fretc.audit.measurements.violations import Moment as Moment
@@ -72,8 +72,8 @@ class Violation(Record, frozen=True):
     ]
     missing: Annotated[str, about("the response that did not come, as the sentence writes it")]
     values: Annotated[
-        dict[str, Number | None],
-        about("each signal at the first tick, in its base unit; null: unknown"),
+        dict[str, Number | Word | None],
+        about("each signal at the first tick, in its base unit, or its word; null: unknown"),
     ]
     surroundings: Annotated[Surroundings | None, about("null after the first 100 violations")] = (
         field(name="window")
@@ -147,6 +147,9 @@ class Finding(Record, frozen=True):
     line: Ordinal | None
     column: Ordinal | None
     help: str | None
+    subject: Annotated[Name, about("the topic, where a warning can be accepted")] | UnsetType = (
+        UNSET
+    )
 
 
 class Topic(Record, frozen=True):
@@ -360,8 +363,8 @@ class Result(Record, frozen=True, kw_only=True):
     @property
     def hashes(self) -> Mapping[str, str]:
         """Those that are known, by their names."""
-        found: Mapping[str, str] = plain(self.fingerprints)
-        return found
+        prints: Mapping[str, str] = plain(self.fingerprints)
+        return prints
 
     @property
     def uncertain(self) -> frozenset[int]:
@@ -371,8 +374,8 @@ class Result(Record, frozen=True, kw_only=True):
     @property
     def trials(self) -> Trials | None:
         """Of a requirement with a probability, where the log could be read."""
-        known = self.outcomes
-        return Trials(known.answered, known.failed, known.open) if known else None
+        outcomes = self.outcomes
+        return Trials(outcomes.answered, outcomes.failed, outcomes.open) if outcomes else None
 
     @property
     def content(self) -> str:

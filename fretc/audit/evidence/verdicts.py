@@ -87,11 +87,11 @@ def severity(word: str, *, suspect: bool = False) -> tuple[int, bool]:
 
 def level(word: str, *, suspect: bool = False) -> Level:
     """How bad it is: a suspect verdict is a warning at least."""
-    found = VERDICTS[word].level
-    return Level.WARNING if suspect and found is Level.NONE else found
+    own = VERDICTS[word].level
+    return Level.WARNING if suspect and own is Level.NONE else own
 
 
 def junit(word: str, *, suspect: bool = False) -> str:
     """The element of JUnit: a suspect verdict is a failure at least."""
-    found = VERDICTS[word].junit
-    return "failure" if suspect and found in ("", "skipped") else found
+    own = VERDICTS[word].junit
+    return "failure" if suspect and own in ("", "skipped") else own

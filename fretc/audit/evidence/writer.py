@@ -1,4 +1,4 @@
-"""What one audit of one run against one requirement has shown, as its evidence file has it."""
+"""The result of one requirement in one run, in the form of the evidence file."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from typing import TypeVar, cast
 from compiler.files.records import UNSET, UnsetType, decoded, plain
 from compiler.files.templating import to_json
 from fretc.audit.evidence.probabilities import Outcomes
-from fretc.audit.evidence.samples import Reading, Series, Surroundings
+from fretc.audit.evidence.samples import Reading, Series, Surroundings, WordSeries
 from fretc.audit.evidence.schema import (
     Answer,
     Checked,
@@ -40,6 +40,7 @@ from fretc.audit.measurements.violations import Violation as Broken
 from fretc.audit.phases.by_shift import Phases, Stretch
 from fretc.logs.signals.samples import Recording, Samples
 from fretc.logs.signals.samples import Topic as Read
+from fretc.logs.signals.words import word_at
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.diagnostics.rendering import as_json
 from monitors.kernel import Outcome
@@ -110,7 +111,8 @@ def health(recording: Recording) -> Health:
 
 
 def _finding(diagnostic: Diagnostic) -> Finding:
-    return decoded(as_json(diagnostic), Finding)
+    subject = {"subject": diagnostic.subject} if diagnostic.subject else {}
+    return decoded(as_json(diagnostic) | subject, Finding)
 
 
 def _topic(topic: Read) -> Topic:
@@ -170,9 +172,9 @@ def as_record(evidence: Evidence) -> Result:
 
 
 def unread(run: str, requirement: str, diagnostic: Diagnostic, hashes: Mapping[str, str]) -> Result:
-    """The result of a run whose log could not be read: nothing is shown."""
-    found = Health(False, None, None, (), (_finding(diagnostic),), {})
-    return unjudged(run, requirement, diagnostic.message, hashes, found)
+    """The result of a run whose log could not be read: no data."""
+    health = Health(False, None, None, (), (_finding(diagnostic),), {})
+    return unjudged(run, requirement, diagnostic.message, hashes, health)
 
 
 def unjudged(
@@ -255,11 +257,11 @@ def _threshold(margin: Margin, first_ns: int) -> Threshold:
     )
 
 
-def _comparison(kept: bool | str | None) -> Comparison | None:
-    if isinstance(kept, str):
-        assert kept == CROSSED
+def _comparison(state: bool | str | None) -> Comparison | None:
+    if isinstance(state, str):
+        assert state == CROSSED
         return "crossed"
-    return None if kept is None else "true" if kept else "false"
+    return None if state is None else "true" if state else "false"
 
 
 def _reading(value: float | None) -> Reading:
@@ -289,8 +291,14 @@ def _violation(broken: Broken) -> Violation:
 
 
 def _surroundings(window: Window) -> Surroundings:
-    samples = {name: _series(samples) for name, samples in window.samples.items()}
-    return Surroundings(window.start_ns, window.end_ns, samples)
+    numbers = {name: _series(each) for name, each in window.samples.items() if not each.words}
+    words = {name: _words(each) for name, each in window.samples.items() if each.words}
+    return Surroundings(window.start_ns, window.end_ns, numbers, words or UNSET)
+
+
+def _words(samples: Samples) -> WordSeries:
+    words = (word_at(float(value), samples.words) for value in samples.values)
+    return WordSeries(tuple(samples.times.tolist()), tuple(words))
 
 
 def _series(samples: Samples) -> Series:

@@ -20,8 +20,8 @@ def lowest(good: int, count: int, confidence: float) -> float:
 
     if not good:
         return 0.0
-    found = float(betaincinv(good, count - good + 1, 1 - confidence))
-    return max(0.0, floor(found * _GRAIN) / _GRAIN)
+    bound = float(betaincinv(good, count - good + 1, 1 - confidence))
+    return max(0.0, floor(bound * _GRAIN) / _GRAIN)
 
 
 def highest(good: int, count: int, confidence: float) -> float:
@@ -33,5 +33,5 @@ def highest(good: int, count: int, confidence: float) -> float:
 
     if good == count:
         return 1.0
-    found = float(betaincinv(good + 1, count - good, confidence))
-    return min(1.0, ceil(found * _GRAIN) / _GRAIN)
+    bound = float(betaincinv(good + 1, count - good, confidence))
+    return min(1.0, ceil(bound * _GRAIN) / _GRAIN)

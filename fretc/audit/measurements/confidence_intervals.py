@@ -87,16 +87,16 @@ def estimated(runs: Iterable[Trials], confidence: float = CONFIDENCE) -> Estimat
         runs: the trials of each run; their order does not matter.
         confidence: of each bound, between 0.5 and 1.
     """
-    counted = tuple(run for run in runs if run.count)
+    informative = tuple(run for run in runs if run.count)
     answered, failed, open_ = (
-        sum(getattr(run, name) for run in counted) for name in ("answered", "failed", "open")
+        sum(getattr(run, name) for run in informative) for name in ("answered", "failed", "open")
     )
     return Estimate(
         Trials(answered, failed, open_),
-        len(counted),
+        len(informative),
         confidence,
-        bounds(counted, confidence),
-        counted,
+        bounds(informative, confidence),
+        informative,
     )
 
 

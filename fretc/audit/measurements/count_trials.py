@@ -1,4 +1,4 @@
-"""What each trigger came to, for a requirement with a probability.
+"""The outcome of each trigger, for a requirement with a probability.
 
 FRET's PCTL* puts the probability around what is demanded at each trigger; the trials are the
 triggers of the runs, and each is met or not by that very formula, read at the tick of the trigger
@@ -45,40 +45,41 @@ def chance(rule: Formalized) -> Chance | None:
     odds = rule.sentence.probability
     if odds is None:
         return None
-    told = obligation(rule.sentence, rule.ticks or 0, predicates.Past())
-    return Chance(odds.op, odds.digits, told)
+    return Chance(
+        odds.op, odds.digits, obligation(rule.sentence, rule.ticks or 0, predicates.Past())
+    )
 
 
 @deep
-def trials(told: Obligation, columns: Mapping[str, Column], ticks: int) -> Trials:
+def trials(obligation: Obligation, columns: Mapping[str, Column], ticks: int) -> Trials:
     """What each trigger of one run came to.
 
     What follows the log is unknown, for more ticks than any deadline lies ahead.
 
     Args:
-        told: what is demanded.
+        obligation: the demand of each trigger.
         columns: one for each proposition of the obligation.
         ticks: the length of the run.
     """
     if not ticks:
         return Trials(0, 0, 0)
-    triggers = evaluate_unknown(staged(told).trigger, columns, ticks)
+    triggers = evaluate_unknown(staged(obligation).trigger, columns, ticks)
     # A deadline that no trigger of the run can reach is as far as any other one.
-    demand = replace(told.demand, ticks=min(told.demand.ticks, ticks))
-    met = _met(demand, end_marker(told.scope, told.mode))
+    demand = replace(obligation.demand, ticks=min(obligation.demand.ticks, ticks))
+    met = _met(demand, end_marker(obligation.scope, obligation.mode))
     longer = ticks + demand.ticks + _BEYOND
     ahead = (1 << longer) - (1 << ticks)
     unending = {name: Column(c.true, c.unknown | ahead) for name, c in columns.items()}
-    shown = evaluate_unknown(met, unending, longer)
+    outcome = evaluate_unknown(met, unending, longer)
     forbids = Trait.FORBIDS in TRAITS[demand.kind]
     at_end = evaluate_unknown(met, columns, ticks).true if forbids else 0
-    answered = triggers.true & (shown.true | at_end)
-    failed = triggers.true & ~(shown.true | shown.unknown)
+    answered = triggers.true & (outcome.true | at_end)
+    failed = triggers.true & ~(outcome.true | outcome.unknown)
     return Trials(
         answered=answered.bit_count(),
         failed=failed.bit_count(),
         open=((triggers.true | triggers.unknown) & ~(answered | failed)).bit_count(),
-        kept=(answered & ~shown.true).bit_count(),
+        met_by_end=(answered & ~outcome.true).bit_count(),
     )
 
 

@@ -9,14 +9,14 @@ from monitors import kernel
 from monitors.kernel import Column, Monitor, Outcome
 
 Engine = Callable[[Monitor, Mapping[str, Column], int, str], tuple[Outcome, ...]]
-"""Monitor, columns, ticks and the verdict on what is open at the end → what was shown."""
+"""Monitor, columns, ticks and the verdict on what is open at the end → the outcome."""
 
-SHOWN = (kernel.SATISFIED, kernel.VACUOUS)
+WITHOUT_VIOLATION = (kernel.SATISFIED, kernel.VACUOUS)
 
 
 @dataclass(frozen=True, slots=True)
 class Judgement:
-    """What was shown of one requirement."""
+    """The outcome of a monitor over one trace, and what the end of the log changes."""
 
     outcome: Outcome
     longer: str | None
@@ -28,7 +28,7 @@ class Judgement:
     @property
     def verdict(self) -> str:
         """A damaged log can show a violation, and nothing else; a cut tick leaves things open."""
-        if self.outcome.verdict not in SHOWN:
+        if self.outcome.verdict not in WITHOUT_VIOLATION:
             return self.outcome.verdict
         if not self.intact:
             return kernel.NO_DATA
@@ -63,8 +63,8 @@ def judged(
         engine: how the monitor is run.
     """
     (outcome,) = engine(monitor, columns, ticks, end)
-    asked = outcome.verdict in SHOWN and intact and cut is not None
-    longer = _longer(monitor, columns, cut, ticks, engine) if asked and cut is not None else None
+    matters = outcome.verdict in WITHOUT_VIOLATION and intact and cut is not None
+    longer = _longer(monitor, columns, cut, ticks, engine) if matters and cut is not None else None
     return Judgement(outcome, longer, intact)
 
 

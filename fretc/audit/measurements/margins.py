@@ -63,20 +63,20 @@ def margins(
         recording: with the samples of all signals that the proposition names.
         ticks: when the whole ticks are.
     """
-    wanted = thresholds(proposition, declarations.signals)
-    if not wanted:
+    bounds = thresholds(proposition, declarations.signals)
+    if not bounds:
         return ()
     signals = {name: declarations.signals[name] for name in proposition.signals}
     history = history_of(signals, recording)
     begin = recording.start_ns if declarations.clock.period is not None else None
     audited = _audited(history.times, ticks, begin)
-    return tuple(_margin(threshold, history, audited) for threshold in wanted)
+    return tuple(_margin(threshold, history, audited) for threshold in bounds)
 
 
-def worst(found: Iterable[Margin]) -> Margin | None:
+def worst(margins: Iterable[Margin]) -> Margin | None:
     """The one that is least as a part of its bound; None where every threshold was crossed."""
-    kept = [margin for margin in found if margin.share is not None]
-    return min(kept, key=lambda margin: margin.share or 0.0, default=None)
+    uncrossed = [margin for margin in margins if margin.share is not None]
+    return min(uncrossed, key=lambda margin: margin.share or 0.0, default=None)
 
 
 def _audited(times: Times, ticks: Times, begin: int | None) -> slice:
@@ -92,20 +92,20 @@ def _audited(times: Times, ticks: Times, begin: int | None) -> slice:
 def _margin(threshold: Threshold, history: History, audited: slice) -> Margin:
     scope = history.scope()
     states = truth(threshold.comparison, scope)[audited]
-    known = states != UNKNOWN
-    held, times = states[known] == TRUE, history.times[audited][known]
+    definite = states != UNKNOWN
+    truths, times = states[definite] == TRUE, history.times[audited][definite]
     if not len(times):
         return Margin(threshold, None, None, None, None, None)
     measured, bound, scale = together(term(threshold.term, scope), term(threshold.limit, scope))
-    measured = measured[audited][known]
+    measured = measured[audited][definite]
     values = Measure(measured, scale).base
     least, greatest = float(values.min()), float(values.max())
-    if held.any() and not held.all():
-        changed = int(times[np.argmax(held != held[0])])
+    if truths.any() and not truths.all():
+        changed = int(times[np.argmax(truths != truths[0])])
         return Margin(threshold, CROSSED, least, greatest, None, changed)
-    apart = Measure(np.abs(measured - bound), scale).base
-    at = int(np.argmin(apart))
-    if not np.isfinite(apart[at]):  # it never came out of infinity
-        return Margin(threshold, bool(held[0]), least, greatest, None, None)
-    nearest, distance = int(times[at]), float(apart[at])
-    return Margin(threshold, bool(held[0]), least, greatest, distance, nearest)
+    distances = Measure(np.abs(measured - bound), scale).base
+    at = int(np.argmin(distances))
+    if not np.isfinite(distances[at]):  # it never came out of infinity
+        return Margin(threshold, bool(truths[0]), least, greatest, None, None)
+    nearest, distance = int(times[at]), float(distances[at])
+    return Margin(threshold, bool(truths[0]), least, greatest, distance, nearest)

@@ -22,13 +22,13 @@ def states(outcome: Outcome) -> tuple[tuple[int, str], ...]:
         changes.setdefault(first, Counter())[state] += 1
         changes.setdefault(last + 1, Counter())[state] -= 1
     now: Counter[str] = Counter()
-    found: list[tuple[int, str]] = []
+    changes_of_state: list[tuple[int, str]] = []
     for tick in sorted(tick for tick in changes if tick < outcome.ticks):
         now.update(changes[tick])
         state = next((state for state in _FIRST if now[state] > 0), IDLE)
-        if not found or found[-1][1] != state:
-            found.append((tick, state))
-    return tuple(found)
+        if not changes_of_state or changes_of_state[-1][1] != state:
+            changes_of_state.append((tick, state))
+    return tuple(changes_of_state)
 
 
 def _stretches(outcome: Outcome) -> Iterator[tuple[str, int, int]]:

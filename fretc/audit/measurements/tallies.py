@@ -40,14 +40,14 @@ def _changes(column: Column, ticks: int) -> int:
     if not column.unknown:
         inner = (1 << max(0, ticks - 1)) - 1
         return ((column.true ^ column.true >> 1) & inner).bit_count()
-    known = [
+    values = [
         true
         for true, unknown in zip(
             _digits(column.true, ticks), _digits(column.unknown, ticks), strict=True
         )
         if unknown == "0"
     ]
-    return sum(one != other for one, other in pairwise(known))
+    return sum(one != other for one, other in pairwise(values))
 
 
 def _digits(bits: int, ticks: int) -> str:

@@ -1,4 +1,4 @@
-"""What each trigger of a requirement came to in one run: the trials of a probability."""
+"""The outcome of each trigger of a requirement in one run: the trials of a probability."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ class Trials:
     open: int
     """The log does not tell: it ended before, or holds unknown values where it matters; also
     triggers of which it is unknown whether they are any."""
-    kept: int = 0
+    met_by_end: int = 0
     """Of the answered ones, those that are met because the log ended."""
 
     @property
@@ -35,8 +35,8 @@ class Trials:
         """
         if longer.failed <= self.failed:
             return self
-        left, undone = self.answered - self.kept, max(1, self.open + self.kept)
-        return replace(self, answered=left, open=undone, kept=0)
+        answered, still_open = self.answered - self.met_by_end, max(1, self.open + self.met_by_end)
+        return replace(self, answered=answered, open=still_open, met_by_end=0)
 
     def __str__(self) -> str:
         """`11 of 12 triggers answered, 1 failed`."""

@@ -14,16 +14,17 @@ from numpy.typing import NDArray
 
 from compiler.files.records import Count, Record, Seconds, Whole
 from fretc.logs.signals.samples import Recording, Samples, Values, scaled
+from fretc.logs.signals.words import word_at
 from monitors.kernel import Outcome
 
 SURROUNDINGS = 10**9
-"""Nanoseconds before the trigger and after the deadline that are shown with a violation."""
+"""Nanoseconds before the trigger and after the deadline that evidence has with a violation."""
 MOST_SAMPLES = 50
 """Of one signal around one violation."""
 EVEN_SAMPLES = MOST_SAMPLES - 3
-"""Of more than that the ones that are kept at even distances."""
+"""How many of a larger number are kept, at even distances."""
 MOST_WINDOWS = 100
-"""Violations of one run and requirement that are told with their samples."""
+"""Violations of one run and requirement that evidence has with their samples."""
 
 
 class Moment(Record, frozen=True):
@@ -56,7 +57,7 @@ class Window:
 
 @dataclass(frozen=True, slots=True)
 class Violation:
-    """A stretch of ticks at which a demand was broken, with what the signals said."""
+    """A stretch of ticks at which a demand was broken, with the samples of its signals."""
 
     first: Moment
     last: Moment
@@ -66,8 +67,9 @@ class Violation:
     """By when the response had to come; None where nothing says so, or after the last tick."""
     missing: str
     """The response that did not come."""
-    values: Mapping[str, float | None]
-    """Each signal of the sentence at the first tick, in base units; None: unknown."""
+    values: Mapping[str, float | str | None]
+    """Each signal of the sentence at the first tick, a number in base units or a word; None:
+    unknown."""
     window: Window | None
     """None for violations after the first `MOST_WINDOWS`."""
 
@@ -83,15 +85,15 @@ def violations(
     """Each stretch of ticks at which the requirement was violated, in their order.
 
     Args:
-        outcome: what the monitor has shown.
-        demand: what it was that did not come.
+        outcome: of the monitor.
+        demand: of the requirement.
         horizon: ticks after which a trigger demands nothing any more; None: there is no such end.
         at: the moment of a tick.
         recording: with the samples of the signals.
         signals: those that the sentence reads.
     """
     answered = dict(outcome.answers)
-    found = []
+    stretches = []
     for place, (first, last) in enumerate(outcome.violations):
         trigger = _cause(outcome, answered, horizon, first)
         deadline = None if trigger is None or demand.horizon is None else trigger + demand.horizon
@@ -103,8 +105,8 @@ def violations(
             else None
         )
         values = {name: value_at(recording, name, broken.ns) for name in signals}
-        found.append(Violation(broken, at(last), begin, due, demand.response, values, window))
-    return tuple(found)
+        stretches.append(Violation(broken, at(last), begin, due, demand.response, values, window))
+    return tuple(stretches)
 
 
 def _cause(
@@ -130,7 +132,7 @@ def _cause(
 # Signals
 
 
-def value_at(recording: Recording, signal: str, ns: int) -> float | None:
+def value_at(recording: Recording, signal: str, ns: int) -> float | str | None:
     """The last sample of a signal at or before a time; None where there is none or it is unknown.
 
     Infinite values (nothing in range) are None too: JSON has no word for them.
@@ -139,6 +141,8 @@ def value_at(recording: Recording, signal: str, ns: int) -> float | None:
     if samples is None:
         return None
     i = int(np.searchsorted(samples.times, ns, "right")) - 1
+    if samples.words:
+        return word_at(float(samples.values[i]), samples.words) if i >= 0 else None
     value = scaled(float(samples.values[i]), samples.scale) if i >= 0 else float("nan")
     return value if np.isfinite(value) else None
 
@@ -159,27 +163,27 @@ def _window(
 def _around(samples: Samples, start: int, end: int, broken: int) -> Samples:
     """The samples of a stretch of time, and the one in force at its start; not too many.
 
-    The one that is the last at the time `broken` is always among them: its age is told.
+    The one that is the last at the time `broken` is always among them: readers need its age.
     """
     first = max(0, int(np.searchsorted(samples.times, start, "right")) - 1)
     upto = int(np.searchsorted(samples.times, end, "right"))
     times, values = samples.times[first:upto], samples.values[first:upto]
-    kept = _thinned(values, max(0, int(np.searchsorted(times, broken, "right")) - 1))
-    return Samples(times[kept], values[kept], samples.scale)
+    places = _thinned(values, max(0, int(np.searchsorted(times, broken, "right")) - 1))
+    return Samples(times[places], values[places], samples.scale, samples.words)
 
 
-def _thinned(values: Values, wanted: int) -> NDArray[np.intp]:
+def _thinned(values: Values, always: int) -> NDArray[np.intp]:
     """The places of at most `MOST_SAMPLES` values: evenly, with the least and the greatest.
 
     Args:
         values: of one signal.
-        wanted: the place of one that is kept.
+        always: the place of one that is kept.
     """
     count = len(values)
     if count <= MOST_SAMPLES:
         return np.arange(count)
     even = np.linspace(0, count - 1, EVEN_SAMPLES).round().astype(np.intp)
-    chosen = [wanted]
+    chosen = [always]
     if not np.isnan(values).all():
         chosen += [int(np.nanargmin(values)), int(np.nanargmax(values))]
     return np.unique(np.concatenate([even, np.array(chosen, np.intp)]))

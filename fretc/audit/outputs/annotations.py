@@ -1,4 +1,4 @@
-"""What an audit has shown, as a log of its own that Foxglove plays beside the audited one.
+"""The results of an audit, as a log of its own that Foxglove plays beside the audited one.
 
 `/fretc/verdicts` tells each trigger, answer and violation, and the verdict at the end;
 `/fretc/<id>` tells the state of a requirement whenever it changes. Times are nanoseconds of the
@@ -33,7 +33,7 @@ from monitors import kernel
 VERDICTS = "/fretc/verdicts"
 _INFO, _WARNING, _ERROR = 2, 3, 4
 _LEVELS: Mapping[str, int] = {kernel.SATISFIED: _INFO, kernel.VIOLATED: _ERROR}
-"""Of the verdicts; a warning for what is not shown."""
+"""Of the verdicts; any other one is a warning."""
 _SECOND = 10**9
 _LOGS = (".mcap", ".bag", ".db3")
 
@@ -81,7 +81,7 @@ def sidecars(
         if result.start_ns is not None:
             runs.setdefault(result.run, []).append(result)
     names = _names(list(runs))
-    return {folder / names[run]: sidecar(found, rules) for run, found in runs.items()}
+    return {folder / names[run]: sidecar(of_run, rules) for run, of_run in runs.items()}
 
 
 def sidecar(results: Sequence[Result], rules: Sequence[Formalized]) -> bytes:
@@ -114,17 +114,17 @@ def sidecar(results: Sequence[Result], rules: Sequence[Formalized]) -> bytes:
 
 
 def state_topic(id: str) -> str:
-    """Where the states of a requirement are told."""
+    """The topic with the states of a requirement."""
     topic = f"/fretc/{id}"
     return f"{topic}/state" if topic == VERDICTS else topic
 
 
 def _events(result: Result, rules: Mapping[str, Formalized]) -> Iterator[_Event]:
-    """Of one requirement; of those at the same time, what comes first is told first."""
+    """The events of one requirement; those of one time stand in the order of cause and effect."""
     id = result.requirement
     place = rules[id].requirement.wording
 
-    def told(ns: int, level: int, message: str) -> _Event:
+    def event(ns: int, level: int, message: str) -> _Event:
         where = {"name": id, "file": place.source.name, "line": place.line}
         return _Event(max(0, ns), VERDICTS, {"level": level, "message": message, **where})
 
@@ -133,50 +133,50 @@ def _events(result: Result, rules: Mapping[str, Formalized]) -> Iterator[_Event]
         yield _Event(max(0, state.ns), state_topic(id), content)
     triggers = {moment.tick: moment for moment in result.triggers}
     for trigger in triggers.values():
-        yield told(trigger.ns, _INFO, f"{id}: triggered")
+        yield event(trigger.ns, _INFO, f"{id}: triggered")
     for answer in result.answers:
         waited = _seconds(answer.ns - triggers[answer.trigger].ns)
-        yield told(answer.ns, _INFO, f"{id}: answered after {waited}")
+        yield event(answer.ns, _INFO, f"{id}: answered after {waited}")
     for violation in result.violations:
         cause = violation.trigger
         since = f", triggered at {cause.seconds:.3f} s" if cause else ""
-        yield told(violation.start_ns, _ERROR, f"{id}: violated from here on{since}")
-        yield told(violation.end_ns, _ERROR, f"{id}: violated up to here")
+        yield event(violation.start_ns, _ERROR, f"{id}: violated from here on{since}")
+        yield event(violation.end_ns, _ERROR, f"{id}: violated up to here")
     verdict = f"{id}: {result.verdict}: {result.reason}"
     assert result.end_ns is not None, "there is a sidecar of what could be read only"
-    yield told(result.end_ns, _LEVELS.get(result.verdict, _WARNING), verdict)
+    yield event(result.end_ns, _LEVELS.get(result.verdict, _WARNING), verdict)
 
 
 def _metadata(results: Sequence[Result]) -> dict[str, str]:
-    """What was judged, by what, and how it came out."""
+    """The hashes of what the run was judged by, and the verdicts."""
     first = results[0]
-    found = {"fretc": __version__, "run": first.run, "clock": first.clock}
+    entries = {"fretc": __version__, "run": first.run, "clock": first.clock}
     names = ("log", "log_summary", CLOCK, TOPICS)
-    found |= {f"sha256.{n}": first.hashes[n] for n in names if n in first.hashes}
+    entries |= {f"sha256.{n}": first.hashes[n] for n in names if n in first.hashes}
     for result in results:
         id, hashes = result.requirement, result.hashes
-        found |= {f"{id}.verdict": result.verdict, f"{id}.reason": result.reason}
+        entries |= {f"{id}.verdict": result.verdict, f"{id}.reason": result.reason}
         parts = [name for name in (SENTENCE, PARAMS, BINDINGS, MONITOR) if name in hashes]
-        found |= {f"{id}.sha256.{name}": hashes[name] for name in parts}
-    return found
+        entries |= {f"{id}.sha256.{name}": hashes[name] for name in parts}
+    return entries
 
 
 def _names(runs: Sequence[str]) -> dict[str, Path]:
     """A file name for each run; those of the same name keep the folders in which they differ."""
-    alike: dict[str, list[str]] = {}
+    runs_of: dict[str, list[str]] = {}
     for run in runs:
-        alike.setdefault(_safe(_stem(run)), []).append(run)
+        runs_of.setdefault(_safe(_stem(run)), []).append(run)
     names: dict[str, Path] = {}
-    taken: set[Path] = set()
-    for stem, same in alike.items():
+    used: set[Path] = set()
+    for stem, same in runs_of.items():
         folders = [Path(run).parent.parts for run in same]
         shared = min(_shared(folders[0], parts) for parts in folders)
         for run, parts in zip(same, folders, strict=True):
             folder = Path(*map(_safe, parts[shared:]))
             numbered = (f"{stem}-{number}" for number in count(2))
             free = (folder / f"{name}{ANNOTATIONS}" for name in chain([stem], numbered))
-            names[run] = next(name for name in free if name not in taken)
-            taken.add(names[run])
+            names[run] = next(name for name in free if name not in used)
+            used.add(names[run])
     return names
 
 

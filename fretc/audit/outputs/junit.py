@@ -29,25 +29,25 @@ _GITHUB = {Level.ERROR: "error", Level.WARNING: "warning", Level.NONE: "notice"}
 
 def junit(
     results: Sequence[Result],
-    together: Sequence[Estimated] = (),
+    estimates: Sequence[Estimated] = (),
     signals: Mapping[str, Signal] = MappingProxyType({}),
 ) -> str:
     """One test suite for each run, one test case for each requirement.
 
     Args:
         results: each of a run and a requirement, as in the evidence.
-        together: those that are judged over all runs, which is a suite of its own.
-        signals: those of the bindings, in whose units numbers are shown.
+        estimates: those that are judged over all runs, which is a suite of its own.
+        signals: those of the bindings, whose units numbers have.
     """
     root = ElementTree.Element("testsuites", name="fretc audit")
-    for run, found in groupby(results, key=lambda result: result.run):
-        cases = list(found)
+    for run, of_run in groupby(results, key=lambda result: result.run):
+        cases = list(of_run)
         counts = counted([verdicts.junit(case.verdict) for case in cases])
         suite = ElementTree.SubElement(root, "testsuite", {"name": valid(run), **counts})
         for case in cases:
             _case(suite, run, case, signals)
-    if together:
-        _suite_of_all(root, together)
+    if estimates:
+        _suite_of_all(root, estimates)
     return as_text(root)
 
 
@@ -64,17 +64,17 @@ def counted(kinds: Sequence[str]) -> dict[str, str]:
     return {"tests": str(len(kinds))} | {n: str(kinds.count(k)) for n, k in names.items()}
 
 
-def _suite_of_all(root: ElementTree.Element, together: Sequence[Estimated]) -> None:
-    counts = counted([verdicts.junit(one.answer) for one in together])
+def _suite_of_all(root: ElementTree.Element, estimates: Sequence[Estimated]) -> None:
+    counts = counted([verdicts.junit(one.answer) for one in estimates])
     suite = ElementTree.SubElement(root, "testsuite", {"name": "all runs", **counts})
-    for one in together:
+    for one in estimates:
         names = {"name": valid(one.requirement), "classname": "all runs", "time": "0.000"}
         node = ElementTree.SubElement(suite, "testcase", names)
         kind = verdicts.junit(one.answer)
         if kind:
             message = valid(f"{one.answer}: {one.reason}")
-            told = ElementTree.SubElement(node, kind, message=message)
-            told.text = valid("\n".join(one.lines))
+            element = ElementTree.SubElement(node, kind, message=message)
+            element.text = valid("\n".join(one.lines))
 
 
 def _case(
@@ -91,18 +91,20 @@ def _case(
     kind = verdicts.junit(case.verdict)
     if kind:
         message = valid(f"{case.verdict}: {case.reason}")
-        told = ElementTree.SubElement(node, kind, message=message)
-        told.text = valid("\n".join(_lines(case, signals)))
+        element = ElementTree.SubElement(node, kind, message=message)
+        element.text = valid("\n".join(_lines(case, signals)))
 
 
 def _lines(case: Result, signals: Mapping[str, Signal]) -> Iterator[str]:
-    """Each stretch at which the requirement was violated, with what the signals said."""
+    """Each stretch at which the requirement was violated, with the samples of its signals."""
     units = {n: declared_unit(n, base, signals) for n, base in case.units.items()}
     bounds = {name: _bounds(case, name, factor) for name, (_, factor) in units.items()}
     for broken in case.violations:
         values = ", ".join(
-            f"{name} = {value(scaled(number, units[name][1]), units[name][0], bounds[name])}"
-            for name, number in broken.values.items()
+            f'{name} = "{known}"'
+            if isinstance(known, str)
+            else f"{name} = {value(scaled(known, units[name][1]), units[name][0], bounds[name])}"
+            for name, known in broken.values.items()
         )
         stretch = f"{broken.start_s:.3f} s to {broken.end_s:.3f} s"
         yield f"{stretch}: {values}" if values else stretch
@@ -110,8 +112,8 @@ def _lines(case: Result, signals: Mapping[str, Signal]) -> Iterator[str]:
 
 def _bounds(case: Result, signal: str, factor: Fraction) -> list[float]:
     """What a signal, or its absolute value, is compared with."""
-    found = (t for t in case.thresholds if t.signal in (signal, f"abs({signal})"))
-    return [sign * scaled(each.bound, factor) for each in found for sign in (1, -1)]
+    thresholds = (t for t in case.thresholds if t.signal in (signal, f"abs({signal})"))
+    return [sign * scaled(each.bound, factor) for each in thresholds for sign in (1, -1)]
 
 
 def valid(text: str) -> str:
@@ -122,9 +124,9 @@ def valid(text: str) -> str:
 def github(
     results: Sequence[Result],
     requirements: Sequence[Requirement],
-    together: Sequence[Estimated] = (),
+    estimates: Sequence[Estimated] = (),
 ) -> str:
-    """A line for each result, shown at the sentence of its requirement.
+    """A line for each result, at the sentence of its requirement.
 
     Of a run that only counts (`trials`) it is a notice: what all runs say follows.
     """
@@ -133,18 +135,18 @@ def github(
     for result in results:
         level = "notice" if result.trials is not None else _GITHUB[verdicts.level(result.verdict)]
         title = f"{result.requirement} {result.verdict}"
-        said = f"{result.run}: {result.reason}"
-        lines.append(_annotation(level, places[result.requirement], title, said))
-    for one in together:
+        message = f"{result.run}: {result.reason}"
+        lines.append(_annotation(level, places[result.requirement], title, message))
+    for one in estimates:
         level, title = _GITHUB[verdicts.level(one.answer)], f"{one.requirement} {one.answer}"
-        said = f"all runs: {one.reason}; {one.lines[1]}; {AVERAGE}"
-        lines.append(_annotation(level, places[one.requirement], title, said))
+        message = f"all runs: {one.reason}; {one.lines[1]}; {AVERAGE}"
+        lines.append(_annotation(level, places[one.requirement], title, message))
     return "".join(lines)
 
 
-def _annotation(level: str, place: Span, title: str, said: str) -> str:
+def _annotation(level: str, place: Span, title: str, message: str) -> str:
     where = f"file={_property(place.source.name)},line={place.line},title={_property(title)}"
-    return f"::{level} {where}::{_data(said)}\n"
+    return f"::{level} {where}::{_data(message)}\n"
 
 
 def _data(text: str) -> str:

@@ -47,7 +47,7 @@ _COUNTED = {"kind": "informational", "level": "none"}
 
 @dataclass(frozen=True, slots=True)
 class OneRun:
-    """A result with the verdict that is shown of it, and why that does not count, if so."""
+    """A result with its verdict, and the reasons why that is suspect."""
 
     result: Result
     verdict: str
@@ -78,7 +78,7 @@ def sarif(
     results: Sequence[OneRun],
     rules: Sequence[Formalized],
     diagnostics: Sequence[Diagnostic] = (),
-    together: Sequence[AllRuns] = (),
+    estimates: Sequence[AllRuns] = (),
     failed: Sequence[Requirement] = (),
 ) -> str:
     """One SARIF run; the same inputs give the same bytes.
@@ -87,22 +87,22 @@ def sarif(
         results: each of a run and a requirement, in the order of the evidence.
         rules: all requirements of the results; others are left out.
         diagnostics: what there is to say of the logs.
-        together: requirements that are judged over all runs: each gives one more result.
+        estimates: requirements that are judged over all runs: each gives one more result.
         failed: requirements without a rule.
     """
-    meant = dict.fromkeys(one.result.requirement for one in results)
+    ids = dict.fromkeys(one.result.requirement for one in results)
     named = {r.id: r for r in (*(rule.requirement for rule in rules), *failed)}
-    used = [requirement for id, requirement in named.items() if id in meant]
+    rules_of_results = [requirement for id, requirement in named.items() if id in ids]
     by_id = {rule.id: rule for rule in rules}
-    files = _files(results, used)
+    files = _files(results, rules_of_results)
     content = {
-        "tool": {"driver": _driver(used, by_id, diagnostics)},
+        "tool": {"driver": _driver(rules_of_results, by_id, diagnostics)},
         "invocations": [_invocation(diagnostics)],
         "artifacts": list(files.values()),
         "columnKind": "unicodeCodePoints",
         "results": [
-            *(_result(one, used, list(files)) for one in results),
-            *(_result_of_all(one, used, list(files)) for one in together),
+            *(_result(one, rules_of_results, list(files)) for one in results),
+            *(_result_of_all(one, rules_of_results, list(files)) for one in estimates),
         ],
     }
     return f"{to_json({'$schema': _SCHEMA, 'version': '2.1.0', 'runs': [content]})}\n"
@@ -127,12 +127,12 @@ def _rule(requirement: Requirement, rule: Formalized | None) -> dict[str, Any]:
     """A requirement; without a rule nothing says what it means."""
     sentence = wording(requirement)
     words = meaning(rule.written, rule.ticks, rule.clock) if rule else ""
-    told = [words, requirement.text, requirement.rationale]
+    paragraphs = [words, requirement.text, requirement.rationale]
     return {
         "id": requirement.id,
         "shortDescription": {"text": requirement.title or sentence},
         "fullDescription": {"text": sentence},
-        "help": {"text": "\n\n".join(text for text in told if text) or sentence},
+        "help": {"text": "\n\n".join(text for text in paragraphs if text) or sentence},
         "defaultConfiguration": {"level": "error"},
         "properties": {
             **({"sha256": rule.fingerprint} if rule else {}),
@@ -159,10 +159,10 @@ def _files(results: Sequence[OneRun], used: Sequence[Requirement]) -> dict[str, 
 def _result(one: OneRun, used: Sequence[Requirement], files: Sequence[str]) -> dict[str, Any]:
     result, suspicions = one.result, one.suspicions
     level = _LEVELS[verdicts.level(one.verdict, suspect=bool(suspicions))]
-    said = f"{result.run}: {one.verdict}: {result.reason}{_because(suspicions)}"
+    message = f"{result.run}: {one.verdict}: {result.reason}{_because(suspicions)}"
     return _at_sentence(result.requirement, result.run, used, files) | {
         **(level if result.trials is None else _COUNTED),
-        "message": {"text": said},
+        "message": {"text": message},
         "analysisTarget": _place(result.run) | {"index": files.index(result.run)},
         "properties": {
             "verdict": one.verdict,
@@ -219,6 +219,9 @@ def _invocation(diagnostics: Sequence[Diagnostic]) -> dict[str, Any]:
                 "level": diagnostic.severity.value,
                 "message": {"text": diagnostic.message},
                 **_locations(diagnostic.span),
+                **(
+                    {"properties": {"accepted": diagnostic.accepted}} if diagnostic.accepted else {}
+                ),
             }
             for diagnostic in diagnostics
         ],

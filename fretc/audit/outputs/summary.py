@@ -136,9 +136,9 @@ class Summary:
 def summarized(table: Table) -> Summary:
     """The summary of a table."""
     with _asked(table, _COUNTED) as ask:
-        (whole,) = _answer(ask, _WHOLE).records
+        (totals,) = _answer(ask, _WHOLE).records
         return Summary(
-            whole,
+            totals,
             _answer(ask, _REQUIREMENTS),
             _answer(ask, _FAILED),
             _answer(ask, _SLOWEST),
@@ -194,10 +194,10 @@ def _mixed(requirement: str, kinds: int) -> Diagnostic:
     )
 
 
-def _torn(found: Sequence[Mapping[str, Any]]) -> Iterator[Diagnostic]:
+def _torn(rows_of_all: Sequence[Mapping[str, Any]]) -> Iterator[Diagnostic]:
     """F555, once for each requirement."""
     of_requirement: dict[str, list[Mapping[str, Any]]] = {}
-    for row in found:
+    for row in rows_of_all:
         of_requirement.setdefault(row["requirement"], []).append(row)
     for requirement, rows in of_requirement.items():
         first = rows[0]

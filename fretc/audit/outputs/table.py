@@ -88,7 +88,7 @@ def read(paths: Sequence[str]) -> Table | Diagnostic:
     """The rows of all the files, Parquet or evidence; a row that is in several comes once for each.
 
     Args:
-        paths: what `--parquet` or `--evidence` wrote.
+        paths: what `--parquet` or `--output` wrote.
     """
     import pyarrow
 
@@ -115,10 +115,10 @@ def _read(path: str) -> Table | Diagnostic:
 
 
 def _read_evidence(path: str) -> Table | Diagnostic:
-    found = required(path)
-    if isinstance(found, Diagnostic):
-        return found
-    return _table([_row(result, found.fretc) for result in found.results])
+    evidence = required(path)
+    if isinstance(evidence, Diagnostic):
+        return evidence
+    return _table([_row(result, evidence.fretc) for result in evidence.results])
 
 
 def _read_parquet(path: str) -> Table | Diagnostic:
@@ -130,12 +130,12 @@ def _read_parquet(path: str) -> Table | Diagnostic:
             table = file.read()
     except (pyarrow.ArrowException, OSError) as error:
         return _no_table(path, f"is a damaged table: {str(error).splitlines()[0]}")
-    known = (table.schema.metadata or {}).get(b"schema", b"").decode(errors="replace")
+    name = (table.schema.metadata or {}).get(b"schema", b"").decode(errors="replace")
     schema = _schema()
-    if known == OLDER and table.schema.equals(schema.remove(len(schema) - 1)):
+    if name == OLDER and table.schema.equals(schema.remove(len(schema) - 1)):
         last = schema.field(len(schema) - 1)
         return table.append_column(last, pyarrow.nulls(len(table), last.type)).cast(schema)
-    if known != SCHEMA or not table.schema.equals(schema):
+    if name != SCHEMA or not table.schema.equals(schema):
         return _no_table(path, f"is no table of `{SCHEMA}`")
     return table
 
@@ -154,7 +154,7 @@ def _neither(path: str) -> Diagnostic:
         Code.BAD_EVIDENCE,
         f"`{path}` is neither a table nor evidence",
         Source(path, "").span(),
-        help="name what `fretc audit LOG... --parquet FILE` or `--evidence FILE` wrote",
+        help="name what `fretc audit LOG... --parquet FILE` or `-o FILE` wrote",
     )
 
 

@@ -18,14 +18,14 @@ from monitors import kernel
 _STAMPS = 'or let the messages tell their time: `time = "header.stamp"`'
 
 
-def findings(found: Mapping[str, Phases], declarations: Declarations) -> Iterator[Diagnostic]:
+def findings(phases_of: Mapping[str, Phases], declarations: Declarations) -> Iterator[Diagnostic]:
     """F425 for each requirement that one log violates at some phases and not at others; F426.
 
     Args:
-        found: of one log, by requirement.
+        phases_of: of one log, by requirement.
         declarations: with the clock that they are about.
     """
-    for id, phases in found.items():
+    for id, phases in phases_of.items():
         if phases.varies and kernel.VIOLATED in phases.verdicts:
             yield Diagnostic(
                 Code.PHASE_DEPENDENT,
@@ -80,20 +80,20 @@ class Arc:
         return min(near, key=lambda n: abs(n - centre), default=centre) % period
 
 
-def longest(found: Sequence[Phases]) -> Arc | None:
+def longest(phases_of_all: Sequence[Phases]) -> Arc | None:
     """The longest stretch of phases at which no verdict changes; None where none ever does.
 
     Args:
-        found: of any logs and requirements, with one clock.
+        phases_of_all: of any logs and requirements, with one clock.
     """
-    edges = sorted({edge for phases in found for edge in _edges(phases)})
+    edges = sorted({edge for phases in phases_of_all for edge in _edges(phases)})
     if not edges:
         return None
-    period = found[0].period
+    period = phases_of_all[0].period
     after = [*edges[1:], edges[0] + period]
     arcs = [Arc(edge, then - edge) for edge, then in zip(edges, after, strict=True)]
-    judged = [arc for arc in arcs if all(_at(phases, arc.first) for phases in found)]
-    return max(judged, key=lambda arc: arc.length, default=None)
+    decided = [arc for arc in arcs if all(_at(phases, arc.first) for phases in phases_of_all)]
+    return max(decided, key=lambda arc: arc.length, default=None)
 
 
 def _edges(phases: Phases) -> Iterator[int]:
@@ -116,7 +116,7 @@ def proposal(runs: Runs, declarations: Declarations) -> Diagnostic | None:
 
     None where no verdict depends on the phase, or the declared one is about as good.
     """
-    every = [phases for _, found in runs for phases in found.values()]
+    every = [phases for _, phases_of in runs for phases in phases_of.values()]
     arc = longest(every)
     if arc is None:
         return None
@@ -127,8 +127,8 @@ def proposal(runs: Runs, declarations: Declarations) -> Diagnostic | None:
         return None
     others = [
         f"{id} in `{run}` is {_at(phases, best)} there, and {phases.verdict} as declared"
-        for run, found in runs
-        for id, phases in found.items()
+        for run, phases_of in runs
+        for id, phases in phases_of.items()
         if _at(phases, best) != phases.verdict
     ]
     more = f", and {len(others) - 1} more such" if len(others) > 1 else ""

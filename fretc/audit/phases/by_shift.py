@@ -59,9 +59,9 @@ class Phases:
     @property
     def verdict(self) -> str:
         """At the declared phase."""
-        (found,) = (s.verdict for s in self.stretches if s.first <= self.declared <= s.last)
-        assert found is not None, "the declared phase is judged first"
-        return found
+        (declared,) = (s.verdict for s in self.stretches if s.first <= self.declared <= s.last)
+        assert declared is not None, "the declared phase is judged first"
+        return declared
 
     @property
     def verdicts(self) -> dict[str | None, int]:
@@ -87,13 +87,13 @@ class Phases:
 
         Phases go round: the grid of the last one is that of phase -1 ns, but for its first tick.
         """
-        apart = [
+        distances = [
             _apart(end, self.declared, self.period)
             for stretch in self.stretches
             if stretch.verdict != self.verdict
             for end in (stretch.first, stretch.last)
         ]
-        return min(apart, default=None)
+        return min(distances, default=None)
 
     @property
     def text(self) -> str:
@@ -113,12 +113,12 @@ def _apart(one: int, other: int, period: int) -> int:
     return min((one - other) % period, (other - one) % period)
 
 
-def _share(part: int, whole: int) -> str:
+def _share(part: int, total: int) -> str:
     """`18 %`: never 0 % of something, nor 100 % of less than all."""
-    percent = Fraction(100 * part, whole)
+    percent = Fraction(100 * part, total)
     if percent < 1:
         return "less than 1 %"
-    return f"{min(round(percent), 99) if part < whole else 100} %"
+    return f"{min(round(percent), 99) if part < total else 100} %"
 
 
 def phases(
@@ -135,12 +135,12 @@ def phases(
     slides, end = sliding(declarations, recording, names), str(declarations.clock.end)
     if slides is None:
         return {}
-    found = {}
+    phases_of = {}
     for monitor in monitors:
         search = _Search(slides, monitor, intact=recording.intact, end=end)
         stretches = tuple(_merged(search.stretches()))
-        found[monitor.REQUIREMENTS[0].id] = Phases(slides.period, slides.declared, stretches)
-    return found
+        phases_of[monitor.REQUIREMENTS[0].id] = Phases(slides.period, slides.declared, stretches)
+    return phases_of
 
 
 class _Search:
@@ -211,8 +211,8 @@ class _Search:
             heappush(self._waiting, (-stretch.length, first, last))
 
     def _stretch(self, first: int, last: int, verdict: str | None) -> Stretch:
-        whole = last + 1 == len(self._starts)
-        after = self._slides.period if whole else int(self._starts[last + 1])
+        to_the_end = last + 1 == len(self._starts)
+        after = self._slides.period if to_the_end else int(self._starts[last + 1])
         return Stretch(int(self._starts[first]), after - 1, verdict)
 
 

@@ -76,11 +76,11 @@ class Sliding:
     def breaks(self, slides: Sequence[Slide]) -> list[int]:
         """The phases from which on the end is another one: its last tick, or what is cut short."""
         end = self.length % self.period  # here the last tick is at the very end
-        found = {0, end, end + 1}
+        places = {0, end, end + 1}
         for slide in slides:
             last = (self.length - slide.phases) // self.period
-            found |= {*slide.cut_phases.tolist(), *slide.phases[slide.ticks == last].tolist()}
-        return sorted(found - {self.period})
+            places |= {*slide.cut_phases.tolist(), *slide.phases[slide.ticks == last].tolist()}
+        return sorted(places - {self.period})
 
     def starts(self, slides: Sequence[Slide], breaks: Sequence[int]) -> Times:
         """Shape (classes,): each phase from which on anything is another one, in order."""
@@ -179,8 +179,8 @@ def _cut(
     """The phases from which on the cut tick sees another state, with that state."""
     end = start + length
     lasts = _within(steps.times, end - period + 1, end)
-    whole = np.array([0, (length + 1) % period], np.int64)
-    phases = np.sort(np.append((lasts - start) % period, whole))
+    ends = np.array([0, (length + 1) % period], np.int64)
+    phases = np.sort(np.append((lasts - start) % period, ends))
     last = end - (length - phases) % period
     before, upto = (np.searchsorted(steps.times, at, "right") for at in (last, end))
     states = combined(steps, before, np.full(len(last), upto), proposition)

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from fretc.logs.signals.samples import EXACT, WHOLE, Numbers, Values, scaled
 from fretish import expressions as e
-from fretish.bindings.constants import called, computed
+from fretish.bindings.constants import called, computed, whole_exponent
 from fretish.expressions import MIRRORED
 from fretish.units import ONE, Unit, unit
 
@@ -44,7 +44,7 @@ class Scope:
     `numbers` have shape (length,), or one element for all points; NaN is unknown. Times their
     `scales` (1 where none is given) they are in base units. Quantities are read in `unit` or its
     powers. `persistences` are the states of each `... for 200 ms`, from
-    `fretc.logs.signals.propositions`.
+    `fretc.logs.signals.propositions`. `words` are the values of enumerated signals.
     """
 
     length: int
@@ -52,6 +52,7 @@ class Scope:
     unit: Unit = ONE
     scales: Mapping[str, Fraction] = field(default_factory=dict)
     persistences: Mapping[e.Persistence, NDArray[np.int8]] = field(default_factory=dict)
+    words: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True)
@@ -91,10 +92,11 @@ def term(expression: e.Expression, scope: Scope) -> Term:
 
     What divides by zero is unknown. Infinity is a number: `1 / inf` is 0, `inf - inf` unknown.
     Constants are computed exactly, everything else in 64-bit floats; what has not been computed
-    (`x`, `-x`, `abs(x)`, `min(x, y)`) stays as it was recorded.
+    (`x`, `-x`, `abs(x)`, `min(x, y)`) stays as it was recorded. `x mod y` has the sign of `y`.
 
     Raises:
         ExpressionError: the expression is a truth value, or names what the scope does not hold.
+        ValueError: the exponent of a power is not small and whole.
     """
     match expression:
         case e.Number(digits):
@@ -112,6 +114,8 @@ def term(expression: e.Expression, scope: Scope) -> Term:
             return _arithmetic(op, term(left, scope), term(right, scope))
         case e.Call(name, args, _):
             return _call(name, [term(arg, scope) for arg in args])
+        case e.Word(text):
+            raise ExpressionError(f"a number is needed, and `{text}` is a word")
         case _:
             raise ExpressionError("a number is needed, and this is a truth value")
 
@@ -134,8 +138,8 @@ def together(left: Term, right: Term, op: str = "") -> tuple[Values, Values, Fra
     """Both sides in one unit, and the scale of it: that of the samples, if they have the same one.
 
     A constant becomes the nearest number of the kind of the other side: of 32-bit floats, of
-    64-bit floats, or, beside whole numbers beyond them, a whole number for which `op` says the
-    same.
+    64-bit floats, or, where it is compared and whole numbers are beyond these, a whole number for
+    which `op` says the same.
     """
     if isinstance(left, Fraction):
         if isinstance(right, Fraction):
@@ -168,10 +172,11 @@ _BEYOND = 2**64
 def _substitute(constant: Fraction, measure: Measure, op: str) -> Values:
     """The value to compare in `measure op constant`, in the kind of the measure."""
     exact, kind = constant / measure.scale, measure.values.dtype
-    if not _HALVES <= abs(exact) < (_BEYOND if kind == EXACT else WHOLE) or kind == np.float32:
+    is_between = _HALVES <= abs(exact) < (_BEYOND if kind == EXACT else WHOLE)
+    if not op or not is_between or kind == np.float32:
         return _nearest(exact, kind)
     if exact.denominator != 1 and op in ("=", "!="):
-        return np.array([np.inf], EXACT)  # no whole number is equal to it
+        return np.nextafter(np.zeros(1, EXACT), 1)  # nothing that is recorded is equal to it
     return np.array([ceil(exact) if op in ("<", ">=") else floor(exact)], EXACT)
 
 
@@ -209,8 +214,19 @@ def _arithmetic(op: e.ArithmeticOperator, left: Term, right: Term) -> Term:
             case "/":
                 quotient = np.where(b.plain == 0, np.nan, a.plain / b.plain)
                 return Measure(quotient, a.scale / b.scale)
-            case _:
-                raise ExpressionError(f"bindings have no `{op}`")
+            case "mod":
+                x, y, scale = together(_double(left), _double(right))
+                return Measure(np.where(y == 0, np.nan, np.mod(x, y)), scale)
+            case _:  # `^`; sums are above
+                return _power(a, right)
+
+
+def _power(base: Measure, exponent: Term) -> Measure:
+    """The product of a number with itself, from left to right."""
+    if not isinstance(exponent, Fraction):
+        raise ExpressionError("an exponent is a constant")
+    factors = [base.plain] * whole_exponent(exponent)
+    return Measure(reduce(np.multiply, factors), base.scale ** len(factors))
 
 
 def _double(value: Term) -> Term:

@@ -20,11 +20,11 @@ _EVENTS = 3
 def slow_topics(
     declarations: Declarations, recording: Recording, signals: Sequence[str]
 ) -> Iterator[Diagnostic]:
-    """F315 for each signal that grows too old between messages, and each topic slower than ticks.
+    """F318 for each signal that grows too old between messages, F315 for topics slower than ticks.
 
     Half of the steps between its messages are longer than `max_age`, or (by a tenth) than a tick.
-    A topic that comes only when something happens, and whose samples count until the next one,
-    gets no warning.
+    Where `max_age` is stated, that ticks see earlier samples is meant. A topic that comes only
+    when something happens gets no warning.
 
     Args:
         declarations: clock and signals.
@@ -39,19 +39,18 @@ def slow_topics(
         if topic is None or topic.median_period_ns is None:
             continue
         period = topic.median_period_ns
-        if signal.max_age is not None and period > signal.max_age:
-            yield _too_old(signal, period, signal.max_age)
-        elif tick is not None and period > tick * _JITTER and _is_regular(signal, topic):
+        if signal.max_age is not None:
+            if period > signal.max_age:
+                yield _too_old(signal, period, signal.max_age)
+        elif tick is not None and period > tick * _JITTER and _is_regular(topic):
             if topic.name in slow:
                 continue
             slow.add(topic.name)
             yield _slow(signal, period, declarations.clock, tick)
 
 
-def _is_regular(signal: Signal, topic: Topic) -> bool:
-    """Whether the topic comes at a rate; a sample that counts until the next may be an event."""
-    if signal.max_age is not None:
-        return True
+def _is_regular(topic: Topic) -> bool:
+    """Whether the topic comes at a rate, and not when something happens."""
     period, longest = topic.median_period_ns or 0, topic.longest_gap_ns or 0
     return topic.count >= _FEW and longest <= _EVENTS * period
 
@@ -69,7 +68,7 @@ def _tick(clock: Clock, recording: Recording) -> int | None:
 
 def _too_old(signal: Signal, period: int, max_age: int) -> Diagnostic:
     return Diagnostic(
-        Code.SLOW_TOPIC,
+        Code.UNKNOWN_BETWEEN,
         f"`{signal.path.topic}` comes every {_ms(period)}, and a sample of `{signal.name}` counts "
         f"for {_ms(max_age)}: in between it is unknown",
         signal.span,
@@ -85,8 +84,9 @@ def _slow(signal: Signal, period: int, clock: Clock, tick: int) -> Diagnostic:
         f"`{signal.path.topic}` comes every {_ms(period)}, and the clock ticks every "
         f"{_ms(tick)}{by}: most ticks see a sample of an earlier one",
         signal.span,
-        help="use a longer `tick`, or publish more often",
+        help="state `max_age` if that is meant, use a longer `tick`, or publish more often",
         severity=Severity.WARNING,
+        subject=signal.path.topic,
     )
 
 

@@ -23,7 +23,7 @@ from fretc.logs.mcap.container import BrokenError, Stream, largest, unpacked_lz4
 from fretc.logs.mcap.damage import LATEST, Damage
 from fretc.logs.mcap.messages import Sink
 from fretc.logs.signals.samples import Gap
-from fretc.logs.storage import refusals
+from fretc.logs.storage import storage_diagnostics
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.source import Span
 
@@ -63,7 +63,7 @@ def read(file: str, same: str, start: bytes, sink: Sink, place: Span) -> BagCont
     try:
         import rosbags  # noqa: F401
     except ModuleNotFoundError:
-        return refusals.no_rosbags(place)
+        return storage_diagnostics.no_rosbags(place)
     bag = start.startswith(BAG)
     reader = _bag(same) if bag else _db3(same)
     try:
@@ -72,7 +72,7 @@ def read(file: str, same: str, start: bytes, sink: Sink, place: Span) -> BagCont
     except OSError:
         raise
     except Exception as error:  # the reader trusts each byte, and each may be wrong
-        return refusals.bad_bag(_reason(error), place, indexed=bag)
+        return storage_diagnostics.bad_bag(_reason(error), place, indexed=bag)
     try:
         way = _Way(reader, sink, bag=bag)
         way.run()
@@ -83,11 +83,11 @@ def read(file: str, same: str, start: bytes, sink: Sink, place: Span) -> BagCont
     damages = tuple(way.settled())
     if way.span is None:
         return (
-            refusals.bad_bag(damages[0][0].description, place, indexed=bag)
+            storage_diagnostics.bad_bag(damages[0][0].description, place, indexed=bag)
             if damages
             else BagContents(None, (), ())
         )
-    return BagContents(way.span, damages, (refusals.unchecked(place, way.assumed),))
+    return BagContents(way.span, damages, (storage_diagnostics.unchecked(place, way.assumed),))
 
 
 def ends(file: str) -> Gap | None:

@@ -15,7 +15,7 @@ from pathlib import Path, PurePosixPath
 from typing import Any
 
 from fretc.logs.signals.samples import Gap
-from fretc.logs.storage import refusals
+from fretc.logs.storage import storage_diagnostics
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.diagnostics.source import Source
 from fretish.reading.limits import within
@@ -79,7 +79,9 @@ def folder(path: str) -> Folder | Diagnostic:
     place = Source(str(file), "").span()
     with file.open("rb") as stream:
         data = stream.read(_LARGEST)
-    return within(len(data), place, lambda: _described(path, data) or refusals.bad_metadata(place))
+    return within(
+        len(data), place, lambda: _described(path, data) or storage_diagnostics.bad_metadata(place)
+    )
 
 
 def _described(path: str, data: bytes) -> Folder | None:

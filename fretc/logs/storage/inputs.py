@@ -26,7 +26,7 @@ from pathlib import Path
 from typing import Any, BinaryIO, cast
 from urllib.parse import parse_qsl, urlencode, urlsplit, urlunsplit
 
-from fretc.logs.storage import refusals, web
+from fretc.logs.storage import storage_diagnostics, web
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.diagnostics.source import Source
 from fretish.reading.limits import grant
@@ -98,9 +98,9 @@ def opened(path: str, *, whole: bool = True) -> Iterator[Input | Diagnostic]:
         try:
             log = _opened(path, stack, whole=whole)
         except FileNotFoundError:
-            log = refusals.no_such_file(Source(shown(path), "").span())
+            log = storage_diagnostics.no_such_file(Source(shown(path), "").span())
         except OSError as error:
-            log = refusals.unreadable(error, Source(shown(path), "").span())
+            log = storage_diagnostics.unreadable(error, Source(shown(path), "").span())
         yield log
 
 
@@ -111,9 +111,9 @@ def _opened(path: str, stack: ExitStack, *, whole: bool) -> Input | Diagnostic:
         return _remote(path, stack, whole=whole)
     mode = os.stat(path).st_mode
     if stat.S_ISDIR(mode):
-        return refusals.is_a_directory(Source(path, "").span())
+        return storage_diagnostics.is_a_directory(Source(path, "").span())
     if not stat.S_ISREG(mode):
-        return refusals.not_a_file(Source(path, "").span())
+        return storage_diagnostics.not_a_file(Source(path, "").span())
     stream = stack.enter_context(Path(path).open("rb"))  # noqa: SIM115
     before = os.fstat(stream.fileno())
 
@@ -192,9 +192,9 @@ def _copy(stream: io.BufferedReader) -> Input:
 
 def _stdin(stack: ExitStack) -> Input | Diagnostic:
     if sys.stdin is None or sys.stdin.closed:
-        return refusals.no_stdin("it is closed")
+        return storage_diagnostics.no_stdin("it is closed")
     if sys.stdin.isatty():
-        return refusals.no_stdin("it is a terminal")
+        return storage_diagnostics.no_stdin("it is a terminal")
     stdin = stack.enter_context(_reader(0))
     if stat.S_ISREG(os.fstat(0).st_mode) and stdin.tell() == 0:
         return _copy(stdin)
@@ -269,12 +269,12 @@ def _remote(url: str, stack: ExitStack, *, whole: bool) -> Input | Diagnostic:
     try:
         import fsspec
     except ModuleNotFoundError:
-        return refusals.no_fsspec(place)
+        return storage_diagnostics.no_fsspec(place)
     try:
         system, path = fsspec.core.url_to_fs(url, **web.options(url))
         about = system.info(path)
         if about.get("type") == "directory":
-            return refusals.is_a_directory(place)
+            return storage_diagnostics.is_a_directory(place)
         size = about.get("size")
         if size is None or about.get("partial") is False:
             file = stack.enter_context(closing(_stream(system, path)))
@@ -284,7 +284,7 @@ def _remote(url: str, stack: ExitStack, *, whole: bool) -> Input | Diagnostic:
             return _copy(_copied(_Limited(file, size), stack))
         file = stack.enter_context(system.open(path, "rb", block_size=_SMALL_BLOCK))
     except ImportError as error:
-        return refusals.no_protocol_package(url.partition("://")[0], str(error), place)
+        return storage_diagnostics.no_protocol_package(url.partition("://")[0], str(error), place)
     except Exception as error:  # each protocol has its own
         raise _as_os_error(error) from error
     hashed = _Hashed(file, size)

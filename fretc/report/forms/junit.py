@@ -22,12 +22,22 @@ def junit(report: Report) -> str:
     counts = counted([*map(_kind, views), *("failure" for _ in withdrawn)])
     name = valid(report.project)
     suite = ElementTree.SubElement(root, "testsuite", {"name": name, **counts})
+    _accepted(suite, report)
     for view in views:
         _case(suite, view, name)
     for id, text in withdrawn.items():
         case = ElementTree.SubElement(suite, "testcase", name=valid(id), classname=name, time="0")
         ElementTree.SubElement(case, "failure", message=valid(f"withdrawn: {text}"))
     return as_text(root)
+
+
+def _accepted(suite: ElementTree.Element, report: Report) -> None:
+    """The warnings that the project accepts, each with its reason."""
+    accepted = [remark for remark in report.remarks if remark.accepted]
+    properties = ElementTree.SubElement(suite, "properties") if accepted else suite
+    for one in accepted:
+        name = valid(f"accepted {one.code}: {one.message}")
+        ElementTree.SubElement(properties, "property", name=name, value=valid(one.accepted))
 
 
 def _kind(view: RequirementView) -> str:

@@ -38,6 +38,7 @@ def _lines(report: Report) -> Iterator[str]:
         yield ""
         yield f"… and {len(ordered) - _LISTED} more requirements."
     yield from _changes(report)
+    yield from _accepted(report)
     yield from _signatures(report)
     yield ""
     yield f"<sub>fretc {_plain(report.fretc)}</sub>"
@@ -71,6 +72,20 @@ def _changes(report: Report) -> Iterator[str]:
         yield f"- **{_plain(change.requirement)}**: {_plain('; '.join(change.lines))}"
         for run, then, now in change.verdicts:
             yield f"  - {_plain(run)}: {then} → {now}"
+
+
+def _accepted(report: Report) -> Iterator[str]:
+    """The warnings that the project accepts, and why."""
+    accepted = [remark for remark in report.remarks if remark.accepted]
+    if not accepted:
+        return
+    yield ""
+    yield f"### Accepted warnings: {len(accepted)}"
+    yield ""
+    for one in accepted[:_LISTED]:
+        yield f"- **{one.code}** {_plain(one.message)}: {_plain(one.accepted)}"
+    if len(accepted) > _LISTED:
+        yield f"- … and {len(accepted) - _LISTED} more"
 
 
 def _signatures(report: Report) -> Iterator[str]:

@@ -10,6 +10,7 @@ from compiler.formalization.formalized import Formalized, plain
 from compiler.logic.claims import Proof
 from compiler.project.folder import Project
 from compiler.targets.python import monitor
+from fretc.audit.bases import bases
 from fretc.audit.evidence.reader import by_requirement
 from fretc.audit.evidence.schema import Evidence
 from fretc.audit.evidence.verdicts import (
@@ -23,7 +24,6 @@ from fretc.audit.evidence.verdicts import (
     severity,
 )
 from fretc.audit.measurements.trials import NO_TRIALS
-from fretc.audit.plan import bases
 from fretc.report.model.audits import ProbabilityAudit, SingleAudit
 from fretc.report.model.suspicions import about_estimation, about_result, since_review
 from fretc.report.model.views import Mark, verdict_mark

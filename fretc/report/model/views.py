@@ -62,6 +62,8 @@ class Remark:
     message: str
     place: str = ""
     help: str = ""
+    accepted: str = ""
+    """Why the project accepts it; empty: it does not."""
 
 
 # 1: the runs -----------------------------------------------------------------------------------

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterable, Sequence
 
+from compiler.project.ancestry import without_hazard
 from compiler.project.folder import Project
 from fretc.audit.evidence.schema import Evidence
 from fretc.audit.evidence.verdicts import RETIRED
@@ -118,10 +119,9 @@ def orphans(
     """Every place where the chain from hazard to verdict ends too early."""
     return Orphans(
         hazards=tuple(_uncovered(project, assessments)),
-        requirements=tuple(
-            f"{assessment.id} names no parent"
-            for assessment in assessments
-            if not assessment.requirement.parents
+        requirements=(
+            *(f"{each.id} names no parent" for each in assessments if not each.requirement.parents),
+            *_rootless(project),
         ),
         parents=tuple(_undeclared(project, assessments)),
         evidence=tuple(
@@ -129,6 +129,16 @@ def orphans(
             for id in unknown_ids(assessments, evidence)
         ),
     )
+
+
+def _rootless(project: Project) -> Iterable[str]:
+    """The requirements in force whose parents are there, and lead to nothing or in a circle."""
+    declared = {*project.hazards, *project.parents}
+    known = declared | {requirement.id for requirement in project.requirements}
+    active = [r for r in project.requirements if r.status != RETIRED]
+    for requirement in without_hazard(active, declared) if declared else ():
+        if known.issuperset(requirement.parents):
+            yield f"the parents of {requirement.id} lead to no hazard"
 
 
 def _uncovered(project: Project, assessments: Sequence[Assessment]) -> Iterable[str]:

@@ -67,7 +67,7 @@ def overall(
                 _unsigned(sections),
                 _unplanned(missing),
                 _uncovered(project, assessments),
-                trust(runs),
+                trust(runs, project),
                 _FLAWED if has_flaws else "",
                 forged if red else "",
             ),

@@ -10,6 +10,7 @@ from compiler.project.interceptor_options import ASSUMED
 from fretc.report.model import phrases
 from fretc.report.model.views import Mark, ProofView, RequirementView, sign_mark
 from fretc.report.traceability.artefacts import Product
+from fretc.verification.layers.table import OF_MONITOR
 from fretc.verification.text_output import SIGNS
 
 _MARKS: Mapping[str, Mark] = {

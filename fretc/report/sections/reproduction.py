@@ -17,10 +17,10 @@ from compiler.files.shell_quoting import (
     words,
 )
 from compiler.project.folder import Project
+from fretc.audit.bases import bases
 from fretc.audit.evidence.basis import BINDINGS, of_all
 from fretc.audit.evidence.schema import Evidence
 from fretc.audit.measurements.confidence_intervals import CONFIDENCE
-from fretc.audit.plan import bases
 from fretc.report.model import phrases
 from fretc.report.model.views import Command, Hash, RequirementView
 from fretc.report.sections.runs import Run
@@ -48,7 +48,7 @@ def commands(
     def audit() -> str:
         logs = " ".join(_log(run.result.run) for run in runs) or "LOG..."
         level = "" if confidence == CONFIDENCE else f" --confidence {confidence}"
-        return f"fretc audit {logs} {_options(project)}{level} --evidence {_quoted(evidence)}"
+        return f"fretc audit {logs} {_options(project)}{level} -o {_quoted(evidence)}"
 
     def report() -> str:
         verification = f" --verification {_quoted(proofs.file)}" if proofs else ""

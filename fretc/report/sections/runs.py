@@ -9,6 +9,7 @@ from compiler.project.folder import Project
 from fretc.audit.evidence.schema import Checked, Evidence, Finding, Result, Topic
 from fretc.report.model import phrases
 from fretc.report.model.views import Remark, RunView, TopicView, sign_mark
+from fretc.report.traceability.acceptances import as_diagnostic
 from fretish.diagnostics import signs
 from fretish.diagnostics.diagnostic import Severity
 
@@ -86,7 +87,7 @@ def _view(run: Run, project: Project) -> RunView:
         health=_INTACT if health.intact else _DAMAGED if health.topics else _UNREAD,
         checked=_checked(health.checked, hashed="log_summary" not in result.hashes),
         gaps=_gaps(result),
-        findings=tuple(map(_finding, sorted(health.findings, key=_badness))),
+        findings=tuple(_finding(each, project) for each in sorted(health.findings, key=_badness)),
         topics=tuple(_topic(name, topic, project) for name, topic in sorted(health.topics.items())),
     )
 
@@ -134,8 +135,20 @@ def _badness(finding: Finding) -> int:
     return [str(severity) for severity in Severity].index(finding.severity)
 
 
-def _finding(finding: Finding) -> Remark:
-    return Remark(finding.code, finding.severity, finding.message, help=finding.help or "")
+def _finding(finding: Finding, project: Project) -> Remark:
+    return Remark(
+        finding.code,
+        finding.severity,
+        finding.message,
+        help=finding.help or "",
+        accepted=_accepted(finding, project),
+    )
+
+
+def _accepted(finding: Finding, project: Project) -> str:
+    """Why the project accepts it; empty where it does not."""
+    (answered,) = project.answered([as_diagnostic(finding)])
+    return answered.accepted
 
 
 def _topic(name: str, topic: Topic, project: Project) -> TopicView:
@@ -171,11 +184,16 @@ def _named(run: Run) -> str:
     return f"{run.label} ({codes})" if codes else run.label
 
 
-def trust(runs: Sequence[Run]) -> str:
+def _is_open(run: Run, project: Project) -> bool:
+    """Whether it has a finding that the project does not accept."""
+    return not all(_accepted(finding, project) for finding in run.result.health.findings)
+
+
+def trust(runs: Sequence[Run], project: Project) -> str:
     """The condition of the runs, in one sentence; empty where there is no run."""
     damaged = [_named(run) for run in runs if not run.result.health.intact]
     wrong = [_named(run) for run in runs if run.result.health.intact and _errors(run)]
-    with_findings = [run.label for run in runs if run.result.health.findings]
+    with_findings = [run.label for run in runs if _is_open(run, project)]
     if not runs:
         return ""
     if damaged or wrong:

@@ -57,7 +57,7 @@ def signatures(
 
 
 def _broken(book: Book) -> Iterator[Signed]:
-    for one in book.judged:
+    for one in book.envelopes:
         for signer in one.broken:
             place = one.envelope.place
             where = f"{phrases.place(place.source.name)}:{place.line}"

@@ -17,12 +17,13 @@ from compiler.files.edition import __version__
 from compiler.formalization.formalized import Formalized
 from compiler.logic import printing
 from compiler.logic.claims import Proof
+from compiler.project.acceptances import TOPIC, Acceptance
 from compiler.project.folder import Project
+from fretc.audit.bases import bases
 from fretc.audit.evidence import basis
 from fretc.audit.evidence.basis import Basis
 from fretc.audit.evidence.reader import by_requirement
 from fretc.audit.evidence.schema import Evidence, Result
-from fretc.audit.plan import bases
 from fretc.report.traceability.artefacts import Product, shared_products
 from fretc.report.traceability.artefacts import products as products_of
 from fretish.bindings.canonical import described, digest
@@ -30,6 +31,7 @@ from fretish.documents import Requirement
 
 HAZARD, PARENT, STATUS, PLAN = "hazard", "parent", "status", "plan"
 TEXT, WORDS, FORMULAS, ARTEFACT = "text", "words", "formulas", "artefact"
+ACCEPTANCE = "acceptance"
 LOG, VERDICT, REVIEW = "log", "verdict", "review"
 PROOF, SHARED = "proof", "shared"
 _ADDED = (LOG, VERDICT, PROOF, SHARED, PLAN, ARTEFACT, basis.TOPICS)
@@ -113,6 +115,8 @@ class _Common:
     bases: Mapping[int, Basis]
     audited_by: str
     """The version of fretc that wrote the evidence."""
+    acceptances: Mapping[int | None, Sequence[Acceptance]]
+    """Those in the header of each requirement, by its `id()`; None → those in the settings."""
     shared: Mapping[str, str]
     """Name of each shared product → its SHA-256; empty where there is no proof."""
 
@@ -124,8 +128,18 @@ def _common(project: Project, evidence: Evidence | None, proofs: Sequence[Proof]
         {requirement.id: requirement for requirement in project.requirements},
         bases(project),
         evidence.fretc if evidence else "",
+        _by_requirement(project.acceptances),
         {product.file: product.sha256 for product in shared},
     )
+
+
+def _by_requirement(
+    acceptances: Iterable[Acceptance],
+) -> Mapping[int | None, Sequence[Acceptance]]:
+    found: dict[int | None, list[Acceptance]] = {}
+    for each in acceptances:
+        found.setdefault(id(each.requirement) if each.requirement else None, []).append(each)
+    return found
 
 
 class _ChainBuilder:
@@ -148,6 +162,7 @@ class _ChainBuilder:
     ) -> Chain:
         self._add_parents(requirement, {requirement.id})
         self._add_status_and_plans(requirement)
+        self._accepted(requirement, rule)
         sentence = Node(basis.SENTENCE, requirement.id)
         self._add(sentence, self._basis[basis.SENTENCE])
         self._link(Node(TEXT, requirement.id), sentence)
@@ -176,6 +191,14 @@ class _ChainBuilder:
         self._add(in_force(self._id), digest("retired") if retired else IN_FORCE)
         for method in requirement.verify:
             self._add(Node(PLAN, f"{self._id} {method}"), digest(method))
+
+    def _accepted(self, requirement: Requirement, rule: Formalized | None) -> None:
+        """The warnings that a reviewer accepts with it: no verdict depends on them."""
+        topics = _topics(rule, self._project)
+        known = self._common.acceptances
+        for each in (*known.get(id(requirement), ()), *known.get(None, ())):
+            if each.about != TOPIC or each.subject in ("", *topics):
+                self._add(Node(ACCEPTANCE, each.name), digest(_normal(each.reason)))
 
     def _add_parents(self, requirement: Requirement, visited: set[str]) -> None:
         """Add the hazards and requirements that it traces to, all the way up."""
@@ -299,6 +322,14 @@ def outdated(result: Result, audited_by: str, now: Basis) -> tuple[str, ...]:
 def _print_of_log(result: Result) -> str:
     """SHA-256 of the log, or of its summary where the audit read its index only; or ""."""
     return result.hashes.get("log") or result.hashes.get("log_summary") or ""
+
+
+def _topics(rule: Formalized | None, project: Project) -> set[str]:
+    """Which the propositions of a requirement are read from."""
+    if rule is None or project.declarations is None:
+        return set()
+    read = project.declarations.reading(rule.watched)
+    return {signal.path.topic for signal in read.signals.values()}
 
 
 def _wording(requirement: Requirement) -> dict[str, Any]:

@@ -126,6 +126,7 @@ def _links(project: Project) -> Iterator[Diagnostic]:
                 f"no requirement in force names {hazard.id} ({hazard.title}) as its parent",
                 help="write one, or name it in the `parents` of one",
                 severity=Severity.WARNING,
+                subject=hazard.id,
             )
     for requirement in active if project.hazards or project.parents else ():
         if not requirement.parents:

@@ -18,6 +18,7 @@ from compiler.files.text_files import read as read_text
 from fretc.audit.evidence.basis import SENTENCE
 from fretc.audit.evidence.reader import VERDICTS
 from fretc.report.traceability.chain import (
+    ACCEPTANCE,
     IN_FORCE,
     REVIEW,
     Chain,
@@ -95,6 +96,12 @@ def verdicts_of(chain: Chain) -> str:
     return _in_words(chain.verdicts)
 
 
+def warnings_of(chain: Chain) -> str:
+    """The warnings that a review of it would accept, in words; empty where there is none."""
+    names = sorted(node.name for node in chain.prints if node.kind == ACCEPTANCE)
+    return f"; accepted warnings: {', '.join(names)}" if names else ""
+
+
 def _in_words(verdicts: Mapping[str, str]) -> str:
     parts = []
     for word in VERDICTS:
@@ -131,6 +138,47 @@ def unnamed_violations(chosen: Sequence[Chain], refuted: Collection[str]) -> tup
         )
         for id, verdicts in violations.items()
     )
+
+
+@dataclass(frozen=True, slots=True)
+class Acceptance:
+    """What the runs say of the requirements that one review accepts."""
+
+    verdicts: Mapping[str, Mapping[str, str]]
+    """Requirement → run → verdict."""
+    violated: tuple[str, ...]
+    """Those that some run violates, or that all runs together refute."""
+    not_shown: tuple[str, ...]
+    """Of the others those that were not audited, or are not satisfied in each run."""
+
+    @classmethod
+    def of(cls, subjects: Sequence[Chain], refuted: Collection[str]) -> Acceptance:
+        """That of the requirements; `refuted` as in `unnamed_violations`."""
+        verdicts = {chain.requirement: chain.verdicts for chain in subjects}
+        violated = [
+            id for id, runs in verdicts.items() if kernel.VIOLATED in runs.values() or id in refuted
+        ]
+        good = [id for id, runs in verdicts.items() if {*runs.values()} == {kernel.SATISFIED}]
+        unshown = [id for id in verdicts if id not in violated and id not in good]
+        return cls(verdicts, tuple(violated), tuple(unshown))
+
+    @property
+    def text(self) -> str:
+        """One line, with the number of each kind."""
+        count = len(self.verdicts)
+        return (
+            f"accepted {count} requirement{'' if count == 1 else 's'}: "
+            f"{len(self.violated)} violated, {len(self.not_shown)} not shown"
+        )
+
+    @property
+    def as_record(self) -> dict[str, Any]:
+        """Plain values."""
+        return {
+            "accepted": {id: dict(runs) for id, runs in self.verdicts.items()},
+            "violated": list(self.violated),
+            "not_shown": list(self.not_shown),
+        }
 
 
 def outdated_results(chosen: Sequence[Chain]) -> tuple[Diagnostic, ...]:

@@ -10,7 +10,6 @@ import multiprocessing
 import resource
 import signal
 import sys
-import traceback
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
@@ -19,7 +18,7 @@ from multiprocessing.context import SpawnProcess
 from types import ModuleType
 from typing import Any, ParamSpec, TypeVar
 
-from compiler.files.processes import shield
+from compiler.files.processes import reply, shield
 
 P = ParamSpec("P")
 R = TypeVar("R")
@@ -104,13 +103,15 @@ def _answer(connection: Connection, process: SpawnProcess, limits: Limits) -> An
     if not connection.poll(limits.wall):
         return Stopped(f"out of time: no answer within {limits.wall:g} s")
     try:
-        kind, result = connection.recv()
+        complete, result = connection.recv()
     except (EOFError, OSError):
         process.join()
         return Stopped(_ended(process.exitcode or 0, limits))
-    if kind == "raised":
-        raise result
-    return Stopped(_out_of_memory(limits)) if kind == "memory" else result
+    if complete:
+        return result
+    if isinstance(result, MemoryError):
+        return Stopped(_out_of_memory(limits))
+    raise result
 
 
 def _ended(status: int, limits: Limits) -> str:
@@ -137,13 +138,5 @@ def _serve(
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
     resource.setrlimit(resource.RLIMIT_CPU, (limits.seconds, limits.seconds + 5))
     resource.setrlimit(resource.RLIMIT_AS, (limits.memory, limits.memory))
-    answer: tuple[str, Any]
-    try:
-        answer = "result", function(*args, **kwargs)
-    except MemoryError:
-        answer = "memory", None
-    except Exception as error:
-        error.add_note(traceback.format_exc())
-        answer = "raised", error
     with suppress(OSError):
-        connection.send(answer)
+        connection.send(reply(function, *args, **kwargs))

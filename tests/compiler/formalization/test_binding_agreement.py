@@ -26,6 +26,9 @@ unit = "m/s"
 [signal.soc]
 path = "/battery.soc"
 unit = "%"
+[signal.state]
+path = "/state.data"
+values = ["drive", "docking"]
 """
 
 
@@ -61,8 +64,12 @@ AGREE = [
     ('"speed <= 1.5"', "speed <= 1.5", "vx <= 1.5 m/s"),
     ("near(drum)", "near(drum)", "vx <= 1.5 m/s"),
     ("slow", "slow", "vx <= 1.5 m/s"),
+    ("state = docking", "(state = docking)", "state = 'docking'"),
+    ("phase = docking", "(phase = docking)", "docking = state"),
 ]
 DIFFER = [
+    ("state = docking", "(state = docking)", "state = 'drive'"),
+    ("state = docking", "(state = docking)", "state != 'docking'"),
     ("speed <= 1.5", "(speed <= 1.5)", "vx <= 15 m/s"),
     ("speed <= 1.5", "(speed <= 1.5)", "vx < 1.5 m/s"),
     ("speed <= 1.5", "(speed <= 1.5)", "vx >= 1.5 m/s"),
@@ -105,7 +112,7 @@ def test_another_comparison_is_refused(sentence: str, proposition: str, expr: st
 def test_both_places_are_told_and_no_number_is_proposed() -> None:
     (wrong,) = said("p & speed <= 1.5", "(speed <= 1.5)", "vx <= 15 m/s")
     assert wrong.message == (
-        '`(speed <= 1.5)` of r1 is bound to another comparison: "vx <= 15 m/s" (bindings.toml:13:8)'
+        '`(speed <= 1.5)` of r1 is bound to another comparison: "vx <= 15 m/s" (bindings.toml:16:8)'
     )
     assert wrong.span is not None
     assert (wrong.span.source.name, wrong.span.text) == ("r1.fret", "speed <= 1.5")
@@ -154,3 +161,8 @@ def test_what_is_taken_is_true_of_the_same_numbers(
     values = {n + step for n in near for step in (Fraction(-1, 9), Fraction(0), Fraction(1, 9))}
     same = all(holds(stated, value) == holds(bound, value) for value in values)
     assert taken == same
+
+
+def test_a_word_is_never_compared_with_a_number() -> None:
+    remarks = said("state = vx", "(state = vx)", "state = 'drive'")
+    assert [remark.code for remark in remarks] == [Code.BAD_EXPRESSION]

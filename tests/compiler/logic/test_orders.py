@@ -101,6 +101,23 @@ def test_what_is_computed_is_a_number_of_its_own() -> None:
     assert not of("x < 1e40", "x >= 2e40")  # both are infinite beside 32-bit floats
 
 
+def test_words_of_an_enumerated_signal() -> None:
+    texts = [f"mode {op} {word}" for word in ("a", "b", "c") for op in ("=", "!=")]
+    compared = {
+        text: e.Comparison(op, e.Name("mode"), e.Word(word))
+        for text in texts
+        for _, op, word in (text.split(),)
+    }
+    every = tuple(product((False, True), repeat=len(texts)))
+    found = only_possible(every, texts, exclusions(compared, {}, {"mode": ("a", "b", "c")}))
+    made = {
+        tuple((mode == w) == (op == "=") for _, op, w in map(str.split, texts)) for mode in "abc"
+    }
+    assert {*found} == made
+    more = only_possible(every, texts, exclusions(compared, {}, {"mode": ("a", "b", "c", "d")}))
+    assert {*more} == made | {(False, True) * 3}
+
+
 def test_signals_of_two_units_meet_as_they_are_converted() -> None:
     metres, kilometres = Fraction(1), Fraction(1000)
     assert of("x < y", "y < x", x=metres, y=kilometres)

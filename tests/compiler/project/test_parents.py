@@ -332,9 +332,9 @@ def test_ids_are_checked_against_the_documents(fretc: Fretc) -> None:
     (view,) = json.loads(Path("out.json").read_text())["requirements"]
     title = "Stop in time (docs/hazards.json)"
     assert view["parents"] == [{"id": "SAFE-1", "title": title, "anchor": ""}]
-    write("requirements/r1.fret", good.replace("SAFE-1", "SAFE-2"))
+    write("requirements/r1.fret", good.replace("SAFE-1", "SAFFE-1"))
     run = fretc("report")
-    assert "F501 warning: R1 names the parent `SAFE-2`, which is not declared" in run.err
+    assert "F501 warning: R1 names the parent `SAFFE-1`, which is not declared" in run.err
     assert "help: did you mean `SAFE-1`?" in run.err
 
 

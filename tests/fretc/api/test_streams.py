@@ -11,7 +11,7 @@ from mcap_ros2.decoder import DecoderFactory
 
 import fretc
 from fretc.audit.one_log import audit
-from fretc.audit.plan import Plan, planned, watched
+from fretc.audit.plan import Plan, monitored_requirements, planned
 from fretc.logs.signals.samples import Recording, Samples, Topic
 from fretish.diagnostics.diagnostic import Code
 
@@ -54,8 +54,8 @@ def verdicts(plan: Plan, samples: list[tuple[int, float]]) -> dict[str, str]:
     topic = Topic("/x", "", "", len(times), start, end, None, None, None)
     none, topics = np.zeros(0, np.int64), {"/x": topic}
     recording = Recording("r", "", 1, start, end, {"x": signal}, none, (), topics, {}, (), True)
-    found = audit(recording, plan.declarations, watched(plan))
-    return {each.requirement: str(each.verdict) for each in found}
+    evidence = audit(recording, plan.declarations, monitored_requirements(plan))
+    return {each.requirement: str(each.verdict) for each in evidence}
 
 
 @settings(max_examples=20)  # each makes monitors and looks at all phases of the ticks

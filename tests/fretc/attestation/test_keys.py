@@ -26,8 +26,8 @@ from fretc.attestation.keys import (
 from tests import keys
 
 KINDS = ("ed25519", "nistp256", "nistp384", "nistp521", "rsa2048")
-MADE = {kind: keys.make(kind) for kind in KINDS}
-MINE, OTHER = MADE["ed25519"], keys.make("ed25519")
+PAIRS = {kind: keys.make(kind) for kind in KINDS}
+MINE, OTHER = PAIRS["ed25519"], keys.make("ed25519")
 
 
 def nobody() -> str:
@@ -35,12 +35,12 @@ def nobody() -> str:
 
 
 def test_what_a_key_signs_verifies_with_its_public_key_and_no_other() -> None:
-    for kind, key in MADE.items():
+    for kind, key in PAIRS.items():
         mine = private_key(keys.private(key), nobody)
         one = opened(sealed(b"payload", mine))
         assert one.payload == b"payload"
         assert one.keys == (mine.public.fingerprint,)
-        for other_kind, other in MADE.items():
+        for other_kind, other in PAIRS.items():
             assert one.is_signed_by(public_key(keys.public(other))) is (kind == other_kind)
     assert not one.is_signed_by(public_key(keys.public(OTHER)))
 
@@ -50,14 +50,14 @@ ENVELOPE = sealed(b'{"a": 1}', private_key(keys.private(MINE), nobody))
 
 @given(st.data())
 def test_any_byte_that_is_changed_breaks_the_signature(data: st.DataObject) -> None:
-    told = json.loads(ENVELOPE)
+    content = json.loads(ENVELOPE)
     where = data.draw(st.sampled_from(["payload", "sig", "payloadType", "keyid"]))
-    holder = told["signatures"][0] if where in ("sig", "keyid") else told
+    holder = content["signatures"][0] if where in ("sig", "keyid") else content
     is_packed = where in ("payload", "sig")
     raw = bytearray(base64.b64decode(holder[where]) if is_packed else holder[where].encode())
     raw[data.draw(st.integers(0, len(raw) - 1))] ^= data.draw(st.integers(1, 127))
     holder[where] = base64.b64encode(raw).decode() if is_packed else raw.decode("latin-1")
-    assert not verifies(json.dumps(told))
+    assert not verifies(json.dumps(content))
 
 
 @given(st.data())
@@ -78,34 +78,34 @@ def verifies(line: str) -> bool:
 @pytest.mark.parametrize(
     "change",
     [
-        lambda told: told.update(payloadType="application/json"),
-        lambda told: told.update(signatures=[]),
-        lambda told: told.update(signatures=told["signatures"] * 2),
-        lambda told: told.update(more=1),
-        lambda told: told["signatures"][0].update(cert="x"),
-        lambda told: told["signatures"][0].pop("keyid"),
-        lambda told: told.update(payload=told["payload"].rstrip("=") + "\n"),
-        lambda told: told.update(payload=told["payload"].replace("=", "")),
-        lambda told: told.update(payload=7),
+        lambda content: content.update(payloadType="application/json"),
+        lambda content: content.update(signatures=[]),
+        lambda content: content.update(signatures=content["signatures"] * 2),
+        lambda content: content.update(more=1),
+        lambda content: content["signatures"][0].update(cert="x"),
+        lambda content: content["signatures"][0].pop("keyid"),
+        lambda content: content.update(payload=content["payload"].rstrip("=") + "\n"),
+        lambda content: content.update(payload=content["payload"].replace("=", "")),
+        lambda content: content.update(payload=7),
     ],
 )
 def test_an_envelope_of_another_form_is_refused(change: object) -> None:
-    told = json.loads(ENVELOPE)
+    content = json.loads(ENVELOPE)
     assert callable(change)
-    change(told)
+    change(content)
     with pytest.raises(MisshapenError):
-        opened(json.dumps(told))
+        opened(json.dumps(content))
 
 
 def test_each_content_has_one_text() -> None:
     """The last digit before `==` has four bits that stand for nothing."""
-    told = json.loads(ENVELOPE)
-    sig = told["signatures"][0]["sig"]
+    content = json.loads(ENVELOPE)
+    sig = content["signatures"][0]["sig"]
     other = sig[:-3] + chr(ord(sig[-3]) + 1) + "=="
     assert base64.b64decode(other) == base64.b64decode(sig)
-    told["signatures"][0]["sig"] = other
+    content["signatures"][0]["sig"] = other
     with pytest.raises(MisshapenError, match="must be base64"):
-        opened(json.dumps(told))
+        opened(json.dumps(content))
 
 
 def test_a_name_that_stands_twice_is_refused() -> None:
@@ -128,28 +128,28 @@ def test_each_signature_of_an_envelope_counts_and_not_only_the_first() -> None:
 
 def test_the_name_of_a_key_makes_no_signature_of_it() -> None:
     """The signature is of another key, under the name of mine."""
-    told = json.loads(sealed(b"payload", private_key(keys.private(OTHER), nobody)))
-    told["signatures"][0]["keyid"] = json.loads(ENVELOPE)["signatures"][0]["keyid"]
-    assert not verifies(json.dumps(told))
+    content = json.loads(sealed(b"payload", private_key(keys.private(OTHER), nobody)))
+    content["signatures"][0]["keyid"] = json.loads(ENVELOPE)["signatures"][0]["keyid"]
+    assert not verifies(json.dumps(content))
 
 
 def test_the_library_itself_reads_and_verifies_the_envelope() -> None:
     envelope = Envelope.from_dict(json.loads(ENVELOPE))
     mine = public_key(keys.public(MINE))
-    known = SSlibKey.from_crypto(MINE.public_key(), mine.fingerprint)
-    assert envelope.verify([known], 1) == {mine.fingerprint: known}
+    key = SSlibKey.from_crypto(MINE.public_key(), mine.fingerprint)
+    assert envelope.verify([key], 1) == {mine.fingerprint: key}
     assert envelope.payload_type == PAYLOAD_TYPE == "application/vnd.in-toto+json"
 
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_an_encrypted_key_needs_its_passphrase(kind: str) -> None:
     for form in (PrivateFormat.OpenSSH, PrivateFormat.PKCS8):
-        data = keys.private(MADE[kind], "open sesame", form)
-        known = private_key(data, lambda: "open sesame").public
-        assert known == public_key(keys.public(MADE[kind]))
-        for wrong in ("", "open", "öpen"):
+        data = keys.private(PAIRS[kind], "open sesame", form)
+        public = private_key(data, lambda: "open sesame").public
+        assert public == public_key(keys.public(PAIRS[kind]))
+        for passphrase in ("", "open", "öpen"):
             with pytest.raises(UnusableKeyError, match="its passphrase is another one"):
-                private_key(data, lambda wrong=wrong: wrong)  # type: ignore[misc]
+                private_key(data, lambda passphrase=passphrase: passphrase)  # type: ignore[misc]
 
 
 def test_pem_is_read_as_openssh_is() -> None:
@@ -187,10 +187,10 @@ def test_ssh_keygen_makes_the_keys_and_names_them_alike(kind: str, tmp_path: Pat
         new = ["ssh-keygen", "-q", "-t", *kind.split(), "-N", word, "-C", "me", "-f", str(file)]
         subprocess.run(new, check=True)
         file.chmod(0o644)  # ssh itself would refuse it
-        told = subprocess.run(
+        line = subprocess.run(
             ["ssh-keygen", "-l", "-f", f"{file}.pub"], check=True, capture_output=True, text=True
         ).stdout
         mine = private_key(file.read_bytes(), lambda word=word: word)  # type: ignore[misc]
-        assert mine.public.text == told.replace(" me ", " ").strip()
+        assert mine.public.text == line.replace(" me ", " ").strip()
         assert mine.public == public_key(Path(f"{file}.pub").read_text())
         assert opened(sealed(b"x", mine)).is_signed_by(mine.public)

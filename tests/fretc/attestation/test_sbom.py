@@ -17,22 +17,22 @@ def test_the_bill_fits_the_schema_of_cyclonedx(fretc: Fretc) -> None:
     assert (run.status, run.err) == (0, "")
     validator = make_schemabased_validator(OutputFormat.JSON, SchemaVersion.V1_6)
     assert validator.validate_str(run.out) is None
-    told = json.loads(run.out)
-    assert told["specVersion"] == "1.6"
-    assert told["metadata"]["component"]["name"] == "fretc"
-    assert told["metadata"]["component"]["licenses"] == [{"license": {"id": "GPL-3.0-or-later"}}]
+    bom = json.loads(run.out)
+    assert bom["specVersion"] == "1.6"
+    assert bom["metadata"]["component"]["name"] == "fretc"
+    assert bom["metadata"]["component"]["licenses"] == [{"license": {"id": "GPL-3.0-or-later"}}]
 
 
 def test_it_names_each_library_that_is_needed_with_its_version_and_no_tool_of_developers(
     fretc: Fretc,
 ) -> None:
-    told = json.loads(fretc("sbom").out)
-    found = {one["name"]: one["version"] for one in told["components"]}
+    bom = json.loads(fretc("sbom").out)
+    versions = {one["name"]: one["version"] for one in bom["components"]}
     for name in ("click", "numpy", "spottl", "mcap", "markupsafe", "cryptography"):
-        assert found[name] == distribution(name).version
-    assert not found.keys() & {"pytest", "mypy", "ruff", "hypothesis", "fretc"}
-    listed = {one["ref"]: one.get("dependsOn", []) for one in told["dependencies"]}
-    by_name = {one["name"]: one["bom-ref"] for one in told["components"]}
+        assert versions[name] == distribution(name).version
+    assert not versions.keys() & {"pytest", "mypy", "ruff", "hypothesis", "fretc"}
+    listed = {one["ref"]: one.get("dependsOn", []) for one in bom["dependencies"]}
+    by_name = {one["name"]: one["bom-ref"] for one in bom["components"]}
     assert by_name["markupsafe"] in listed[by_name["jinja2"]]
 
 

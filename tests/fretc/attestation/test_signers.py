@@ -15,9 +15,9 @@ BLOB = KEY.split()[1]
 
 
 def listed(folder: Path, text: str) -> Signers:
-    found = read(put(folder, text))
-    assert isinstance(found, Signers)
-    return found
+    signers = read(put(folder, text))
+    assert isinstance(signers, Signers)
+    return signers
 
 
 def put(folder: Path, text: str) -> str:
@@ -68,8 +68,8 @@ def test_a_name_fits_as_a_whole(tmp_path: Path, pattern: str, name: str, fits: b
     ],
 )
 def test_a_key_for_something_else_is_none_of_ours(tmp_path: Path, options: str, count: int) -> None:
-    found = listed(tmp_path, f"ada {options} {KEY}\n")
-    assert (len(found.signers), found.remarks) == (count, ())
+    signers = listed(tmp_path, f"ada {options} {KEY}\n")
+    assert (len(signers.signers), signers.remarks) == (count, ())
 
 
 @pytest.mark.parametrize(
@@ -85,9 +85,9 @@ def test_a_key_for_something_else_is_none_of_ours(tmp_path: Path, options: str, 
 def test_a_key_with_a_condition_that_is_not_known_does_not_count_and_that_is_said(
     tmp_path: Path, line: str
 ) -> None:
-    found = listed(tmp_path, f"eve {KEY}\n{line.replace('BLOB', BLOB)}\n")
-    (remark,) = found.remarks
-    assert [signer.principals for signer in found.signers] == [("eve",)]
+    signers = listed(tmp_path, f"eve {KEY}\n{line.replace('BLOB', BLOB)}\n")
+    (remark,) = signers.remarks
+    assert [signer.principals for signer in signers.signers] == [("eve",)]
     assert (remark.code, remark.severity) == (Code.BAD_SIGNERS, Severity.WARNING)
     assert remark.span is not None
     assert remark.span.line == 2
@@ -100,23 +100,23 @@ def test_a_key_with_a_condition_that_is_not_known_does_not_count_and_that_is_sai
      'ada namespaces="a"b ssh-ed25519 BLOB'],
 )  # fmt: skip
 def test_another_line_is_told_with_its_place(tmp_path: Path, line: str) -> None:
-    found = read(put(tmp_path, f"# list\n{line.replace('BLOB', BLOB)}\n"))
-    assert isinstance(found, Diagnostic)
-    assert found.code is Code.BAD_SIGNERS
-    assert found.span is not None
-    assert found.span.line == 2
+    signers = read(put(tmp_path, f"# list\n{line.replace('BLOB', BLOB)}\n"))
+    assert isinstance(signers, Diagnostic)
+    assert signers.code is Code.BAD_SIGNERS
+    assert signers.span is not None
+    assert signers.span.line == 2
 
 
 def test_who_is_trusted_is_a_public_key_or_a_list(tmp_path: Path) -> None:
     (one,) = listed(tmp_path, f"ada {KEY}\n").signers
     (tmp_path / "id.pub").write_text(f"{KEY} me\n", encoding="utf-8")
     for name, principals in (("id.pub", ()), ("allowed_signers", ("ada",))):
-        found = trusted(str(tmp_path / name))
-        assert isinstance(found, Signers)
-        assert [(s.principals, s.key) for s in found.signers] == [(principals, one.key)]
-    wrong = trusted(put(tmp_path, "ssh-ed25519 AAAA\n"))
-    assert isinstance(wrong, Diagnostic)
-    assert wrong.code is Code.BAD_KEY
+        signers = trusted(str(tmp_path / name))
+        assert isinstance(signers, Signers)
+        assert [(s.principals, s.key) for s in signers.signers] == [(principals, one.key)]
+    diagnostic = trusted(put(tmp_path, "ssh-ed25519 AAAA\n"))
+    assert isinstance(diagnostic, Diagnostic)
+    assert diagnostic.code is Code.BAD_KEY
 
 
 def test_a_costly_list_is_read_soon(tmp_path: Path) -> None:
@@ -125,6 +125,6 @@ def test_a_costly_list_is_read_soon(tmp_path: Path) -> None:
     (signer,) = listed(tmp_path, f'"{star}" {KEY}\n').signers
     assert not signer.goes_by("a" * 300 + "b")
     for text in ("ada " + '""' * 30000, "a " * 30000, "ada " + 'x="' * 20000, '"' * 60000):
-        found = read(put(tmp_path, f"{text}\n"))
-        assert isinstance(found, Diagnostic)
-        assert re.fullmatch("F548|F930", found.code.number)
+        signers = read(put(tmp_path, f"{text}\n"))
+        assert isinstance(signers, Diagnostic)
+        assert re.fullmatch("F548|F930", signers.code.number)

@@ -17,29 +17,29 @@ def test_what_is_written_is_read_again() -> None:
 
 
 def changed(change: Callable[[dict[str, Any]], object]) -> bytes:
-    told = json.loads(text(ONE))
-    change(told)
-    return json.dumps(told).encode()
+    content = json.loads(text(ONE))
+    change(content)
+    return json.dumps(content).encode()
 
 
 @pytest.mark.parametrize(
     "change",
     [
-        lambda told: told.update(_type="https://in-toto.io/Statement/v0.1"),
-        lambda told: told.update(predicateType="urn:fretc:review:2"),
-        lambda told: told.update(predicateType="urn:fretc:log:1"),
-        lambda told: told.update(predicateType="urn:fretc:evidence:1"),
-        lambda told: told.update(more=1),
-        lambda told: told.pop("predicate"),
-        lambda told: told.update(predicate=[]),
-        lambda told: told.update(subject={}),
-        lambda told: told["subject"][0].update(name="R1"),
-        lambda told: told["subject"][0].update(name="waiver:R1"),
-        lambda told: told["subject"][0].update(uri="x"),
-        lambda told: told["subject"][0]["digest"].update(sha1="00"),
-        lambda told: told["subject"][0].update(digest={"sha1": "00"}),
-        lambda told: told["subject"][0]["digest"].update(sha256="AB" * 32),
-        lambda told: told["subject"][0]["digest"].update(sha256="ab" * 31),
+        lambda content: content.update(_type="https://in-toto.io/Statement/v0.1"),
+        lambda content: content.update(predicateType="urn:fretc:review:2"),
+        lambda content: content.update(predicateType="urn:fretc:log:1"),
+        lambda content: content.update(predicateType="urn:fretc:evidence:1"),
+        lambda content: content.update(more=1),
+        lambda content: content.pop("predicate"),
+        lambda content: content.update(predicate=[]),
+        lambda content: content.update(subject={}),
+        lambda content: content["subject"][0].update(name="R1"),
+        lambda content: content["subject"][0].update(name="waiver:R1"),
+        lambda content: content["subject"][0].update(uri="x"),
+        lambda content: content["subject"][0]["digest"].update(sha1="00"),
+        lambda content: content["subject"][0].update(digest={"sha1": "00"}),
+        lambda content: content["subject"][0]["digest"].update(sha256="AB" * 32),
+        lambda content: content["subject"][0]["digest"].update(sha256="ab" * 31),
     ],
 )
 def test_another_statement_is_refused(change: Callable[[dict[str, Any]], object]) -> None:

@@ -76,7 +76,7 @@ class Run:
     topics: dict[str, tuple[int, ...]]
     clock_topic: str | None = None
     slow: dict[str, _Slow] = field(default_factory=dict)
-    """What was found out of each proposition; the same at all phases."""
+    """What is known of each proposition; the same at all phases."""
 
     @property
     def first(self) -> int:
@@ -121,7 +121,7 @@ class _Slow:
         signal = self.run.signals[name]
         now = self.now(name, time)
         if now:
-            found = now[min(place, len(now) - 1)]
+            values = now[min(place, len(now) - 1)]
         else:
             before = [s for s in signal.samples if s.time < time]
             if not before:
@@ -129,8 +129,8 @@ class _Slow:
             newest = max(s.time for s in before)
             if signal.max_age is not None and time - newest > signal.max_age:
                 return None
-            found = [s.value for s in before if s.time == newest][-1]
-        return None if found is None else found * FACTORS[signal.unit]
+            values = [s.value for s in before if s.time == newest][-1]
+        return None if values is None else values * FACTORS[signal.unit]
 
     def places(self, time: int) -> int:
         """How many steps an instant has at most: as many as a signal has samples there."""
@@ -147,8 +147,8 @@ class _Slow:
                 both = self.at(p, time, place), self.at(q, time, place)
                 return True if True in both else None if None in both else False
             case ("not", p):
-                found = self.at(p, time, place)
-                return None if found is None else not found
+                value = self.at(p, time, place)
+                return None if value is None else not value
             case ("for", p, duration):
                 return self.held(p, time, duration)
             case (op, left, right):
@@ -168,14 +168,14 @@ class _Slow:
     def held(self, part: Expression, time: int, duration: int) -> Truth:
         """`part` in force `duration` ago, and at all steps since."""
         begin = time - duration
-        seen: list[Truth] = []
+        states: list[Truth] = []
         if begin < self.run.first:
-            seen.append(None)
+            states.append(None)
         else:
-            seen.append(self.at(part, begin, self.places(begin) - 1))
+            states.append(self.at(part, begin, self.places(begin) - 1))
         for moment in range(max(self.run.first, begin + 1), time + 1):
-            seen += [self.at(part, moment, place) for place in range(self.places(moment))]
-        return False if False in seen else None if None in seen else True
+            states += [self.at(part, moment, place) for place in range(self.places(moment))]
+        return False if False in states else None if None in states else True
 
     def number(self, part: Expression, time: int, place: int) -> Number:
         match part:
@@ -184,9 +184,9 @@ class _Slow:
             case ("constant", digits, unit):
                 return Fraction(digits) * FACTORS[unit]
             case (op, *args):
-                found = [self.number(arg, time, place) for arg in args]
-                numbers = [one for one in found if one is not None]
-                return _computed(op, numbers) if len(numbers) == len(found) else None
+                arguments = [self.number(arg, time, place) for arg in args]
+                numbers = [one for one in arguments if one is not None]
+                return _computed(op, numbers) if len(numbers) == len(arguments) else None
         raise AssertionError(part)
 
     # Steps
@@ -222,17 +222,17 @@ class _Slow:
     def columns(self, ticks: Sequence[int]) -> tuple[list[Truth], list[Truth]]:
         run = self.run
         force: Truth = None
-        found = []
+        columns = []
         for i, time in enumerate(ticks):
             states = self.window(ticks, i)
             if not i:
                 force = next((s for at, s in reversed(self.steps) if at < time), None)
-            found.append(self.seen(states, force))
+            columns.append(self.tick_value(states, force))
             force = states[-1] if states else force
         if not ticks or run.last <= ticks[-1]:
-            return found, []
+            return columns, []
         rest = [state for time, state in self.steps if ticks[-1] < time <= run.last]
-        return found, [self.seen(rest, force)]
+        return columns, [self.tick_value(rest, force)]
 
     def window(self, ticks: Sequence[int], i: int) -> list[Truth]:
         """The steps that a tick sees."""
@@ -251,12 +251,12 @@ class _Slow:
             return [state for at, state in self.steps if ticks[i - 1] < at <= time]
         begun = self.begun
         steps = [(at, state) for at, state in self.steps if at <= time]
-        told = [state for at, state in steps]
+        states = [state for at, state in steps]
         for at, state in steps:  # what is unknown for want of a first message says nothing
-            if state is not None or at >= begun or len(told) == 1:
+            if state is not None or at >= begun or len(states) == 1:
                 break
-            told.pop(0)
-        return told
+            states.pop(0)
+        return states
 
     @property
     def begun(self) -> int:
@@ -268,17 +268,17 @@ class _Slow:
         ]
         return max(firsts, default=run.first)
 
-    def seen(self, states: Sequence[Truth], force: Truth) -> Truth:
+    def tick_value(self, states: Sequence[Truth], force: Truth) -> Truth:
         """What a tick sees of the steps; without one, what was in force before."""
         if not states:
-            found = force
+            value = force
         elif self.proposition.aggregate == "any":
-            found = True if True in states else None if None in states else False
+            value = True if True in states else None if None in states else False
         elif self.proposition.aggregate == "all":
-            found = False if False in states else None if None in states else True
+            value = False if False in states else None if None in states else True
         else:
-            found = states[-1]
-        return self.proposition.on_unknown if found is None else found
+            value = states[-1]
+        return self.proposition.on_unknown if value is None else value
 
 
 def _computed(op: str, args: Sequence[Fraction]) -> Number:
@@ -309,7 +309,7 @@ def _durations(part: Expression) -> list[Expression]:
     """The outermost `for`s."""
     if part[0] == "for":
         return [part]
-    return [found for arg in part[1:] if isinstance(arg, tuple) for found in _durations(arg)]
+    return [duration for arg in part[1:] if isinstance(arg, tuple) for duration in _durations(arg)]
 
 
 # Requirements
@@ -407,25 +407,25 @@ def verdicts(form: str, n: int, run: Run) -> set[str] | None:
     unknown = [(c, i) for c, column in enumerate(every) for i, v in enumerate(column) if v is None]
     if len(unknown) > 6:
         return None
-    found = set()
+    words = set()
     for values in product((False, True), repeat=len(unknown)):
         for (c, i), value in zip(unknown, values, strict=True):
             every[c][i] = value
-        found.add(
+        words.add(
             _verdict(
                 FORMS[form], n, [[bool(v) for v in column] for column in every], ticks, run.end
             )
         )
-    return found
+    return words
 
 
 def _verdict(form: Demand, n: int, every: list[list[bool]], ticks: int, end: str) -> str:
     p, q = (column[:ticks] for column in every)
-    found = form(p, q, n)
-    if found == "open":
+    verdict = form(p, q, n)
+    if verdict == "open":
         return "violated" if end == "violated" else "inconclusive"
-    if found != "violated" and len(every[0]) > ticks:
+    if verdict != "violated" and len(every[0]) > ticks:
         same = all(column[ticks] == column[ticks - 1] for column in every)  # nothing has happened
-        if not same and form(every[0], every[1], n) != found:
+        if not same and form(every[0], every[1], n) != verdict:
             return "inconclusive"
-    return found
+    return verdict

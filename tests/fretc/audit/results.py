@@ -44,9 +44,9 @@ BOUND = {
 }
 
 
-def result(**given: Any) -> Result:
+def result(**fields: Any) -> Result:
     """A result by the keys of its JSON object; texts and hashes may be any."""
-    made: dict[str, Callable[[Any], Any]] = {
+    forms: dict[str, Callable[[Any], Any]] = {
         "states": lambda each: decoded(each, tuple[State, ...]),
         "answers": lambda each: decoded(each, tuple[Answer, ...]),
         "triggers": lambda each: decoded(each, tuple[Moment, ...]),
@@ -58,7 +58,7 @@ def result(**given: Any) -> Result:
         "trials": lambda each: decoded(each, Outcomes),
     }
     names = {"hashes": "fingerprints", "trials": "outcomes", "latencies_s": "latencies"}
-    fields = {names.get(k, k): made[k](v) if k in made else v for k, v in given.items()}
+    fields = {names.get(k, k): forms[k](v) if k in forms else v for k, v in fields.items()}
     return replace(BLANK, **fields)
 
 
@@ -103,5 +103,5 @@ def _surroundings(window: Window) -> Surroundings:
         name: {"times_ns": list(map(ns, each.times)), "values": list(map(reading, each.values))}
         for name, each in window.samples.items()
     }
-    found = {"start_ns": ns(window.start), "end_ns": ns(window.end), "samples": samples}
-    return decoded(found, Surroundings)
+    record = {"start_ns": ns(window.start), "end_ns": ns(window.end), "samples": samples}
+    return decoded(record, Surroundings)

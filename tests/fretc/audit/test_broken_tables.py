@@ -17,8 +17,9 @@ from mcap.writer import Writer
 
 from compiler.emit import TARGETS
 from compiler.project.folder import Project, load
-from fretc.audit.bindings.draft import wanted
-from fretc.audit.plan import Plan, bases, planned
+from fretc.audit.bases import bases
+from fretc.audit.bindings.draft import missing_propositions
+from fretc.audit.plan import Plan, planned
 from fretc.terminal.output import BAD, SHOWN, VIOLATION
 from fretish.bindings.reader import read_bindings
 from fretish.diagnostics.source import Source
@@ -155,9 +156,9 @@ def project(bindings: str = BINDINGS) -> Project:
     return load([f"requirements/{id.lower()}.fret" for id in SENTENCES], path)
 
 
-def judged(plan: Plan) -> dict[str, Any]:
+def verdicts_of(plan: Plan) -> dict[str, Any]:
     """All that the verdicts on each claim rest on, but for the log."""
-    declared, found = plan.declarations, {}
+    declared, verdicts = plan.declarations, {}
     for claim in plan.claims:
         basis = {kind: text for kind, text in claim.basis.items() if kind != "topics"}
         names = [
@@ -165,19 +166,21 @@ def judged(plan: Plan) -> dict[str, Any]:
         ]
         propositions = [declared.propositions[name] for name in names]
         signals = [declared.signals[name] for each in propositions for name in each.signals]
-        found[claim.id] = (claim.monitor, basis, declared.clock, propositions, signals)
-    return found
+        verdicts[claim.id] = (claim.monitor, basis, declared.clock, propositions, signals)
+    return verdicts
 
 
 def check(cases: Sequence[Case]) -> None:
     """The law: what is refused, why, and that all else is what it was."""
     flawed = project(broken(cases))
-    whole, plan = planned(project()), planned(flawed)
-    assert isinstance(whole, Plan)
+    good_plan, plan = planned(project()), planned(flawed)
+    assert isinstance(good_plan, Plan)
     assert isinstance(plan, Plan)
-    left = refused(cases)
-    assert {each.id for each in plan.refused} == left
-    assert judged(plan) == {id: what for id, what in judged(whole).items() if id not in left}
+    refused_ids = refused(cases)
+    assert {each.id for each in plan.refused} == refused_ids
+    assert verdicts_of(plan) == {
+        id: what for id, what in verdicts_of(good_plan).items() if id not in refused_ids
+    }
     codes = {kind.split()[0] for _, _, kind in cases}
     errors = [each.code.number for each in flawed.diagnostics if each.is_error]
     assert {why.code.number for why in plan.refusals} <= {*errors} <= codes
@@ -201,11 +204,11 @@ def test_so_it_is_of_several_tables(cases: list[Case]) -> None:
 
 def results(text: str) -> dict[str, Any]:
     """What the evidence has of each requirement, but for which topics were read."""
-    found = {}
+    verdicts = {}
     for result in json.loads(text)["results"]:
         del result["hashes"]["topics"], result["health"]
-        found[result["requirement"]] = result
-    return found
+        verdicts[result["requirement"]] = result
+    return verdicts
 
 
 def audit(fretc: Fretc) -> tuple[int, dict[str, Any], list[str]]:
@@ -222,16 +225,16 @@ def test_an_audit_judges_the_others_as_before(fretc: Fretc, place: int) -> None:
     case = (*TABLES[place], kinds[place % len(kinds)])
     project()
     log()
-    status, whole, codes = audit(fretc)
+    status, before, codes = audit(fretc)
     assert (status, codes) == (VIOLATION, [])
-    assert {result["verdict"] for result in whole.values()} == {"satisfied", "violated"}
+    assert {result["verdict"] for result in before.values()} == {"satisfied", "violated"}
     project(broken([case]))
-    status, found, codes = audit(fretc)
+    status, now, codes = audit(fretc)
     assert (status, codes) == (BAD, [case[2].split()[0]]), "the mistake, once"
-    left = refused([case])
-    for id, result in found.items():
-        assert result == whole[id] if id not in left else result["verdict"] == "no data"
-        assert id not in left or result["reason"].startswith(f"not judged: {codes[0]} ")
+    refused_ids = refused([case])
+    for id, result in now.items():
+        assert result == before[id] if id not in refused_ids else result["verdict"] == "no data"
+        assert id not in refused_ids or result["reason"].startswith(f"not judged: {codes[0]} ")
 
 
 COMMANDS = [
@@ -295,9 +298,11 @@ def test_a_number_in_params_is_not_missed_in_a_broken_table(fretc: Fretc) -> Non
         header = f'+++\nid = "{id}"\nparams = {{ low = "3 m" }}\n+++\n'
         write(f"requirements/{id.lower()}.fret", header + SENTENCES[id])
     log()
-    status, found, codes = audit(fretc)
+    status, verdicts, codes = audit(fretc)
     assert (status, codes) == (BAD, ["F302"])
-    assert {id for id, result in found.items() if result["verdict"] == "no data"} == refused([case])
+    assert {id for id, result in verdicts.items() if result["verdict"] == "no data"} == refused(
+        [case]
+    )
 
 
 def test_a_signal_with_a_mistake_is_still_that_signal(fretc: Fretc) -> None:
@@ -306,8 +311,8 @@ def test_a_signal_with_a_mistake_is_still_that_signal(fretc: Fretc) -> None:
         project(f"{text}\n[proposition.'(ay <= 4)']\nexpr = \"ax <= 4 m\"\n")
         write("requirements/r1.fret", '+++\nid = "R1"\n+++\nthe sw shall always satisfy ay <= 4\n')
         log()
-        _, found, codes = audit(fretc)
-        assert found["R1"]["reason"].startswith("not judged: F524 ")
+        _, verdicts, codes = audit(fretc)
+        assert verdicts["R1"]["reason"].startswith("not judged: F524 ")
         assert "F524" in codes
 
 
@@ -339,13 +344,13 @@ def test_any_other_mistake_refuses_everything(
 @pytest.mark.parametrize("case", [("signal", "bx", "F306"), ("proposition", "still", "F302")])
 def test_nothing_is_assumed_of_a_stand_that_is_not_known(case: Case) -> None:
     more = '[assume]\nstands = "still"\nlatency = "1 s"\nbraking = "1 s"\n'
-    whole, _ = read_bindings(Source("b.toml", f"{BINDINGS}{more}"))
-    found, (mistake,) = read_bindings(Source("b.toml", f"{broken([case])}\n{more}"))
-    assert whole is not None
-    assert whole.assumed is not None
-    assert found is not None
-    assert found.assumed is None
-    assert found.mistakes["proposition", "still"] == (mistake,)
+    good, _ = read_bindings(Source("b.toml", f"{BINDINGS}{more}"))
+    flawed, (mistake,) = read_bindings(Source("b.toml", f"{broken([case])}\n{more}"))
+    assert good is not None
+    assert good.assumed is not None
+    assert flawed is not None
+    assert flawed.assumed is None
+    assert flawed.mistakes["proposition", "still"] == (mistake,)
 
 
 def test_a_basis_is_what_it_is_without_the_broken_table() -> None:
@@ -358,13 +363,17 @@ def test_a_basis_is_what_it_is_without_the_broken_table() -> None:
 
 
 def test_a_draft_in_place_of_broken_bindings_has_all_propositions() -> None:
-    names = [each.name for each in wanted(project(broken([("signal", "ay", "F306")])))]
+    names = [
+        each.name for each in missing_propositions(project(broken([("signal", "ay", "F306")])))
+    ]
     assert names == ["low", "near", "slow", "still"]
-    assert wanted(project()) == ()
+    assert missing_propositions(project()) == ()
 
 
 def test_assumptions_are_those_of_tables_that_are_read() -> None:
-    found, _ = read_bindings(Source("b.toml", broken([("signal", "bx", "F302")])))
-    assert found is not None
-    named = {name for kind, name in (each.part for each in found.defaults) if kind != "clock"}
+    declarations, _ = read_bindings(Source("b.toml", broken([("signal", "bx", "F302")])))
+    assert declarations is not None
+    named = {
+        name for kind, name in (each.part for each in declarations.defaults) if kind != "clock"
+    }
     assert named == {"ax", "ay", "low", "near", "idle"}

@@ -6,25 +6,27 @@ from tests.fretc.audit.results import result
 from tests.fretc.logs.logs import X
 
 
-def told(*tallies: Tally) -> list[str]:
+def messages(*tallies: Tally) -> list[str]:
     return [finding.message for finding in never_changed({"low": tallies}, X)]
 
 
 def test_what_changed_in_one_log_is_not_told() -> None:
-    assert told(Tally(5, 0, 0, 0), Tally(3, 2, 0, 1)) == []
+    assert messages(Tally(5, 0, 0, 0), Tally(3, 2, 0, 1)) == []
 
 
 def test_what_changed_in_none_is_told_once_with_what_it_was() -> None:
-    assert told(Tally(0, 7, 0, 0)) == ["`low` never changed in the log: it was false at 7 ticks"]
-    assert told(Tally(5, 0, 1, 0), Tally(0, 1, 0, 0), Tally(0, 0, 0, 0)) == [
+    assert messages(Tally(0, 7, 0, 0)) == [
+        "`low` never changed in the log: it was false at 7 ticks"
+    ]
+    assert messages(Tally(5, 0, 1, 0), Tally(0, 1, 0, 0), Tally(0, 0, 0, 0)) == [
         "`low` never changed in any of 3 logs: it was true at 5 ticks, false at 1 tick, "
         "unknown at 1 tick"
     ]
 
 
 def test_nothing_is_told_of_logs_without_a_tick() -> None:
-    assert told(Tally(0, 0, 0, 0)) == []
-    assert told() == []
+    assert messages(Tally(0, 0, 0, 0)) == []
+    assert messages() == []
 
 
 def test_a_proposition_of_two_requirements_counts_once_in_each_run() -> None:

@@ -15,9 +15,10 @@ from typing import Any
 
 import pytest
 
-from compiler.project.folder import beside, load, requirement_files
+from compiler.project.folder import load
+from compiler.project.paths import beside, requirement_files
 from fretc.audit import fleet
-from fretc.audit.many_logs import Audit, Audited, Engine, audit_logs
+from fretc.audit.many_logs import Audit, Engine, LogAudit, audit_logs
 from fretc.audit.plan import Plan, packed, planned, unpacked
 from fretish.diagnostics.diagnostic import Diagnostic
 from tests.command import Fretc
@@ -36,8 +37,8 @@ pytestmark = pytest.mark.filterwarnings("ignore")  # Dask's own
 def cluster() -> Iterator[Any]:
     with LocalCluster(
         n_workers=2, threads_per_worker=2, dashboard_address="127.0.0.1:0", silence_logs=60
-    ) as found:
-        yield found
+    ) as workers:
+        yield workers
 
 
 @pytest.fixture
@@ -56,15 +57,15 @@ def fretc(fretc: Fretc) -> Fretc:
 def plan() -> Plan:
     files = requirement_files("requirements")
     assert not isinstance(files, Diagnostic)
-    found = planned(load(files, beside("requirements", "bindings.toml")))
-    assert isinstance(found, Plan)
-    return found
+    result = planned(load(files, beside("requirements", "bindings.toml")))
+    assert isinstance(result, Plan)
+    return result
 
 
 def engine(cluster: Any) -> Engine:
-    found = fleet.engine(cluster.scheduler_address.replace("tcp", "dask"), 2)
-    assert not isinstance(found, Diagnostic)
-    return found
+    result = fleet.engine(cluster.scheduler_address.replace("tcp", "dask"), 2)
+    assert not isinstance(result, Diagnostic)
+    return result
 
 
 def kill(cluster: Any) -> None:
@@ -72,11 +73,11 @@ def kill(cluster: Any) -> None:
     os.kill(next(iter(cluster.workers.values())).pid, signal.SIGKILL)
 
 
-def deadly(plan: bytes, log: str, folder: str, wanted: str) -> Audited | str:
+def deadly(plan: bytes, log: str, folder: str, edition: str) -> LogAudit | str:
     """What a worker does, which knows of no patch: one log kills it."""
     if log == LOGS[3]:
         os.kill(os.getpid(), signal.SIGKILL)
-    return fleet._work(plan, log, folder, wanted)
+    return fleet._work(plan, log, folder, edition)
 
 
 def test_a_plan_is_the_same_after_a_journey(fretc: Fretc) -> None:
@@ -101,16 +102,16 @@ def test_a_worker_that_is_killed_loses_nothing_and_counts_nothing_twice(
     fretc: Fretc, cluster: Any
 ) -> None:
     here = audit_logs(plan(), LOGS)
-    told: list[str] = []
+    names: list[str] = []
 
-    def tell(log: str, audited: Audited) -> None:
-        if not told:
+    def tell(log: str, audited: LogAudit) -> None:
+        if not names:
             kill(cluster)
-        told.append(log)
+        names.append(log)
 
     there = audit_logs(plan(), LOGS, engine(cluster), tell=tell)
     assert there == here
-    assert sorted(told) == LOGS
+    assert sorted(names) == LOGS
 
 
 @pytest.mark.slow
@@ -126,10 +127,10 @@ def test_a_log_that_kills_its_workers_is_told_and_the_others_are_audited(
     assert [r for r in there.results if r.run != LOGS[3]] == [
         r for r in here.results if r.run != LOGS[3]
     ]
-    (lost,) = [r for r in there.results if r.run == LOGS[3]]
-    assert lost.verdict == "no data"
-    assert lost.hashes == here.results[3].hashes
-    (finding,) = lost.health.findings
+    (result,) = [r for r in there.results if r.run == LOGS[3]]
+    assert result.verdict == "no data"
+    assert result.hashes == here.results[3].hashes
+    (finding,) = result.health.findings
     assert (finding.code, finding.message) == (
         "F419",
         f"the process that audited `{LOGS[3]}` was killed, and again when it ran alone: "
@@ -141,10 +142,10 @@ def test_a_worker_with_another_fretc_is_refused(
     fretc: Fretc, cluster: Any, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(fleet, "edition", lambda: "another")
-    found = audit_logs(plan(), LOGS[:2], engine(cluster))
-    assert isinstance(found, Diagnostic)
-    assert found.code.number == "F911"
-    assert found.message.startswith("the worker tcp://127.0.0.1:")
+    diagnostic = audit_logs(plan(), LOGS[:2], engine(cluster))
+    assert isinstance(diagnostic, Diagnostic)
+    assert diagnostic.code.number == "F911"
+    assert diagnostic.message.startswith("the worker tcp://127.0.0.1:")
 
 
 def test_a_worker_without_fretc_is_refused(
@@ -154,9 +155,9 @@ def test_a_worker_without_fretc_is_refused(
         raise ModuleNotFoundError("No module named 'compiler'")
 
     monkeypatch.setattr(fleet, "_work", work)
-    found = audit_logs(plan(), LOGS[:2], engine(cluster))
-    assert isinstance(found, Diagnostic)
-    assert (found.code.number, found.message) == (
+    diagnostic = audit_logs(plan(), LOGS[:2], engine(cluster))
+    assert isinstance(diagnostic, Diagnostic)
+    assert (diagnostic.code.number, diagnostic.message) == (
         "F911",
         "a worker has no fretc, or another one: No module named 'compiler'",
     )
@@ -229,11 +230,11 @@ def test_a_cluster_of_its_own_is_stopped_and_goes_on(fretc: Fretc) -> None:
         assert time.monotonic() < deadline
         time.sleep(0.01)
     os.killpg(run.pid, signal.SIGINT)  # as Ctrl-C does: all processes of the terminal
-    _, said = run.communicate(timeout=60)
-    kept = journal.read_bytes().count(b"\n") - 1
-    words = f"stopped: {kept} of 12 logs are kept, `--resume` goes on from there\n"
-    assert (run.returncode, said) == (130, words)
-    assert fretc("audit", *LOGS, "--resume").err.startswith(f"{kept} of 12 logs are audited")
+    _, errors = run.communicate(timeout=60)
+    lines = journal.read_bytes().count(b"\n") - 1
+    words = f"stopped: {lines} of 12 logs are kept, `--resume` goes on from there\n"
+    assert (run.returncode, errors) == (130, words)
+    assert fretc("audit", *LOGS, "--resume").err.startswith(f"{lines} of 12 logs are audited")
     assert Path("build/evidence.json").read_bytes() == evidence
 
 

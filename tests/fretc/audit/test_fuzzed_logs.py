@@ -21,7 +21,7 @@ from mcap.writer import CompressionType, IndexType
 
 from compiler.project import folder as project
 from compiler.targets.python.monitor import text
-from fretc.audit.one_log import Watched, audit
+from fretc.audit.one_log import MonitoredRequirement, audit
 from fretc.logs.reader import read
 from fretc.logs.signals.samples import Recording
 from fretish.bindings.declarations import Declarations
@@ -135,7 +135,7 @@ class Bench:
         self.project = project.load([str(folder / "r.fret")], str(folder / "bindings.toml"))
         assert not self.project.diagnostics
         monitors = [load(f"{rule.id}_monitor", text(rule)) for rule in self.project.rules]
-        self.watched = [Watched(monitor, {}) for monitor in monitors]
+        self.watched = [MonitoredRequirement(monitor, {}) for monitor in monitors]
         self.known = cache(self._known)
 
     @property
@@ -156,41 +156,43 @@ class Bench:
             index=IndexType.ALL if kind.summary else IndexType.NONE,
         )
         data = self.log.read_bytes()
-        verdicts, found = self.audit(data)
-        assert found is not None
+        verdicts, recording = self.audit(data)
+        assert recording is not None
         assert verdicts == ["satisfied", "satisfied"]
-        assert columns(found) == official(data, kind.encoding)
-        return Known(data, columns(found))
+        assert columns(recording) == official(data, kind.encoding)
+        return Known(data, columns(recording))
 
     def audit(self, data: bytes) -> tuple[list[str], Recording | None]:
         """The verdicts, and what was read; nothing of a log that cannot be read."""
         self.log.write_bytes(data)
         declared = self.declarations
-        found = read(str(self.log), declared, list(declared.signals))
-        if isinstance(found, Diagnostic):
+        recording = read(str(self.log), declared, list(declared.signals))
+        if isinstance(recording, Diagnostic):
             return [], None
-        return [evidence.verdict for evidence in audit(found, declared, self.watched)], found
+        return [
+            evidence.verdict for evidence in audit(recording, declared, self.watched)
+        ], recording
 
     def check(self, kind: Kind, data: bytes) -> list[str]:
         """What holds for whatever was done to a log of that kind; gives the verdicts."""
         tracemalloc.start()
-        verdicts, found = self.audit(data)
+        verdicts, recording = self.audit(data)
         _, peak = tracemalloc.get_traced_memory()
         tracemalloc.stop()
-        ticks = 0 if found is None else (found.end_ns - found.start_ns) // (100 * MS)
+        ticks = 0 if recording is None else (recording.end_ns - recording.start_ns) // (100 * MS)
         assert peak < MOST + 64 * ticks
-        if found is not None and "satisfied" in verdicts:
-            read, known = columns(found), self.known(kind).columns
+        if recording is not None and "satisfied" in verdicts:
+            read, expected = columns(recording), self.known(kind).columns
             if kind.crcs:
-                assert read == known
-            elif read != known:  # nobody can see a changed number there
-                agree(read, official(data, kind.encoding) or known)
+                assert read == expected
+            elif read != expected:  # nobody can see a changed number there
+                agree(read, official(data, kind.encoding) or expected)
         return verdicts
 
 
-def columns(found: Recording) -> Any:
+def columns(recording: Recording) -> Any:
     """Times and values of all signals; NaN is equal to itself."""
-    samples = found.samples.items()
+    samples = recording.samples.items()
     return {
         name: [*zip(s.times.tolist(), map(repr, s.values.tolist()), strict=True)]
         for name, s in samples
@@ -210,7 +212,7 @@ def official(data: bytes, encoding: str) -> Any:
     """What the official reader and decoders find in a log; None where it cannot be read."""
     decode = mcap_ros2.decoder if encoding == "cdr" else mcap_ros1.decoder
     factory = decode.DecoderFactory()
-    found: dict[str, list[tuple[int, str]]] = {"x": [], "nearest": []}
+    by_topic: dict[str, list[tuple[int, str]]] = {"x": [], "nearest": []}
     try:
         messages = list(NonSeekingReader(BytesIO(data), validate_crcs=True).iter_messages())
     except Exception:  # each codec has its own
@@ -223,8 +225,8 @@ def official(data: bytes, encoding: str) -> Any:
             decoded = factory.decoder_for(channel.message_encoding, schema)(message.data)
         except Exception:  # whatever it is: the message says nothing
             decoded = None
-        found[name].append((message.log_time, repr(sample(decoded))))
-    return {name: sorted(samples, key=itemgetter(0)) for name, samples in found.items()}
+        by_topic[name].append((message.log_time, repr(sample(decoded))))
+    return {name: sorted(samples, key=itemgetter(0)) for name, samples in by_topic.items()}
 
 
 def sample(decoded: Any) -> float:

@@ -16,9 +16,10 @@ import pytest
 
 from compiler.files import text_files as files
 from compiler.files.user_key import user_key
-from compiler.project.folder import beside, load, requirement_files
+from compiler.project.folder import load
+from compiler.project.paths import beside, requirement_files
 from fretc.audit.journal import Journal
-from fretc.audit.many_logs import Audit, Audited, audit_logs, audited
+from fretc.audit.many_logs import Audit, LogAudit, audit_logs, audited
 from fretc.audit.plan import Plan, planned
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from tests.command import Fretc
@@ -42,9 +43,9 @@ def fretc(fretc: Fretc, monkeypatch: pytest.MonkeyPatch) -> Fretc:
 def plan(evaluation: str = "columns") -> Plan:
     paths = requirement_files("requirements")
     assert not isinstance(paths, Diagnostic)
-    found = planned(load(paths, beside("requirements", "bindings.toml")), evaluation)
-    assert isinstance(found, Plan)
-    return found
+    result = planned(load(paths, beside("requirements", "bindings.toml")), evaluation)
+    assert isinstance(result, Plan)
+    return result
 
 
 def journal_of(plan: Plan, evidence: Path = EVIDENCE) -> Journal:
@@ -64,10 +65,10 @@ def stopped(logs: Sequence[str] = LOGS[:2]) -> None:
 def finished() -> list[str]:
     """The logs that need not be audited again."""
     journal = journal_of(plan())
-    found = journal.finished(LOGS)
-    assert not isinstance(found, Diagnostic)
+    audits = journal.finished(LOGS)
+    assert not isinstance(audits, Diagnostic)
     journal.close()
-    return list(found)
+    return list(audits)
 
 
 def damage(log: str) -> None:
@@ -105,12 +106,12 @@ def test_an_audit_that_goes_on_gives_the_evidence_of_one_that_was_not_stopped(
 def test_only_what_is_not_finished_is_audited(fretc: Fretc) -> None:
     stopped()
     journal = journal_of(plan())
-    known = journal.finished(LOGS)
-    assert not isinstance(known, Diagnostic)
-    told: list[str] = []
-    result = audit_logs(plan(), LOGS, known=known, tell=lambda log, _: told.append(log))
+    audits = journal.finished(LOGS)
+    assert not isinstance(audits, Diagnostic)
+    names: list[str] = []
+    result = audit_logs(plan(), LOGS, finished=audits, tell=lambda log, _: names.append(log))
     assert isinstance(result, Audit)
-    assert told == ["c.mcap"]
+    assert names == ["c.mcap"]
 
 
 def test_a_log_with_another_byte_is_audited_again_whatever_its_time_says(fretc: Fretc) -> None:
@@ -152,7 +153,7 @@ def test_a_log_that_could_not_be_read_or_has_changed_meanwhile_is_not_kept(fretc
     journal = journal_of(plan())
     assert journal.keep("no.mcap", audited(plan(), "no.mcap")) is False
     good = audited(plan(), "a.mcap")
-    assert journal.keep("a.mcap", Audited(good.results, (), read=True, stamp=None)) is False
+    assert journal.keep("a.mcap", LogAudit(good.results, (), read=True, stamp=None)) is False
     assert not JOURNAL.exists()
 
 
@@ -254,9 +255,9 @@ def test_a_place_where_nothing_can_be_kept_is_told(fretc: Fretc) -> None:
     run = fretc("audit", *LOGS)
     assert run.status == 2
     assert run.err.startswith(f"F905 `{JOURNAL}` cannot be written: ")
-    kept = journal_of(plan()).keep("a.mcap", audited(plan(), "a.mcap"))
-    assert isinstance(kept, Diagnostic)
-    assert kept.code is Code.NOT_WRITTEN
+    diagnostic = journal_of(plan()).keep("a.mcap", audited(plan(), "a.mcap"))
+    assert isinstance(diagnostic, Diagnostic)
+    assert diagnostic.code is Code.NOT_WRITTEN
 
 
 def test_evidence_that_is_printed_keeps_nothing(fretc: Fretc) -> None:
@@ -288,16 +289,16 @@ def test_an_audit_is_stopped_and_goes_on(fretc: Fretc, stop: signal.Signals) -> 
     ):
         time.sleep(0.01)
     run.send_signal(stop)
-    _, said = run.communicate(timeout=60)
+    _, errors = run.communicate(timeout=60)
     assert not EVIDENCE.exists()
-    kept = JOURNAL.read_bytes().count(b"\n") - 1
+    lines = JOURNAL.read_bytes().count(b"\n") - 1
     if stop is not signal.SIGKILL:
-        words = f"stopped: {kept} of 24 logs are kept, `--resume` goes on from there\n"
-        assert (run.returncode, said) == (130, words)
+        words = f"stopped: {lines} of 24 logs are kept, `--resume` goes on from there\n"
+        assert (run.returncode, errors) == (130, words)
     resumed = fretc("audit", *logs, "--resume")
     assert resumed.status == 0
-    assert resumed.err.startswith(f"{kept} of 24 logs are audited already\n")
-    assert 0 < kept < 24
+    assert resumed.err.startswith(f"{lines} of 24 logs are audited already\n")
+    assert 0 < lines < 24
     assert [result["run"] for result in json.loads(EVIDENCE.read_text())["results"]] == logs
 
 
@@ -350,10 +351,10 @@ def test_a_check_without_a_key_is_not_believed(fretc: Fretc) -> None:
     """As journals had it before: whoever wrote a line could write its check."""
     stopped()
     head, first, second = JOURNAL.read_bytes().splitlines()
-    told = json.loads(second)
-    unchecked = json.dumps({**told, "check": ""})
+    content = json.loads(second)
+    unchecked = json.dumps({**content, "check": ""})
     check = hashlib.sha256(unchecked.encode()).hexdigest()
-    line = json.dumps({**told, "check": check}).encode()
+    line = json.dumps({**content, "check": check}).encode()
     JOURNAL.write_bytes(b"\n".join([head, first, line, b""]))
     assert finished() == ["a.mcap"]
 

@@ -15,24 +15,24 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
 
 
-def made(*names: str) -> None:
+def make_files(*names: str) -> None:
     for name in names:
         write(name, "")
 
 
 def code(*paths: str) -> str:
-    found = logs(paths)
-    assert isinstance(found, Diagnostic)
-    return found.code.number
+    diagnostic = logs(paths)
+    assert isinstance(diagnostic, Diagnostic)
+    return diagnostic.code.number
 
 
 def test_a_folder_stands_for_the_logs_below_it_in_the_order_of_their_names() -> None:
-    made("runs/b.mcap", "runs/a/2.mcap", "runs/a/1.mcap", "runs/notes.txt", "runs/c.mcap")
+    make_files("runs/b.mcap", "runs/a/2.mcap", "runs/a/1.mcap", "runs/notes.txt", "runs/c.mcap")
     assert logs(["runs"]) == ["runs/a/1.mcap", "runs/a/2.mcap", "runs/b.mcap", "runs/c.mcap"]
 
 
 def test_a_log_comes_once_however_it_is_named() -> None:
-    made("runs/a.mcap", "runs/b.mcap")
+    make_files("runs/a.mcap", "runs/b.mcap")
     assert logs(["runs/b.mcap", "./runs/b.mcap", "runs"]) == ["runs/b.mcap", "runs/a.mcap"]
 
 
@@ -41,14 +41,14 @@ def test_a_file_is_taken_as_it_is_there_or_not() -> None:
 
 
 def test_a_bag_of_one_file_is_a_log_and_one_of_several_is_refused() -> None:
-    made("one/metadata.yaml", "one/x_0.mcap")
+    make_files("one/metadata.yaml", "one/x_0.mcap")
     assert logs(["one"]) == ["one/x_0.mcap"]
-    made("all/two/metadata.yaml", "all/two/x_0.mcap", "all/two/x_1.mcap")
+    make_files("all/two/metadata.yaml", "all/two/x_0.mcap", "all/two/x_1.mcap")
     assert code("all") == "F413"
 
 
 def test_a_folder_without_logs_is_told() -> None:
-    made("empty/notes.txt")
+    make_files("empty/notes.txt")
     assert code("empty") == "F901"
 
 
@@ -62,7 +62,7 @@ def described(path: str, *names: str, mode: str = "") -> None:
 
 def test_a_run_in_several_files_is_one_log_and_what_it_does_not_list_another() -> None:
     described("all/run", "x_0.mcap", "x_1.mcap")
-    made("all/run/x_2.mcap", "all/a.bag", "all/z.db3")
+    make_files("all/run/x_2.mcap", "all/a.bag", "all/z.db3")
     assert logs(["all"]) == ["all/a.bag", "all/run", "all/run/x_2.mcap", "all/z.db3"]
     Path("all/run/x_1.mcap").unlink()
     assert logs(["all/run"]) == ["all/run", "all/run/x_2.mcap"]
@@ -70,7 +70,7 @@ def test_a_run_in_several_files_is_one_log_and_what_it_does_not_list_another() -
 
 def test_the_files_of_a_run_are_one_log_when_all_are_named() -> None:
     described("run", "x_0.mcap", "x_1.mcap")
-    made("a.mcap", "b.mcap")
+    make_files("a.mcap", "b.mcap")
     assert logs(["a.mcap", "run/x_1.mcap", "b.mcap", "run/x_0.mcap"]) == [
         "a.mcap",
         "b.mcap",
@@ -86,7 +86,7 @@ def test_a_run_that_is_compressed_is_named_so_that_it_can_be_refused() -> None:
 
 
 def test_a_pattern_stands_for_what_it_matches() -> None:
-    made("runs/b.mcap", "runs/a/2.mcap", "runs/a/deep/1.mcap", "runs/a/n.txt")
+    make_files("runs/b.mcap", "runs/a/2.mcap", "runs/a/deep/1.mcap", "runs/a/n.txt")
     assert logs(["runs/**/*.mcap"]) == ["runs/a/2.mcap", "runs/a/deep/1.mcap", "runs/b.mcap"]
     assert logs(["runs/*"]) == ["runs/a/2.mcap", "runs/a/deep/1.mcap", "runs/b.mcap"]
     assert logs(["runs/?.mcap"]) == ["runs/b.mcap"]
@@ -97,7 +97,7 @@ def test_a_pattern_that_matches_nothing_is_told() -> None:
 
 
 def test_a_name_that_looks_like_a_pattern_is_a_name() -> None:
-    made("run[1].mcap")
+    make_files("run[1].mcap")
     assert logs(["run[1].mcap"]) == ["run[1].mcap"]
 
 
@@ -118,13 +118,13 @@ def test_all_files_of_a_run_are_protected() -> None:
 
 
 def test_links_that_lead_in_circles_are_not_followed() -> None:
-    made("runs/a.mcap")
+    make_files("runs/a.mcap")
     Path("runs/again").symlink_to(Path("runs").resolve())
     assert logs(["runs"]) == ["runs/a.mcap"]
 
 
 def test_a_folder_of_links_is_the_logs_that_they_lead_to() -> None:
-    made("disk/one/a.mcap", "disk/b.mcap", "disk/z.txt")
+    make_files("disk/one/a.mcap", "disk/b.mcap", "disk/z.txt")
     Path("runs").mkdir()
     Path("runs/day").symlink_to(Path("disk/one").resolve())
     Path("runs/b.mcap").symlink_to(Path("disk/b.mcap").resolve())
@@ -134,7 +134,7 @@ def test_a_folder_of_links_is_the_logs_that_they_lead_to() -> None:
 
 
 def test_a_link_to_a_folder_above_is_not_followed() -> None:
-    made("a.mcap", "runs/day/b.mcap")
+    make_files("a.mcap", "runs/day/b.mcap")
     Path("runs/all").symlink_to(Path.cwd())
     Path("runs/day/disk").symlink_to("/")
     assert logs(["runs"]) == ["runs/day/b.mcap"]
@@ -142,7 +142,7 @@ def test_a_link_to_a_folder_above_is_not_followed() -> None:
 
 def test_a_link_to_a_log_that_is_not_there_is_not_passed_by() -> None:
     # As of data that was not fetched: the other logs alone would show too much.
-    made("runs/a.mcap")
+    make_files("runs/a.mcap")
     Path("runs/b.mcap").symlink_to("nowhere")
     os.mkfifo("runs/c.mcap")
     assert logs(["runs"]) == ["runs/a.mcap", "runs/b.mcap", "runs/c.mcap"]

@@ -117,9 +117,9 @@ def test_a_violation_in_a_log_that_ends_in_the_middle_is_a_violation(fretc: Fret
     assert fretc("audit", "run.mcap").status == 1
     whole = evidence()["results"][0]["violations"]
     assert fretc("audit", "cut.mcap").status == 1
-    found = evidence()["results"][0]["violations"]
-    assert found[:-1] == whole[: len(found) - 1]
-    assert found[-1]["first_tick"] == whole[len(found) - 1]["first_tick"]
+    cut = evidence()["results"][0]["violations"]
+    assert cut[:-1] == whole[: len(cut) - 1]
+    assert cut[-1]["first_tick"] == whole[len(cut) - 1]["first_tick"]
 
 
 def test_a_log_without_one_whole_message_is_bad_input(fretc: Fretc) -> None:
@@ -166,7 +166,7 @@ def test_a_proposition_without_a_binding_is_told_at_the_sentence(fretc: Fretc) -
         2,
         "",
         "F304 `halted` of R1 has no binding in requirements/bindings.toml\n"
-        "  --> requirements/r1.fret:11:58\n"
+        "  --> requirements/r1.fret:12:58\n"
         "   | whenever too_close agilex_agent shall eventually satisfy halted\n"
         "   |                                                          ^^^^^^\n"
         "help: add `[proposition.halted]` there\n",
@@ -202,12 +202,12 @@ def test_a_folder_of_logs_gives_the_same_with_any_number_of_processes(fretc: Fre
         target.parent.mkdir(parents=True, exist_ok=True)
         target.write_bytes(Path("run.mcap").read_bytes())
     Path("runs/bad.mcap").write_bytes(b"no log")
-    found = []
+    texts = []
     for jobs in ("1", "2", "7"):
         run = fretc("audit", "runs", "--jobs", jobs)
         assert run.status == 2
-        found.append((run.out, Path("build/evidence.json").read_bytes()))
-    assert found[0] == found[1] == found[2]
+        texts.append((run.out, Path("build/evidence.json").read_bytes()))
+    assert texts[0] == texts[1] == texts[2]
     assert [result["run"] for result in evidence()["results"]] == [
         "runs/a.mcap",
         "runs/b.mcap",
@@ -237,7 +237,7 @@ def test_a_log_whose_audit_kills_its_process_is_no_data_and_the_others_are_audit
 ) -> None:
     real = auditing.audited
 
-    def deadly(plan: Plan, log: str) -> auditing.Audited:
+    def deadly(plan: Plan, log: str) -> auditing.LogAudit:
         if log == "bad.mcap":
             os.kill(os.getpid(), signal.SIGKILL)
         return real(plan, log)
@@ -254,15 +254,15 @@ def test_a_log_whose_audit_kills_its_process_is_no_data_and_the_others_are_audit
         "help: was there memory enough? audit this log on a machine that has more\n"
         "wrote build/evidence.json\n"
     )
-    found = evidence()
-    jsonschema.validate(found, SCHEMA)
-    verdicts = [(result["run"], result["verdict"]) for result in found["results"]]
+    content = evidence()
+    jsonschema.validate(content, SCHEMA)
+    verdicts = [(result["run"], result["verdict"]) for result in content["results"]]
     assert verdicts == [
         ("run.mcap", "satisfied"),
         ("bad.mcap", "no data"),
         ("other.mcap", "satisfied"),
     ]
-    hashes = [result["hashes"] for result in found["results"]]
+    hashes = [result["hashes"] for result in content["results"]]
     assert hashes[1] == hashes[0]
 
 
@@ -292,19 +292,20 @@ def test_evidence_that_cannot_be_written_is_told_before_the_audit(fretc: Fretc) 
 
 def test_what_is_true_of_many_logs_is_told_once(fretc: Fretc) -> None:
     change("requirements/bindings.toml", 'reduce    = "outline"', 'reduce    = "min"')
-    alone = fretc("audit", "run.mcap").err
+    of_one = fretc("audit", "run.mcap").err
     logs = [f"{number}.mcap" for number in range(4)]
     for log in logs:
         shutil.copy("run.mcap", log)
     Path(logs[2]).write_bytes(Path("run.mcap").read_bytes()[:900_000])
-    said = fretc("audit", *logs).err
-    first, *others = takewhile(lambda line: not line.startswith("F314"), alone.splitlines())
-    assert said.splitlines()[0] == f"{first} (in 4 of 4 logs, first in `0.mcap`)"
-    assert said.count("F311") == 1
-    assert said.splitlines()[1 : len(others) + 1] == others
-    assert said.count("F314") == 1
-    assert said.count("F403") == 1
-    assert "  --> 2.mcap\n" in said
+    of_all = fretc("audit", *logs).err
+    first, *others = takewhile(lambda line: not line.startswith("F314"), of_one.splitlines())
+    lines = of_all.splitlines()
+    at = lines.index(f"{first} (in 4 of 4 logs, first in `0.mcap`)")
+    assert of_all.count("F311") == 1
+    assert lines[at + 1 : at + len(others)] == others[: len(others) - 1]
+    assert of_all.count("F314") == 1
+    assert of_all.count("F403") == 1
+    assert "  --> 2.mcap\n" in of_all
 
 
 @pytest.mark.parametrize("integrity", ["index", "hash", "full"])
@@ -314,13 +315,13 @@ def test_verdicts_do_not_depend_on_what_is_looked_at_of_the_log(
     assert fretc("audit", "run.mcap").status == 0
     (usual,) = evidence()["results"]
     assert fretc("audit", "run.mcap", "--integrity", integrity).status == 0
-    found = evidence()
-    jsonschema.validate(found, SCHEMA)
-    (result,) = found["results"]
+    content = evidence()
+    jsonschema.validate(content, SCHEMA)
+    (result,) = content["results"]
     assert {**result, "health": 0, "hashes": 0} == {**usual, "health": 0, "hashes": 0}
     assert result["health"]["checked"]["by_index"] is (integrity != "full")
-    whole = hashlib.sha256(Path("run.mcap").read_bytes()).hexdigest()
-    assert result["hashes"].get("log") == (None if integrity == "index" else whole)
+    sha256 = hashlib.sha256(Path("run.mcap").read_bytes()).hexdigest()
+    assert result["hashes"].get("log") == (None if integrity == "index" else sha256)
     assert ("log_summary" in result["hashes"]) is (integrity == "index")
 
 

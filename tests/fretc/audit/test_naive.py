@@ -21,7 +21,7 @@ from hypothesis import settings
 
 from compiler.formalization.formalize import formalize
 from compiler.targets.python.monitor import text
-from fretc.audit.one_log import Watched, audit
+from fretc.audit.one_log import MonitoredRequirement, audit
 from fretc.logs.reader import read
 from fretc.logs.signals.samples import Recording
 from fretish.bindings.declarations import Declarations
@@ -160,8 +160,8 @@ def drawn(random: Random, bound: Bound) -> Fraction | None:
     if family == "byte":
         return Fraction(random.choice((0, 7, 29, 35, 255)))
     if family in ("whole", "json whole"):
-        found = random.choice((*LARGE, 35, 29, 0, -35))
-        return Fraction(abs(found) if bound.kind.topic == "UInt64" else found)
+        number = random.choice((*LARGE, 35, 29, 0, -35))
+        return Fraction(abs(number) if bound.kind.topic == "UInt64" else number)
     if random.random() < 0.08:
         return None
     while True:
@@ -187,24 +187,24 @@ def constant(random: Random, bound: Bound) -> tuple[str, Any]:
         while True:
             unit = random.choice(UNITS[bound.dimension])
             value = Fraction(random.choice(POOLS[bound.dimension]))
-            found = decimal(value if unit == "deg" else value / FACTORS[unit])
-            if found is not None:
-                digits = found
+            digits_in_base = decimal(value if unit == "deg" else value / FACTORS[unit])
+            if digits_in_base is not None:
+                digits = digits_in_base
                 break
     word = "" if unit == "1" else f" {unit}"
     sign, digits = ("-" if digits.startswith("-") else ""), digits.removeprefix("-")
     plain: Any = ("constant", digits, unit)
     plain = ("-", plain) if sign else plain
-    told = f"{sign}{digits}{word}"
+    text = f"{sign}{digits}{word}"
     match random.randrange(10):
         case 0:
-            return f"({told} + {told}) / 2", ("/", ("+", plain, plain), ("constant", "2", "1"))
+            return f"({text} + {text}) / 2", ("/", ("+", plain, plain), ("constant", "2", "1"))
         case 1:
-            return f"min({told}, {told})", ("min", plain, plain)
+            return f"min({text}, {text})", ("min", plain, plain)
         case 2:
-            return f"3 * ({told}) / 3", plain
+            return f"3 * ({text}) / 3", plain
         case _:
-            return told, plain
+            return text, plain
 
 
 def term(random: Random, bound: Bound, signals: Sequence[Bound]) -> tuple[str, Any]:
@@ -299,17 +299,17 @@ def made(
         parts = []
         for bound in signals:
             some = [as_json(random, bound, value) for value in values[bound.name]]
-            told = [one for one in some if one is not None]
+            truths = [one for one in some if one is not None]
             match bound.kind.field:
                 case "v[:]":
-                    told = ["null" if one is None else one for one in some]
-                    parts.append(f'"v": [{", ".join(told)}]')
+                    truths = ["null" if one is None else one for one in some]
+                    parts.append(f'"v": [{", ".join(truths)}]')
                 case "v[1]":
                     parts.append(f'"v": [5, {"null" if some[0] is None else some[0]}, 7]')
                 case "y.z":
-                    parts.append('"y": {' + "".join(f'"z": {one}' for one in told) + "}")
+                    parts.append('"y": {' + "".join(f'"z": {one}' for one in truths) + "}")
                 case name:
-                    parts += [f'"{name}": {one}' for one in told]
+                    parts += [f'"{name}": {one}' for one in truths]
         if stamp is not None:
             sec, nanosec = divmod(stamp, S)
             parts.append(f'"header": {{"stamp": {{"sec": {sec}, "nanosec": {nanosec}}}}}')
@@ -496,59 +496,61 @@ def recorded(
 
 @cache
 def monitor(sentence: str, clock: str) -> Monitor:
-    found, _ = requirements(Source("R1.fret", sentence))
-    rule, said = formalize(found[0], declared(f"{clock}\n{BOUND}"))
-    assert rule is not None, said
+    read, _ = requirements(Source("R1.fret", sentence))
+    rule, diagnostics = formalize(read[0], declared(f"{clock}\n{BOUND}"))
+    assert rule is not None, diagnostics
     return load("monitor", text(rule))
 
 
 def declared(bindings: str) -> Declarations:
-    declarations, wrong = read_bindings(Source("bindings.toml", bindings))
-    assert declarations is not None, (bindings, wrong)
+    declarations, diagnostics = read_bindings(Source("bindings.toml", bindings))
+    assert declarations is not None, (bindings, diagnostics)
     return declarations
 
 
-def watched(found: Case) -> Monitor:
-    clock = found.bindings.partition("[signal")[0]
+def watched(one: Case) -> Monitor:
+    clock = one.bindings.partition("[signal")[0]
     lines = [line for line in clock.splitlines() if not line.startswith(("phase", "end", "time"))]
-    return monitor(found.form.replace("{n}", found.timing), "\n".join(lines))
+    return monitor(one.form.replace("{n}", one.timing), "\n".join(lines))
 
 
-def differences(found: Case, path: Path) -> list[str]:
+def differences(one: Case, path: Path) -> list[str]:
     """Where fretc and the naive auditor part; nothing where they agree."""
-    write(path, found.sent, **found.log)
-    declarations = declared(found.bindings)
+    write(path, one.sent, **one.log)
+    declarations = declared(one.bindings)
     recording = read(str(path), declarations, list(declarations.signals))
     assert isinstance(recording, Recording), recording
     if not recording.intact:
         return [f"not intact: {[f.message for f in recording.findings]}"]
-    run, apart = found.run, []
-    watching = watched(found)
-    (evidence,) = audit(recording, declarations, [Watched(watching, {})])
-    (stepped,) = audit(recording, declarations, [Watched(watching, {})], kernel.stepped)
+    run, apart = one.run, []
+    watching = watched(one)
+    (evidence,) = audit(recording, declarations, [MonitoredRequirement(watching, {})])
+    (stepped,) = audit(
+        recording, declarations, [MonitoredRequirement(watching, {})], kernel.stepped
+    )
     if (evidence.verdict, evidence.outcome) != (stepped.verdict, stepped.outcome):
         apart.append(f"engines: {evidence.verdict}, {stepped.verdict}")
     for name, tally in evidence.propositions.items():
         column, _ = run.columns(name)
         known = [value for value in column if value is not None]
         changes = sum(a != b for a, b in pairwise(known))
-        told = (known.count(True), known.count(False), column.count(None), changes)
+        counts = (known.count(True), known.count(False), column.count(None), changes)
         ours = (tally.true, tally.false, tally.unknown, tally.changes)
-        if ours != told:
-            apart.append(f"{name}: {ours}, and not {told}: {column}")
-    apart += judged(evidence.verdict, found, run, "verdict")
+        if ours != counts:
+            apart.append(f"{name}: {ours}, and not {counts}: {column}")
+    apart += verdict_differences(evidence.verdict, one, run, "verdict")
     if evidence.phases is not None:
         for stretch in evidence.phases.stretches:
             every = range(stretch.first, stretch.last + 1)
             for phase in every if run.tick < 100 else {every[0], every[-1]}:
                 at = replace(run, phase=phase)
-                apart += judged(str(stretch.verdict), found, at, f"phase {phase}")
+                apart += verdict_differences(str(stretch.verdict), one, at, f"phase {phase}")
     return apart
 
 
-def judged(verdict: str, found: Case, run: Run, what: str) -> list[str]:
+def verdict_differences(verdict: str, one: Case, run: Run, what: str) -> list[str]:
     """What is wrong about one verdict."""
-    may = verdicts(found.form, found.ticks, run)
+    may = verdicts(one.form, one.ticks, run)
     if may is None or may == {verdict}:
         return []
     certain = all(None not in part for name in "pq" for part in run.columns(name))

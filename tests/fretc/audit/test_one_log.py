@@ -10,7 +10,7 @@ from compiler.files.records import plain
 from compiler.formalization.formalize import formalize
 from compiler.targets.python.monitor import text
 from fretc.audit.evidence.writer import Evidence, as_record
-from fretc.audit.one_log import Watched, audit, signals_of
+from fretc.audit.one_log import MonitoredRequirement, audit, signals_of
 from fretc.logs.signals.samples import Recording, Samples
 from fretish.bindings.declarations import Declarations
 from fretish.bindings.reader import read_bindings
@@ -40,8 +40,8 @@ FAR, NEAR, STILL, MOVING = 1.0, 0.01, 0.0, 0.4
 
 
 def declared(text: str = BINDINGS) -> Declarations:
-    declarations, wrong = read_bindings(Source("bindings.toml", text))
-    assert declarations is not None, wrong
+    declarations, diagnostics = read_bindings(Source("bindings.toml", text))
+    assert declarations is not None, diagnostics
     return declarations
 
 
@@ -64,12 +64,14 @@ def recorded(
 def audited(
     sentence: str, recording: Recording, declarations: Declarations | None = None
 ) -> Evidence:
-    known = declarations or declared()
+    bindings = declarations or declared()
     ((requirement,), _) = requirements(Source("R1.fret", sentence))
-    rule, said = formalize(requirement, known)
-    assert rule is not None, said
-    watched = Watched(load("monitor", text(rule)), HASHES | {"sentence": rule.fingerprint})
-    (evidence,) = audit(recording, known, [watched])
+    rule, diagnostics = formalize(requirement, bindings)
+    assert rule is not None, diagnostics
+    watched = MonitoredRequirement(
+        load("monitor", text(rule)), HASHES | {"sentence": rule.fingerprint}
+    )
+    (evidence,) = audit(recording, bindings, [watched])
     return evidence
 
 

@@ -2,6 +2,7 @@
 
 import os
 import signal
+import threading
 import time
 from contextlib import closing
 from multiprocessing import active_children
@@ -14,8 +15,8 @@ from fretc.audit.pool import Killed, each
 
 @pytest.mark.parametrize("jobs", [1, 2, 5])
 def test_each_thing_has_its_result_once(jobs: int) -> None:
-    found = list(each(lambda thing: thing * thing, range(40), jobs))
-    assert sorted(found, key=lambda done: done[0]) == [(i, i * i) for i in range(40)]
+    results = list(each(lambda thing: thing * thing, range(40), jobs))
+    assert sorted(results, key=lambda done: done[0]) == [(i, i * i) for i in range(40)]
     assert not active_children()
 
 
@@ -52,9 +53,9 @@ def test_a_thing_that_kills_its_process_twice_is_told_and_the_others_are_done(jo
             os.kill(os.getpid(), signal.SIGKILL)
         return -thing
 
-    found = dict(each(work, range(8), jobs))
-    assert found.pop(3) == Killed(-signal.SIGKILL)
-    assert found == {i: -i for i in range(8) if i != 3}
+    results = dict(each(work, range(8), jobs))
+    assert results.pop(3) == Killed(-signal.SIGKILL)
+    assert results == {i: -i for i in range(8) if i != 3}
     assert not active_children()
 
 
@@ -86,3 +87,22 @@ def test_closing_ends_the_work_at_once() -> None:
         start = time.monotonic()
     assert time.monotonic() - start < 10
     assert not active_children()
+
+
+def test_a_process_that_dies_while_it_sends_a_result_costs_no_other_thing_its_result(
+    tmp_path: Path,
+) -> None:
+    mark = tmp_path / "mark"
+
+    def work(thing: int) -> bytes:
+        if thing == 1 and not mark.exists():
+            mark.touch()
+            time.sleep(0.1)
+            threading.Timer(0.2, os._exit, (7,)).start()
+            return bytes(10**7)  # the pipe holds less than that: it is still being sent
+        return bytes(thing)
+
+    with closing(each(work, range(4), 2)) as results:
+        first = next(results)
+        time.sleep(0.5)
+        assert dict([first, *results]) == {i: bytes(i) for i in range(4)}

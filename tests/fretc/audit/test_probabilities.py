@@ -55,12 +55,12 @@ def require(sentence: str, id: str = "R7") -> None:
 def log(path: str, c: str, r: str, per_chunk: int | None = None) -> str:
     """A log with a message of each topic at each tick."""
     Path(path).parent.mkdir(parents=True, exist_ok=True)
-    sent = [
+    messages = [
         number(float(value), 1000 * S + tick * 100 * MS, topic)
         for tick, values in enumerate(zip(c, r, strict=True))
         for topic, value in zip(("/c", "/r"), values, strict=True)
     ]
-    write_log(Path(path), sent, per_chunk=per_chunk)
+    write_log(Path(path), messages, per_chunk=per_chunk)
     return path
 
 
@@ -77,13 +77,13 @@ def evidence() -> Any:
     return content
 
 
-def told() -> Any:
+def estimate() -> Any:
     (probability,) = evidence()["probabilities"]
     return probability
 
 
 def counts() -> tuple[int, int, int]:
-    triggers = told()["triggers"]
+    triggers = estimate()["triggers"]
     return triggers["answered"], triggers["failed"], triggers["open"]
 
 
@@ -179,19 +179,19 @@ def test_no_sentence_with_a_probability_ends_an_audit_and_each_is_counted(fretc:
     bound = [f'[proposition.{name}]\nexpr = "v{name} > 0.5"\n' for name in NAMES]
     clock = '[clock]\ntime = "log_time"\ntick = "100 ms"\n'
     write("requirements/bindings.toml", "".join([clock, *signals, *bound]))
-    sent = [
+    messages = [
         number(float(columns[name][tick]), 1000 * S + tick * 100 * MS, f"/{name}")
         for tick in range(6)
         for name in NAMES
     ]
-    write_log(Path("run.mcap"), sent)
+    write_log(Path("run.mcap"), messages)
     run = fretc("audit", "run.mcap")
     assert run.status == 3
-    found = {one["requirement"]: one["triggers"] for one in evidence()["probabilities"]}
-    assert len(found) == len(expected) == 108
+    triggers = {one["requirement"]: one["triggers"] for one in evidence()["probabilities"]}
+    assert len(triggers) == len(expected) == 108
     for id, counted in expected.items():
-        told = {name: getattr(counted, name) for name in ("answered", "failed", "open")}
-        assert found[id] == told, id
+        numbers = {name: getattr(counted, name) for name in ("answered", "failed", "open")}
+        assert triggers[id] == numbers, id
 
 
 def test_what_no_run_can_meet_is_failed_at_each_trigger(fretc: Fretc) -> None:
@@ -214,7 +214,7 @@ def test_what_is_unknown_in_the_middle_is_open_and_damage_withholds_support(fret
     assert "1 log is damaged or could not be read: what is lost could speak against it" in run.out
     answered, failed, _ = counts()
     assert (answered > 1200, failed) == (True, 0)
-    assert told()["logs"]["damaged"] == 1
+    assert estimate()["logs"]["damaged"] == 1
 
 
 def test_damage_hides_no_failure_that_was_seen(fretc: Fretc) -> None:
@@ -225,9 +225,12 @@ def test_damage_hides_no_failure_that_was_seen(fretc: Fretc) -> None:
 
 
 def test_a_topic_that_falls_silent_leaves_triggers_open(fretc: Fretc) -> None:
-    sent = [number(value, 1000 * S + i * 100 * MS, "/c") for i, value in enumerate([1, 0, 0, 0, 0])]
+    messages = [
+        number(value, 1000 * S + i * 100 * MS, "/c") for i, value in enumerate([1, 0, 0, 0, 0])
+    ]
     write_log(
-        Path("a.mcap"), [*sent, number(0, 1000 * S, "/r"), number(0, 1000 * S + 4 * 10**8, "/r")]
+        Path("a.mcap"),
+        [*messages, number(0, 1000 * S, "/r"), number(0, 1000 * S + 4 * 10**8, "/r")],
     )
     fretc("audit", "a.mcap")
     assert counts() == (0, 0, 1)
@@ -237,7 +240,7 @@ def test_a_copy_of_a_log_counts_once(fretc: Fretc) -> None:
     logs(28, "1000", "0100")
     shutil.copy("runs/000.mcap", "runs/copy.mcap")
     assert fretc("audit", "runs").status == 3
-    assert (counts(), told()["logs"]["copies"]) == ((28, 0, 0), 1)
+    assert (counts(), estimate()["logs"]["copies"]) == ((28, 0, 0), 1)
 
 
 @pytest.mark.slow
@@ -245,18 +248,18 @@ def test_a_copy_of_a_log_counts_once(fretc: Fretc) -> None:
 def test_a_log_that_was_written_again_counts_once(fretc: Fretc, integrity: str) -> None:
     """The same messages with other chunks, another compression, and a topic that nobody reads."""
     logs(28, "1000", "0100")
-    sent = [
+    messages = [
         number(float(value), 1000 * S + tick * 100 * MS, topic)
         for tick, values in enumerate(zip("1000", "0100", strict=True))
         for topic, value in zip(("/c", "/r", "/note"), (*values, "7"), strict=True)
     ]
-    unnoted = [one for one in sent if one.topic != "/note"]
-    write_log(Path("runs/noted.mcap"), sent)
+    unnoted = [one for one in messages if one.topic != "/note"]
+    write_log(Path("runs/noted.mcap"), messages)
     write_log(Path("runs/chunks.mcap"), unnoted, per_chunk=1)
     write_log(Path("runs/loose.mcap"), unnoted, compression=CompressionType.NONE)
     write_log(Path("runs/bare.mcap"), unnoted, data_crcs=True, statistics=False)
     assert fretc("audit", "runs", "--integrity", integrity).status == 3
-    assert (counts(), told()["logs"]["copies"]) == ((28, 0, 0), 4)
+    assert (counts(), estimate()["logs"]["copies"]) == ((28, 0, 0), 4)
 
 
 def test_runs_that_differ_in_a_value_or_a_time_are_no_copies(fretc: Fretc) -> None:
@@ -271,8 +274,8 @@ def test_runs_that_differ_in_a_value_or_a_time_are_no_copies(fretc: Fretc) -> No
         ],
     )
     fretc("audit", "runs")
-    assert told()["logs"]["copies"] == 0
-    assert told()["logs"]["counted"] == 3
+    assert estimate()["logs"]["copies"] == 0
+    assert estimate()["logs"]["counted"] == 3
 
 
 def test_the_order_of_the_logs_changes_nothing(fretc: Fretc) -> None:
@@ -282,20 +285,20 @@ def test_the_order_of_the_logs_changes_nothing(fretc: Fretc) -> None:
         for i in range(8)
     ]
     fretc("audit", *paths)
-    first = told()
+    first = estimate()
     for _ in range(3):
         chance.shuffle(paths)
         fretc("audit", *paths, "--jobs", "2", "--evaluation", "online")
-        assert told() == first
+        assert estimate() == first
 
 
 def test_what_was_kept_of_a_stopped_audit_counts(fretc: Fretc) -> None:
     logs(3, "1000", "0100")
     fretc("audit", "runs", "--resume")
-    whole = Path("build/evidence.json").read_bytes()
+    content = Path("build/evidence.json").read_bytes()
     log("runs/001.mcap", "10000", "00000")
     fretc("audit", "runs", "--resume")
-    assert Path("build/evidence.json").read_bytes() != whole
+    assert Path("build/evidence.json").read_bytes() != content
     assert counts() == (2, 1, 0)
 
 
@@ -305,7 +308,7 @@ def test_without_a_trigger_nothing_is_known(fretc: Fretc) -> None:
     assert run.status == 3
     assert "∅ R7  vacuous" in run.out
     assert "◔ inconclusive  there was no trigger\n" in run.out
-    assert (told()["estimate"], told()["needed"]) == (None, 33)
+    assert (estimate()["estimate"], estimate()["needed"]) == (None, 33)
 
 
 def test_an_unreadable_log_is_bad_input_and_supports_nothing(fretc: Fretc) -> None:
@@ -313,18 +316,21 @@ def test_an_unreadable_log_is_bad_input_and_supports_nothing(fretc: Fretc) -> No
     write("runs/bad.mcap", "no log")
     run = fretc("audit", "runs")
     assert run.status == 2
-    assert (told()["answer"], told()["logs"]["damaged"]) == ("inconclusive", 1)
+    assert (estimate()["answer"], estimate()["logs"]["damaged"]) == (
+        "inconclusive",
+        1,
+    )
 
 
 @pytest.mark.slow
 def test_the_stated_confidence_is_used(fretc: Fretc) -> None:
     logs(33, "1000", "0100")
     assert fretc("audit", "runs", "--confidence", "0.99").status == 3
-    assert told()["confidence"] == 0.99
+    assert estimate()["confidence"] == 0.99
     assert " --confidence 0.99 --evidence " in json.dumps(reported(fretc)["commands"])
     assert fretc("audit", "runs", "--confidence", "0.9").status == 0
-    for wrong in ("0.5", "1", "95", "x"):
-        assert fretc("audit", "runs", "--confidence", wrong).status == 2
+    for value in ("0.5", "1", "95", "x"):
+        assert fretc("audit", "runs", "--confidence", value).status == 2
 
 
 @pytest.mark.slow
@@ -365,8 +371,8 @@ def test_the_monitor_of_one_run_is_refused_still(fretc: Fretc) -> None:
 
 def test_json_has_runs_and_probabilities_by_name(fretc: Fretc) -> None:
     logs(2, "1000", "0100")
-    found = json.loads(fretc("audit", "runs", "--format", "json").out)
-    assert found == {name: evidence()[name] for name in ("results", "probabilities")}
+    content = json.loads(fretc("audit", "runs", "--format", "json").out)
+    assert content == {name: evidence()[name] for name in ("results", "probabilities")}
 
 
 @pytest.mark.parametrize(("r", "kinds"), [("0100", []), ("0001", ["failure"])])
@@ -465,19 +471,19 @@ def test_what_all_runs_say_is_made_again_with_the_evidence(fretc: Fretc) -> None
     run = fretc("verify-evidence")
     assert run.status == 1
     assert "✘ R7  differs: the answer is refuted, and was supported\n" in run.out
-    for field, value, told in [
+    for field, value, reason in [
         ("confidence", 0.99, "differs: the answer is inconclusive, and was refuted"),
         ("confidence", 0.9995, "differs: its confidence is none above 0.5 and up to 0.999"),
         ("reason", "so it is", "differs: it differs in reason"),
     ]:
-        (said,) = evidence["probabilities"]
+        (estimate,) = evidence["probabilities"]
         write(
             "build/evidence.json",
-            json.dumps({**evidence, "probabilities": [{**said, field: value}]}),
+            json.dumps({**evidence, "probabilities": [{**estimate, field: value}]}),
         )
         run = fretc("verify-evidence")
         assert run.status == 1
-        assert told in run.out
+        assert reason in run.out
     del evidence["probabilities"]
     write("build/evidence.json", json.dumps(evidence))
     assert "what all runs say of it is left out" in fretc("verify-evidence").out

@@ -122,16 +122,16 @@ PUBLISHED: [] ((B(agilex_agent,stop_moving)) -> (<> (B(agilex_agent,stopped))))
 
 def samples() -> list[Sent]:
     """An obstacle comes from 3 m to 1 cm and goes; nearer than 0.2 m no scan tells of it."""
-    sent = []
+    messages = []
     for i in range(100):
         time = S + i * 100 * MS
         distance = max(0.01, abs(i - 40) * 0.08) if i < 80 else 3.2
-        seen = distance if distance >= 0.2 else float("inf")
+        reading = distance if distance >= 0.2 else float("inf")
         near = 25 <= i <= 51
-        sent.append(scan([5.0, seen], time, range_min=0.2))
-        sent.append(number(1.0 if near else 0.0, time + MS, "/request"))
-        sent.append(number(0.3 if i < 26 else 0.0, time + 2 * MS, "/speed"))
-    return sent
+        messages.append(scan([5.0, reading], time, range_min=0.2))
+        messages.append(number(1.0 if near else 0.0, time + MS, "/request"))
+        messages.append(number(0.3 if i < 26 else 0.0, time + 2 * MS, "/speed"))
+    return messages
 
 
 @pytest.fixture
@@ -151,9 +151,9 @@ def robot(fretc: Fretc) -> Fretc:
 def test_check_finds_the_other_threshold_the_own_trigger_and_the_latch(robot: Fretc) -> None:
     run = robot("check")
     assert run.status == 3
-    found = [line.split(":")[0] for line in run.err.splitlines() if line.startswith("F")]
+    codes = [line.split(":")[0] for line in run.err.splitlines() if line.startswith("F")]
     for code in ("F310 warning", "F209 warning", "F633 warning", "F632 warning"):
-        assert code in found
+        assert code in codes
     assert "the requirement states 5 cm for `too_close`" in run.err
     assert "R2 is triggered by `stop_moving`, which agilex_agent itself commands" in run.err
 
@@ -178,8 +178,8 @@ def test_verify_finds_that_no_agent_believes_an_action(robot: Fretc) -> None:
     assert run.status == 3
     lines = run.out.splitlines()
     assert any(line.startswith("✔ PAPER") for line in lines)
-    (told,) = [line for line in lines if line.startswith("∅ PUBLISHED")]
-    assert "`stop_moving` is an action, and actions are not believed" in told
+    (line,) = [line for line in lines if line.startswith("∅ PUBLISHED")]
+    assert "`stop_moving` is an action, and actions are not believed" in line
 
 
 def test_verify_finds_that_the_published_environment_triggers_nothing(robot: Fretc) -> None:

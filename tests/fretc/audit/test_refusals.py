@@ -116,15 +116,15 @@ def test_no_form_of_the_audit_and_of_the_report_loses_it(fretc: Fretc, kind: str
     assert (
         "title=R2 no data::l.mcap: not judged" in fretc("audit", "l.mcap", "--format", "github").out
     )
-    (told,) = json.loads(fretc("audit", "l.mcap", "--format", "sarif").out)["runs"]
-    assert [result["ruleId"] for result in told["results"]] == ["R1", "R2"]
-    assert not told["invocations"][0]["executionSuccessful"]
-    notes = told["invocations"][0]["toolExecutionNotifications"]
+    (sarif,) = json.loads(fretc("audit", "l.mcap", "--format", "sarif").out)["runs"]
+    assert [result["ruleId"] for result in sarif["results"]] == ["R1", "R2"]
+    assert not sarif["invocations"][0]["executionSuccessful"]
+    notes = sarif["invocations"][0]["toolExecutionNotifications"]
     assert code in [note["descriptor"]["id"] for note in notes]
     assert fretc("audit", "l.mcap", "--annotate", "--parquet", "t.parquet").status == 2
     assert "R2" in fretc("audit", "t.parquet", "--summary").out
-    made = fretc("report", "--junit", "j.xml", "--sarif", "s.sarif", "--csv", "c.csv", "--strict")
-    assert made.status in (2, 3)
+    run = fretc("report", "--junit", "j.xml", "--sarif", "s.sarif", "--csv", "c.csv", "--strict")
+    assert run.status in (2, 3)
     cases = ElementTree.parse("j.xml").getroot()[0]
     assert [(case.get("name"), [child.tag for child in case]) for case in cases] == [
         ("R1", []),
@@ -138,8 +138,8 @@ def test_a_run_that_cannot_be_read_has_a_row_for_it_too(fretc: Fretc) -> None:
     project("the sw shall always satisfy nowhere", "", "")
     log("l.mcap", [1])
     run = fretc("audit", "l.mcap", write("broken.mcap", "x"), "--format", "json")
-    told = [(row["run"], row["requirement"], row["verdict"]) for row in json.loads(run.out)]
-    assert told == [
+    rows = [(row["run"], row["requirement"], row["verdict"]) for row in json.loads(run.out)]
+    assert rows == [
         ("l.mcap", "R1", "satisfied"),
         ("l.mcap", "R2", "no data"),
         ("broken.mcap", "R1", "no data"),

@@ -42,16 +42,16 @@ def test_a_verdict_that_is_not_the_stated_one_is_told(tmp_path: Path) -> None:
 
 @pytest.mark.slow
 def test_the_logs_of_a_campaign_stay_where_they_are_wanted(tmp_path: Path) -> None:
-    told: list[int] = []
+    counts: list[int] = []
     short = [replace(load(name), duration=2.0) for name in ("nominal", "walker")]
-    runs = campaign(short, [3, 4], 2, tmp_path, told.append)
+    runs = campaign(short, [3, 4], 2, tmp_path, counts.append)
     assert [(run.scenario, run.seed) for run in runs] == [
         ("nominal", 3),
         ("nominal", 4),
         ("walker", 3),
         ("walker", 4),
     ]
-    assert told == [1, 2, 3, 4]
+    assert counts == [1, 2, 3, 4]
     assert sorted(path.name for path in tmp_path.iterdir()) == [
         "nominal-3.mcap",
         "nominal-4.mcap",
@@ -76,8 +76,8 @@ def test_the_logs_of_a_campaign_stay_where_they_are_wanted(tmp_path: Path) -> No
 def test_the_interval_is_that_of_clopper_and_pearson(
     count: int, runs: int, low: float, high: float
 ) -> None:
-    found = share(count, runs)
-    assert (found.low, found.high) == pytest.approx((low, high), abs=1e-6)
+    interval = share(count, runs)
+    assert (interval.low, interval.high) == pytest.approx((low, high), abs=1e-6)
 
 
 def test_the_table_has_a_line_for_each_scenario_and_the_violations() -> None:

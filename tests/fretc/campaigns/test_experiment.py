@@ -79,7 +79,7 @@ def test_the_plan_audits_all_of_them() -> None:
 
 
 @pytest.mark.parametrize(
-    ("seen", "stop"),
+    ("message", "stop"),
     [
         (FREE, False),
         (scan(*[NAN] * 8), True),
@@ -92,10 +92,10 @@ def test_the_plan_audits_all_of_them() -> None:
     ],
     ids=["free", "NaN", "empty", "one NaN", "NaN, 4.4 cm", "5.4 cm", "too near", "zeros"],
 )
-def test_the_safety_function_answers_a_scan(seen: Scan, stop: bool) -> None:
+def test_the_safety_function_answers_a_scan(message: Scan, stop: bool) -> None:
     function = safety_function()
     function.hear("/odom", odometry(0.1), 0)
-    function.hear("/scan", seen, MS)
+    function.hear("/scan", message, MS)
     assert function.step(MS) is stop
 
 
@@ -124,11 +124,11 @@ def test_a_demand_is_open_until_the_robot_has_stood_for_200_ms() -> None:
 
 
 def test_the_threshold_can_be_another() -> None:
-    seen = scan(INF, INF, INF, INF, 1.0, INF, INF, INF)  # 69 cm from the outline
+    message = scan(INF, INF, INF, INF, 1.0, INF, INF, INF)  # 69 cm from the outline
     for threshold, stop in ((0.05, False), (0.69, False), (0.70, True), (0.9, True)):
         function = safety_function(threshold)
         function.hear("/odom", odometry(0.1), 0)
-        function.hear("/scan", seen, 0)
+        function.hear("/scan", message, 0)
         assert function.step(0) is stop
 
 
@@ -155,11 +155,11 @@ STILL = Twist()
 GO, STOP = messages.boolean(False), messages.boolean(True)
 
 
-def said(options: Interceptor, *heard: Any) -> list[Twist]:
+def commands(options: Interceptor, *arrivals: Any) -> list[Twist]:
     """What the emitted interceptor publishes; a number stands for that many ticks."""
     out: list[Twist] = []
     gate: Any = intercepted(options)(lambda six: out.append(Twist(*six)))
-    for one in heard:
+    for one in arrivals:
         if isinstance(one, int):
             for _ in range(one):
                 gate.ring()
@@ -188,16 +188,16 @@ def test_the_simulated_robot_has_the_interceptor_of_the_bindings() -> None:
 
 
 def test_an_interceptor_of_a_scenario_is_the_emitted_one_with_its_options() -> None:
-    assert said(Interceptor(), FAST, GO, FAST, 1) == [STILL, FAST, FAST]
-    assert said(Interceptor(), GO, FAST, STOP, GO, 5) == [FAST] + [STILL] * 5 + [FAST]
-    assert said(Interceptor(hold=0.05), GO, FAST, STOP, GO, 2) == [FAST, STILL, STILL, FAST]
-    assert said(Interceptor(), GO, FAST, 10) == [FAST] * 10 + [STILL]
+    assert commands(Interceptor(), FAST, GO, FAST, 1) == [STILL, FAST, FAST]
+    assert commands(Interceptor(), GO, FAST, STOP, GO, 5) == [FAST] + [STILL] * 5 + [FAST]
+    assert commands(Interceptor(hold=0.05), GO, FAST, STOP, GO, 2) == [FAST, STILL, STILL, FAST]
+    assert commands(Interceptor(), GO, FAST, 10) == [FAST] * 10 + [STILL]
     patient = Interceptor(command_timeout=0, safety_timeout=0.1)
-    assert said(patient, GO, FAST, 2) == [FAST, FAST, STILL]
+    assert commands(patient, GO, FAST, 2) == [FAST, FAST, STILL]
     latching = Interceptor(hold=0, latching=True)
-    assert said(latching, GO, FAST, STOP, GO, FAST) == [FAST, STILL, STILL]
+    assert commands(latching, GO, FAST, STOP, GO, FAST) == [FAST, STILL, STILL]
 
 
 def test_the_papers_interceptor_says_zero_only_when_a_command_comes() -> None:
     paper = Interceptor(at_once=False, period=0, hold=0, command_timeout=0, safety_timeout=0)
-    assert said(paper, FAST, STOP, 3, FAST, GO, FAST) == [FAST, STILL, FAST]
+    assert commands(paper, FAST, STOP, 3, FAST, GO, FAST) == [FAST, STILL, FAST]

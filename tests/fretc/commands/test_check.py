@@ -1,9 +1,11 @@
 """`fretc check`: what is wrong or missing in a project, before any run."""
 
+import json
 from pathlib import Path
 
 import pytest
 
+from fretish.reading.natural_order import natural
 from tests.command import Fretc, write
 from tests.fretc.report import cases
 
@@ -30,6 +32,21 @@ def edited(name: str, old: str, new: str) -> None:
 def test_a_sound_project_is_said_to_be_sound(good: Fretc) -> None:
     run = good("check")
     assert (run.status, run.out, run.err) == (0, "", "1 requirement: 0 mistakes, 0 warnings\n")
+
+
+def test_the_same_is_said_as_json(good: Fretc) -> None:
+    edited("r1.fret", "within 300 milliseconds", "eventually")
+    edited("r1.fret", "status", "statuss")
+    text, record = good("check"), json.loads(good("check", "--format", "json").out)
+    assert record["mistakes"] == 1
+    assert text.err.endswith(
+        f"{record['requirements']} requirement: {record['mistakes']} mistake, "
+        f"{record['warnings']} warnings\n"
+    )
+    for diagnostic in record["diagnostics"]:
+        assert f"{diagnostic['code']} " in text.err
+        assert diagnostic["message"] in text.err
+    assert good("check", "--format", "json").status == text.status == 2
 
 
 def test_a_trigger_that_the_component_itself_commands_is_told(good: Fretc) -> None:
@@ -194,3 +211,98 @@ def test_a_misspelt_method_gets_a_suggestion(good: Fretc, method: str, near: str
 def test_a_method_of_ones_own_is_no_mistake(good: Fretc, method: str) -> None:
     edited("r1.fret", '["audit"]', f'["{method}"]')
     assert good("check").status == 0
+
+
+# Mends -----------------------------------------------------------------------------------------
+
+
+def test_fix_writes_what_is_sure_says_so_and_checks_again(good: Fretc) -> None:
+    edited("r1.fret", "shall within 300 milliseconds", "should within 0.3 seconds")
+    before = Path("requirements/bindings.toml").read_bytes()
+    run = good("check", "--fix")
+    assert Path("requirements/r1.fret").read_bytes() == GOOD.encode()
+    assert Path("requirements/bindings.toml").read_bytes() == before
+    assert (run.status, run.out, run.err) == (
+        0,
+        "",
+        "wrote requirements/r1.fret\n"
+        "mended requirements/r1.fret:10:25: wrote `shall` for `should`\n"
+        "mended requirements/r1.fret:10:39: wrote `300 milliseconds` for `0.3 seconds`\n"
+        "\n"
+        "1 requirement: 0 mistakes, 0 warnings\n",
+    )
+
+
+@pytest.mark.parametrize("mend", ["shall near", "shall alwyas satisfy near", "shall satisfy (near"])
+def test_fix_leaves_alone_what_is_not_sure(good: Fretc, mend: str) -> None:
+    edited("r1.fret", "shall within 300 milliseconds satisfy stopped", f"{mend} until stopped or p")
+    text = Path("requirements/r1.fret").read_text()
+    run = good("check", "--fix")
+    assert run.status == 2
+    left = Path("requirements/r1.fret").read_text()
+    assert left in (text, text.replace("shall near", "shall satisfy near"))
+    assert good("check", "--fix").err.count("mended") == 0
+
+
+def test_fix_touches_no_file_that_has_nothing_to_mend(good: Fretc) -> None:
+    text = (GOOD + "+++\nid = 'R2'\n+++\n\"the robot should and must\"\n").replace("\n", "\r\n")
+    write("requirements/r1.fret", text)
+    stamp = Path("requirements/r1.fret").stat()
+    good("check", "--fix")
+    assert Path("requirements/r1.fret").stat() == stamp
+    assert Path("requirements/r1.fret").read_bytes() == text.encode()
+
+
+def test_fix_keeps_the_ends_of_lines_and_the_headers(good: Fretc) -> None:
+    text = GOOD.replace("\n", "\r\n")
+    write("requirements/r1.fret", text.replace("shall", "must"))
+    assert good("check", "--fix").status == 0
+    assert Path("requirements/r1.fret").read_bytes() == text.encode()
+
+
+def test_fix_writes_all_files_or_none(good: Fretc) -> None:
+    edited("r1.fret", "shall", "must")
+    other = write("elsewhere.txt", GOOD.replace('"R1"', '"R2"').replace("shall", "must"))
+    Path("requirements/r2.fret").symlink_to(Path(other).resolve())
+    run = good("check", "--fix")
+    assert (run.status, run.err.splitlines()[0][:4]) == (2, "F905")
+    assert "must" in Path("requirements/r1.fret").read_text()
+    assert "must" in Path(other).read_text()
+
+
+# All mistakes, by their places -----------------------------------------------------------------
+
+
+def test_mistakes_are_in_the_order_of_their_places(good: Fretc) -> None:
+    for name in ("r10", "r2"):
+        text = GOOD.replace('"R1"', f'"{name}"').replace("HAZ-1", "HAZ-9")
+        write(f"requirements/{name}.fret", text.replace("near", "near and p && q"))
+    write("requirements/bindings.toml", cases.BINDINGS.replace("path", "pth"))
+    run = good("check")
+    places = [line.split()[1] for line in run.err.splitlines() if line.startswith("  -->")]
+    keys = [(natural(f), int(r), int(c)) for f, r, c in (p.rsplit(":", 2) for p in places)]
+    assert keys == sorted(keys)
+    assert sum(place.startswith("requirements/r2.fret") for place in places) >= 3
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "code"),
+    [
+        ("[proposition.stopped]", "[proposition.other]", "F304"),
+        ("[clock]", "[clocks]", "F302"),
+    ],
+)
+def test_check_refuses_what_an_audit_refuses(good: Fretc, old: str, new: str, code: str) -> None:
+    edited("bindings.toml", old, new)
+    run = good("check")
+    assert run.status == 2
+    assert f"{code} " in run.err
+
+
+def test_a_comparison_without_a_binding_is_shown_itself_and_can_be_bound(good: Fretc) -> None:
+    edited("r1.fret", "satisfy stopped", "satisfy stopped & range < 3")
+    run = good("check")
+    assert run.status == 2
+    assert "F304 `(range < 3)` of R1 has no binding in requirements/bindings.toml\n" in run.err
+    assert run.err.splitlines()[3].count("^") == len("range < 3")
+    assert 'help: add `[proposition."(range < 3)"]` there\n' in run.err

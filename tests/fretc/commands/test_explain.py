@@ -42,6 +42,27 @@ def fretc(
     return runner(monkeypatch, capsys)
 
 
+def test_a_sentence_is_explained_as_it_is_typed(fretc: Fretc) -> None:
+    sentence = "whenever too_close the robot shall within 200 milliseconds satisfy stopped"
+    by_id, typed = fretc("explain", "R1"), fretc("explain", sentence)
+    assert (typed.status, typed.err) == (0, "")
+    assert typed.out.splitlines()[0] == "sentence"
+    assert typed.out.splitlines()[1:] == by_id.out.splitlines()[1:]
+    (record,) = json.loads(fretc("explain", sentence, "--format", "json").out)
+    assert record["id"] == "sentence"
+
+
+def test_a_sentence_with_a_mistake_has_a_place_and_a_mend(fretc: Fretc) -> None:
+    run = fretc("explain", "the robot should satisfy speed <= 1.5")
+    assert (run.status, run.out) == (2, "")
+    assert run.err.splitlines()[1] == "  --> <sentence>:1:11"
+
+
+def test_a_file_that_reads_as_a_sentence_is_a_file(fretc: Fretc) -> None:
+    write("the robot shall satisfy p", "the robot shall always satisfy stopped")
+    assert "always satisfy stopped" in fretc("explain", "the robot shall satisfy p").out
+
+
 def test_a_requirement_is_explained_by_its_id(fretc: Fretc) -> None:
     run = fretc("explain", "R1")
     assert (run.status, run.err) == (0, "")
@@ -200,12 +221,15 @@ def test_what_has_no_trace_says_so(fretc: Fretc) -> None:
 
 
 def test_a_name_that_is_none_gets_a_suggestion(fretc: Fretc) -> None:
-    assert fretc("explain", "R11").err == (
-        "F515 no requirement in `requirements` has the id `R11`\nhelp: did you mean `R1`?\n"
+    assert fretc("explain", "RR1").err == (
+        "F515 no requirement in `requirements` has the id `RR1`\nhelp: did you mean `R1`?\n"
     )
     assert fretc("explain", "elephant").err == (
         "F515 no requirement in `requirements` has the id `elephant`\n"
         "help: there are E1, X1, T1, R1\n"
+    )
+    assert fretc("explain", "R11").err == (  # a number is nothing that one misspells
+        "F515 no requirement in `requirements` has the id `R11`\nhelp: there are E1, X1, T1, R1\n"
     )
     run = fretc("explain", "F699")
     assert (run.status, run.out) == (2, "")

@@ -28,7 +28,10 @@ def folder(fretc: Fretc) -> Path:
 def test_nothing_has_changed_right_after_a_review(fretc: Fretc, folder: Path) -> None:
     run = fretc("lock", *BY, *ON)
     assert (run.status, run.out) == (0, "")
-    assert run.err == "wrote requirements/fretc.lock\naccepted R1: satisfied in 1 run\n"
+    assert run.err == (
+        "wrote requirements/fretc.lock\naccepted R1: satisfied in 1 run\n"
+        "accepted 1 requirement: 0 violated, 0 not shown\n"
+    )
     run = fretc("diff")
     assert (run.status, run.out, run.err) == (0, "R1  as it was reviewed\n", "")
 
@@ -223,6 +226,39 @@ def test_a_violation_is_accepted_by_name_only(fretc: Fretc, folder: Path) -> Non
     run = fretc("lock", *BY, *ON, "--accept-violations")
     assert run.status == 0
     assert "accepted R1: violated in b.mcap, c.mcap; satisfied in 1 run\n" in run.err
+    assert run.err.endswith("accepted 1 requirement: 1 violated, 0 not shown\n")
+
+
+@pytest.mark.parametrize(
+    ("verdicts", "violated", "not_shown"),
+    [
+        ({}, [], ["R1"]),
+        ({"a": "satisfied", "b": "satisfied"}, [], []),
+        ({"a": "satisfied", "b": "no data"}, [], ["R1"]),
+        ({"a": "vacuous"}, [], ["R1"]),
+        ({"a": "inconclusive", "b": "violated"}, ["R1"], []),
+    ],
+)
+def test_what_is_accepted_though_it_is_not_shown_is_counted(
+    fretc: Fretc,
+    folder: Path,
+    verdicts: dict[str, str],
+    violated: list[str],
+    not_shown: list[str],
+) -> None:
+    audited(folder, **verdicts)
+    run = fretc("lock", *BY, *ON, "--accept-violations", "--format", "json")
+    assert run.status == 0
+    assert json.loads(run.out) == {
+        "accepted": {"R1": {f"{name}.mcap": verdict for name, verdict in verdicts.items()}},
+        "violated": violated,
+        "not_shown": not_shown,
+        "left_out": [],
+    }
+    run = fretc("lock", *BY, *ON, "--accept-violations")
+    assert run.err.endswith(
+        f"accepted 1 requirement: {len(violated)} violated, {len(not_shown)} not shown\n"
+    )
 
 
 def test_of_others_than_the_chosen_ones_nothing_is_asked(fretc: Fretc, folder: Path) -> None:

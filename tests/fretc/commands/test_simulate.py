@@ -97,8 +97,8 @@ def test_a_campaign_ends_in_a_table_and_tells_what_is_not_as_stated(tmp_path: Pa
 @pytest.mark.parametrize(
     ("words", "said"),
     [
-        ((), "F907 missing option '--out'"),
-        (("nominal",), "F907 missing option '--out'"),
+        ((), "F907 missing option '--output'"),
+        (("nominal",), "F907 missing option '--output'"),
         (("nominul", "--out", "a.mcap"), "F914 the scenario `nominul` cannot be run: there is no"),
         (("no.toml", "--out", "a.mcap"), "F914 the scenario `no.toml` cannot be run: No such file"),
         (("bad.toml", "--out", "a.mcap"), "F914 the scenario `bad.toml` cannot be run: `title` is"),

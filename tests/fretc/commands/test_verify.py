@@ -630,8 +630,25 @@ def test_a_requirement_is_not_written_over(fretc: Fretc, r1: str) -> None:
     assert run.err.startswith("F905 `r1.fret` cannot be written")
 
 
-def test_files_must_be_named_and_be_there(fretc: Fretc, r1: str) -> None:
-    assert first(fretc("verify", "--monitor")) == (2, "", "F907 missing argument 'FILE...'")
+def test_requirements_are_named_by_files_or_by_the_option(fretc: Fretc, r1: str) -> None:
+    write("requirements/r1.fret", Path(r1).read_text())
+    by_file = fretc("verify", "--monitor", "requirements/r1.fret")
+    assert by_file.status == 0
+    assert fretc("verify", "--monitor") == by_file
+    assert fretc("verify", "--monitor", "--requirements", "requirements") == by_file
+    assert first(fretc("verify", r1, "--requirements", "requirements")) == (
+        2,
+        "",
+        f"F907 requirements are named twice: `{r1}` and `--requirements`",
+    )
+
+
+def test_files_must_be_there(fretc: Fretc, r1: str) -> None:
+    assert first(fretc("verify", "--monitor")) == (
+        2,
+        "",
+        "F901 there is no folder `requirements`",
+    )
     assert first(fretc("verify", "--monitor", "no.fret")) == (
         2,
         "",
@@ -659,7 +676,7 @@ def test_a_file_that_is_no_monitor_is_told(fretc: Fretc, r1: str, text: str, why
 
 def test_a_sentence_that_is_wrong_is_told(fretc: Fretc) -> None:
     run = fretc("verify", "--monitor", write("bad.fret", "the sw shall satisfy"))
-    assert first(run) == (2, "", "F101 the sentence ends too early")
+    assert first(run) == (2, "", "F101 the response is missing after `satisfy`")
 
 
 def test_what_has_no_monitor_has_no_proof(fretc: Fretc) -> None:

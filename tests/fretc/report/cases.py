@@ -7,9 +7,9 @@ from typing import Any
 
 from compiler.formalization.record import wording
 from compiler.project.folder import Project, load
+from fretc.audit.bases import bases
 from fretc.audit.evidence.basis import BINDINGS as BINDINGS_PART
 from fretc.audit.evidence.basis import KINDS, of_all
-from fretc.audit.plan import bases
 from fretc.report.make import ReportBuild, make
 
 BINDINGS = """\

@@ -22,13 +22,13 @@ def listed(folder: Path) -> dict[str, str]:
 def wrong(folder: Path, logs: dict[str, str]) -> list[str]:
     hashes = {path.name: listed(folder)[f"logs/run/{path.name}"] for path in folder.glob("*.mcap")}
     one = result(run="logs/run", hashes={"log": of_all(dict(sorted(hashes.items())))})
-    whole = Document(SCHEMA, "", Bindings("", ""), (), (one,))
+    document = Document(SCHEMA, "", Bindings("", ""), (), (one,))
     file = folder.parent / "manifest"
     file.write_text("".join(f"{sha}  {path}\n" for path, sha in logs.items()))
     manifest = read(str(file))
     assert isinstance(manifest, Manifest)
-    found = matches(whole, manifest, {"logs/run": str(folder)})
-    return [reason for match in found for one in match.wrong for reason in one.reasons]
+    runs = matches(document, manifest, {"logs/run": str(folder)})
+    return [reason for match in runs for one in match.differences for reason in one.reasons]
 
 
 def test_a_manifest_of_all_files_of_a_folder_is_matched(tmp_path: Path) -> None:
@@ -41,8 +41,8 @@ def test_a_manifest_of_all_files_of_a_folder_is_matched(tmp_path: Path) -> None:
 @pytest.mark.parametrize("name", ["run_0.mcap", "metadata.yaml"])
 def test_another_file_in_a_folder_is_found(tmp_path: Path, name: str) -> None:
     folder = run(tmp_path)
-    said = wrong(folder, {**listed(folder), f"logs/run/{name}": "0" * 64})
-    assert said == [f"the manifest has another hash for `logs/run/{name}`"]
+    reasons = wrong(folder, {**listed(folder), f"logs/run/{name}": "0" * 64})
+    assert reasons == [f"the manifest has another hash for `logs/run/{name}`"]
 
 
 def test_a_file_of_a_folder_that_is_not_named_is_found(tmp_path: Path) -> None:

@@ -25,7 +25,7 @@ from compiler.logic.claims import (
 )
 from compiler.project.folder import Project, whole
 from fretc.audit.evidence.reader import read, required
-from fretc.audit.many_logs import IN_TURN, Audited, Found, audit_logs
+from fretc.audit.many_logs import IN_TURN, LogAudit, LogAudits, audit_logs
 from fretc.audit.plan import Plan, planned
 from fretc.report.traceability.chain import chains
 from fretc.report.traceability.lock import Lock, accepted
@@ -33,8 +33,8 @@ from fretc.reproduction import proofs as reproving
 from fretc.reproduction.completeness import Scope
 from fretc.reproduction.manifest import Manifest
 from fretc.reproduction.manifest import read as read_manifest
-from fretc.reproduction.outcome import Finding, Rechecked
-from fretc.reproduction.results import rechecked
+from fretc.reproduction.outcome import Finding, Recheck
+from fretc.reproduction.results import recheck
 from fretc.verification import reader as proven
 from fretc.verification.engines.sandbox import Limits
 from fretish.diagnostics.diagnostic import Diagnostic
@@ -162,35 +162,35 @@ class Case:
 
     def __init__(self, project: Project, plan: Plan, lock: Lock, manifest: Manifest) -> None:
         self.project, self._plan, self._lock, self._manifest = project, plan, lock, manifest
-        self._known: dict[tuple[str, str], Audited] = {}
+        self._known: dict[tuple[str, str], LogAudit] = {}
 
-    def judged(self, text: str) -> Sequence[Rechecked] | Diagnostic:
-        found = required(write("build/changed.json", text))
-        if isinstance(found, Diagnostic):
-            return found
-        runs = dict.fromkeys(result.run for result in found.results)
+    def judged(self, text: str) -> Sequence[Recheck] | Diagnostic:
+        document = required(write("build/changed.json", text))
+        if isinstance(document, Diagnostic):
+            return document
+        runs = dict.fromkeys(result.run for result in document.results)
         there = {run: run for run in runs if run and Path(run).is_file()}
         scope = Scope(tuple(claim.id for claim in self._plan.claims), self._lock)
-        again = rechecked(found.document, self._plan, there, self._engine, scope, self._manifest)
+        again = recheck(document.document, self._plan, there, self._engine, scope, self._manifest)
         assert not isinstance(again, Diagnostic)
         return again
 
-    def _engine(self, plan: Plan, logs: Sequence[str]) -> Found:
+    def _engine(self, plan: Plan, logs: Sequence[str]) -> LogAudits:
         for one in logs:
             key = (plan.integrity, one)
             if key not in self._known:
-                with closing(IN_TURN(plan, [one])) as found:
-                    for done in found:
+                with closing(IN_TURN(plan, [one])) as audits:
+                    for done in audits:
                         assert not isinstance(done, Diagnostic)
                         self._known[key] = done[1]
             yield one, self._known[key]
 
 
-def stands(found: Sequence[Rechecked] | Diagnostic) -> bool:
+def stands(rechecks: Sequence[Recheck] | Diagnostic) -> bool:
     """Whether the command would exit with 0."""
-    if isinstance(found, Diagnostic):
+    if isinstance(rechecks, Diagnostic):
         return False
-    return all(one.finding is Finding.STANDS for one in found)
+    return all(one.finding is Finding.STANDS for one in rechecks)
 
 
 @pytest.fixture(scope="module")
@@ -218,8 +218,8 @@ def case(folder: Path) -> Case:
     assert not isinstance(audit, Diagnostic)
     audited = read(write("build/evidence.json", audit.evidence))
     assert not isinstance(audited, Diagnostic)
-    known = chains(project, audited)
-    reviews = {c.requirement: accepted(c, "A", "b", "2026-01-02", "c") for c in known}
+    chain_of = chains(project, audited)
+    reviews = {c.requirement: accepted(c, "A", "b", "2026-01-02", "c") for c in chain_of}
     return Case(project, plan, Lock(reviews), manifest)
 
 
@@ -247,20 +247,20 @@ LEFT_OUT: Mapping[str, Callable[[Mapping[str, Any]], bool]] = {
 @pytest.mark.parametrize("name", LEFT_OUT)
 def test_nothing_is_left_out(case: Case, name: str, named: bool) -> None:
     content = json.loads(Path("build/evidence.json").read_text())
-    gone = [one for one in content["results"] if LEFT_OUT[name](one)]
-    assert gone
-    content["results"] = [one for one in content["results"] if one not in gone]
+    omitted = [one for one in content["results"] if LEFT_OUT[name](one)]
+    assert omitted
+    content["results"] = [one for one in content["results"] if one not in omitted]
     if not named:  # neither at the beginning of the file
-        left = {one["requirement"] for one in content["results"]}
-        kept = [one for one in content["requirements"] if one["id"] in left]
-        content["requirements"] = kept
+        ids = {one["requirement"] for one in content["results"]}
+        requirements = [one for one in content["requirements"] if one["id"] in ids]
+        content["requirements"] = requirements
     assert not stands(case.judged(json.dumps(content)))
 
 
 # Proofs ---------------------------------------------------------------------------------------
 
 TRACE = Trace(("p", "q"), ((True, False), (None, False)), ("it starts", "it ends"), 0)
-FOUND = (
+PROOFS_NOW = (
     proof("r1", Layer.MONITOR, "it means it", proved("9 states"), "fretc", (), {"m": "a" * 64}),
     proof("r1", Layer.LOOP, "it is kept", refuted("at 1", TRACE), "fretc", ("(1) so",)),
     proof("r2", Layer.MONITOR, "it means it", vacuous("never"), "fretc", (), {"n": "b" * 64}),
@@ -270,15 +270,15 @@ FOUND = (
 
 
 def test_no_change_to_proofs_is_certified(case: Case, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(reproving, "prove", lambda *asked: FOUND)
-    content = json.loads(json.dumps(plain(Document(SCHEMA, "0.1.0", FOUND))))
+    monkeypatch.setattr(reproving, "prove", lambda *arguments: PROOFS_NOW)
+    content = json.loads(json.dumps(plain(Document(SCHEMA, "0.1.0", PROOFS_NOW))))
 
-    def judged(text: str) -> Sequence[Rechecked] | Diagnostic:
-        found = proven.read(write("build/changed.json", text))
-        if isinstance(found, Diagnostic):
-            return found
-        again = reproving.reproved(
-            case.project, found, Limits(), tuple(REQUIREMENTS), lambda words: None
+    def judged(text: str) -> Sequence[Recheck] | Diagnostic:
+        proofs = proven.read(write("build/changed.json", text))
+        if isinstance(proofs, Diagnostic):
+            return proofs
+        again = reproving.prove_again(
+            case.project, proofs, Limits(), tuple(REQUIREMENTS), lambda words: None
         )
         assert not isinstance(again, Diagnostic)
         return again

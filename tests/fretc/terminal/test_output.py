@@ -1,6 +1,8 @@
 """What may happen to outputs: closed pipes, full disks, files in the way."""
 
+import io
 import os
+import re
 import shutil
 import signal
 import subprocess
@@ -10,6 +12,10 @@ from pathlib import Path
 
 import pytest
 
+from fretc.terminal.output import say
+from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.diagnostics.rendering import render
+from fretish.diagnostics.source import Source
 from tests.command import Fretc
 
 ROOT = Path(__file__).parents[3]
@@ -54,10 +60,8 @@ def test_a_full_standard_error_leaves_the_exit_status_alone(folder: Path) -> Non
 
 def test_a_full_standard_output_is_told(folder: Path) -> None:
     done = in_shell(folder, "r1.fret", "{} >/dev/full")
-    assert (done.returncode, done.stderr.splitlines()[0]) == (
-        2,
-        "F905 `standard output` cannot be written: No space left on device",
-    )
+    assert done.returncode == 2
+    assert "F905 `standard output` cannot be written: No space left on device" in done.stderr
 
 
 def test_a_closed_standard_output_costs_nothing_but_the_output(folder: Path) -> None:
@@ -255,3 +259,40 @@ def test_no_name_of_a_log_writes_a_verdict_of_its_own(folder: Path, fretc: Fretc
     assert done.out.splitlines()[0] == "a.mcap\\n  \u2714 R1  satisfied\\x1b[2K"
     assert len(done.out.splitlines()) == 2
     assert done.err == "wrote build/x\\ny\n"
+
+
+class Terminal(io.StringIO):
+    def isatty(self) -> bool:
+        return True
+
+
+DIAGNOSTIC = Diagnostic(
+    Code.NOT_FRETISH, "a message", Source("r.fret", "the text").span(4, 8), help="some help"
+)
+
+
+def shown(stream: io.StringIO, monkeypatch: pytest.MonkeyPatch, **environment: str) -> str:
+    monkeypatch.delenv("NO_COLOR", raising=False)
+    monkeypatch.setenv("TERM", "xterm")
+    for name, value in environment.items():
+        monkeypatch.setenv(name, value)
+    monkeypatch.setattr(sys, "stderr", stream)
+    say([DIAGNOSTIC])
+    return stream.getvalue()
+
+
+def test_a_terminal_shows_the_same_text_in_colours(monkeypatch: pytest.MonkeyPatch) -> None:
+    coloured = shown(Terminal(), monkeypatch)
+    assert coloured.count("\x1b[") > 5
+    assert re.sub("\x1b\\[[0-9;]*m", "", coloured) == f"{render(DIAGNOSTIC)}\n"
+
+
+@pytest.mark.parametrize("environment", [{"NO_COLOR": "1"}, {"TERM": "dumb"}])
+def test_a_user_who_wants_no_colours_gets_none(
+    monkeypatch: pytest.MonkeyPatch, environment: dict[str, str]
+) -> None:
+    assert shown(Terminal(), monkeypatch, **environment) == f"{render(DIAGNOSTIC)}\n"
+
+
+def test_a_file_gets_no_colours(monkeypatch: pytest.MonkeyPatch) -> None:
+    assert shown(io.StringIO(), monkeypatch) == f"{render(DIAGNOSTIC)}\n"

@@ -5,6 +5,7 @@ import tomllib
 import pytest
 
 from compiler.formalization.formalize import duplicates, formalize
+from compiler.project.stated_numbers import disagreements
 from compiler.targets.python import monitor
 from fretish.bindings.declarations import Declarations
 from fretish.bindings.reader import read_bindings
@@ -31,6 +32,7 @@ def diagnostics_of(kind: str, declared: str, example: str) -> list[Diagnostic]:
     for requirement in written:
         rule, remarks = formalize(requirement, beside)
         found.extend(remarks)
+        found.extend(disagreements(rule, rule.declarations) if rule and rule.declarations else ())
         remark = monitor.remark(rule) if rule else None
         found.extend([remark] if remark else [])
     return found
@@ -80,6 +82,9 @@ def test_the_text_of_a_code() -> None:
         "  protects nobody while the system runs.\n"
         "\n"
         "  To mend it: State a bound.\n"
+        "\n"
+        "  to accept it, in the header of the requirement:\n"
+        '    accept = { F203 = "the reason" }\n'
         "\n"
         "  wrong:\n"
         "    whenever too_close the robot shall eventually satisfy stopped\n"

@@ -924,7 +924,8 @@ def main(monitor: type[Monitor], arguments: Sequence[str] | None = None) -> int:
     """Run the monitor over tables of propositions and print the verdicts.
 
     Returns:
-        0 all satisfied, 1 a violation, 2 bad use or input, 3 something is not shown.
+        0 all satisfied, 1 a violation, 2 bad use or input, 3 something is not shown, 130 stopped by
+        Ctrl-C, 141 nobody reads the output any more.
     """
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
@@ -939,9 +940,10 @@ def main(monitor: type[Monitor], arguments: Sequence[str] | None = None) -> int:
     except InputError as error:
         _complain(str(error))
     except OSError as error:  # standard output is full, or its reader has gone
-        if not isinstance(error, BrokenPipeError):
-            _complain(f"standard output cannot be written: {error.strerror}")
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        if isinstance(error, BrokenPipeError):
+            return _CLOSED_PIPE
+        _complain(f"standard output cannot be written: {error.strerror}")
     except KeyboardInterrupt:
         return 130
     except _FAULTS as error:  # status 1 would say that a requirement is violated
@@ -949,6 +951,8 @@ def main(monitor: type[Monitor], arguments: Sequence[str] | None = None) -> int:
     return 2
 
 
+_CLOSED_PIPE = 141
+"""What a shell makes of SIGPIPE, which ends other programs there."""
 _FAULTS = (
     ArithmeticError,
     AttributeError,
@@ -1034,14 +1038,22 @@ def _opened(path: str) -> TextIO:
 
 def _sentence(outcome: Outcome) -> str:
     count = f"{len(outcome.triggers)} trigger{'' if len(outcome.triggers) == 1 else 's'}"
+    unknown = ", ".join(f"{a}..{b}" for a, b in outcome.unknown)
     details = {
         SATISFIED: count,
         VIOLATED: "ticks " + ", ".join(f"{a}..{b}" for a, b in outcome.violations),
         INCONCLUSIVE: f"{count}, {len(outcome.open)} open at the end",
         VACUOUS: "never triggered",
-        NO_DATA: f"unknown at ticks {', '.join(f'{a}..{b}' for a, b in outcome.unknown) or '-'}",
+        NO_DATA: f"unknown at ticks {unknown}" if unknown else _why_no_data(outcome),
     }
     return f"{outcome.verdict} ({details[outcome.verdict]})"
+
+
+def _why_no_data(outcome: Outcome) -> str:
+    """Why nothing is shown, though no demand can have been broken."""
+    if not outcome.ticks:
+        return "the trace has no tick"
+    return "unknown whether there was a trigger, or whether a demand is open at the end"
 
 
 # The requirements -----------------------------------------------------------------------------

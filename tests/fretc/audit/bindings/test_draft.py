@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from compiler.project.folder import load
-from fretc.audit.bindings.draft import Wanted, draft, wanted
+from fretc.audit.bindings.draft import MissingProposition, draft, missing_propositions
 from fretc.logs.reader import look, read
 from fretc.logs.signals.samples import Recording
 from fretish.bindings.declarations import Declarations
@@ -20,15 +20,17 @@ ROOT = Path(__file__).parents[4]
 LOGS = sorted((ROOT / "traces").glob("*.mcap"))
 
 
-def drafted(path: Path, needs: Sequence[Wanted] = ()) -> str:
-    overview = look(str(path))
+def drafted(
+    path: Path, needs: Sequence[MissingProposition] = (), durations: Sequence[int] = ()
+) -> str:
+    overview = look(str(path), words=True)
     assert not isinstance(overview, Diagnostic), overview
-    return draft(overview, needs)
+    return draft(overview, needs, durations)
 
 
 def declared(text: str) -> Declarations:
-    declarations, wrong = read_bindings(Source("bindings.toml", text))
-    assert declarations is not None, wrong
+    declarations, diagnostics = read_bindings(Source("bindings.toml", text))
+    assert declarations is not None, diagnostics
     return declarations
 
 
@@ -44,12 +46,12 @@ def test_a_whole_draft(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, golden: Callable[[str, str], None]
 ) -> None:
     monkeypatch.chdir(tmp_path)
-    sent = [scan([1.0, 2.0], 1000 * S + i * 100 * MS) for i in range(12)]
-    sent += every(20 * MS, 51, "/battery level")
-    sent += every(S, 3, "/mode")
-    sent.append(named("/name", "std_msgs/msg/String", payload("std_msgs/String", data="a")))
-    write(Path("run.mcap"), sorted(sent, key=lambda message: message.time))
-    needs = [Wanted("near", ("R1", "R2"), "input", "any")]
+    messages = [scan([1.0, 2.0], 1000 * S + i * 100 * MS) for i in range(12)]
+    messages += every(20 * MS, 51, "/battery level")
+    messages += every(S, 3, "/mode")
+    messages.append(named("/name", "std_msgs/msg/String", payload("std_msgs/String", data="a")))
+    write(Path("run.mcap"), sorted(messages, key=lambda message: message.time))
+    needs = [MissingProposition("near", ("R1", "R2"), "input", "any")]
     golden("bindings/draft.toml", drafted(Path("run.mcap"), needs))
 
 
@@ -73,20 +75,20 @@ def test_a_signal_is_known_between_two_messages_of_its_topic(tmp_path: Path) -> 
 
 def test_bursts_do_not_make_a_sample_old_at_once(tmp_path: Path) -> None:
     """Three messages within 2 ms, every 100 ms: most steps are short."""
-    sent = [m for i in range(20) for m in every(MS, 3, start=1000 * S + i * 100 * MS)]
-    age = declared(drafted(write(tmp_path / "a.mcap", sent))).signals["x"].max_age
+    messages = [m for i in range(20) for m in every(MS, 3, start=1000 * S + i * 100 * MS)]
+    age = declared(drafted(write(tmp_path / "a.mcap", messages))).signals["x"].max_age
     assert age is not None
     assert 98 * MS <= age <= 300 * MS
 
 
 def test_the_tick_is_that_of_the_slowest_topic_that_is_fast(tmp_path: Path) -> None:
-    sent = [*every(10 * MS, 300), *every(40 * MS, 80, "/y"), *every(S, 11, "/slow")]
-    sent.sort(key=lambda message: message.time)
-    assert declared(drafted(write(tmp_path / "a.mcap", sent))).clock.period == 40 * MS
+    messages = [*every(10 * MS, 300), *every(40 * MS, 80, "/y"), *every(S, 11, "/slow")]
+    messages.sort(key=lambda message: message.time)
+    assert declared(drafted(write(tmp_path / "a.mcap", messages))).clock.period == 40 * MS
     late = declared(drafted(write(tmp_path / "c.mcap", every(101 * MS, 20))))
     assert late.clock.period == 100 * MS  # a little late is no other rate
-    alone = declared(drafted(write(tmp_path / "b.mcap", every(S, 11, "/slow"))))
-    assert alone.clock.period == S
+    of_slow_topic = declared(drafted(write(tmp_path / "b.mcap", every(S, 11, "/slow"))))
+    assert of_slow_topic.clock.period == S
 
 
 def test_events_have_no_rate(tmp_path: Path) -> None:
@@ -123,11 +125,11 @@ def test_other_numbers_are_there_as_comments(tmp_path: Path) -> None:
 
 def test_a_proposition_that_is_to_be_filled_in_is_an_error_until_it_is(tmp_path: Path) -> None:
     path = write(tmp_path / "a.mcap", every(100 * MS, 12))
-    text = drafted(path, [Wanted("near", ("R1",), "input", "any")])
-    declarations, wrong = read_bindings(Source("bindings.toml", text))
+    text = drafted(path, [MissingProposition("near", ("R1",), "input", "any")])
+    declarations, diagnostics = read_bindings(Source("bindings.toml", text))
     assert declarations is not None
-    (diagnostic,) = wrong
-    assert declarations.mistakes == {("proposition", "near"): wrong}
+    (diagnostic,) = diagnostics
+    assert declarations.mistakes == {("proposition", "near"): diagnostics}
     assert diagnostic.code is Code.BAD_EXPRESSION
     assert diagnostic.span is not None
     line = diagnostic.span.source.text.splitlines()[diagnostic.span.line - 1]
@@ -136,25 +138,90 @@ def test_a_proposition_that_is_to_be_filled_in_is_an_error_until_it_is(tmp_path:
     assert filled.propositions["near"].role == "input"
 
 
+def texts(*seen: str, topic: str = "/mode") -> list[Sent]:
+    name = "std_msgs/msg/String"
+    return [
+        named(topic, name, payload(name, data=text), 1000 * S + i * 500 * MS)
+        for i, text in enumerate(seen)
+    ]
+
+
+def test_the_words_of_a_text_are_those_of_the_log(tmp_path: Path) -> None:
+    path = write(tmp_path / "a.mcap", texts(*["drive", "in motion", "drive"] * 4))
+    mode = declared(drafted(path)).signals["mode"]
+    assert mode.values == ("drive", "in motion")
+    assert mode.max_age == 1500 * MS
+    recording = read(str(path), declared(drafted(path)), ["mode"])
+    assert isinstance(recording, Recording)
+    assert recording.findings == ()
+
+
+@pytest.mark.parametrize("text", ["x" * 41, 'a"b', "a\nb"])
+def test_free_text_is_no_signal(tmp_path: Path, text: str) -> None:
+    assert declared(drafted(write(tmp_path / "a.mcap", texts("a", text)))).signals == {}
+    many = texts(*(f"word {i}" for i in range(21)))
+    assert declared(drafted(write(tmp_path / "b.mcap", many))).signals == {}
+
+
+def test_words_of_other_messages_are_there_as_comments(tmp_path: Path) -> None:
+    sent = [
+        Sent(
+            "/s",
+            "s",
+            b'{"mode": "drive", "level": 3, "header": {"frame_id": "x"}}',
+            S,
+            None,
+            "json",
+        ),
+        Sent("/s", "s", b'{"mode": "dock", "level": 4}', 2 * S, None, "json"),
+    ]
+    lines = drafted(write(tmp_path / "a.mcap", sent)).splitlines()
+    at = lines.index('# path = "/s.mode"')
+    assert lines[at + 1] == '# values = ["drive", "dock"]'
+    assert '# path = "/s.level"' in lines
+
+
+def test_a_proposition_that_is_called_as_a_truth_value_of_the_log_is_that(tmp_path: Path) -> None:
+    flag = "std_msgs/msg/Bool"
+    sent = [named("/docking", flag, payload(flag, data=True))]
+    needs = [MissingProposition("docking", ("R1",), "input", "any")]
+    text = drafted(write(tmp_path / "a.mcap", sent), needs)
+    assert declared(text).propositions["docking"].signals == ("docking",)
+
+
+@pytest.mark.parametrize(
+    ("durations", "tick"),
+    [
+        ((), 200), ((400 * MS,), 200), ((300 * MS,), 150), ((300 * MS, 500 * MS), 100),
+        ((MS // 2,), 200), ((10**30,), 200),
+    ],
+)  # fmt: skip
+def test_durations_are_whole_numbers_of_the_tick(
+    tmp_path: Path, durations: tuple[int, ...], tick: int
+) -> None:
+    text = drafted(write(tmp_path / "a.mcap", every(200 * MS, 12)), (), durations)
+    assert declared(text).clock.period == tick * MS
+
+
 # What requirements still need
 
 
-def needed(folder: Path, *sentences: str, bindings: str = "") -> list[Wanted]:
+def needed(folder: Path, *sentences: str, bindings: str = "") -> list[MissingProposition]:
     files = [
         put(str(folder / f"r{i}.fret"), f'+++\nid = "R{i}"\n+++\n{sentence}\n')
         for i, sentence in enumerate(sentences, 1)
     ]
-    return list(wanted(load(files, put(str(folder / "bindings.toml"), bindings))))
+    return list(missing_propositions(load(files, put(str(folder / "bindings.toml"), bindings))))
 
 
 def test_each_name_is_wanted_once_with_the_role_that_its_place_gives_it(tmp_path: Path) -> None:
-    found = needed(
+    missing = needed(
         tmp_path,
         "in m mode, whenever near the rover shall within 3 ticks satisfy still",
         "whenever near the rover shall until done satisfy slow",
         "whenever still the rover shall immediately satisfy quiet",
     )
-    assert {(each.name, each.requirements, each.role, each.aggregate) for each in found} == {
+    assert {(each.name, each.requirements, each.role, each.aggregate) for each in missing} == {
         ("m", ("R1",), "mode", "last"),
         ("near", ("R1", "R2"), "input", "any"),
         ("still", ("R1", "R3"), "internal", "last"),
@@ -168,7 +235,7 @@ def test_what_is_bound_is_not_wanted(tmp_path: Path) -> None:
     bindings = (
         '[clock]\ntick = "1 s"\n[signal.x]\npath = "/x.data"\n[proposition.near]\nexpr = "x < 1"\n'
     )
-    found = needed(
+    missing = needed(
         tmp_path, "whenever near the rover shall immediately satisfy still", bindings=bindings
     )
-    assert [each.name for each in found] == ["still"]
+    assert [each.name for each in missing] == ["still"]

@@ -15,7 +15,7 @@ _NUMBERS = {
     "bool", "float32", "float64", "int8", "int16", "int32", "int64", "uint8", "uint16", "uint32",
     "uint64",
 }  # fmt: skip
-KNOWN = [
+QUANTITIES_OF_TYPES = [
     (store, type_, quantity)
     for type_, quantities in QUANTITIES.items()
     for quantity in quantities
@@ -36,20 +36,21 @@ def kind(store: Any, name: str, fields: list[str]) -> tuple[str, bool]:
 
 
 def test_most_types_are_in_the_stores_that_they_are_checked_with() -> None:
-    checked = {type_ for _, type_, _ in KNOWN}
+    checked = {type_ for _, type_, _ in QUANTITIES_OF_TYPES}
     assert set(QUANTITIES) - checked <= {
         "ackermann_msgs/AckermannDrive",
         "ackermann_msgs/AckermannDriveStamped",
     }
 
 
-@pytest.mark.parametrize(("store", "type_", "quantity"), KNOWN)
-def test_each_field_is_a_number_of_the_type(store: Any, type_: str, quantity: Quantity) -> None:
+@pytest.mark.parametrize(("store", "type_", "quantity"), QUANTITIES_OF_TYPES)
+def test_each_field_is_one_of_the_type(store: Any, type_: str, quantity: Quantity) -> None:
     field = quantity.field.removesuffix("[:]")
-    found, many = kind(store, type_.replace("/", "/msg/"), field.split("."))
-    assert found in _NUMBERS
+    kind_of_field, many = kind(store, type_.replace("/", "/msg/"), field.split("."))
+    is_text = type_ == "std_msgs/String"
+    assert kind_of_field == "string" if is_text else kind_of_field in _NUMBERS
     assert many == quantity.field.endswith("[:]") == bool(quantity.reduce)
-    assert (found == "bool") == (type_ == "std_msgs/Bool")
+    assert (kind_of_field == "bool") == (type_ == "std_msgs/Bool")
 
 
 @pytest.mark.parametrize("type_", QUANTITIES)
@@ -67,8 +68,8 @@ def test_readings_out_of_range_are_what_rep_117_says(type_: str) -> None:
         f'[clock]\ntick = "1 s"\n[signal.x]\npath = "/x.{quantity.field}"\n{reduce}'
         f'valid = "{quantity.valid}"\ninvalid = {quantity.invalid}\n'
     )
-    declarations, wrong = read_bindings(Source("b.toml", text))
-    assert declarations is not None, wrong
+    declarations, diagnostics = read_bindings(Source("b.toml", text))
+    assert declarations is not None, diagnostics
     invalid = declarations.signals["x"].invalid
     assert (invalid.nan, invalid.positive_infinity) == ("drop", "far")
     assert (invalid.negative_infinity, invalid.other) == ("near", "drop")

@@ -104,7 +104,7 @@ expr = "y < 9 m"
 R1, R2, R3, HAZARDS, BINDINGS = FILES
 LOGS = ("logs/a.mcap", "logs/b.mcap")
 BY = ("--reviewer", "A", "--role", "b", "--comment", "c", "--date", "2026-01-02")
-ALONE = ("--jobs", "1")
+ONE_PROCESS = ("--jobs", "1")
 """Two short logs are sooner read than a process is started for each."""
 
 
@@ -125,12 +125,12 @@ def links() -> Iterator[tuple[str, str]]:
 
 def reached(things: set[str]) -> set[str]:
     """Everything downstream, the things themselves included."""
-    found, more = set(things), True
+    reach, more = set(things), True
     while more:
-        next_ones = {below for above, below in links() if above in found} - found
-        found |= next_ones
+        next_ones = {below for above, below in links() if above in reach} - reach
+        reach |= next_ones
         more = bool(next_ones)
-    return found
+    return reach
 
 
 def ids(things: set[str], kind: str) -> set[str]:
@@ -156,8 +156,8 @@ class Change:
         """Requirements whose review no longer stands on what was reviewed."""
         if self.of_audit and audited:
             return set()
-        seen = {thing for thing in self.touches if audited or thing != "log"}
-        return ids(reached(seen), "review")
+        visible = {thing for thing in self.touches if audited or thing != "log"}
+        return ids(reached(visible), "review")
 
     def differs(self, audited: bool) -> set[str]:
         """Requirements whose evidence comes out otherwise when it is made again.
@@ -199,11 +199,11 @@ def evidence(edit: Callable[[dict[str, object]], None], id: str = "R1") -> Calla
 
     def make() -> None:
         file = Path("build/evidence.json")
-        known = json.loads(file.read_text())
-        for result in known["results"]:
+        content = json.loads(file.read_text())
+        for result in content["results"]:
             if result["requirement"] == id:
                 edit(result)
-        file.write_text(json.dumps(known))
+        file.write_text(json.dumps(content))
 
     return make
 
@@ -348,12 +348,12 @@ def log(path: str, *values: float) -> None:
         channels = {t: writer.register_channel(t, "json", schema) for t in ("/a", "/b", "/c")}
         for i, value in enumerate(values):
             time = START + i * 100 * MS
-            for topic, told in (
+            for topic, fields in (
                 ("/a", {"x": value, "z": 1, "u": 0}),
                 ("/b", {"y": value}),
                 ("/c", {"x": value}),
             ):
-                writer.add_message(channels[topic], time, json.dumps(told).encode(), time)
+                writer.add_message(channels[topic], time, json.dumps(fields).encode(), time)
         writer.finish()  # type: ignore[no-untyped-call]
 
 
@@ -416,7 +416,7 @@ def reviewed(fretc: Fretc, _base: Path) -> Fretc:
             write(name, text)
         for path, values in zip(LOGS, ((0, 2, 3, 3, 1, 1, 0), (0, 2, 2, 2, 2, 1, 0)), strict=True):
             log(path, *values)
-        assert fretc("audit", "logs", *ALONE).status == 0
+        assert fretc("audit", "logs", *ONE_PROCESS).status == 0
         assert fretc("lock", *BY).status == 0
         shutil.copytree(".", _base, dirs_exist_ok=True)
     shutil.copytree(_base, ".", dirs_exist_ok=True)
@@ -440,11 +440,11 @@ def older(result: dict[str, Any]) -> bool:
 def asked(fretc: Fretc) -> Said:
     diff = json.loads(fretc("diff", "--format", "json").out)
     check = fretc("check").err
-    known = whole("requirements")
-    assert not isinstance(known, Diagnostic)
-    made = make(known, "build/evidence.json", lock="requirements/fretc.lock")
-    report = json.loads(made.json or "")["requirements"]
-    verify = fretc("verify-evidence", *ALONE, "--format", "json").out
+    own_project = whole("requirements")
+    assert not isinstance(own_project, Diagnostic)
+    outcome = make(own_project, "build/evidence.json", lock="requirements/fretc.lock")
+    report = json.loads(outcome.json or "")["requirements"]
+    verify = fretc("verify-evidence", *ONE_PROCESS, "--format", "json").out
     again = [one for one in json.loads(verify)["results"] if one["finding"] == "differs"]
     everywhere = any("this is fretc" in reason for one in again for reason in one["reasons"])
     return Said(
@@ -468,11 +468,13 @@ def test_a_change_reaches_what_is_made_of_it_and_nothing_else(reviewed: Fretc, n
     change.make()
     for audited in (False, True):
         if audited:
-            reviewed("audit", "logs", *ALONE)
-        said = asked(reviewed)
-        assert said.stale == dict.fromkeys(("check", "report"), change.stale(audited))
-        assert said.suspect == dict.fromkeys(("diff", "check", "report"), change.suspect(audited))
-        assert said.differs == change.differs(audited)
+            reviewed("audit", "logs", *ONE_PROCESS)
+        answers = asked(reviewed)
+        assert answers.stale == dict.fromkeys(("check", "report"), change.stale(audited))
+        assert answers.suspect == dict.fromkeys(
+            ("diff", "check", "report"), change.suspect(audited)
+        )
+        assert answers.differs == change.differs(audited)
 
 
 def test_there_are_more_changes_than_were_once_tried_by_hand() -> None:
@@ -482,12 +484,12 @@ def test_there_are_more_changes_than_were_once_tried_by_hand() -> None:
 def test_evidence_of_what_has_come_back_is_still_of_something_else(reviewed: Fretc) -> None:
     before = Path(BINDINGS).read_text()
     put(BINDINGS, "x > 1 m", "x > 2 m")()
-    reviewed("audit", "logs", *ALONE)
+    reviewed("audit", "logs", *ONE_PROCESS)
     Path(BINDINGS).write_text(before)
-    said = asked(reviewed)
-    assert list(said.stale.values()) == [{"R1"}] * 2
-    assert list(said.suspect.values()) == [{"R1"}] * 3
-    assert said.differs == {"R1"}
+    answers = asked(reviewed)
+    assert list(answers.stale.values()) == [{"R1"}] * 2
+    assert list(answers.suspect.values()) == [{"R1"}] * 3
+    assert answers.differs == {"R1"}
 
 
 def test_evidence_of_something_else_is_not_accepted(reviewed: Fretc) -> None:
@@ -495,11 +497,13 @@ def test_evidence_of_something_else_is_not_accepted(reviewed: Fretc) -> None:
     before = Path("requirements/fretc.lock").read_text()
     run = reviewed("lock", *BY)
     assert run.status == 2
-    told = "F541 what was shown of R1 is about something else than what is here now: bindings R1\n"
-    assert told in run.err
+    message = (
+        "F541 what was shown of R1 is about something else than what is here now: bindings R1\n"
+    )
+    assert message in run.err
     assert Path("requirements/fretc.lock").read_text() == before
     assert reviewed("lock", "R2", *BY).status == 0, "of the others nothing is asked"
-    reviewed("audit", "logs", *ALONE)
+    reviewed("audit", "logs", *ONE_PROCESS)
     assert reviewed("lock", *BY, "--accept-violations").status == 0
     assert reviewed("diff").status == 0
 
@@ -516,9 +520,9 @@ def test_a_log_that_nothing_identifies_is_not_accepted(reviewed: Fretc) -> None:
 def test_a_log_that_is_gone_is_told(reviewed: Fretc, audited: bool) -> None:
     Path(LOGS[1]).unlink()
     if audited:
-        reviewed("audit", "logs", *ALONE)
-        told = json.loads(reviewed("diff", "--format", "json").out)
-        assert {one["requirement"] for one in told if one["suspect_links"]} == set(IDS)
+        reviewed("audit", "logs", *ONE_PROCESS)
+        content = json.loads(reviewed("diff", "--format", "json").out)
+        assert {one["requirement"] for one in content if one["suspect_links"]} == set(IDS)
     else:
         assert reviewed("verify-evidence").status == 3
 
@@ -566,27 +570,29 @@ WITHDRAWN = {
 def test_what_was_claimed_and_is_not_any_more_is_never_lost(
     reviewed: Fretc, name: str, audited: bool
 ) -> None:
-    make_it, gone = WITHDRAWN[name]
+    make_it, ids = WITHDRAWN[name]
     make_it()
     if audited:
-        reviewed("audit", "logs", *ALONE)
+        reviewed("audit", "logs", *ONE_PROCESS)
     diff = json.loads(reviewed("diff", "--format", "json").out)
-    found = {one["requirement"] for one in diff if one["suspect_links"] or one["state"] == "gone"}
-    assert found == gone
-    assert set(re.findall(r"F5(?:11|40) warning: (\S+) was", reviewed("check").err)) == gone
+    suspects = {
+        one["requirement"] for one in diff if one["suspect_links"] or one["state"] == "gone"
+    }
+    assert suspects == ids
+    assert set(re.findall(r"F5(?:11|40) warning: (\S+) was", reviewed("check").err)) == ids
     run = reviewed("report", "--strict", "--json", "r.json", "--junit", "r.xml")
     report = json.loads(Path("r.json").read_text())
     assert run.status == 1
-    assert {one["requirement"] for one in report["withdrawn"]} == gone
+    assert {one["requirement"] for one in report["withdrawn"]} == ids
     assert report["overall"]["headline"] != "Everything that was claimed is shown."
-    assert all(any(id in said for said in report["overall"]["sentences"]) for id in gone)
+    assert all(any(id in sentence for sentence in report["overall"]["sentences"]) for id in ids)
     cases = re.findall(r'name="(\w+)[^"]*"[^>]*>\s*<failure message="withdrawn: ', _xml("r.xml"))
-    assert set(cases) == gone
+    assert set(cases) == ids
     if not audited:
         again = json.loads(reviewed("verify-evidence", "--format", "json").out or '{"results": []}')
-        told = {r["requirement"] for r in again["results"] if r["finding"] == "differs"} - {""}
+        differing = {r["requirement"] for r in again["results"] if r["finding"] == "differs"} - {""}
         new = {"renamed": {"R3b"}, "split": {"R3a", "R3b"}}.get(name, set())
-        assert told == (gone | new if name != "all retired" else set())
+        assert differing == (ids | new if name != "all retired" else set())
 
 
 def _xml(path: str) -> str:
@@ -597,13 +603,13 @@ def _xml(path: str) -> str:
 def test_who_accepts_that_something_is_claimed_no_more_hears_of_it_no_more(
     reviewed: Fretc, name: str
 ) -> None:
-    make_it, gone = WITHDRAWN[name]
+    make_it, ids = WITHDRAWN[name]
     make_it()
     if name != "all retired":
-        reviewed("audit", "logs", *ALONE)
+        reviewed("audit", "logs", *ONE_PROCESS)
         assert reviewed("lock", "R1", *BY).status == 0
         assert reviewed("report", "--strict").status == 1, "R3 is still to be accepted"
-        assert reviewed("lock", *sorted(gone), *BY).status == 0
+        assert reviewed("lock", *sorted(ids), *BY).status == 0
         assert json.loads(reviewed("diff", "--format", "json").out)[-1]["state"] != "gone"
         assert "was reviewed" not in reviewed("check").err
 
@@ -641,9 +647,9 @@ LOCKS: dict[str, Callable[[], None]] = {
 
 
 def _dated(day: str) -> None:
-    known = read_lock(LOCK)
-    assert isinstance(known, Lock)
-    text = lock_text(Lock({id: replace(one, date=day) for id, one in known.reviews.items()}))
+    lock = read_lock(LOCK)
+    assert isinstance(lock, Lock)
+    text = lock_text(Lock({id: replace(one, date=day) for id, one in lock.reviews.items()}))
     Path(LOCK).write_text(text)
 
 

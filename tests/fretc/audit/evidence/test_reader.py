@@ -16,13 +16,13 @@ from tests.fretc.report.cases import evidence, moment, project, result, violatio
 
 
 def test_what_the_audit_wrote_is_read(tmp_path: Path) -> None:
-    known = project(tmp_path)
+    own_project = project(tmp_path)
     file = tmp_path / "evidence.json"
-    one = result(known, "violated", violations=[violation(14, 20, 11)], open=[moment(90)])
-    file.write_text(json.dumps(evidence(known, one)), encoding="utf-8")
-    found = read(str(file))
-    assert isinstance(found, Evidence)
-    (read_back,) = found.results
+    one = result(own_project, "violated", violations=[violation(14, 20, 11)], open=[moment(90)])
+    file.write_text(json.dumps(evidence(own_project, one)), encoding="utf-8")
+    document = read(str(file))
+    assert isinstance(document, Evidence)
+    (read_back,) = document.results
     assert read_back.verdict == "violated"
     assert read_back.triggers == (
         Moment(10, 2 * 10**9, 1.0),
@@ -37,11 +37,11 @@ def test_what_the_audit_wrote_is_read(tmp_path: Path) -> None:
 
 
 def test_no_evidence_yet_is_a_note_that_tells_how_to_audit(tmp_path: Path) -> None:
-    found = read("nowhere/evidence.json")
-    assert found == Diagnostic(
+    diagnostic = read("nowhere/evidence.json")
+    assert diagnostic == Diagnostic(
         Code.NO_SUCH_FILE,
         "no run has been audited: there is no evidence in `nowhere/evidence.json`",
-        help="audit a run: `fretc audit LOG... --evidence nowhere/evidence.json`",
+        help="audit a run: `fretc audit LOG... -o nowhere/evidence.json`",
         severity=Severity.NOTE,
     )
 
@@ -49,9 +49,9 @@ def test_no_evidence_yet_is_a_note_that_tells_how_to_audit(tmp_path: Path) -> No
 def wrong(folder: Path, text: str) -> Diagnostic:
     file = folder / "evidence.json"
     file.write_text(text, encoding="utf-8")
-    made = make(project(folder), str(file))
-    assert (made.html, made.json) == (None, None)
-    (diagnostic,) = made.diagnostics
+    outcome = make(project(folder), str(file))
+    assert (outcome.html, outcome.json) == (None, None)
+    (diagnostic,) = outcome.diagnostics
     assert diagnostic.code is Code.BAD_EVIDENCE
     assert diagnostic.severity is Severity.ERROR
     return diagnostic
@@ -70,9 +70,9 @@ def test_what_python_cannot_read_as_json_is_no_traceback(tmp_path: Path, text: s
 
 
 def test_a_directory_is_an_error(tmp_path: Path) -> None:
-    made = make(project(tmp_path), str(tmp_path))
-    assert made.html is None
-    assert [d.code for d in made.diagnostics] == [Code.IS_A_DIRECTORY]
+    outcome = make(project(tmp_path), str(tmp_path))
+    assert outcome.html is None
+    assert [d.code for d in outcome.diagnostics] == [Code.IS_A_DIRECTORY]
 
 
 @pytest.mark.parametrize(
@@ -104,8 +104,8 @@ def test_a_directory_is_an_error(tmp_path: Path) -> None:
 def test_a_wrong_shape_is_named_with_its_place(
     tmp_path: Path, path: tuple[str | int, ...], value: object, says: str
 ) -> None:
-    known = project(tmp_path)
-    content = evidence(known, result(known, "satisfied"))
+    own_project = project(tmp_path)
+    content = evidence(own_project, result(own_project, "satisfied"))
     _put(content, path, value)
     diagnostic = wrong(tmp_path, json.dumps(content))
     assert "is not evidence of fretc: " in diagnostic.message
@@ -119,8 +119,8 @@ def _put(content: Any, path: tuple[str | int, ...], value: object) -> None:
 
 
 def test_a_missing_field_is_named(tmp_path: Path) -> None:
-    known = project(tmp_path)
-    content = evidence(known, result(known, "satisfied"))
+    own_project = project(tmp_path)
+    content = evidence(own_project, result(own_project, "satisfied"))
     del content["results"][0]["reason"]
     assert wrong(tmp_path, json.dumps(content)).message.endswith(
         "`$.results[0]`: object missing required field `reason`"
@@ -137,8 +137,8 @@ def test_a_missing_field_is_named(tmp_path: Path) -> None:
     ],
 )
 def test_what_is_unknown_is_refused(tmp_path: Path, path: tuple[str | int, ...], says: str) -> None:
-    known = project(tmp_path)
-    content = evidence(known, result(known, "satisfied"))
+    own_project = project(tmp_path)
+    content = evidence(own_project, result(own_project, "satisfied"))
     _put(content, path, "yes")
     assert says in wrong(tmp_path, json.dumps(content)).message
 
@@ -146,10 +146,10 @@ def test_what_is_unknown_is_refused(tmp_path: Path, path: tuple[str | int, ...],
 @pytest.mark.parametrize("sha256", ["", "0" * 63, "0" * 64 + "\n", "A" * 64, "<script>"])
 @pytest.mark.parametrize("name", ["log", "sentence", "monitor"])
 def test_a_hash_is_a_hash(tmp_path: Path, name: str, sha256: str) -> None:
-    known = project(tmp_path)
-    content = evidence(known, result(known, "satisfied", hashes={name: sha256}))
-    said = wrong(tmp_path, json.dumps(content)).message
-    assert f"`$.results[0].hashes.{name}`: expected `str`" in said
+    own_project = project(tmp_path)
+    content = evidence(own_project, result(own_project, "satisfied", hashes={name: sha256}))
+    message = wrong(tmp_path, json.dumps(content)).message
+    assert f"`$.results[0].hashes.{name}`: expected `str`" in message
 
 
 @pytest.mark.parametrize(
@@ -164,8 +164,8 @@ def test_a_hash_is_a_hash(tmp_path: Path, name: str, sha256: str) -> None:
 def test_what_two_readers_may_take_for_two_things_is_refused(
     tmp_path: Path, old: str, new: str, says: str
 ) -> None:
-    known = project(tmp_path)
-    text = json.dumps(evidence(known, result(known, "satisfied"))).replace(old, new, 1)
+    own_project = project(tmp_path)
+    text = json.dumps(evidence(own_project, result(own_project, "satisfied"))).replace(old, new, 1)
     assert says in wrong(tmp_path, text).message
 
 
@@ -203,27 +203,29 @@ def _paths(value: Any, at: tuple[str | int, ...] = ()) -> list[tuple[str | int, 
 def test_no_mutation_of_the_evidence_gives_a_traceback(
     tmp_path: Path, data: st.DataObject | None
 ) -> None:
-    known = project(tmp_path)
+    own_project = project(tmp_path)
     full = result(
-        known,
+        own_project,
         "violated",
         violations=[violation(14, 20, 11), violation(30, 30)],
         unknown=[[1, 2]],
         open=[moment(90), moment(91)],
         health={"gaps": [{"start_ns": 1, "end_ns": 2}], "findings": [FINDING]},
     )
-    content = copy.deepcopy(evidence(known, full, result(known, "no data", run="b.mcap")))
+    content = copy.deepcopy(
+        evidence(own_project, full, result(own_project, "no data", run="b.mcap"))
+    )
     if data is not None:
         for path in data.draw(st.lists(st.sampled_from(_paths(content)), min_size=1, max_size=3)):
             _mutate(content, path, data.draw(VALUES))
     file = tmp_path / "evidence.json"
     file.write_text(json.dumps(content), encoding="utf-8")
-    made = make(known, str(file))
-    if made.html is None:
-        assert [d.code for d in made.diagnostics] == [Code.BAD_EVIDENCE]
+    outcome = make(own_project, str(file))
+    if outcome.html is None:
+        assert [d.code for d in outcome.diagnostics] == [Code.BAD_EVIDENCE]
     else:
-        assert made.json is not None
-        made.html.encode("utf-8")
+        assert outcome.json is not None
+        outcome.html.encode("utf-8")
 
 
 FINDING = {

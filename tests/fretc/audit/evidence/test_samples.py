@@ -7,7 +7,7 @@ from compiler.files.checked_json import MisshapenError
 from compiler.files.records import decoded
 from fretc.audit.evidence.samples import Samples, Surroundings, Window, window
 
-WRITTEN: dict[str, Any] = {
+RECORD: dict[str, Any] = {
     "start_ns": 1_000,
     "end_ns": 4_000_001_000,
     "samples": {"vx": {"times_ns": [0, 1_000, 2_000_001_000], "values": [0.5, None, "-inf"]}},
@@ -15,7 +15,7 @@ WRITTEN: dict[str, Any] = {
 
 
 def changed(**changes: Any) -> Surroundings:
-    return decoded({**WRITTEN, **changes}, Surroundings)
+    return decoded({**RECORD, **changes}, Surroundings)
 
 
 def test_times_count_in_seconds_from_the_first_tick() -> None:

@@ -34,7 +34,9 @@ def spread(answered: int, failed: int, open_: int = 0, logs: int = 100) -> list[
     ]
 
 
-def said(op: ComparisonOperator, bound: str, runs: list[Trials], confidence: float = 0.95) -> str:
+def answer_of(
+    op: ComparisonOperator, bound: str, runs: list[Trials], confidence: float = 0.95
+) -> str:
     return answer(estimated(runs, both_sides(op, confidence)), op, Fraction(bound))
 
 
@@ -65,12 +67,16 @@ def test_where_whole_runs_are_good_or_bad_no_answer_is_wrong_more_often_than_sta
     op: ComparisonOperator, n: int, bound: str
 ) -> None:
     """The true probability is p; each answer that contradicts it, over all outcomes of n runs."""
-    answers = [said(op, bound, good(k, 50) + bad(n - k, 50)) for k in range(n + 1)]
+    answers = [answer_of(op, bound, good(k, 50) + bad(n - k, 50)) for k in range(n + 1)]
     edge = Fraction(bound)
     for p in [Fraction(i, 40) for i in range(41)] + [edge, edge - Fraction(1, 999)]:
-        wrong = "refuted" if holds(p, op, edge) else "supported"
+        false_answer = "refuted" if holds(p, op, edge) else "supported"
         weight = sum(
-            (comb(n, k) * p**k * (1 - p) ** (n - k) for k in range(n + 1) if answers[k] == wrong),
+            (
+                comb(n, k) * p**k * (1 - p) ** (n - k)
+                for k in range(n + 1)
+                if answers[k] == false_answer
+            ),
             Fraction(0),
         )
         assert weight <= Fraction(5, 100), p
@@ -80,7 +86,7 @@ def test_where_whole_runs_are_good_or_bad_no_answer_is_wrong_more_often_than_sta
 def test_runs_of_different_lengths_and_chances_keep_the_level(confidence: float) -> None:
     """Short runs are better than long ones; what is bounded is their mean, weighed by triggers."""
     (small, many), (large, few) = (1, 12), (4, 8)
-    found = {
+    estimates = {
         (i, j): bounds(
             good(i, small) + bad(many - i, small) + good(j, large) + bad(few - j, large), confidence
         )
@@ -90,13 +96,13 @@ def test_runs_of_different_lengths_and_chances_keep_the_level(confidence: float)
         a, b = Fraction(p), Fraction(q)
         share = (a * small * many + b * large * few) / (small * many + large * few)
         below = above = Fraction(0)
-        for (i, j), told in found.items():
+        for (i, j), estimate in estimates.items():
             weight = (
                 comb(many, i) * a**i * (1 - a) ** (many - i)
                 * comb(few, j) * b**j * (1 - b) ** (few - j)
             )  # fmt: skip
-            below += weight * (told.high < share)
-            above += weight * (told.low > share)
+            below += weight * (estimate.high < share)
+            above += weight * (estimate.low > share)
         assert max(below, above) <= 1 - Fraction(str(confidence)), (p, q)
 
 
@@ -140,21 +146,21 @@ REPETITIONS = 1000 if os.environ.get("HYPOTHESIS_PROFILE") == "full" else 30
 def wrong(kind: str, n: int, p: float, confidence: float, repetitions: int) -> tuple[int, int]:
     """How often `> p` is supported and `>= p` is refuted, where the probability is p."""
     chance, edge = np.random.default_rng(20_240_229), Fraction(str(p))
-    found = {"supported": 0, "refuted": 0}
+    counts = {"supported": 0, "refuted": 0}
     for _ in range(repetitions):
-        drawn = DRAWS[kind](chance, n, p)
-        told = estimated((Trials(int(k), TRIGGERS - int(k), 0) for k in drawn), confidence)
-        found["supported"] += answer(told, ">", edge) == "supported"
-        found["refuted"] += answer(told, ">=", edge) == "refuted"
-    return found["supported"], found["refuted"]
+        sample = DRAWS[kind](chance, n, p)
+        estimate = estimated((Trials(int(k), TRIGGERS - int(k), 0) for k in sample), confidence)
+        counts["supported"] += answer(estimate, ">", edge) == "supported"
+        counts["refuted"] += answer(estimate, ">=", edge) == "refuted"
+    return counts["supported"], counts["refuted"]
 
 
 def most(repetitions: int, rate: float) -> int:
     """What a rate that is no higher exceeds in one of ten thousand such simulations at most."""
-    left, k = 1.0, -1
-    while left > 1e-4:
+    rest, k = 1.0, -1
+    while rest > 1e-4:
         k += 1
-        left -= comb(repetitions, k) * rate**k * (1 - rate) ** (repetitions - k)
+        rest -= comb(repetitions, k) * rate**k * (1 - rate) ** (repetitions - k)
     return k
 
 
@@ -178,9 +184,9 @@ def test_there_is_power_where_triggers_are_independent() -> None:
         (30, 0.9, "0.99", "refuted"),
     ]:
         for _ in range(20):
-            drawn = DRAWS["independent"](chance, n, p)
-            runs = [Trials(int(k), TRIGGERS - int(k), 0) for k in drawn]
-            assert said(">=", bound, runs) == expected
+            sample = DRAWS["independent"](chance, n, p)
+            runs = [Trials(int(k), TRIGGERS - int(k), 0) for k in sample]
+            assert answer_of(">=", bound, runs) == expected
 
 
 # Answers ---------------------------------------------------------------------------------------
@@ -204,7 +210,7 @@ def test_there_is_power_where_triggers_are_independent() -> None:
     ],
 )
 def test_how_many_runs_support_how_much(runs: list[Trials], bound: str, expected: str) -> None:
-    assert said(">=", bound, runs) == expected
+    assert answer_of(">=", bound, runs) == expected
 
 
 GOOD, BAD, EVEN = spread(950, 50), spread(50, 950), spread(500, 500)
@@ -222,7 +228,11 @@ GOOD, BAD, EVEN = spread(950, 50), spread(50, 950), spread(500, 500)
     ],
 )
 def test_every_operator(op: ComparisonOperator, good: str, bad: str, even: str) -> None:
-    assert (said(op, "0.5", GOOD), said(op, "0.5", BAD), said(op, "0.5", EVEN)) == (good, bad, even)
+    assert (answer_of(op, "0.5", GOOD), answer_of(op, "0.5", BAD), answer_of(op, "0.5", EVEN)) == (
+        good,
+        bad,
+        even,
+    )
 
 
 @pytest.mark.parametrize(
@@ -243,30 +253,30 @@ def test_every_operator(op: ComparisonOperator, good: str, bad: str, even: str) 
 def test_at_the_ends_one_trigger_can_tell(
     op: ComparisonOperator, bound: str, all_good: str, one_bad: str, all_bad: str
 ) -> None:
-    found = (said(op, bound, spread(50, 0)), said(op, bound, spread(49, 1)))
-    assert (*found, said(op, bound, spread(0, 50))) == (all_good, one_bad, all_bad)
+    answers = (answer_of(op, bound, spread(50, 0)), answer_of(op, bound, spread(49, 1)))
+    assert (*answers, answer_of(op, bound, spread(0, 50))) == (all_good, one_bad, all_bad)
 
 
 def test_one_failure_of_one_log_refutes_certainty_and_nothing_less() -> None:
-    assert said(">=", "1", [Trials(99, 1, 0)]) == "refuted"
-    assert said(">=", "0.99", [Trials(0, 900, 0)]) == "inconclusive"
-    assert said(">=", "0.01", [Trials(900, 0, 0)]) == "inconclusive"
+    assert answer_of(">=", "1", [Trials(99, 1, 0)]) == "refuted"
+    assert answer_of(">=", "0.99", [Trials(0, 900, 0)]) == "inconclusive"
+    assert answer_of(">=", "0.01", [Trials(900, 0, 0)]) == "inconclusive"
     assert bounds([Trials(10, 10, 0)], 0.95) == Bounds(0.0, 1.0)
 
 
 @pytest.mark.parametrize("op", OPERATORS)
 def test_without_a_trigger_nothing_is_known(op: ComparisonOperator) -> None:
     for bound in ("0", "0.5", "1"):
-        assert said(op, bound, []) == "inconclusive"
-        assert said(op, bound, [Trials(0, 0, 0)] * 40) == "inconclusive"
+        assert answer_of(op, bound, []) == "inconclusive"
+        assert answer_of(op, bound, [Trials(0, 0, 0)] * 40) == "inconclusive"
 
 
 def test_logs_that_differ_widen_the_interval_and_can_withhold_the_answer() -> None:
     """5000 triggers with 50 failures: in all logs alike, or all in one of them."""
-    alike, one = spread(4950, 50), good(99, 50) + bad(1, 50)
-    assert said(">=", "0.95", alike) == "supported"
-    assert said(">=", "0.95", one) == "inconclusive"
-    assert bounds(one, 0.95).low < bounds(alike, 0.95).low
+    equal_runs, one = spread(4950, 50), good(99, 50) + bad(1, 50)
+    assert answer_of(">=", "0.95", equal_runs) == "supported"
+    assert answer_of(">=", "0.95", one) == "inconclusive"
+    assert bounds(one, 0.95).low < bounds(equal_runs, 0.95).low
 
 
 # What is open, and what does not matter ---------------------------------------------------------
@@ -288,9 +298,9 @@ def test_bounds_hold_whatever_the_open_triggers_come_to(
         dropped = data.draw(st.integers(0, run.open - answered))  # they were no triggers
         failed = run.failed + run.open - answered - dropped
         decided.append(Trials(run.answered + answered, failed, 0))
-    told, really = estimated([LARGEST, *runs]).bounds, estimated(decided).bounds
+    bounds, really = estimated([LARGEST, *runs]).bounds, estimated(decided).bounds
     if len([run for run in decided if run.count]) > 1:
-        assert told.low <= really.low <= really.high <= told.high
+        assert bounds.low <= really.low <= really.high <= bounds.high
 
 
 def test_open_triggers_count_against_either_bound() -> None:
@@ -302,8 +312,8 @@ def test_open_triggers_count_against_either_bound() -> None:
 @given(some_trials, st.randoms(use_true_random=False))
 def test_the_order_of_the_logs_does_not_matter(runs: list[Trials], chance: object) -> None:
     shuffled = sorted(runs, key=lambda _: chance.random())  # type: ignore[attr-defined]
-    told, other = estimated(shuffled), estimated(runs)
-    assert (told.trials, told.bounds) == (other.trials, other.bounds)
+    one, other = estimated(shuffled), estimated(runs)
+    assert (one.trials, one.bounds) == (other.trials, other.bounds)
 
 
 @given(some_trials, st.integers(0, 5))
@@ -337,8 +347,8 @@ def test_so_many_are_enough_and_one_less_is_not(runs: list[Trials]) -> None:
     more = needed(estimated(runs), ">=", Fraction("0.99"))
     assert more is not None
     size = max(run.count for run in runs)
-    assert said(">=", "0.99", runs + good(more, size)) == "supported"
-    assert said(">=", "0.99", runs + good(more - 1, size)) == "inconclusive"
+    assert answer_of(">=", "0.99", runs + good(more, size)) == "supported"
+    assert answer_of(">=", "0.99", runs + good(more - 1, size)) == "inconclusive"
 
 
 def test_where_no_number_helps_there_is_none() -> None:

@@ -24,10 +24,10 @@ Columns = dict[str, list[bool]]
 
 
 def counted(sentence: str, columns: dict[str, list[Truth]]) -> Trials:
-    made = chance(rule(sentence))
-    assert made is not None
+    odds = chance(rule(sentence))
+    assert odds is not None
     ticks, packs = packed(columns)
-    return trials(made.obligation, packs, ticks)
+    return trials(odds.obligation, packs, ticks)
 
 
 def of(template: Template, columns: dict[str, list[Truth]]) -> Trials:
@@ -68,7 +68,7 @@ def naive(
 
     Those of the columns that are constants stay what they are.
     """
-    found = {"answered": 0, "failed": 0, "open": 0, "kept": 0}
+    counts = {"answered": 0, "failed": 0, "open": 0, "met_by_end": 0}
     more = template.n + 2
     fixed = {name: value for name, value in (constants or {}).items() if name != "p"}
     futures = [
@@ -78,15 +78,15 @@ def naive(
         if all(set(tails[list(columns).index(name)]) == {value} for name, value in fixed.items())
     ]
     for trigger in begun(template, columns):
-        told = {met(template, future, trigger) for future in futures}
-        if len(told) == 1:
-            found["answered" if told.pop() else "failed"] += 1
+        outcomes = {met(template, future, trigger) for future in futures}
+        if len(outcomes) == 1:
+            counts["answered" if outcomes.pop() else "failed"] += 1
         elif only_forbids(template) and met(template, columns, trigger):
-            found["answered"] += 1
-            found["kept"] += 1
+            counts["answered"] += 1
+            counts["met_by_end"] += 1
         else:
-            found["open"] += 1
-    return Trials(**found)
+            counts["open"] += 1
+    return Trials(**counts)
 
 
 def drawn(template: Template, length: int, chance_: random.Random) -> Columns:
@@ -105,8 +105,8 @@ def test_every_template_is_counted_as_its_meaning_says(scope: str) -> None:
         chance_ = random.Random(repr(template))
         for length in (1, 4, 6):
             columns = drawn(template, length, chance_)
-            told: dict[str, list[Truth]] = {name: [*c] for name, c in columns.items()}
-            assert of(template, told) == naive(template, columns), (template, columns)
+            truths: dict[str, list[Truth]] = {name: [*c] for name, c in columns.items()}
+            assert of(template, truths) == naive(template, columns), (template, columns)
 
 
 @pytest.mark.slow
@@ -120,17 +120,17 @@ def test_the_monitor_and_the_count_agree_on_every_run(scope: str) -> None:
         chance_ = random.Random(f"monitor {template!r}")
         for length in (3, 9, 14):
             columns = drawn(template, length, chance_)
-            told: dict[str, list[Truth]] = {name: [*c] for name, c in columns.items()}
-            found = of(template, told)
-            ticks, packs = packed(told)
+            truths: dict[str, list[Truth]] = {name: [*c] for name, c in columns.items()}
+            trials_of_run = of(template, truths)
+            ticks, packs = packed(truths)
             needed = {name: packs[name] for name in machine.PROPOSITIONS}
             (outcome,) = evaluate(machine, needed, ticks)
-            where = (template, columns, found, outcome)
-            assert found.count == len(outcome.triggers), where
-            assert not found.failed or outcome.verdict == "violated", where
-            good = found.count > 0 and not found.failed and not found.open
+            where = (template, columns, trials_of_run, outcome)
+            assert trials_of_run.count == len(outcome.triggers), where
+            assert not trials_of_run.failed or outcome.verdict == "violated", where
+            good = trials_of_run.count > 0 and not trials_of_run.failed and not trials_of_run.open
             assert good == (outcome.verdict == "satisfied"), where
-            assert (found.count == 0) == (outcome.verdict == "vacuous"), where
+            assert (trials_of_run.count == 0) == (outcome.verdict == "vacuous"), where
 
 
 @pytest.mark.slow
@@ -141,19 +141,19 @@ def test_what_is_unknown_is_never_decided_against_what_it_may_be(scope: str) -> 
             continue
         chance_ = random.Random(f"unknown {template!r}")
         columns = drawn(template, 6, chance_)
-        lost = [(chance_.choice(template.columns), chance_.randrange(6)) for _ in range(2)]
-        told: dict[str, list[Truth]] = {name: [*c] for name, c in columns.items()}
-        for name, tick in lost:
-            told[name][tick] = None
-        found = of(template, told)
+        gaps = [(chance_.choice(template.columns), chance_.randrange(6)) for _ in range(2)]
+        truths: dict[str, list[Truth]] = {name: [*c] for name, c in columns.items()}
+        for name, tick in gaps:
+            truths[name][tick] = None
+        trials_of_run = of(template, truths)
         for values in product((False, True), repeat=2):
-            whole: dict[str, list[Truth]] = {name: [*c] for name, c in columns.items()}
-            for (name, tick), value in zip(lost, values, strict=True):
-                whole[name][tick] = value
-            really = of(template, whole)
-            assert found.answered <= really.answered, (template, told)
-            assert found.failed <= really.failed, (template, told)
-            assert found.count >= really.count, (template, told)
+            completed: dict[str, list[Truth]] = {name: [*c] for name, c in columns.items()}
+            for (name, tick), value in zip(gaps, values, strict=True):
+                completed[name][tick] = value
+            really = of(template, completed)
+            assert trials_of_run.answered <= really.answered, (template, truths)
+            assert trials_of_run.failed <= really.failed, (template, truths)
+            assert trials_of_run.count >= really.count, (template, truths)
 
 
 # Any expressions, constants among them ----------------------------------------------------------
@@ -233,9 +233,9 @@ def test_any_expressions_are_counted_as_their_meaning_says() -> None:
     chance_ = random.Random("expressions")
     for filled in fillings(chance_):
         columns = {name: [chance_.random() < 0.5 for _ in range(5)] for name in filled.names}
-        told: dict[str, list[Truth]] = {"other": [None] * 5}
-        told |= {name: [*columns[name]] for name in rule(filled.sentence).watched}
-        assert counted(filled.sentence, told) == filled.naive(columns), (filled.sentence, columns)
+        truths: dict[str, list[Truth]] = {"other": [None] * 5}
+        truths |= {name: [*columns[name]] for name in rule(filled.sentence).watched}
+        assert counted(filled.sentence, truths) == filled.naive(columns), (filled.sentence, columns)
 
 
 # Written out ----------------------------------------------------------------------------------
@@ -280,7 +280,7 @@ def test_without_a_condition_each_interval_is_one() -> None:
 
 def test_what_only_forbids_is_met_when_the_run_ends() -> None:
     sentence = "the robot shall with probability > 0.5 always satisfy r"
-    assert counted(sentence, {"r": bits("111")}) == Trials(1, 0, 0, kept=1)
+    assert counted(sentence, {"r": bits("111")}) == Trials(1, 0, 0, met_by_end=1)
     assert counted(sentence, {"r": bits("110")}) == Trials(0, 1, 0)
     assert counted(sentence, {"r": bits("1?1")}) == Trials(0, 0, 1)
 
@@ -291,16 +291,16 @@ def test_a_bound_of_a_thousand_million_ticks_costs_no_more_than_the_run() -> Non
 
 
 def test_an_empty_run_has_none() -> None:
-    made = chance(rule(WITHIN))
-    assert made is not None
+    odds = chance(rule(WITHIN))
+    assert odds is not None
     _, columns = columns_of([], 2)
-    assert trials(made.obligation, dict(zip("cr", columns, strict=True)), 0) == Trials(0, 0, 0)
+    assert trials(odds.obligation, dict(zip("cr", columns, strict=True)), 0) == Trials(0, 0, 0)
 
 
 def test_a_cut_tick_undoes_what_was_only_kept() -> None:
-    kept = Trials(3, 1, 0, kept=2)
-    assert kept.before(Trials(1, 3, 0)) == Trials(1, 1, 2)
-    assert kept.before(Trials(3, 1, 1)) == kept
+    shorter = Trials(3, 1, 0, met_by_end=2)
+    assert shorter.before(Trials(1, 3, 0)) == Trials(1, 1, 2)
+    assert shorter.before(Trials(3, 1, 1)) == shorter
     assert Trials(3, 0, 0).before(Trials(3, 1, 0)) == Trials(3, 0, 1)
 
 
@@ -318,6 +318,6 @@ def test_the_text_is_the_monitor_of_the_sentence_without_its_probability_and_say
 
 
 def test_a_rule_without_a_probability_stays_itself() -> None:
-    made = rule("whenever c the robot shall satisfy r")
-    assert plain(made) is made
-    assert chance(made) is None
+    own = rule("whenever c the robot shall satisfy r")
+    assert plain(own) is own
+    assert chance(own) is None

@@ -30,8 +30,8 @@ TRUTHS = (False, True, None)
 
 def monitor(sentence: str) -> Monitor:
     ((requirement,), _) = requirements(Source("R1.fret", sentence))
-    rule, said = formalize(requirement, declare(BINDINGS))
-    assert rule is not None, said
+    rule, diagnostics = formalize(requirement, declare(BINDINGS))
+    assert rule is not None, diagnostics
     return load("monitor", text(rule))
 
 
@@ -54,7 +54,7 @@ def test_a_cut_tick_counts_as_unchanged_only_where_all_of_it_is_known(
 ) -> None:
     watching = monitor("when p the r shall immediately satisfy q")
     columns = {"p": column(bytes([T, last[0]])), "q": column(bytes([T, last[1]]))}
-    found = judged(
+    judgement = judged(
         watching,
         columns,
         {"p": TRUTHS[cut[0]], "q": TRUTHS[cut[1]]},
@@ -63,4 +63,4 @@ def test_a_cut_tick_counts_as_unchanged_only_where_all_of_it_is_known(
         end="inconclusive",
         engine=engine,
     )
-    assert found.verdict == expected
+    assert judgement.verdict == expected

@@ -48,15 +48,15 @@ def recorded(
     return Recording("run", "", 1, 0, end, signals, none, tuple(gaps), {}, {}, (), not gaps)
 
 
-def found(expr: str, recording: Recording) -> tuple[Margin, ...]:
-    known = declared(expr)
-    ticks = timeline(known, recording).times
-    return margins(known.propositions["p"], known, recording, ticks)
+def margins_of(expr: str, recording: Recording) -> tuple[Margin, ...]:
+    declarations = declared(expr)
+    ticks = timeline(declarations, recording).times
+    return margins(declarations.propositions["p"], declarations, recording, ticks)
 
 
 def test_a_bound_that_is_never_crossed_has_a_margin_and_the_time_it_came_that_near() -> None:
     log = recorded([(0, 1.0), (10, 0.3), (20, 0.3), (30, 2.0)], end=40)
-    (margin,) = found("x < 5 cm", log)
+    (margin,) = margins_of("x < 5 cm", log)
     assert (margin.threshold.text, margin.threshold.operator) == ("x", "<")
     assert (margin.threshold.bound, margin.threshold.unit) == (0.05, "m")
     assert (margin.least, margin.greatest, margin.comparison) == (0.3, 2.0, False)
@@ -65,17 +65,17 @@ def test_a_bound_that_is_never_crossed_has_a_margin_and_the_time_it_came_that_ne
 
 
 def test_one_that_is_crossed_has_none_and_the_time_of_the_first_change() -> None:
-    (margin,) = found("x < 5 cm", recorded([(0, 1.0), (10, 0.04), (20, 1.0)], end=30))
+    (margin,) = margins_of("x < 5 cm", recorded([(0, 1.0), (10, 0.04), (20, 1.0)], end=30))
     assert (margin.comparison, margin.distance, margin.nearest_ns) == ("crossed", None, 10)
     assert (margin.least, margin.greatest) == (0.04, 1.0)
 
 
 @pytest.mark.parametrize(
-    ("operator", "kept"), [("<", False), ("<=", True), (">", False), (">=", True)]
+    ("operator", "truth_value"), [("<", False), ("<=", True), (">", False), (">=", True)]
 )
-def test_at_the_bound_itself_the_margin_is_zero(operator: str, kept: bool) -> None:
-    (margin,) = found(f"x {operator} 1 m", recorded([(0, 1.0)], end=10))
-    assert (margin.comparison, margin.distance) == (kept, 0.0)
+def test_at_the_bound_itself_the_margin_is_zero(operator: str, truth_value: bool) -> None:
+    (margin,) = margins_of(f"x {operator} 1 m", recorded([(0, 1.0)], end=10))
+    assert (margin.comparison, margin.distance) == (truth_value, 0.0)
 
 
 def test_a_margin_is_judged_as_the_proposition_is() -> None:
@@ -83,16 +83,16 @@ def test_a_margin_is_judged_as_the_proposition_is() -> None:
     assert 35.7 / 100 != 0.357
     log = recorded([(0, 35.7)], end=10)
     x = Samples(log.samples["x"].times, log.samples["x"].values, Fraction(1, 100))
-    (margin,) = found("x < 0.357 m", replace(log, samples={"x": x}))
+    (margin,) = margins_of("x < 0.357 m", replace(log, samples={"x": x}))
     assert (margin.comparison, margin.distance) == (False, 0.0)
     single = Samples(x.times, x.values.astype(np.float32), x.scale)
-    (margin,) = found("x >= 0.357 m", replace(log, samples={"x": single}))
+    (margin,) = margins_of("x >= 0.357 m", replace(log, samples={"x": single}))
     assert (margin.comparison, margin.distance, margin.threshold.bound) == (True, 0.0, 0.357)
 
 
 def test_the_constant_may_stand_on_the_left_and_the_number_be_computed() -> None:
     log = recorded([(0, 1.0), (10, 3.0)], end=10, y=-0.5)
-    first, second = found("2 m > x or abs(y) >= 0.2 m/s", log)
+    first, second = margins_of("2 m > x or abs(y) >= 0.2 m/s", log)
     assert (first.threshold.text, first.threshold.operator) == ("x", "<")
     assert first.comparison == "crossed"
     assert (second.threshold.text, second.threshold.unit) == ("abs(y)", "m/s")
@@ -102,41 +102,41 @@ def test_the_constant_may_stand_on_the_left_and_the_number_be_computed() -> None
 
 @pytest.mark.parametrize("expr", ["x = 1 m", "x != 1 m", "x < x", "1 < 2", "x / 1 m < 1 / 0"])
 def test_equalities_and_comparisons_without_a_constant_bound_are_no_thresholds(expr: str) -> None:
-    assert found(expr, recorded([(0, 1.0)], end=10)) == ()
+    assert margins_of(expr, recorded([(0, 1.0)], end=10)) == ()
 
 
 def test_what_is_unknown_does_not_count() -> None:
     """NaN, what is too old, a gap and what follows it, and what comes after the last tick."""
     samples = [(0, 1.0), (10, nan), (35, 2.0), (50, -9.0), (60, 3.0), (78, -9.0)]
-    (margin,) = found("x < 5 cm", recorded(samples, end=79, gaps=[(45, 55)]))
+    (margin,) = margins_of("x < 5 cm", recorded(samples, end=79, gaps=[(45, 55)]))
     assert (margin.least, margin.greatest, margin.comparison) == (1.0, 3.0, False)
 
 
 def test_nothing_known_is_no_margin() -> None:
     for log in (recorded([], end=50), recorded([(0, nan)], end=50)):
-        (margin,) = found("x < 5 cm", log)
+        (margin,) = margins_of("x < 5 cm", log)
         assert margin.comparison is margin.least is margin.greatest is margin.distance is None
 
 
 def test_infinite_values_are_on_a_side_and_never_near() -> None:
-    (far,) = found("x < 5 cm", recorded([(0, inf), (10, 0.25), (20, inf)], end=20))
+    (far,) = margins_of("x < 5 cm", recorded([(0, inf), (10, 0.25), (20, inf)], end=20))
     assert (far.comparison, far.distance, far.nearest_ns) == (False, 0.2, 10)
     assert (far.least, far.greatest) == (0.25, inf)
-    (near,) = found("x < 5 cm", recorded([(0, 0.25), (10, -inf)], end=20))
+    (near,) = margins_of("x < 5 cm", recorded([(0, 0.25), (10, -inf)], end=20))
     assert (near.comparison, near.distance) == ("crossed", None)
-    (never,) = found("x < 5 cm", recorded([(0, inf)], end=10))
+    (never,) = margins_of("x < 5 cm", recorded([(0, inf)], end=10))
     assert (never.comparison, never.distance, never.nearest_ns) == (False, None, None)
 
 
 def test_the_worst_is_the_least_part_of_its_bound() -> None:
     log = recorded([(0, 1.0)], end=10, y=1.9)
-    length, speed = found("x < 5 m and y < 2 m/s", log)
+    length, speed = margins_of("x < 5 m and y < 2 m/s", log)
     assert length.distance == 4.0
     assert speed.distance == pytest.approx(0.1)
     assert worst([length, speed]) is speed
-    (small,) = found("x < 100.5 cm", log)
+    (small,) = margins_of("x < 100.5 cm", log)
     assert worst([length, speed, small]) is small
-    (zero,) = found("x > 0 m", log)
+    (zero,) = margins_of("x > 0 m", log)
     assert (zero.share, worst([zero, speed])) == (1.0, speed)
     assert worst([]) is None
 
@@ -153,21 +153,21 @@ def test_it_agrees_with_a_look_at_every_nanosecond(
     samples: list[tuple[int, float]], gaps: list[tuple[int, int]], end: int
 ) -> None:
     samples = sorted(((t, v) for t, v in samples if t <= end), key=lambda sample: sample[0])
-    lost = [(start, start + length) for start, length in gaps if start + length <= end]
-    recording = recorded(samples, end, lost)
-    (margin,) = found("x < 5 cm", recording)
-    seen = [(t, value) for t in range(end // 10 * 10 + 1) for value in _at(t, samples, lost)]
-    values = [value for _, value in seen]
+    holes = [(start, start + length) for start, length in gaps if start + length <= end]
+    recording = recorded(samples, end, holes)
+    (margin,) = margins_of("x < 5 cm", recording)
+    readings = [(t, value) for t in range(end // 10 * 10 + 1) for value in _at(t, samples, holes)]
+    values = [value for _, value in readings]
     below = {value < 0.05 for value in values}
     assert margin.least == min(values, default=None)
     assert margin.greatest == max(values, default=None)
     expected = None if not below else "crossed" if len(below) == 2 else below == {True}
     assert margin.comparison == expected
-    apart = [(abs(value - 0.05), t) for t, value in seen if abs(value) != inf]
-    if len(below) != 1 or not apart:
+    distances = [(abs(value - 0.05), t) for t, value in readings if abs(value) != inf]
+    if len(below) != 1 or not distances:
         assert margin.distance is None
     else:
-        assert (margin.distance, margin.nearest_ns) == min(apart)
+        assert (margin.distance, margin.nearest_ns) == min(distances)
 
 
 def _at(t: int, samples: Sequence[tuple[int, float]], gaps: Sequence[Gap]) -> list[float]:

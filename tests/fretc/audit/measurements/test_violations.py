@@ -27,12 +27,12 @@ NO_DEADLINE = Demand()
 WITHIN = "whenever near the rover shall within 2 ticks satisfy still"
 
 
-def told(
-    outcome: Outcome, horizon: int | None = None, wanted: Demand = NO_DEADLINE
+def violations_of(
+    outcome: Outcome, horizon: int | None = None, demand: Demand = NO_DEADLINE
 ) -> list[Violation]:
     log = recorded([FAR] * outcome.ticks, [MOVING] * outcome.ticks)
     return list(
-        violations(outcome, wanted, horizon, lambda t: Moment(t, t * S, float(t)), log, ["d"])
+        violations(outcome, demand, horizon, lambda t: Moment(t, t * S, float(t)), log, ["d"])
     )
 
 
@@ -49,8 +49,8 @@ def outcome(
     )  # fmt: skip
 
 
-def triggers_of(found: Sequence[Violation]) -> list[int | None]:
-    return [violation.trigger.tick if violation.trigger else None for violation in found]
+def triggers_of(stretches: Sequence[Violation]) -> list[int | None]:
+    return [violation.trigger.tick if violation.trigger else None for violation in stretches]
 
 
 def test_the_trigger_is_the_oldest_whose_deadline_has_passed() -> None:
@@ -62,25 +62,25 @@ def test_the_trigger_is_the_oldest_whose_deadline_has_passed() -> None:
 
 
 def test_one_that_was_answered_is_not_to_blame() -> None:
-    found = told(outcome([(9, 9)], [5, 7, 8], answers=[(5, 6)]), horizon=4)
-    assert triggers_of(found) == [7]
+    stretches = violations_of(outcome([(9, 9)], [5, 7, 8], answers=[(5, 6)]), horizon=4)
+    assert triggers_of(stretches) == [7]
 
 
 def test_without_a_deadline_it_is_the_last_trigger_and_at_the_end_the_oldest_open() -> None:
-    assert triggers_of(told(outcome([(9, 9)], [3, 5, 12]))) == [5]
-    assert triggers_of(told(outcome([(9, 9)], []))) == [None]
+    assert triggers_of(violations_of(outcome([(9, 9)], [3, 5, 12]))) == [5]
+    assert triggers_of(violations_of(outcome([(9, 9)], []))) == [None]
     ended = outcome([(19, 19)], [3, 5, 12], answers=[(3, 4)], open_=[(5, None), (12, None)])
-    assert triggers_of(told(ended)) == [5]
+    assert triggers_of(violations_of(ended)) == [5]
 
 
 def test_the_deadline_is_told_where_there_is_one_within_the_run() -> None:
     one = outcome([(9, 9)], [5])
-    (violation,) = told(one, horizon=4, wanted=Demand("still", 4))
+    (violation,) = violations_of(one, horizon=4, demand=Demand("still", 4))
     assert violation.deadline == Moment(9, 9 * S, 9.0)
     assert violation.missing == "still"
-    (none,) = told(one, horizon=4, wanted=Demand("still"))
+    (none,) = violations_of(one, horizon=4, demand=Demand("still"))
     assert none.deadline is None
-    (later,) = told(outcome([(9, 9)], [5], ticks=10), horizon=6, wanted=Demand("still", 6))
+    (later,) = violations_of(outcome([(9, 9)], [5], ticks=10), horizon=6, demand=Demand("still", 6))
     assert later.deadline is None
 
 
@@ -157,11 +157,11 @@ def test_many_samples_are_thinned_evenly_with_the_least_and_the_greatest() -> No
         outcome([(9, 9)], [9]), Demand(), 0, lambda t: Moment(t, t * S, float(t)), log, ["d"]
     )
     assert violation.window is not None
-    kept = violation.window.samples["d"]
-    assert len(kept.times) <= MOST_SAMPLES
-    assert {-7.0, 7.0} <= set(kept.values.tolist())
-    assert (kept.times[0], kept.times[-1]) == (8 * S, 10 * S)
-    assert np.diff(kept.times).max() < 50 * S // 1000
+    samples = violation.window.samples["d"]
+    assert len(samples.times) <= MOST_SAMPLES
+    assert {-7.0, 7.0} <= set(samples.values.tolist())
+    assert (samples.times[0], samples.times[-1]) == (8 * S, 10 * S)
+    assert np.diff(samples.times).max() < 50 * S // 1000
     unknown = Samples(times, np.full(len(times), NAN))
     (violation,) = violations(
         outcome([(9, 9)], [9]), Demand(), 0, lambda t: Moment(t, t * S, float(t)),
@@ -185,15 +185,15 @@ def test_the_last_sample_at_the_broken_tick_is_kept_exactly(broken: int) -> None
         outcome([(broken, 12)], [4]), Demand(), 20, lambda t: Moment(t, t * S, float(t)), log, ["d"]
     )
     assert violation.window is not None
-    kept = violation.window.samples["d"].times
-    assert len(kept) <= MOST_SAMPLES
-    assert kept[kept <= broken * S][-1] == silent
+    times = violation.window.samples["d"].times
+    assert len(times) <= MOST_SAMPLES
+    assert times[times <= broken * S][-1] == silent
 
 
 def test_only_the_first_violations_carry_their_samples() -> None:
     runs = [(2 * i, 2 * i) for i in range(MOST_WINDOWS + 5)]
-    found = told(outcome(runs, [], ticks=300))
-    assert [v.window is not None for v in found] == [True] * MOST_WINDOWS + [False] * 5
+    stretches = violations_of(outcome(runs, [], ticks=300))
+    assert [v.window is not None for v in stretches] == [True] * MOST_WINDOWS + [False] * 5
 
 
 def test_a_satisfied_requirement_names_its_least_margin() -> None:

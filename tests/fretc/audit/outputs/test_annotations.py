@@ -30,7 +30,7 @@ def moment(tick: int, **more: Any) -> dict[str, Any]:
 
 
 def result(run: str = "a.mcap", id: str = "R1", **more: Any) -> Result:
-    found = {
+    fields = {
         "run": run,
         "requirement": id,
         "verdict": "violated",
@@ -50,14 +50,14 @@ def result(run: str = "a.mcap", id: str = "R1", **more: Any) -> Result:
         "hashes": {"log": "aa", "bindings": "bb", "sentence": "cc", "monitor": "dd"},
         **more,
     }
-    return results.result(**found)
+    return results.result(**fields)
 
 
 def read(data: bytes) -> tuple[dict[str, list[tuple[int, Any]]], dict[str, str]]:
     """Messages by topic and the metadata; all of it is as the official readers want it."""
     reader = make_reader(BytesIO(data), validate_crcs=True)
     list(StreamReader(BytesIO(data), validate_crcs=True).records)
-    found: dict[str, list[tuple[int, Any]]] = {}
+    messages: dict[str, list[tuple[int, Any]]] = {}
     before = 0
     for schema, channel, message in reader.iter_messages():
         assert schema is not None
@@ -69,16 +69,16 @@ def read(data: bytes) -> tuple[dict[str, list[tuple[int, Any]]], dict[str, str]]
         assert schema.name == ("foxglove.Log" if channel.topic == VERDICTS else "fretc.State")
         assert before <= message.log_time
         before = message.log_time
-        found.setdefault(channel.topic, []).append((message.log_time, content))
+        messages.setdefault(channel.topic, []).append((message.log_time, content))
     (metadata,) = reader.iter_metadata()
     assert metadata.name == "fretc"
-    return found, metadata.metadata
+    return messages, metadata.metadata
 
 
 def test_what_happened_is_told_in_order_of_time() -> None:
-    found, _ = read(sidecar([result()], RULES))
-    told = [(ns // S, one["level"], one["message"]) for ns, one in found[VERDICTS]]
-    assert told == [
+    messages, _ = read(sidecar([result()], RULES))
+    events = [(ns // S, one["level"], one["message"]) for ns, one in messages[VERDICTS]]
+    assert events == [
         (101, 2, "R1: triggered"),
         (101, 2, "R1: answered after 0.000 s"),
         (102, 2, "R1: triggered"),
@@ -86,14 +86,14 @@ def test_what_happened_is_told_in_order_of_time() -> None:
         (105, 4, "R1: violated up to here"),
         (120, 4, "R1: violated: broken"),
     ]
-    _, first = found[VERDICTS][0]
+    _, first = messages[VERDICTS][0]
     assert (first["name"], first["file"], first["line"]) == ("R1", "r.fret", 1)
 
 
 def test_each_requirement_has_its_states() -> None:
-    found, _ = read(sidecar([result(), result(id="R2")], RULES))
-    assert set(found) == {VERDICTS, "/fretc/R1", "/fretc/R2"}
-    states = [(ns // S, one["state"], one["requirement"]) for ns, one in found["/fretc/R2"]]
+    messages, _ = read(sidecar([result(), result(id="R2")], RULES))
+    assert set(messages) == {VERDICTS, "/fretc/R1", "/fretc/R2"}
+    states = [(ns // S, one["state"], one["requirement"]) for ns, one in messages["/fretc/R2"]]
     assert states == [
         (100, "idle", "R2"),
         (102, "open", "R2"),
@@ -107,8 +107,8 @@ def test_each_requirement_has_its_states() -> None:
     [("satisfied", 2), ("violated", 4), ("inconclusive", 3), ("vacuous", 3), ("no data", 3)],
 )
 def test_the_verdict_comes_last_with_its_level(verdict: str, level: int) -> None:
-    found, metadata = read(sidecar([result(verdict=verdict)], RULES))
-    _, last = found[VERDICTS][-1]
+    messages, metadata = read(sidecar([result(verdict=verdict)], RULES))
+    _, last = messages[VERDICTS][-1]
     assert (last["level"], last["message"]) == (level, f"R1: {verdict}: broken")
     assert metadata["R1.verdict"] == verdict
 
@@ -149,8 +149,8 @@ def test_no_requirement_has_the_topic_of_the_verdicts() -> None:
 def test_each_run_has_a_file_of_its_own_and_none_outside(
     runs: Sequence[str], names: Sequence[str]
 ) -> None:
-    made = list(sidecars([result(run) for run in runs], RULES, Path("out")))
-    assert made == [Path(f"out/{name}.fretc.mcap") for name in names]
+    paths = list(sidecars([result(run) for run in runs], RULES, Path("out")))
+    assert paths == [Path(f"out/{name}.fretc.mcap") for name in names]
 
 
 def test_of_a_log_that_could_not_be_read_there_is_nothing() -> None:
@@ -180,12 +180,12 @@ def test_the_command_writes_it_beside_the_log_and_leaves_the_log(fretc: Fretc) -
     assert run.err.endswith("wrote build/annotations/run.fretc.mcap\n")
     assert Path("run.mcap").read_bytes() == before
     first = Path("build/annotations/run.fretc.mcap").read_bytes()
-    found, metadata = read(first)
+    messages, metadata = read(first)
     # x is below 5 cm from 1000.0 s to 1000.4 s; a tick is 0.1 s.
     start = 1000 * S
-    tenths = [((ns - start) // (S // 10), one["state"]) for ns, one in found["/fretc/R1"]]
+    tenths = [((ns - start) // (S // 10), one["state"]) for ns, one in messages["/fretc/R1"]]
     assert tenths[-1] == (5, "violated")
-    assert {one["state"] for _, one in found["/fretc/R2"]} >= {"open", "violated"}
+    assert {one["state"] for _, one in messages["/fretc/R2"]} >= {"open", "violated"}
     assert metadata["R1.verdict"] == "violated"
     fretc("audit", "run.mcap", "--annotate")
     assert Path("build/annotations/run.fretc.mcap").read_bytes() == first

@@ -59,8 +59,8 @@ def test_a_violation_is_told_with_its_time_and_its_values() -> None:
 
 
 def test_values_are_in_the_units_that_the_bindings_declare() -> None:
-    told = '[signal.x]\npath = "/a.x"\nunit = "km/h"\n[signal.y]\npath = "/a.y"\n'
-    bound = declare(f'[clock]\ntick = "1 s"\n{told}')
+    bindings = '[signal.x]\npath = "/a.x"\nunit = "km/h"\n[signal.y]\npath = "/a.y"\n'
+    bound = declare(f'[clock]\ntick = "1 s"\n{bindings}')
     broken = {"start_s": 1.5, "end_s": 2.0, "values": {"x": 5 / 3.6, "y": 2.0}}
     near = [{"signal": "abs(y)", "bound": 2.0000001}]
     case = result("violated", violations=[broken], thresholds=near)
@@ -70,9 +70,9 @@ def test_values_are_in_the_units_that_the_bindings_declare() -> None:
 
 @given(st.text())
 def test_any_text_gives_xml_that_can_be_read(text: str) -> None:
-    written = junit([result("violated", run=text, reason=text, id=text)])
-    assert len(ElementTree.fromstring(written)[0]) == 1
-    assert not {c for c in written if unicodedata.category(c) == "Cc"} - {"\n", "\t", "\r"}
+    xml = junit([result("violated", run=text, reason=text, id=text)])
+    assert len(ElementTree.fromstring(xml)[0]) == 1
+    assert not {c for c in xml if unicodedata.category(c) == "Cc"} - {"\n", "\t", "\r"}
 
 
 @pytest.mark.parametrize(
@@ -86,14 +86,14 @@ def test_any_text_gives_xml_that_can_be_read(text: str) -> None:
     ],
 )
 def test_an_annotation_stands_at_the_sentence(verdict: str, level: str) -> None:
-    found = github([result(verdict)], [rule("the sw shall always satisfy q").requirement])
-    assert found == f"::{level} file=r.fret,line=1,title=R1 {verdict}::a.mcap: why\n"
+    lines = github([result(verdict)], [rule("the sw shall always satisfy q").requirement])
+    assert lines == f"::{level} file=r.fret,line=1,title=R1 {verdict}::a.mcap: why\n"
 
 
 @given(st.text())
 def test_nothing_in_a_result_makes_another_annotation_or_moves_the_cursor(text: str) -> None:
     evil = result("violated", run=f"a\n::error::{text}", reason=f"100%\r\n{text}")
-    found = github([evil], [rule("the sw shall always satisfy q").requirement])
-    assert found[:-1].isprintable()
-    assert found.startswith("::error file=r.fret,line=1,title=R1 violated::a\\n::error::")
-    assert "100%25\\r\\n" in found
+    lines = github([evil], [rule("the sw shall always satisfy q").requirement])
+    assert lines[:-1].isprintable()
+    assert lines.startswith("::error file=r.fret,line=1,title=R1 violated::a\\n::error::")
+    assert "100%25\\r\\n" in lines

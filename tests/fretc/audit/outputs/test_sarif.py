@@ -26,8 +26,8 @@ RULES = [rule(f"the sw shall\n always satisfy q{i}", f"R{i}") for i in range(1, 
 
 def result(verdict: str, id: str = "R1", run: str = "a.mcap", **more: Any) -> OneRun:
     hashes = {"log": "ab" * 32, "sentence": "cd" * 32}
-    known = {"hashes": hashes, **more}
-    return OneRun.of(results_of.result(run=run, requirement=id, verdict=verdict, **known))
+    fields = {"hashes": hashes, **more}
+    return OneRun.of(results_of.result(run=run, requirement=id, verdict=verdict, **fields))
 
 
 ALL = [
@@ -98,8 +98,8 @@ def test_the_schema_refuses_what_is_wrong() -> None:
 
 
 def test_each_verdict_has_its_kind_and_level() -> None:
-    found = [(one["kind"], one["level"]) for one in read(ALL)["results"]]
-    assert found == [
+    kinds = [(one["kind"], one["level"]) for one in read(ALL)["results"]]
+    assert kinds == [
         ("pass", "none"),
         ("fail", "error"),
         ("fail", "warning"),
@@ -211,9 +211,9 @@ def test_an_address_on_the_web_stays_as_it_is() -> None:
 def test_the_command_prints_it(fretc: Fretc) -> None:
     shutil.copytree(ROOT / "requirements", "requirements")
     shutil.copy(ROOT / "traces/mission-seed15.mcap", "run.mcap")
-    found = fretc("audit", "run.mcap", "--format", "sarif")
-    assert found.status == 0
-    run = json.loads(found.out)["runs"][0]
+    printed = fretc("audit", "run.mcap", "--format", "sarif")
+    assert printed.status == 0
+    run = json.loads(printed.out)["runs"][0]
     accepted_by_code_scanning(run)
     assert run["results"][0]["kind"] == "pass"
     place = run["results"][0]["locations"][0]["physicalLocation"]
@@ -224,4 +224,4 @@ def test_the_command_prints_it(fretc: Fretc) -> None:
         "whenever too_close agilex_agent shall eventually satisfy stopped"
     )
     again = fretc("audit", "run.mcap", "--format", "sarif")
-    assert again.out == found.out
+    assert again.out == printed.out

@@ -21,24 +21,28 @@ def table(results: list[dict[str, Any]], fretc: str) -> bytes:
 @pytest.fixture
 def results(fretc: Fretc) -> list[dict[str, Any]]:
     """Three runs and two requirements, in a folder of their own."""
-    known = project(Path("known"), requirement("R1", "the robot shall always satisfy near"), R2)
-    made = [
-        result(known, "satisfied", run="a.mcap", latencies_s=[0.5]),
-        result(known, "vacuous", "R2", run="a.mcap", reason="never triggered"),
-        result(known, "satisfied", run="b.mcap", latencies_s=[0.2, 2.25, 0.3]),
-        result(known, "satisfied", "R2", run="b.mcap", latencies_s=[]),
+    own_project = project(
+        Path("known"), requirement("R1", "the robot shall always satisfy near"), R2
+    )
+    written_results = [
+        result(own_project, "satisfied", run="a.mcap", latencies_s=[0.5]),
+        result(own_project, "vacuous", "R2", run="a.mcap", reason="never triggered"),
+        result(own_project, "satisfied", run="b.mcap", latencies_s=[0.2, 2.25, 0.3]),
+        result(own_project, "satisfied", "R2", run="b.mcap", latencies_s=[]),
         result(
-            known, "violated", run="c.mcap", reason="broken", violations=[violation(1, 2)] * 2
+            own_project, "violated", run="c.mcap", reason="broken", violations=[violation(1, 2)] * 2
         ),
-        result(known, "no data", "R2", run="c.mcap", health={"intact": False}),
+        result(own_project, "no data", "R2", run="c.mcap", health={"intact": False}),
     ]  # fmt: skip
-    for number, one in enumerate(made):
+    for number, one in enumerate(written_results):
         one["hashes"] = one["hashes"] | {"log": f"{number // 2:064x}"}
         one |= {"start_ns": 0, "end_ns": 3600 * 10**9}
         one["latencies_s"] = one["latencies_s"] if number in (0, 2) else []
-    Path("runs.parquet").write_bytes(table(made, "1"))
-    Path("evidence.json").write_text(json.dumps(evidence(known, *made) | {"fretc": "1"}), "utf-8")
-    return made
+    Path("runs.parquet").write_bytes(table(written_results, "1"))
+    Path("evidence.json").write_text(
+        json.dumps(evidence(own_project, *written_results) | {"fretc": "1"}), "utf-8"
+    )
+    return written_results
 
 
 SUMMARY = """\
@@ -97,25 +101,28 @@ def test_other_logs_under_the_same_names_count_as_others(
     ]
     Path("others.parquet").write_bytes(table(others, "1"))
     run = fretc("audit", "--summary", "runs.parquet", "others.parquet", "--format", "json")
-    told = json.loads(run.out)
-    assert (told["runs"], told["seconds"], told["damaged"]) == (6, 21600.0, 2)
-    assert [row["runs"] for row in told["by_requirement"]] == [6, 6]
-    assert (told["failed_runs"], [row["violated"] for row in told["by_requirement"]]) == (4, [2, 0])
+    content = json.loads(run.out)
+    assert (content["runs"], content["seconds"], content["damaged"]) == (6, 21600.0, 2)
+    assert [row["runs"] for row in content["by_requirement"]] == [6, 6]
+    assert (content["failed_runs"], [row["violated"] for row in content["by_requirement"]]) == (
+        4,
+        [2, 0],
+    )
 
 
 def test_a_log_that_was_not_hashed_is_told_by_its_summary_and_an_unread_one_by_its_name(
     fretc: Fretc, results: list[dict[str, Any]]
 ) -> None:
-    kept = {k: v for k, v in results[2]["hashes"].items() if k != "log"}
-    one = {**results[2], "hashes": {**kept, "log_summary": "1" * 64}}
-    other = {**results[2], "hashes": {**kept, "log_summary": "2" * 64}}
-    unread = {**results[2], "hashes": kept, "run": "unread.mcap"}
+    hashes = {k: v for k, v in results[2]["hashes"].items() if k != "log"}
+    one = {**results[2], "hashes": {**hashes, "log_summary": "1" * 64}}
+    other = {**results[2], "hashes": {**hashes, "log_summary": "2" * 64}}
+    unread = {**results[2], "hashes": hashes, "run": "unread.mcap"}
     copies = [{**one, "run": name} for name in ("x.mcap", "y.mcap")]
     Path("a.parquet").write_bytes(table([one, unread], "1"))
     Path("b.parquet").write_bytes(table([*copies, other, unread], "2"))
     run = fretc("audit", "--summary", "a.parquet", "b.parquet", "--format", "json")
-    told = json.loads(run.out)
-    assert told["runs"] == told["by_requirement"][0]["runs"] == 3
+    content = json.loads(run.out)
+    assert content["runs"] == content["by_requirement"][0]["runs"] == 3
 
 
 @pytest.mark.slow
@@ -131,16 +138,16 @@ def test_the_worst_of_several_verdicts_of_a_log_counts_and_that_is_said(
                 run = fretc("audit", "--summary", "1.parquet", "2.parquet", "--format", "json")
                 (row,) = json.loads(run.out)["by_requirement"]
                 assert (row["runs"], row[worse.replace(" ", "_")]) == (1, 1)
-                told = " and ".join(sorted((worse, better)))
+                verdicts = " and ".join(sorted((worse, better)))
                 assert run.err.startswith(
-                    f"F555 warning: R1 has several verdicts of the log of a.mcap: {told}; the "
+                    f"F555 warning: R1 has several verdicts of the log of a.mcap: {verdicts}; the "
                     "worst of each log counts\n"
                 )
 
 
 def test_a_summary_as_json(fretc: Fretc, results: list[dict[str, Any]]) -> None:
-    told = json.loads(fretc("audit", "--summary", "runs.parquet", "--format", "json").out)
-    assert told["by_requirement"][1] == {
+    content = json.loads(fretc("audit", "--summary", "runs.parquet", "--format", "json").out)
+    assert content["by_requirement"][1] == {
         "requirement": "R2",
         "runs": 3,
         "satisfied": 1,
@@ -152,14 +159,18 @@ def test_a_summary_as_json(fretc: Fretc, results: list[dict[str, Any]]) -> None:
         "violations": 0,
         "latency_max_s": None,
     }
-    assert (told["schema"], told["runs"], told["seconds"]) == ("fretc-summary-1", 3, 10800.0)
-    assert [run["run"] for run in told["worst_runs"]] == ["c.mcap", "a.mcap"]
-    assert told["failed_runs"] == 2
+    assert (content["schema"], content["runs"], content["seconds"]) == (
+        "fretc-summary-1",
+        3,
+        10800.0,
+    )
+    assert [run["run"] for run in content["worst_runs"]] == ["c.mcap", "a.mcap"]
+    assert content["failed_runs"] == 2
 
 
 def test_the_exit_status_is_that_of_the_audit(fretc: Fretc, results: list[dict[str, Any]]) -> None:
-    for name, kept, status in [("all", results[2:4], 0), ("part", results[:4], 3)]:
-        Path(f"{name}.parquet").write_bytes(table(kept, "1"))
+    for name, part, status in [("all", results[2:4], 0), ("part", results[:4], 3)]:
+        Path(f"{name}.parquet").write_bytes(table(part, "1"))
         assert fretc("audit", "--summary", f"{name}.parquet").status == status
 
 

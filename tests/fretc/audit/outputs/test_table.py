@@ -24,21 +24,21 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 def rows(*results: dict[str, Any]) -> list[dict[str, Any]]:
     """What is read of a table with these results."""
     Path("runs.parquet").write_bytes(parquet([record(**one) for one in results], "1.2.3"))
-    found = read(["runs.parquet"])
-    assert not isinstance(found, Diagnostic), found.message
-    return [dict(row) for row in found.to_pylist()]
+    table = read(["runs.parquet"])
+    assert not isinstance(table, Diagnostic), table.message
+    return [dict(row) for row in table.to_pylist()]
 
 
 def code(*paths: str) -> tuple[str, str]:
-    found = read(paths)
-    assert isinstance(found, Diagnostic)
-    return found.code.number, found.message
+    diagnostic = read(paths)
+    assert isinstance(diagnostic, Diagnostic)
+    return diagnostic.code.number, diagnostic.message
 
 
 def test_a_row_has_the_numbers_of_its_run() -> None:
-    known = project(Path("known"))
-    made = result(
-        known,
+    own_project = project(Path("known"))
+    record = result(
+        own_project,
         "violated",
         reason="broken",
         finite=False,
@@ -48,18 +48,18 @@ def test_a_row_has_the_numbers_of_its_run() -> None:
         open=[moment(99)],
         latencies_s=[0.4, 0.1, 0.2],
     )
-    (row,) = rows(made)
-    hashes = made["hashes"]
+    (row,) = rows(record)
+    hashes = record["hashes"]
     assert row == {
         "run": "logs/a.mcap",
         "requirement": "R1",
         "verdict": "violated",
         "finite": False,
         "reason": "broken",
-        "clock": made["clock"],
+        "clock": record["clock"],
         "ticks": 100,
-        "start_ns": made["start_ns"],
-        "end_ns": made["end_ns"],
+        "start_ns": record["start_ns"],
+        "end_ns": record["end_ns"],
         "triggers": 2,
         "violations": 2,
         "violated_ticks": 5,
@@ -84,10 +84,10 @@ def test_a_row_has_the_numbers_of_its_run() -> None:
 
 
 def test_what_a_run_does_not_have_is_null() -> None:
-    known = project(Path("known"))
-    made = result(known, "no data", finite=None, start_ns=None, end_ns=None)
-    del made["hashes"]["log"]
-    (row,) = rows(made | {"health": made["health"] | {"size": None, "intact": False}})
+    own_project = project(Path("known"))
+    record = result(own_project, "no data", finite=None, start_ns=None, end_ns=None)
+    del record["hashes"]["log"]
+    (row,) = rows(record | {"health": record["health"] | {"size": None, "intact": False}})
     absent = {name for name, value in row.items() if value is None}
     assert absent >= {
         "finite", "start_ns", "end_ns", "first_violation_ns", "first_violation_s", "size",
@@ -98,8 +98,8 @@ def test_what_a_run_does_not_have_is_null() -> None:
 
 
 def test_a_time_beyond_a_column_is_null_and_no_failure() -> None:
-    known = project(Path("known"))
-    (row,) = rows(result(known, "no data", start_ns=0, end_ns=2**64 - 1))
+    own_project = project(Path("known"))
+    (row,) = rows(result(own_project, "no data", start_ns=0, end_ns=2**64 - 1))
     assert (row["start_ns"], row["end_ns"]) == (0, None)
 
 
@@ -110,9 +110,9 @@ def test_a_table_without_the_last_column_is_read_as_well() -> None:
     older = whole.drop_columns(["log_summary_sha256"])
     older = older.replace_schema_metadata({"schema": "fretc-table-1"})
     files.write_table(older, "older.parquet")
-    found = read(["older.parquet", "runs.parquet"])
-    assert not isinstance(found, Diagnostic), found.message
-    assert found.to_pylist() == [{**row, "log_summary_sha256": None}, row]
+    tables = read(["older.parquet", "runs.parquet"])
+    assert not isinstance(tables, Diagnostic), tables.message
+    assert tables.to_pylist() == [{**row, "log_summary_sha256": None}, row]
     files.write_table(older.replace_schema_metadata({"schema": "fretc-table-2"}), "odd.parquet")
     assert code("odd.parquet")[0] == "F503"
 
@@ -122,21 +122,21 @@ def test_no_run_is_a_table_too() -> None:
 
 
 def test_the_same_results_give_the_same_bytes() -> None:
-    known = result(project(Path("known")), "satisfied")
-    results = [record(**known | {"run": f"{i}.mcap"}) for i in range(50)]
+    own_project = result(project(Path("known")), "satisfied")
+    results = [record(**own_project | {"run": f"{i}.mcap"}) for i in range(50)]
     assert parquet(results, "1") == parquet(results, "1")
 
 
 def test_evidence_is_read_as_the_table_of_it() -> None:
-    known = project(Path("known"))
-    results = [result(known, "satisfied"), result(known, "violated", run="b.mcap")]
-    content = evidence(known, *results)
+    own_project = project(Path("known"))
+    results = [result(own_project, "satisfied"), result(own_project, "violated", run="b.mcap")]
+    content = evidence(own_project, *results)
     Path("evidence.json").write_text(json.dumps(content), "utf-8")
     Path("runs.parquet").write_bytes(parquet([record(**one) for one in results], content["fretc"]))
-    found, other = read(["evidence.json"]), read(["runs.parquet"])
-    assert not isinstance(found, Diagnostic)
+    own, other = read(["evidence.json"]), read(["runs.parquet"])
+    assert not isinstance(own, Diagnostic)
     assert not isinstance(other, Diagnostic)
-    assert found.equals(other)
+    assert own.equals(other)
     both = read(["evidence.json", "runs.parquet"])
     assert not isinstance(both, Diagnostic)
     assert both.num_rows == 4

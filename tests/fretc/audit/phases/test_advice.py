@@ -107,9 +107,9 @@ def test_the_report_says_it(robot: Fretc) -> None:
 
 def test_both_ways_to_run_monitors_give_the_same_evidence(robot: Fretc) -> None:
     robot("audit", "run.mcap")
-    known = Path("build/evidence.json").read_bytes()
+    content = Path("build/evidence.json").read_bytes()
     robot("audit", "run.mcap", "--evaluation", "online")
-    assert Path("build/evidence.json").read_bytes() == known
+    assert Path("build/evidence.json").read_bytes() == content
 
 
 def test_a_check_proposes_the_middle_of_the_longest_stretch(robot: Fretc) -> None:
@@ -162,8 +162,8 @@ def test_what_is_open_at_the_end_is_judged_as_the_clock_says_at_each_phase(robot
 def phases(*stretches: tuple[int, str | None], period: int = 100) -> Phases:
     """Stretches by their first phases; the declared one is 0."""
     ends = [*(first for first, _ in stretches[1:]), period]
-    told = [Stretch(f, end - 1, v) for (f, v), end in zip(stretches, ends, strict=True)]
-    return Phases(period, 0, tuple(told))
+    parts = [Stretch(f, end - 1, v) for (f, v), end in zip(stretches, ends, strict=True)]
+    return Phases(period, 0, tuple(parts))
 
 
 def test_the_longest_stretch_is_one_of_all_logs_together_and_goes_round() -> None:

@@ -59,8 +59,8 @@ SENTENCES = (
 @cache
 def monitor(sentence: str) -> Monitor:
     ((requirement,), _) = requirements(Source("R1.fret", sentence))
-    rule, said = formalize(requirement, declared())
-    assert rule is not None, said
+    rule, diagnostics = formalize(requirement, declared())
+    assert rule is not None, diagnostics
     return load("monitor", text(rule))
 
 
@@ -72,10 +72,10 @@ def declared(
     p_unknown: str = "",
     end: str = "inconclusive",
 ) -> Declarations:
-    told = BINDINGS.format(p=p, q=q, p_agg=p_agg, q_agg=q_agg, p_unknown=p_unknown)
-    told = told.replace("[clock]", f'[clock]\nend = "{end}"')
-    declarations, wrong = read_bindings(Source("bindings.toml", told))
-    assert declarations is not None, wrong
+    text = BINDINGS.format(p=p, q=q, p_agg=p_agg, q_agg=q_agg, p_unknown=p_unknown)
+    text = text.replace("[clock]", f'[clock]\nend = "{end}"')
+    declarations, diagnostics = read_bindings(Source("bindings.toml", text))
+    assert declarations is not None, diagnostics
     return declarations
 
 
@@ -94,9 +94,11 @@ def recorded(
     """The log of both; each topic begins with its first sample."""
     signals = {"x": samples(x), "y": samples(y)}
     topics = {
-        f"/{name}": Topic(f"/{name}", "", "", len(found.times), int(found.times[0]), end, 0, 0, 0)
-        for name, found in signals.items()
-        if len(found.times)
+        f"/{name}": Topic(
+            f"/{name}", "", "", len(samples.times), int(samples.times[0]), end, 0, 0, 0
+        )
+        for name, samples in signals.items()
+        if len(samples.times)
     }
     none = np.array([], np.int64)
     return Recording("log", "", 0, start, end, signals, none, gaps, topics, {}, (), intact=not gaps)
@@ -105,32 +107,32 @@ def recorded(
 def at(phase: int, declarations: Declarations, log: Recording, watching: Monitor) -> str:
     """The verdict of an audit whose clock declares the phase, step by step."""
     clock = replace(declarations.clock, phase=phase)
-    shifted = replace(declarations, clock=clock)
-    seen = trace(shifted, log, watching.PROPOSITIONS)
+    other = replace(declarations, clock=clock)
+    truths = trace(other, log, watching.PROPOSITIONS)
     return judged(
         watching,
-        {name: seen.columns[name] for name in watching.PROPOSITIONS},
-        seen.cut,
-        len(seen.timeline.times),
+        {name: truths.columns[name] for name in watching.PROPOSITIONS},
+        truths.cut,
+        len(truths.timeline.times),
         intact=log.intact,
         end=str(clock.end),
         engine=kernel.stepped,
     ).verdict
 
 
-def found(declarations: Declarations, log: Recording, watching: Monitor) -> Phases:
-    (told,) = phases(declarations, log, [watching]).values()
-    return told
+def phases_of(declarations: Declarations, log: Recording, watching: Monitor) -> Phases:
+    (result,) = phases(declarations, log, [watching]).values()
+    return result
 
 
-def each(told: Phases) -> list[str | None]:
+def each(result: Phases) -> list[str | None]:
     """The verdict at each phase, by the stretches, which must follow each other."""
-    verdicts = [s.verdict for s in told.stretches for _ in range(s.first, s.last + 1)]
-    assert [s.first for s in told.stretches] == [
+    verdicts = [s.verdict for s in result.stretches for _ in range(s.first, s.last + 1)]
+    assert [s.first for s in result.stretches] == [
         0,
-        *(stretch.last + 1 for stretch in told.stretches[:-1]),
+        *(stretch.last + 1 for stretch in result.stretches[:-1]),
     ]
-    assert all(a.verdict != b.verdict for a, b in pairwise(told.stretches))
+    assert all(a.verdict != b.verdict for a, b in pairwise(result.stretches))
     return verdicts
 
 
@@ -183,20 +185,20 @@ def test_each_phase_has_the_verdict_of_an_audit_that_declares_it(
 ) -> None:
     watching = monitor(sentence)
     declarations = replace(declarations, clock=replace(declarations.clock, phase=phase))
-    told = found(declarations, log, watching)
-    assert told.exact
-    assert each(told) == [at(s, declarations, log, watching) for s in range(12)]
-    assert told.verdict == each(told)[phase]
+    result = phases_of(declarations, log, watching)
+    assert result.exact
+    assert each(result) == [at(s, declarations, log, watching) for s in range(12)]
+    assert result.verdict == each(result)[phase]
 
 
 def test_a_last_tick_that_changes_divides_the_phases() -> None:
-    told = found(declared(), LAST_TICK_CHANGES, monitor(SENTENCES[-2]))
-    assert each(told)[5:] == ["inconclusive"] * 3 + ["vacuous"] * 4
+    result = phases_of(declared(), LAST_TICK_CHANGES, monitor(SENTENCES[-2]))
+    assert each(result)[5:] == ["inconclusive"] * 3 + ["vacuous"] * 4
 
 
 def test_a_cut_tick_whose_demand_depends_on_the_phase_divides_them() -> None:
-    told = found(declared(), CUT_TICK_DEPENDS, monitor(SENTENCES[-1]))
-    assert each(told)[5:] == ["vacuous"] * 3 + ["inconclusive"] * 4
+    result = phases_of(declared(), CUT_TICK_DEPENDS, monitor(SENTENCES[-1]))
+    assert each(result)[5:] == ["vacuous"] * 3 + ["inconclusive"] * 4
 
 
 # Where not all phases are judged
@@ -222,44 +224,44 @@ BUSY = recorded(
 def test_what_is_not_judged_is_left_out_and_the_rest_is_right(sentence: str, phase: int) -> None:
     clock = replace(declared().clock, phase=phase)
     declarations = replace(declared(), clock=clock)
-    told = found(declarations, BUSY, monitor(sentence))
+    result = phases_of(declarations, BUSY, monitor(sentence))
     expected = [at(s, declarations, BUSY, monitor(sentence)) for s in range(12)]
-    assert each(told)[phase] == told.verdict == expected[phase]
-    for one, other in zip(each(told), expected, strict=True):
+    assert each(result)[phase] == result.verdict == expected[phase]
+    for one, other in zip(each(result), expected, strict=True):
         assert one in (other, None)
 
 
 @pytest.mark.usefixtures("few")
 def test_a_search_that_ends_early_says_so() -> None:
-    told = found(declared(), BUSY, monitor(SENTENCES[2]))
-    assert not told.exact
-    assert "not computed at " in told.text
-    assert "no change within " in told.text
-    assert "nearest change" not in told.text
+    result = phases_of(declared(), BUSY, monitor(SENTENCES[2]))
+    assert not result.exact
+    assert "not computed at " in result.text
+    assert "no change within " in result.text
+    assert "nearest change" not in result.text
 
 
 # What is told
 
 
-def told_of(*stretches: Stretch, declared: int = 0, period: int = 100) -> Phases:
+def phases_with(*stretches: Stretch, declared: int = 0, period: int = 100) -> Phases:
     return Phases(period, declared, stretches)
 
 
 def test_one_verdict_at_all_phases_is_not_told() -> None:
-    told = told_of(Stretch(0, 99, "satisfied"))
-    assert (told.text, told.nearest, told.exact, told.varies) == ("", None, True, False)
+    result = phases_with(Stretch(0, 99, "satisfied"))
+    assert (result.text, result.nearest, result.exact, result.varies) == ("", None, True, False)
 
 
 def test_the_nearest_change_is_found_around_the_end_of_the_tick() -> None:
     stretches = Stretch(0, 39, "satisfied"), Stretch(40, 90, "violated"), Stretch(91, 99, "vacuous")
-    assert [told_of(*stretches, declared=d).nearest for d in (0, 8, 20, 39, 90, 91)] == [
+    assert [phases_with(*stretches, declared=d).nearest for d in (0, 8, 20, 39, 90, 91)] == [
         1, 9, 20, 1, 1, 1,
     ]  # fmt: skip
 
 
 def test_a_share_is_never_rounded_to_nothing_or_to_all() -> None:
-    told = told_of(Stretch(0, 0, "violated"), Stretch(1, 999, "satisfied"), period=1000)
-    assert told.text == (
+    result = phases_with(Stretch(0, 0, "violated"), Stretch(1, 999, "satisfied"), period=1000)
+    assert result.text == (
         "by phase of the ticks violated at less than 1 %, satisfied at 99 %, the nearest change is "
         "1 ns away"
     )
@@ -271,5 +273,5 @@ def test_a_clock_that_ticks_by_message_has_no_phases() -> None:
 
 
 def test_a_log_shorter_than_a_tick_has_no_tick_at_the_later_phases() -> None:
-    told = found(declared(), recorded([(0, 1.0)], [(0, 1.0)], 4), monitor(SENTENCES[0]))
-    assert told.stretches == (Stretch(0, 4, "satisfied"), Stretch(5, 11, "no data"))
+    result = phases_of(declared(), recorded([(0, 1.0)], [(0, 1.0)], 4), monitor(SENTENCES[0]))
+    assert result.stretches == (Stretch(0, 4, "satisfied"), Stretch(5, 11, "no data"))

@@ -18,7 +18,7 @@ from google.protobuf.timestamp_pb2 import DESCRIPTOR as TIMESTAMP
 from fretc.logs.messages import protobuf
 from fretc.logs.reader import Overview, look
 from fretc.logs.signals.samples import Recording
-from fretc.logs.storage.refusals import install
+from fretc.logs.storage.storage_diagnostics import install
 from fretish.diagnostics.diagnostic import Code
 from tests.fretc.logs.logs import MS, S, Sent, declare, recorded, times, values, write
 

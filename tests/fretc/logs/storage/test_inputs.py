@@ -26,7 +26,7 @@ from fretc.logs.signals.integrity import Integrity
 from fretc.logs.signals.samples import Recording
 from fretc.logs.storage import inputs
 from fretc.logs.storage.inputs import is_url, opened, shown
-from fretc.logs.storage.refusals import install
+from fretc.logs.storage.storage_diagnostics import install
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from tests.fretc.logs.logs import NONE, TWELVE, S, Sent, X, damaged, number, values, write
 

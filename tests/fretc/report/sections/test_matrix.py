@@ -54,6 +54,10 @@ def test_parents_in_a_circle_end(tmp_path: Path) -> None:
         ("R2", ""),
     ]
     assert content["orphans"]["hazards"] == ["HAZ-1 (The robot hits something) has no requirement"]
+    assert content["orphans"]["requirements"] == [
+        "the parents of R1 lead to no hazard",
+        "the parents of R2 lead to no hazard",
+    ]
 
 
 def test_every_missing_link_is_listed(tmp_path: Path) -> None:

@@ -21,7 +21,7 @@ def test_the_commands_can_be_typed_as_they_stand(
     assert [command["text"] for command in commands] == [
         "fretc --version   # fretc 0.1.0",
         f"printf '%s\\n' '{LOG}  logs/a b.mcap' | sha256sum --check",
-        "fretc audit 'logs/a b.mcap' --requirements req --evidence evidence.json",
+        "fretc audit 'logs/a b.mcap' --requirements req -o evidence.json",
         "fretc req/r1.fret --emit monitor --emit ltl --emit ajpf --emit json --output build",
         "fretc req/r2.fret --emit monitor --emit ltl --emit json --output build",
         "fretc report --requirements req --evidence evidence.json",

@@ -34,6 +34,13 @@ def fail() -> None:
     raise ValueError("no")
 
 
+def fail_with_what_cannot_be_sent() -> None:
+    class LocalError(Exception):
+        pass
+
+    raise LocalError("no")
+
+
 def die() -> None:
     os.kill(os.getpid(), signal.SIGSEGV)
 
@@ -46,6 +53,11 @@ def test_the_result_comes_back() -> None:
 def test_what_the_function_raises_is_raised() -> None:
     with pytest.raises(ValueError, match="no"):
         confined(DEFAULT, fail)
+
+
+def test_an_error_that_cannot_be_sent_is_raised_in_words() -> None:
+    with pytest.raises(RuntimeError, match="LocalError: no"):
+        confined(DEFAULT, fail_with_what_cannot_be_sent)
 
 
 def test_time_on_a_processor_is_limited() -> None:

@@ -1,4 +1,4 @@
-"""What several targets refuse: sentences of which an automaton tells too little."""
+"""Sentences that no automaton of a target can tell, each with its diagnostic."""
 
 from __future__ import annotations
 

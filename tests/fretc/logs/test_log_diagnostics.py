@@ -1,6 +1,6 @@
 from pathlib import Path
 
-from fretc.logs import findings
+from fretc.logs import log_diagnostics
 from fretc.logs.mcap.damage import Damage
 from fretish.diagnostics.diagnostic import Severity
 from fretish.diagnostics.rendering import render
@@ -84,19 +84,19 @@ PLACE = Source("log.mcap", "").span()
 
 
 def test_of_many_damaged_places_twenty_are_told() -> None:
-    one = findings.damaged(Damage(7, "it is broken"), None, 0, PLACE)
+    one = log_diagnostics.damaged(Damage(7, "it is broken"), None, 0, PLACE)
     assert one.message == (
         "the log is damaged near byte 7: it is broken; no message is known to be lost"
     )
-    assert findings.few([one] * 20, PLACE) == [one] * 20
-    diagnostics = findings.few([one] * 25, PLACE)
+    assert log_diagnostics.few([one] * 20, PLACE) == [one] * 20
+    diagnostics = log_diagnostics.few([one] * 25, PLACE)
     assert diagnostics[:20] == [one] * 20
     assert diagnostics[20].message == "the log is damaged in 5 more places"
     assert len(diagnostics) == 21
 
 
 def test_a_topic_without_messages_is_told_from_one_that_is_not_there() -> None:
-    assert render(findings.no_message("/x", PLACE)) == (
+    assert render(log_diagnostics.no_message("/x", PLACE)) == (
         "F405 the log holds no message of `/x`\n"
         "  --> log.mcap\n"
         "help: the topic was recorded, but nothing was published on it"
@@ -104,12 +104,12 @@ def test_a_topic_without_messages_is_told_from_one_that_is_not_there() -> None:
 
 
 def test_a_log_cut_before_its_first_whole_message_says_so() -> None:
-    assert findings.truncated(8, PLACE).message == (
+    assert log_diagnostics.truncated(8, PLACE).message == (
         "the log breaks off after byte 8: no message in it is whole"
     )
 
 
 def test_another_kind_of_recording_is_named() -> None:
-    found = findings.not_a_log(b"\x28\xb5\x2f\xfd\0", PLACE)
+    found = log_diagnostics.not_a_log(b"\x28\xb5\x2f\xfd\0", PLACE)
     assert found.message == "it is a whole file compressed with zstd"
     assert found.help == "unpack it first: `zstd -d FILE`; MCAP compresses within the file"

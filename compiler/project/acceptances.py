@@ -1,0 +1,186 @@
+"""Warnings that the project accepts, each with its reason.
+
+What is about a requirement is accepted in its header; the rest in the settings, for one topic or
+hazard, or for the whole project. An accepted warning stays one: it is counted and shown.
+"""
+
+from __future__ import annotations
+
+from bisect import bisect_right
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+
+from compiler.files.settings import Settings
+from fretish.bindings.declarations import Declarations
+from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity, suggestion
+from fretish.diagnostics.explanations import ACCEPTANCES, explanations
+from fretish.diagnostics.source import Span
+from fretish.documents import Requirement
+
+REQUIREMENT, TOPIC, HAZARD = "requirement", "topic", "hazard"
+_CODES = {code.number: code for code in Code}
+
+
+@dataclass(frozen=True, slots=True)
+class Acceptance:
+    """Warnings of one code, and why they may stand."""
+
+    code: Code
+    reason: str
+    span: Span = field(compare=False, repr=False)
+    requirement: Requirement | None = field(default=None, repr=False)
+    """The one whose header has it; None: it is in the settings."""
+    subject: str = ""
+    """The topic or the hazard; empty: whatever it is."""
+
+    @property
+    def name(self) -> str:
+        """`R2 F206`, `F315 /battery`, `F631`."""
+        before = self.requirement.id if self.requirement else ""
+        return " ".join(part for part in (before, self.code.number, self.subject) if part)
+
+    @property
+    def about(self) -> str:
+        """What a warning of the code is about: a key of `ACCEPTANCES`."""
+        return explanations()[self.code.number].accept
+
+
+def acceptances(
+    requirements: Iterable[Requirement], settings: Settings | None
+) -> tuple[tuple[Acceptance, ...], tuple[Diagnostic, ...]]:
+    """Those of headers, then those of the settings; and F549 for each that can answer nothing."""
+    written = [(each, code) for each in requirements for code in each.accept]
+    found = [
+        _acceptance(code, each.accept[code], each.place("accept", code), each)
+        for each, code in written
+    ]
+    if settings is not None:
+        found.extend(_of_settings(settings))
+    good = tuple(each for each in found if isinstance(each, Acceptance))
+    return good, tuple(each for each in found if isinstance(each, Diagnostic))
+
+
+def _of_settings(settings: Settings) -> Iterator[Acceptance | Diagnostic]:
+    """Those of one topic or hazard come first: they are more to the point."""
+    for code, reasons in settings.accept.items():
+        for subject, reason in reasons.items() if isinstance(reasons, Mapping) else ():
+            place = settings.place("accept", code, subject)
+            yield _acceptance(code, reason, place, subject=subject)
+    for code, reasons in settings.accept.items():
+        if isinstance(reasons, str):
+            yield _acceptance(code, reasons, settings.place("accept", code))
+
+
+def _acceptance(
+    number: str,
+    reason: str,
+    place: Span,
+    requirement: Requirement | None = None,
+    subject: str = "",
+) -> Acceptance | Diagnostic:
+    code = _CODES.get(number)
+    if code is None:
+        near = suggestion(number, _CODES)
+        mend = (
+            f"did you mean `{near}`?" if near else "write the number that the warning begins with"
+        )
+        return _bad(f"`{number}` is no code of fretc", place, mend)
+    about = explanations()[number].accept
+    if not about:
+        mend = f"mend what it is about: `fretc explain {number}` says how"
+        return _bad(f"{number} cannot be accepted: {code.summary}", place, mend)
+    where, example = ACCEPTANCES[about]
+    line = example.format(number).removeprefix("[accept]\n")
+    mend = f"write `{line}` in {where}{'' if about == REQUIREMENT else ', under `[accept]`'}"
+    if requirement is not None and about != REQUIREMENT:
+        return _bad(f"{number} is not about one requirement", place, mend)
+    if subject and about not in (TOPIC, HAZARD):
+        return _bad(f"{number} is not about a topic or a hazard", place, mend)
+    if not reason.strip():
+        return _bad(f"{number} is accepted without a reason", place, "write why it may stand")
+    return Acceptance(code, reason.strip(), place, requirement, subject)
+
+
+def _bad(message: str, place: Span, mend: str) -> Diagnostic:
+    return Diagnostic(Code.BAD_ACCEPTANCE, message, place, help=mend)
+
+
+_ByCode = Mapping[tuple[Code, str], Sequence[Acceptance]]
+"""By code and file those of headers, in their order in it; by code and `""` the others."""
+
+
+def answered(
+    diagnostics: Iterable[Diagnostic], known: Sequence[Acceptance]
+) -> tuple[Diagnostic, ...]:
+    """The same, each accepted warning with the reason of the first acceptance that answers it."""
+    by_code = _by_code(known)
+    return tuple(_answered(diagnostic, by_code) for diagnostic in diagnostics)
+
+
+def _answered(diagnostic: Diagnostic, known: _ByCode) -> Diagnostic:
+    found = next(_answers(diagnostic, known), None)
+    return diagnostic if found is None else replace(diagnostic, accepted=found.reason)
+
+
+def _by_code(known: Iterable[Acceptance]) -> _ByCode:
+    found: dict[tuple[Code, str], list[Acceptance]] = {}
+    for each in known:
+        file = each.span.source.name if each.requirement else ""
+        found.setdefault((each.code, file), []).append(each)
+    return found
+
+
+def _answers(diagnostic: Diagnostic, known: _ByCode) -> Iterator[Acceptance]:
+    """The acceptances of a warning, those that are the most to the point first."""
+    if diagnostic.severity is not Severity.WARNING:
+        return
+    place = diagnostic.span
+    if place is not None and place.source.name:
+        headers = known.get((diagnostic.code, place.source.name), ())
+        before = bisect_right(headers, place.end, key=lambda each: each.span.start)
+        around = headers[max(0, before - 1) : before + 1]  # a header begins above its acceptance
+        yield from (e for e in around if e.requirement and e.requirement.contains(place))
+    others = known.get((diagnostic.code, ""), ())
+    yield from (each for each in others if each.subject in ("", diagnostic.subject))
+
+
+def idle(
+    known: Sequence[Acceptance],
+    warnings: Iterable[Diagnostic],
+    declarations: Declarations | None,
+    recorded: Collection[str] | None,
+) -> Iterator[Diagnostic]:
+    """F550 for each acceptance that answers none of the warnings.
+
+    Args:
+        known: the acceptances; those in headers of retired requirements are passed over.
+        warnings: every one that there is of the project, and of the logs that were audited.
+        declarations: the bindings, if there are any.
+        recorded: the topics of the logs that were audited; None: no log was.
+    """
+    by_code = _by_code(known)
+    used = {id(each) for warning in warnings for each in _answers(warning, by_code)}
+    for each in known:
+        retired = each.requirement is not None and each.requirement.status == "retired"
+        open_yet = each.about == TOPIC and _may_come(each.subject, declarations, recorded)
+        if not (retired or open_yet or id(each) in used):
+            yield Diagnostic(
+                Code.IDLE_ACCEPTANCE,
+                f"{each.code.number} is accepted, and no such warning is there",
+                each.span,
+                help="take the acceptance out: it would hide the next one",
+                severity=Severity.WARNING,
+            )
+
+
+def _may_come(
+    topic: str, declarations: Declarations | None, recorded: Collection[str] | None
+) -> bool:
+    """Whether a log that was not audited yet may tell F315 of a topic; of any, if it is empty.
+
+    It never does where each signal of the topic states how long a sample counts.
+    """
+    signals = declarations.signals.values() if declarations else ()
+    topics = {signal.path.topic for signal in signals if signal.max_age is None}
+    here = topics if not topic else topics & {topic}
+    return bool(here - {*(recorded or ())})

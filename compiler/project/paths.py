@@ -1,0 +1,79 @@
+"""Paths of a project: the files with its requirements, and what stands beside them."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+
+from compiler.files.text_files import unreadable
+from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.diagnostics.source import Source
+from fretish.reading.natural_order import natural
+
+BINDINGS = "bindings.toml"
+HAZARDS = "hazards.toml"
+
+
+def requirement_files(folder: str) -> list[str] | Diagnostic:
+    """The `.fret` files of a folder, `r2` before `r10`; or the one file, where it is a file."""
+    try:
+        if not _is_folder(folder):
+            return [folder] if Path(folder).is_file() else _absent("there is no folder", folder)
+        listed = (name for name in os.listdir(folder) if name.endswith(".fret"))
+        names = sorted(listed, key=natural)
+    except OSError as error:
+        return unreadable(folder, error)
+    found = [str(Path(folder) / name) for name in names]
+    return [path for path in found if not _is_folder(path)] or _absent(
+        "no requirement (`*.fret`) is in", folder
+    )
+
+
+def _absent(what: str, folder: str) -> Diagnostic:
+    return Diagnostic(
+        Code.NO_SUCH_FILE,
+        f"{what} `{folder}`",
+        Source(folder, "").span(),
+        help="name the folder that your requirements are in, with `--requirements`; or begin one: "
+        "`fretc init`",
+    )
+
+
+def _is_folder(path: str) -> bool:
+    """An empty name is none, though Python takes it for the present folder."""
+    return bool(path) and path != "-" and os.path.isdir(path)
+
+
+def listed(paths: Sequence[str]) -> list[str] | Diagnostic:
+    """The files, with those of a folder in its place; each once, however it is spelt.
+
+    In the order of `paths`; in the natural one where theirs is that of a shell's `*.fret`.
+    """
+    found: dict[str, str] = {}
+    for path in sorted(paths, key=natural) if [*paths] == sorted(paths) else paths:
+        files = requirement_files(path) if _is_folder(path) else [path]
+        if isinstance(files, Diagnostic):
+            return replace(files, help="name files, or a folder that has some")
+        for file in files:
+            found.setdefault(os.path.realpath(file) if file != "-" else file, file)
+    return list(found.values())
+
+
+def beside(folder: str, name: str) -> str | None:
+    """The path of a file in the requirements folder, where it is there."""
+    return beside_first([folder if os.path.isfile(folder) else str(Path(folder) / "any")], name)
+
+
+def companions(paths: Sequence[str]) -> tuple[str, ...]:
+    """What stands beside the first requirement and is read with it; no output may replace it."""
+    names = (BINDINGS, HAZARDS, "fretc.toml", "fretc.lock", "waivers.toml", "allowed_signers")
+    return tuple(path for path in (beside_first(paths, name) for name in names) if path is not None)
+
+
+def beside_first(paths: Sequence[str], name: str) -> str | None:
+    """The path of a file in the folder of the first of these, where it is there."""
+    first = next((path for path in paths if path != "-"), None)
+    path = str(Path(first).parent / name) if first else None
+    return path if path is not None and os.path.exists(path) else None

@@ -1,0 +1,176 @@
+"""The first files of a project: hazards, bindings and one requirement, which can be audited.
+
+With a log the requirement bounds a signal of it, by the least round number that the log keeps; so
+its first audit shows something, and a person puts the true limit in its place.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from decimal import ROUND_CEILING, Decimal
+from pathlib import Path
+
+import numpy as np
+
+from compiler.files.templating import render
+from fretc.audit.bindings.draft import draft, drafted_signals, plain_signals
+from fretc.logs.reader import Overview, look, read
+from fretc.logs.signals.samples import Recording
+from fretish.bindings.declarations import Declarations, Signal
+from fretish.bindings.reader import read_bindings
+from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.diagnostics.source import Source
+
+_PREFERENCE = ("m/s", "m", "rad/s")
+"""Units of the signals that a first requirement is best about; any other comes after them."""
+_DIGITS = 2
+"""Of a limit, that count."""
+_NAMES = ("r1.fret", "bindings.toml", "hazards.toml")
+
+
+@dataclass(frozen=True, slots=True)
+class Bound:
+    """A signal, and what it does not exceed."""
+
+    signal: str
+    limit: str
+    """As a decimal."""
+    unit: str
+    """Empty: a plain number."""
+
+    @property
+    def comparison(self) -> str:
+        """As an expression of the bindings."""
+        return f"{self.signal} <= {self.limit} {self.unit}".rstrip()
+
+
+@dataclass(frozen=True, slots=True)
+class FirstRequirement:
+    """A requirement, and what its sentence needs in the bindings."""
+
+    title: str
+    text: str
+    rationale: str
+    sentence: str
+    bindings: str
+    """Tables to put behind the signals; empty where the sentence reads these itself."""
+
+
+def first_requirement(bound: Bound, origin: str) -> FirstRequirement:
+    """How a requirement about one signal is written: the only place that knows.
+
+    Args:
+        bound: what is required.
+        origin: where the limit comes from, as the rest of a sentence.
+    """
+    name = f"{bound.signal}_within_limit"
+    text = f"{bound.comparison}, always"
+    return FirstRequirement(
+        title=f"Limit of {bound.signal}",
+        text=text,
+        rationale=f"To do: say why. The limit {origin}",
+        sentence=f"the robot shall always satisfy {name}",
+        bindings=render(
+            "project/proposition.toml.j2", proposition=name, text=text, expression=bound.comparison
+        ),
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class Beginning:
+    """The first files of a project."""
+
+    files: Mapping[str, str]
+    """Name → text."""
+    findings: tuple[Diagnostic, ...] = ()
+    """About the log that they are drafted from."""
+
+
+def without_log() -> Beginning:
+    """The beginning of a project of which no log is known."""
+    bound = Bound("speed", "1.5", "m/s")
+    requirement = first_requirement(bound, "is an example.")
+    return Beginning(_files(requirement, render("project/speed.toml.j2")))
+
+
+def from_log(log: str) -> Beginning | Diagnostic:
+    """The beginning of a project whose first requirement is about a signal of the log."""
+    overview = look(log)
+    if isinstance(overview, Diagnostic):
+        return overview
+    signals = _signals(overview)
+    declarations, _ = read_bindings(Source("bindings.toml", signals))
+    if declarations is None or not declarations.signals:
+        return _no_signal(log)
+    recording = read(log, declarations, list(declarations.signals))
+    if isinstance(recording, Diagnostic):
+        return recording
+    bound = next(_bounds(declarations, recording), None)
+    if bound is None:
+        return _no_signal(log)
+    origin = f"is the largest value in {Path(overview.recording.name).name}, rounded up."
+    files = _files(first_requirement(bound, origin), signals)
+    return Beginning(files, overview.recording.findings)
+
+
+def _files(requirement: FirstRequirement, signals: str) -> dict[str, str]:
+    texts = (
+        render("project/r1.fret.j2", requirement=requirement),
+        f"{signals.rstrip()}\n\n{requirement.bindings}".rstrip() + "\n",
+        render("project/hazards.toml.j2"),
+    )
+    return dict(zip(_NAMES, texts, strict=True))
+
+
+def _signals(overview: Overview) -> str:
+    """Clock and signals; of a log without a well-known type of message every plain number."""
+    text = draft(overview, ())
+    plain = () if drafted_signals(overview) else plain_signals(overview)
+    return text + "".join(render("project/signal.toml.j2", signal=signal) for signal in plain)
+
+
+def _bounds(declarations: Declarations, recording: Recording) -> Iterator[Bound]:
+    """What each signal of the recording keeps, the best one to begin with first."""
+    signals = sorted(
+        declarations.signals.values(),
+        key=lambda signal: (not _is_steady(signal, recording), _rank(signal)),
+    )
+    for signal in signals:
+        samples = recording.samples.get(signal.name)
+        if samples is None or not samples.values.size:
+            continue
+        largest = float(samples.values.max())
+        if np.isfinite(samples.values).all():
+            yield Bound(signal.name, _limit(largest), signal.unit_name)
+
+
+def _is_steady(signal: Signal, recording: Recording) -> bool:
+    """Whether its topic comes so often that the signal is known throughout."""
+    topic = recording.topics[signal.path.topic]
+    gap = topic.longest_gap_ns
+    return signal.max_age is not None and gap is not None and gap <= signal.max_age
+
+
+def _rank(signal: Signal) -> int:
+    unit = signal.unit_name
+    return _PREFERENCE.index(unit) if unit in _PREFERENCE else len(_PREFERENCE)
+
+
+def _limit(largest: float) -> str:
+    """The least number of two digits that is not below it."""
+    exact = Decimal(largest)
+    if not exact:
+        return "0"
+    digit = Decimal(1).scaleb(exact.adjusted() - _DIGITS + 1)
+    rounded = (exact / digit).to_integral_value(ROUND_CEILING) * digit
+    return f"{rounded.normalize():f}"
+
+
+def _no_signal(log: str) -> Diagnostic:
+    return Diagnostic(
+        Code.NOTHING_TO_DO,
+        f"no number of `{log}` can be read throughout: there is nothing to require of it",
+        Source(log, "").span(),
+        help="look at it with `fretc info`, or leave `--from` out",
+    )

@@ -1,0 +1,63 @@
+"""Which warnings of a whole project are accepted, those of its audited logs included."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from compiler.files.records import UNSET
+from compiler.project.acceptances import idle
+from compiler.project.folder import Project
+from fretc.audit.evidence.schema import Evidence, Finding
+from fretc.report.traceability.checks import checks, unreviewed
+from fretc.report.traceability.lock import Lock, Standing
+from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
+from fretish.diagnostics.source import Source
+
+_CODES = {code.number: code for code in Code}
+
+
+def warnings(
+    project: Project, standings: Sequence[Standing], lock: Lock | None, evidence: Evidence | None
+) -> tuple[Diagnostic, ...]:
+    """What there is to say of a project beside its own diagnostics.
+
+    Of the audited logs it is only what is accepted: their findings are those of their audit.
+
+    Args:
+        project: read without errors.
+        standings: each requirement beside its review.
+        lock: None where nothing was reviewed.
+        evidence: None where no run was audited.
+    """
+    new = unreviewed(project, standings) if lock is not None and lock.reviews else ()
+    found = project.answered((*checks(project, standings), *new))
+    logged = project.answered(_of_logs(evidence)) if evidence is not None else ()
+    every = (*project.diagnostics, *found, *logged)
+    recorded = _recorded(evidence) if evidence is not None else None
+    return (
+        *found,
+        *(each for each in logged if each.accepted),
+        *idle(project.acceptances, every, project.declarations, recorded),
+    )
+
+
+def as_diagnostic(finding: Finding) -> Diagnostic:
+    """A finding of the evidence as it was; its line is told by the evidence."""
+    return Diagnostic(
+        _CODES.get(finding.code, Code.BAD_EVIDENCE),
+        finding.message,
+        Source(finding.file, "").span() if finding.file is not None else None,
+        finding.help,
+        Severity(finding.severity),
+        subject="" if finding.subject is UNSET else finding.subject,
+    )
+
+
+def _of_logs(evidence: Evidence) -> Iterator[Diagnostic]:
+    """The findings of all runs, each once."""
+    findings = (each for result in evidence.results for each in result.health.findings)
+    yield from dict.fromkeys(as_diagnostic(each) for each in findings)
+
+
+def _recorded(evidence: Evidence) -> set[str]:
+    return {topic for result in evidence.results for topic in result.health.topics}

@@ -1,0 +1,123 @@
+"""Options that several commands have: one spelling, one meaning, one help."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import click
+from click.shell_completion import CompletionItem
+
+from fretc.terminal.output import FOLDER, stop
+from fretish.diagnostics.diagnostic import Code, Diagnostic
+
+Command = Callable[..., Any]
+
+
+class _Path(click.ParamType[str]):
+    """The name of a file or folder, which a shell can complete; its reader checks it."""
+
+    name = "path"
+
+    def shell_complete(
+        self, ctx: click.Context, param: click.Parameter, incomplete: str
+    ) -> list[CompletionItem[Any]]:
+        """Let the shell look for files."""
+        return self.files(incomplete)
+
+    @staticmethod
+    def files(incomplete: str) -> list[CompletionItem[Any]]:
+        """What tells a shell to complete the name of a file."""
+        return [CompletionItem(incomplete, type="file")]
+
+
+PATH = _Path()
+
+
+class Renamed(click.Option):
+    """An option with an earlier spelling, which still works and stands in no help."""
+
+    def __init__(self, *spellings: Any, earlier: str, **attributes: Any) -> None:
+        super().__init__(*spellings, **attributes)
+        self._earlier = earlier
+
+    def add_to_parser(self, parser: Any, ctx: click.Context) -> None:
+        """Take both spellings."""
+        super().add_to_parser(parser, ctx)
+        parser.add_option(obj=self, opts=[self._earlier], dest=self.name, action="store")
+
+
+def path_option(*spellings: str, **attributes: Any) -> Callable[[Command], Command]:
+    """An option that names a file or folder."""
+    return click.option(*spellings, type=PATH, **attributes)
+
+
+def output_option(**attributes: Any) -> Callable[[Command], Command]:
+    """`-o`, `--output`: where the main thing goes that the command makes."""
+    return path_option("-o", "--output", **attributes)
+
+
+def format_option(*others: str, text: str = "How it is printed.") -> Callable[[Command], Command]:
+    """`--format`: text for a person, JSON for a program, and perhaps others."""
+    return click.option(
+        "--format",
+        "form",
+        type=click.Choice(("text", "json", *others)),
+        default="text",
+        show_default=True,
+        help=text,
+    )
+
+
+requirements_option = path_option(
+    "--requirements", default=FOLDER, show_default=True, help="Folder, or one file."
+)
+bindings_option = path_option(
+    "--bindings", help="bindings.toml; the one in the requirements' folder if not given."
+)
+hazards_option = path_option(
+    "--hazards", help="hazards.toml; the one in the requirements' folder if not given."
+)
+evidence_option = path_option(
+    "--evidence",
+    default="build/evidence.json",
+    show_default=True,
+    help="What `fretc audit` has written.",
+)
+verification_option = path_option(
+    "--verification",
+    help="What `fretc verify` found; build/verification.json, if it is there and none is given.",
+)
+jobs_option = click.option(
+    "--jobs",
+    type=click.IntRange(min=1),
+    default=os.cpu_count() or 1,
+    help="Processes that share the work; as many as there are cores, if not given.",
+)
+limit_option = click.option(
+    "--limit",
+    type=click.IntRange(min=1),
+    default=60,
+    show_default=True,
+    help="Seconds of a processor for each proof.",
+)
+
+
+def is_given(name: str) -> bool:
+    """Whether the user has typed this parameter of the present command."""
+    source = click.get_current_context().get_parameter_source(name)
+    return source is click.core.ParameterSource.COMMANDLINE
+
+
+def places(arguments: Sequence[str], requirements: str) -> list[str]:
+    """Where requirements are: what the arguments name, else `--requirements`; never both."""
+    if arguments and is_given("requirements"):
+        stop(
+            Diagnostic(
+                Code.BAD_USAGE,
+                f"requirements are named twice: `{arguments[0]}` and `--requirements`",
+                help="keep one of them",
+            )
+        )
+    return [*arguments] or [requirements]

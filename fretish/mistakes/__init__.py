@@ -1,0 +1,1 @@
+"""What people write in place of FRETish, by subject: operators, the order of the parts."""

@@ -1,0 +1,164 @@
+"""Operators, numbers and characters as other languages spell them."""
+
+from __future__ import annotations
+
+import re
+
+from fretish.diagnostics.diagnostic import Diagnostic
+from fretish.diagnostics.mends import Mend, left_out
+from fretish.diagnostics.source import Span
+from fretish.mistakes.precedence import one_way
+from fretish.mistakes.unexpected import STARTS_EXPRESSION, Lexeme, Unexpected, not_fretish
+
+COMPARISONS = ("LESS", "AT_MOST", "GREATER", "AT_LEAST", "EQUAL", "UNEQUAL")
+_WORDS = {"not": "!", "true": "true", "false": "false"}
+_JOINS = {"and": "&", "or": "|", "implies": "->", "iff": "<->"}
+_PAIRS = {"&&": "&", "||": "|", "==": "=", "=<": "<=", "<>": "!="}
+"""Two signs that stand next to each other, or with a space between."""
+_NEGATED = {"nand": "!(p & q)", "nor": "!(p | q)", "xnor": "p <-> q"}
+_SIGNS = {
+    "\u2264": "<=",
+    "\u2265": ">=",
+    "\u2260": "!=",
+    "\u2192": "->",
+    "\u2227": "&",
+    "\u2228": "|",
+    "\u00ac": "!",
+}
+_HELP = {
+    "[": 'quote a name with brackets: `"a[3]"`',
+    "_": "a name begins with a letter",
+    '"': "close the quotes, or leave them out",
+    "\u201c": 'use straight quotes: `"`',
+    "\u201d": 'use straight quotes: `"`',
+    "'": 'use double quotes: `"`',
+}
+_QUOTES = re.compile(r"\u201c([^\"\n\u201c\u201d]+)\u201d|'([^\"\n']+)'")
+
+
+def unknown_character(text: Span, at: int) -> Diagnostic:
+    """F101 for a character that no word of FRETish has."""
+    span = text.part(at, at + 1)
+    sign = _SIGNS.get(span.text)
+    mend: Mend | str = _HELP.get(span.text, "names are letters, digits, `_`, `.` and `%`")
+    quoted = _QUOTES.match(text.source.text, span.start, text.end)
+    if sign is not None:
+        mend = Mend(span, sign, sure=True)
+    elif quoted is not None:
+        name = quoted[1] or quoted[2]
+        mend = Mend(Span(text.source, quoted.start(), quoted.end()), f'"{name}"', sure=True)
+    elif span.text == ";" and not text.text[at + 1 :].strip(" \t\r\n.;"):
+        mend = left_out(span, sure=True)
+    return not_fretish(f"`{span.text}` is no character of FRETish", span, mend)
+
+
+def other_language(u: Unexpected) -> Diagnostic | None:
+    """Operators as other languages spell them."""
+    word = u.lexeme.word.lower()
+    if u.before is not None and u.before.word + u.lexeme.word in _PAIRS:
+        span = u.before.span.to(u.lexeme.span)
+        pair = u.before.word + u.lexeme.word
+        return _instead(span, _PAIRS[pair], sure=one_way(u.text, span, pair))
+    if u.before is not None and not u.wants("ID", "SHALL"):
+        return _join(u, u.lexeme)
+    spelt = _WORDS.get(word)
+    if spelt in (None, u.lexeme.word) or not u.wants("ID") or u.wants("SHALL", "WHENEVER"):
+        return None
+    return _instead(u.lexeme.span, spelt, sure=word != "not" or not _more(u.rest))
+
+
+_PART = re.compile(
+    r"not\s*(?P<bracket>\()?(?P<rest>.*?)(?:\)|,|\bsatisfy\b|\bshall\b|\Z)", re.I | re.S
+)
+JOIN = re.compile(r"[&|]|[-=]>|\b(?:and|or|xor|implies|iff)\b", re.IGNORECASE)
+
+
+def _more(rest: Span) -> bool:
+    """Whether the `not` may be meant for more than its first part, as in `not p and q`."""
+    part = _PART.match(rest.text)
+    return part is None or (not part["bracket"] and JOIN.search(part["rest"]) is not None)
+
+
+def join_of_expressions(u: Unexpected) -> Diagnostic | None:
+    """`whenever p and q`: the word joins conditions, each of which has a word of its own.
+
+    `whenever p implies q`: the word is read as the component.
+    """
+    joined = u.follows("AND", "OR") and u.wants("WHENEVER")
+    named = u.follows("ID") and u.wants("SHALL")
+    if u.before is None or u.lexeme.kind not in STARTS_EXPRESSION or not (joined or named):
+        return None
+    return _join(u, u.before)
+
+
+def _join(u: Unexpected, lexeme: Lexeme) -> Diagnostic | None:
+    """What joins two expressions in other languages, and in English."""
+    word = lexeme.word.lower()
+    if word in _JOINS:
+        return _instead(lexeme.span, _JOINS[word], sure=one_way(u.text, lexeme.span, word))
+    if word in _NEGATED:
+        words = f"say it by the operators of FRETish: `{_NEGATED[word]}`"
+        return not_fretish(f"FRETish has no `{lexeme.word}`", lexeme.span, words)
+    if lexeme.kind == "_COMMA":
+        return not_fretish("`,` joins nothing", lexeme.span, "join the parts by `&` or by `|`")
+    if lexeme.kind == "IS":
+        return not_fretish("`is` compares nothing here", lexeme.span, "compare by a sign: `p < 3`")
+    return None
+
+
+def _instead(span: Span, spelt: str, *, sure: bool = True) -> Diagnostic:
+    return not_fretish(f"`{span.text}` is no operator of FRETish", span, Mend(span, spelt, sure))
+
+
+_UPWARD, _DOWNWARD = ("<", "<="), (">", ">=")
+_MIDDLE = re.compile(r"(?P<op><=|>=|<|>)\s*(?P<middle>[A-Za-z][\w.%]*|\"[^\"\n]+\"|\d[\d.]*)\s*\Z")
+
+
+def chain(u: Unexpected) -> Diagnostic | None:
+    """`3 < x < 5`."""
+    if u.lexeme.kind not in COMPARISONS or not u.wants("_AMPERSAND"):
+        return None
+    message, words = "comparisons do not chain", "write each by itself, and join them by `&`"
+    middle = _MIDDLE.search(u.read.text)
+    same = middle is not None and any(
+        {middle["op"], u.lexeme.word} <= {*way} for way in (_UPWARD, _DOWNWARD)
+    )
+    if middle is None or not same:
+        return not_fretish(message, u.lexeme.span, words)
+    here = u.lexeme.span.part(0, 0)
+    mend = Mend(here, f"& {middle['middle']} ")  # not sure: a `!` before it is of the first alone
+    shown = f"{middle['op']} {middle['middle']} & {middle['middle']} {u.lexeme.word}"
+    return not_fretish(message, u.lexeme.span, mend, f"{words}: `... {shown} ...`")
+
+
+def number_form(u: Unexpected) -> Diagnostic | None:
+    """`.5` and `007`."""
+    if u.lexeme.kind == "_DOT" and u.wants("NUMBER"):
+        words = "write a 0 before the point"
+        mend = Mend(u.lexeme.span.part(0, 0), "0", sure=True)
+        number = u.rest.text[1:2].isdigit()
+        message = "a number begins with a digit"
+        return not_fretish(message, u.lexeme.span, mend if number else words, words)
+    if u.lexeme.kind != "NUMBER" or u.before is None or u.before.kind != "NUMBER":
+        return None
+    return not_fretish(
+        "a number does not begin with 0",
+        u.before.span.to(u.lexeme.span),
+        "leave the leading zeros out",
+    )
+
+
+def parenthesis(u: Unexpected) -> Diagnostic | None:
+    """One that is missing, or one too many; which of them is meant, only the author knows."""
+    if u.lexeme.kind == "RPAR" and u.wants("$END", "SATISFY", "SHALL"):
+        mend = left_out(u.lexeme.span)
+        words = "leave it out, or write the `(` that it closes"
+        return not_fretish("there is no `(` for this `)`", u.lexeme.span, mend, words)
+    if not u.lexeme.at_end or not u.wants("RPAR"):
+        return None
+    signs = re.sub(r'"[^"\n]*"', "", u.read.text)
+    missing = signs.count("(") - signs.count(")")
+    mend = Mend(u.lexeme.span, ")" * missing)
+    message = f"{missing} `(` {'is' if missing == 1 else 'are'} not closed"
+    words = f"write `{mend.text}` here, or where the part ends that is meant"
+    return not_fretish(message, u.lexeme.span, mend, words)

@@ -1,0 +1,217 @@
+"""Parts of a sentence that stand at a wrong place, are missing, or are there twice."""
+
+from __future__ import annotations
+
+import re
+
+from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.diagnostics.mends import Mend, left_out
+from fretish.diagnostics.source import Span
+from fretish.mistakes.operators import JOIN
+from fretish.mistakes.unexpected import Unexpected, not_fretish
+
+_SIMPLE_TIMINGS = frozenset(
+    {"IMMEDIATELY", "INITIALLY", "FINALLY", "EVENTUALLY", "ALWAYS", "NEVER"}
+)
+_DURATIONS = frozenset({"WITHIN", "FOR"})
+_STOPS = frozenset({"UNTIL", "BEFORE", "AFTER"})
+TIMINGS = _SIMPLE_TIMINGS | _DURATIONS | _STOPS
+_SCOPES = frozenset({"IN", "DURING", "WHILE", "EXCEPT", "ONLY"})
+_CONDITIONS = frozenset({"UPON", "WHEN", "WHERE", "IF", "UNLESS", "WHENEVER"})
+_BEGINNINGS = _SCOPES | _CONDITIONS | {"BEFORE", "AFTER", "THE", "ID", "QUOTED"}
+_AMOUNT = {"WITHIN": " N seconds", "FOR": " N seconds", "AFTER": " N seconds", "UNTIL": " p"}
+_SHALL = re.compile(r"\bshall\b", re.IGNORECASE)
+_SATISFY = re.compile(r"\bsatisfy\b", re.IGNORECASE)
+
+
+def second_sentence(u: Unexpected) -> Diagnostic | None:
+    """F117: the text before the word is a sentence, and another one begins with it."""
+    if not u.wants("$END") or u.lexeme.kind not in _BEGINNINGS:
+        return None
+    if u.follows("_DOT") and u.lexeme.kind not in ("ID", "QUOTED"):
+        return _another(u)
+    ended = u.follows("_DOT") or "\n" in _gap(u)
+    named = u.lexeme.kind in ("ID", "QUOTED")
+    direct = named and re.match(r'("[^"\n]+"|[\w.%]+)\s+shall\b', u.rest.text, re.IGNORECASE)
+    plain = ended or not (named or u.lexeme.kind in TIMINGS)
+    if not direct and not (plain and _SHALL.search(u.rest.text)):
+        return None
+    return _another(u)
+
+
+def _another(u: Unexpected) -> Diagnostic:
+    return Diagnostic(
+        Code.SEVERAL_SENTENCES,
+        "a second sentence begins here",
+        u.lexeme.span,
+        help="give each a header, with an `id` between two lines `+++`, or a file of its own",
+    )
+
+
+def _gap(u: Unexpected) -> str:
+    """The white space before the word."""
+    read = u.read.text
+    return read[len(read.rstrip()) :]
+
+
+def behind(u: Unexpected) -> Diagnostic | None:
+    """What English says after the response, and FRETish before it."""
+    if not u.wants("$END") or (found := _SATISFY.search(u.read.text)) is None:
+        return None
+    if u.lexeme.kind in TIMINGS:
+        return _timing_behind(u, found)
+    if u.lexeme.kind not in _CONDITIONS | _SCOPES:
+        return None
+    part = "condition" if u.lexeme.kind in _CONDITIONS else "scope"
+    words = f"put it in front: `{_shown(u.rest)} the COMPONENT shall ...`"
+    if u.lexeme.kind == "UNLESS":
+        words += "; or, for an exception, write `p | q` as the response"
+    return not_fretish(f"the {part} stands before the component", u.lexeme.span, words)
+
+
+def _timing_behind(u: Unexpected, satisfy: re.Match[str]) -> Diagnostic:
+    message = "the timing stands before `satisfy`"
+    if _has_timing(u.read.text[: satisfy.start()]):
+        return not_fretish(message, u.lexeme.span, _ONE)
+    response = u.read.text[satisfy.end() :].strip()
+    moved = Span(u.text.source, u.text.start + satisfy.start(), u.rest.end)
+    return not_fretish(message, u.lexeme.span, Mend(moved, f"{u.rest.text} satisfy {response}"))
+
+
+_ONE = "a sentence has one timing: write a requirement for each"
+
+
+def _has_timing(before_satisfy: str) -> bool:
+    return re.search(r"\bshall\b,?\s*\Z", before_satisfy, re.IGNORECASE) is None
+
+
+def _shown(span: Span) -> str:
+    return " ".join(span.text.split())
+
+
+def out_of_order(u: Unexpected) -> Diagnostic | None:
+    """The parts of a sentence have a fixed order."""
+    if u.lexeme.kind in _SIMPLE_TIMINGS | _DURATIONS and u.follows("SATISFY"):
+        return _timing_after_satisfy(u)
+    if u.lexeme.kind == "WITH" and u.wants("SHALL", "WHENEVER"):
+        words = "write it there: `shall with probability ... satisfy ...`"
+        return not_fretish("the probability stands after `shall`", u.lexeme.span, words)
+    if u.lexeme.kind == "PROBABILITY":
+        mend = Mend(u.lexeme.span.part(0, 0), "with ", sure=u.wants("WITH"))
+        words = "write `with probability ...`"
+        message = "`with` is missing before `probability`"
+        return not_fretish(message, u.lexeme.span, mend if mend.sure else words, words)
+    return None
+
+
+_TIMING = re.compile(r"(?:within|for)\s+\d+\s+\w+|[a-z]+", re.IGNORECASE)
+
+
+def _timing_after_satisfy(u: Unexpected) -> Diagnostic:
+    """`satisfy eventually p`."""
+    assert u.before is not None
+    word = f"{u.lexeme.word}{_AMOUNT.get(u.lexeme.kind, '')}"
+    message, words = "the timing stands before `satisfy`", f"write `{word} satisfy ...`"
+    start = u.before.span.start
+    found = _TIMING.match(u.rest.text)
+    if found is None or (found[0] == u.lexeme.word) != (u.lexeme.kind in _SIMPLE_TIMINGS):
+        return not_fretish(message, u.lexeme.span, words)
+    if _has_timing(u.text.source.text[u.text.start : start]):
+        return not_fretish(message, u.lexeme.span, _ONE)
+    end = u.lexeme.span.start + found.end()
+    sure = JOIN.search(u.rest.text) is None  # or the timing may be that of the first part alone
+    mend = Mend(Span(u.text.source, start, end), f"{found[0]} {u.before.word}", sure)
+    return not_fretish(message, u.lexeme.span, mend, f"write `{found[0]} satisfy ...`")
+
+
+def timing(u: Unexpected) -> Diagnostic | None:
+    """Two timings, and `not` where a timing stands."""
+    if not u.wants("SATISFY"):
+        return None
+    if u.lexeme.kind == "NOT":
+        return _not(u)
+    if u.lexeme.kind not in TIMINGS or u.wants(u.lexeme.kind):
+        return None
+    return not_fretish(
+        "a sentence has one timing, and this is a second one",
+        u.lexeme.span,
+        "write a requirement for each timing",
+    )
+
+
+def _not(u: Unexpected) -> Diagnostic:
+    """`shall not satisfy p`, `shall never not satisfy p`."""
+    message = "`not` does not stand before `satisfy`"
+    if u.before is not None and u.follows("ALWAYS", "NEVER"):
+        mend = Mend(u.before.span.to(u.lexeme.span), "never" if u.follows("ALWAYS") else "always")
+        return not_fretish(message, u.lexeme.span, mend)
+    words = "negate the response: `satisfy !(p)`"
+    if u.follows("SHALL"):
+        words = "write `shall never satisfy p`, or negate the response: `satisfy !(p)`"
+    return not_fretish(message, u.lexeme.span, words)
+
+
+_PARTS = {
+    "stop condition": frozenset({"UNTIL", "BEFORE", "AFTER"}),
+    "response": frozenset({"SATISFY"}),
+    "condition": _CONDITIONS,
+    "mode": frozenset({"IN", "DURING"}),
+    "expression": frozenset({"WHILE"}),
+}
+
+
+def missing_part(u: Unexpected) -> Diagnostic | None:
+    """A word that something must follow, with the next part in its place."""
+    if u.before is None or not u.wants("ID"):
+        return None
+    word, kind = u.before.word, u.before.kind
+    if u.lexeme.word.lower() == word.lower() and word.isalpha():
+        leave = left_out(u.lexeme.span, sure=True)
+        return not_fretish(f"`{word}` stands twice", u.lexeme.span, leave)
+    part = next((part for part, kinds in _PARTS.items() if kind in kinds), "")
+    begins = u.lexeme.kind in ("SATISFY", "SHALL") or _is_component(u.rest.text)
+    if not part or not (u.lexeme.at_end or begins):
+        return None
+    if part == "stop condition" and not _SHALL.search(u.read.text):
+        part = "mode"  # of a scope
+    return not_fretish(
+        f"the {part} is missing after `{word}`",
+        u.lexeme.span,
+        f"write it there: `{word} p`",
+    )
+
+
+def _is_component(rest: str) -> bool:
+    return re.match(r"the\s+[\w.%]+\s+shall\b", rest, re.IGNORECASE) is not None
+
+
+_PROSE = re.compile(r"the\s+(?P<words>[a-z]\w*(?:\s+[a-z]\w*)*)\s*(?P<end>,|\Z|[^\w\s])", re.I)
+_JOINED = re.compile(r"\b(?:and|or)\b", re.IGNORECASE)
+_SMALL = frozenset({"the", "a", "an", "is", "are", "of", "has", "have", "been"})
+
+
+def article(u: Unexpected) -> Diagnostic | None:
+    """`the` before a name that is no component's."""
+    if u.lexeme.kind != "THE" or not u.wants("ID") or u.wants("SHALL"):
+        return None
+    message, words = "an expression has no article", _words(u)
+    if len(words) == 1:
+        return not_fretish(message, u.lexeme.span, left_out(u.lexeme.span, sure=True))
+    name = "_".join(word for word in words if word.lower() not in _SMALL)
+    example = f"such as `{name}` for these words, " if name else ""
+    return not_fretish(
+        message, u.lexeme.span, f"write a name, {example}or a comparison: `battery < 20`"
+    )
+
+
+def _words(u: Unexpected) -> list[str]:
+    """The plain words after the article, up to the next part of the sentence."""
+    prose = _PROSE.match(u.rest.text)
+    words = _JOINED.split(prose["words"])[0].split() if prose is not None else []
+    lower = [word.lower() for word in words]
+    if "shall" in lower:  # the component and its article stand before it
+        at = max(lower.index("shall") - 1, 0)
+        words = words[: at - 1 if at and lower[at - 1] == "the" else at]
+    elif "satisfy" in lower:
+        words = words[: lower.index("satisfy")]
+    return words

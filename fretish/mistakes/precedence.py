@@ -1,0 +1,66 @@
+"""Whether an operator of another language binds here as the one of FRETish in its place would.
+
+Elsewhere `&&` and words bind looser than `|`, and what `p and q or r` means differs by reader.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+
+from fretish.diagnostics.source import Span
+
+_WORDS = {"and", "or", "implies", "iff", "xor"}
+_RIVALS = {
+    "&&": {"|", "xor"},
+    "||": {"xor"},
+    "and": {"|", "||", "->", "=>", "<->", "<=>"} | _WORDS - {"and"},
+    "or": {"->", "=>", "<->", "<=>"} | _WORDS - {"or"},
+    "implies": {"->", "=>", "<->", "<=>"} | _WORDS,
+    "iff": {"<->", "<=>"} | _WORDS - {"iff"},
+}
+"""What an operator may stand beside only within parentheses, or it could be read in two ways."""
+_OPERATOR = re.compile(
+    rf"<->|<=>|->|=>|\|\||&&|\||&|\b(?:{'|'.join(sorted(_WORDS))})\b", re.IGNORECASE
+)
+_ENDS = re.compile(
+    r"\b(?:shall|satisfy|until|before|after|whenever|when|where|if|then|upon|unless|while)\b",
+    re.IGNORECASE,
+)
+_QUOTED = re.compile(r'"[^"\n]*"')
+
+
+def one_way(text: Span, at: Span, operator: str) -> bool:
+    """Whether no operator beside it leaves open which of both binds first.
+
+    Args:
+        text: the sentence.
+        at: the operator in it.
+        operator: in lower case, without white space.
+    """
+    beside = {found.lower() for found in _OPERATOR.findall(_level(text, at))}
+    return beside.isdisjoint(_RIVALS.get(operator, frozenset()))
+
+
+def _level(text: Span, at: Span) -> str:
+    """What stands around a place within the same parentheses and the same part of the sentence."""
+    source = text.source.text
+    left = _outer(reversed(_QUOTED.sub("x", source[text.start : at.start])), ")", "(")[::-1]
+    right = _outer(_QUOTED.sub("x", source[at.end : text.end]), "(", ")")
+    return f"{_ENDS.split(left)[-1]} {_ENDS.split(right)[0]}"
+
+
+def _outer(characters: Iterable[str], opening: str, closing: str) -> str:
+    """What is not within parentheses, up to the one that closes those around it all."""
+    depth = 0
+    kept = []
+    for character in characters:
+        if character == closing:
+            if depth == 0:
+                break
+            depth -= 1
+        elif character == opening:
+            depth += 1
+        elif depth == 0:
+            kept.append(character)
+    return "".join(kept)

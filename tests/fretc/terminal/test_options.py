@@ -1,0 +1,82 @@
+"""One vocabulary of options: the same thing has the same name, whatever the command."""
+
+import re
+from pathlib import Path
+
+import click
+
+from compiler.emit import TARGETS
+from fretc.cli import cli
+from tests.command import Fretc, write
+from tests.each import each
+
+COMMANDS = sorted(cli.commands)
+PRINTING = ("audit", "bind", "check", "diff", "explain", "info", "lock", "verify", "simulate")
+MEANINGS = {
+    "--requirements": "Folder, or one file.",
+    "--hazards": "hazards.toml; the one in the requirements' folder if not given.",
+}
+
+
+def options(name: str) -> dict[str, click.Option]:
+    return {
+        spelling: option
+        for option in cli.commands[name].params
+        if isinstance(option, click.Option)
+        for spelling in option.opts
+    }
+
+
+@each("name", COMMANDS)
+def test_a_command_has_both_spellings_of_help(fretc: Fretc, name: str) -> None:
+    short, long = fretc(name, "-h"), fretc(name, "--help")
+    if name == "compile":
+        short, long = fretc("r.fret", "-h"), fretc("r.fret", "--help")
+    assert short == long
+    assert short.status == 0
+    assert short.out.startswith("Usage: fretc ")
+
+
+@each("name", COMMANDS)
+def test_an_option_means_the_same_in_each_command(name: str) -> None:
+    here = options(name)
+    assert ("-o" in here) == ("--output" in here)
+    assert not {"--out", "--evidence-file", "--folder"} & here.keys()
+    for spelling, text in MEANINGS.items():
+        assert spelling not in here or here[spelling].help == text
+
+
+@each("name", PRINTING)
+def test_what_prints_results_prints_them_as_json_too(name: str) -> None:
+    kinds = options(name)["--format"].type
+    assert isinstance(kinds, click.Choice)
+    assert {"text", "json"} <= {*kinds.choices}
+
+
+def test_an_earlier_spelling_works_and_stands_in_no_help(fretc: Fretc) -> None:
+    assert "--out " not in fretc("simulate", "--help").out
+    assert "--evidence" not in fretc("audit", "--help").out
+    for spelling in ("-o", "--output", "--evidence"):
+        run = fretc("audit", "no.mcap", spelling, "no.mcap")
+        assert run.err.startswith("F901 there is no folder `requirements`")
+
+
+def test_a_folder_of_requirements_is_named_once(fretc: Fretc) -> None:
+    write("a/r.fret", "the sw shall always satisfy p")
+    assert fretc("check", "a") == fretc("check", "--requirements", "a")
+    assert fretc("check", "a", "--requirements", "b").err.startswith("F907 requirements are named")
+
+
+def test_options_that_commands_share_are_explained_in_one_place() -> None:
+    text = (Path(__file__).parents[3] / "docs/commands.md").read_text("utf-8")
+    table = text[text.index("| option |") : text.index("\nExit status")]
+    spellings = [spelling for name in COMMANDS for spelling in options(name)]
+    shared = {spelling for spelling in spellings if spellings.count(spelling) >= 4}
+    assert shared
+    assert all(f"`{spelling}`" in table for spelling in shared), shared
+
+
+@each("kind", [*TARGETS])
+def test_each_help_lists_each_kind_of_emit(fretc: Fretc, kind: str) -> None:
+    for help_ in (fretc("--help").out, fretc("r.fret", "--help").out):
+        assert kind in re.split(r"[\s,|.\[\]]+", help_.replace("-\n", "-"))

@@ -1,0 +1,66 @@
+"""A mended text, and what each of its places was before."""
+
+from hypothesis import given
+from hypothesis import strategies as st
+
+from fretish.diagnostics.diagnostic import suggestion
+from fretish.diagnostics.mends import Mend, Mended, applied
+from fretish.diagnostics.source import Source, Span
+
+SOURCE = Source("r.fret", "0123456789abcdefghij")
+
+
+@st.composite
+def mended(draw: st.DrawFn) -> Mended:
+    cuts = sorted(draw(st.lists(st.integers(3, 18), max_size=8, unique=True)))
+    texts = draw(st.lists(st.text("XYZ", max_size=4), min_size=8, max_size=8))
+    pairs = zip(cuts[::2], cuts[1::2], texts, strict=False)
+    mends = [Mend(Span(SOURCE, start, end), text) for start, end, text in pairs]
+    found = Mended(SOURCE.span(2, 20))
+    for mend in reversed(mends):
+        found = found.with_mend(mend)
+    return found
+
+
+@given(mended())
+def test_what_no_mend_touches_is_where_it_was(text: Mended) -> None:
+    read = text.span
+    assert read.text == applied(text.original, text.mends)
+    for at, character in enumerate(read.text):
+        place = text.place(read.part(at, at + 1))
+        if character in "XYZ":
+            assert any((m.span.start, m.span.end) == (place.start, place.end) for m in text.mends)
+        else:
+            assert place.text == character
+
+
+@given(mended(), st.data())
+def test_a_place_lies_within_the_original(text: Mended, data: st.DataObject) -> None:
+    read = text.span
+    start = data.draw(st.integers(0, read.end))
+    place = text.place(read.part(start, data.draw(st.integers(start, read.end))))
+    assert 2 <= place.start <= place.end <= 20
+    assert place.source is SOURCE
+
+
+def test_a_mend_in_words() -> None:
+    span = SOURCE.span(0, 3)
+    assert Mend(span, "a", sure=True).help == "write `a`"
+    assert Mend(span, "a").help == "did you mean `a`?"
+    assert Mend(span, "", sure=True).help == "leave `012` out"
+    assert Mend(span, "").help == "should `012` be left out?"
+    assert Mend(span, "a").change == "wrote `a` for `012`"
+    assert Mend(span, "").change == "left `012` out"
+    assert Mend(span.part(0, 0), "a ").change == "put `a` in"
+
+
+@given(st.integers(0, 10**6), st.integers(0, 10**6))
+def test_a_suggestion_never_changes_a_number(stated: int, known: int) -> None:
+    for shape in ("(battery < {})", "HAZ-{}", "speed{}"):
+        near = suggestion(shape.format(stated), [shape.format(known)])
+        assert near is None or stated == known
+
+
+def test_a_suggestion_never_changes_an_operator() -> None:
+    assert suggestion("(battery < 20)", ["(battery > 20)", "(battery <= 20)"]) is None
+    assert suggestion("(batery < 20)", ["(battery > 20)", "(battery < 20)"]) == "(battery < 20)"
