@@ -130,10 +130,11 @@ def comparisons(rule: Formalized) -> Mapping[str, e.Comparison]:
     A proposition that is declared for a comparison may be more than that: true where a sample of
     the tick makes it true, or where nothing is known.
     """
+    written = dict(candidates(rule.sentence))
     return {
         name: part
-        for name, part in candidates(rule.sentence)
-        if isinstance(part, e.Comparison)
+        for name in atoms_of(rule.sentence)
+        if isinstance(part := written.get(name), e.Comparison)
         and (rule.declarations is None or _is_of_one_moment(name, part, rule.declarations))
     }
 
@@ -145,7 +146,7 @@ def _is_of_one_moment(name: str, part: e.Comparison, declarations: Declarations)
         return False  # its numbers are not compared in the unit of the sentence
     declared = declarations.propositions.get(name)
     if declared is None:
-        return True
+        return ("proposition", name) not in declarations.mistakes
     last = declared.aggregate is Aggregate.LAST and declared.on_unknown is None
     plain = isinstance(declared.expression, e.Comparison)
     return last and plain and is_measured(part, signals)
