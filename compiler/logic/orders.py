@@ -17,6 +17,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
 from itertools import combinations
+from typing import TypeVar
 
 from fretish import expressions as e
 from fretish.bindings import constants
@@ -59,9 +60,12 @@ def exclusions(
     return tuple(found)
 
 
+Values = TypeVar("Values", bound="tuple[bool | None, ...]")
+
+
 def only_possible(
-    valuations: Sequence[tuple[bool, ...]], atoms: Sequence[str], excluded: Sequence[Exclusion]
-) -> tuple[tuple[bool, ...], ...]:
+    valuations: Sequence[Values], atoms: Sequence[str], excluded: Sequence[Exclusion]
+) -> tuple[Values, ...]:
     """The valuations of atoms that are not excluded, in their order; all, if none were left."""
     places = {name: place for place, name in enumerate(atoms)}
     known = [

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from itertools import product
 from typing import Any
 
+from compiler.logic.orders import Exclusion, only_possible
 from compiler.targets.python.program import MARKS, SIGNALS
 from fretc.verification.monitor.machine import Cells
 from monitors.kernel import Monitor
@@ -43,7 +44,12 @@ class Apart:
 
 
 def compared(
-    machine: Monitor, place: int, reference: Monitor, atoms: Sequence[str], limit: int
+    machine: Monitor,
+    place: int,
+    reference: Monitor,
+    atoms: Sequence[str],
+    limit: int,
+    excluded: Sequence[Exclusion] = (),
 ) -> Same | Apart | None:
     """Compare a requirement of one monitor with the only one of the other.
 
@@ -54,12 +60,15 @@ def compared(
         atoms: the order of the values in a letter; the other propositions of the machine are false,
             and the requirement must not depend on them.
         limit: the most pairs of states; with more the result is None.
+        excluded: what the atoms cannot be together.
     """
+    every = tuple(product((False, True, None), repeat=len(atoms)))
+    letters = only_possible(every, atoms, excluded)
     states = 0
     for doubt in (False, True):
         left = _Rail(machine, place, doubt, atoms)
         right = _Rail(reference, 0, doubt, atoms)
-        result = _in_lock_step(left, right, len(atoms), limit)
+        result = _in_lock_step(left, right, letters, limit)
         if not isinstance(result, Same):
             return result
         states += result.states
@@ -109,9 +118,10 @@ def _is_open(name: str) -> bool:
 _NAMES = (*SIGNALS, *(f"mark `{mark}`" for _ in _STARTS for mark in MARKS))
 
 
-def _in_lock_step(left: _Rail, right: _Rail, atoms: int, limit: int) -> Same | Apart | None:
+def _in_lock_step(
+    left: _Rail, right: _Rail, letters: Sequence[Letter], limit: int
+) -> Same | Apart | None:
     """Breadth first through all pairs of states."""
-    letters = tuple(product((False, True, None), repeat=atoms))
     pairs = [(left.save(), right.save())]
     origins: list[tuple[int, Letter] | None] = [None]
     visited = {*pairs}

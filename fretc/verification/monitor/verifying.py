@@ -21,6 +21,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from compiler.formalization.formalized import Formalized
 from compiler.formalization.letters import atoms_of, excluded
 from compiler.logic.claims import Outcome, Trace, not_checked, proved, refuted
+from compiler.logic.orders import Exclusion
 from compiler.targets.python import monitor as target
 from compiler.targets.python.monitor import prefixes_of
 from fretc.verification.monitor import front_terms, rails
@@ -110,12 +111,14 @@ def _compared(
         fault = _front_compared(rule, text, monitor, atoms, others)
         if fault is not None:
             return fault
-    ticks, word = _columns_compared(monitor, place, atoms, rule.ticks or 0)
+    ticks, word = _columns_compared(rule, monitor, place, atoms)
     if word is not None:
         return _disagreement(atoms, word)
     if text == generated or _is_generated(text, monitor, (*others, rule)):
         return _proved(result, ticks)
-    states = _compared_with_generated(generated, text, monitor, place, (atoms, len(needed)), limit)
+    states = _compared_with_generated(
+        rule, generated, text, monitor, place, (atoms, len(needed)), limit
+    )
     return _proved(result, ticks, states) if isinstance(states, int) else states
 
 
@@ -267,6 +270,7 @@ def _kinds(variables: Mapping[str, Variable]) -> Mapping[str, object]:
 
 
 def _compared_with_generated(
+    rule: Formalized,
     generated: str,
     text: str,
     monitor: Monitor,
@@ -277,6 +281,7 @@ def _compared_with_generated(
     """In how many states it agrees with the text that fretc writes for the rule.
 
     Args:
+        rule: it.
         generated: that text.
         text: the monitor's.
         monitor: loaded from it.
@@ -291,7 +296,8 @@ def _compared_with_generated(
             f"it is not the text that fretc writes, and {count} propositions, more than "
             f"{most}, are too many to compare both with unknown values"
         )
-    comparison = rails.compared(monitor, place, load("generated", generated), names[:count], limit)
+    reference = load("generated", generated)
+    comparison = rails.compared(monitor, place, reference, names[:count], limit, excluded(rule))
     match comparison:
         case None:
             return not_checked(f"with unknown values there are more than {limit} states")
@@ -324,19 +330,37 @@ def _demand_monitor(text: str) -> None:
 
 
 def _columns_compared(
-    monitor: Monitor, place: int, atoms: Sequence[str], bound: int
+    rule: Formalized, monitor: Monitor, place: int, atoms: Sequence[str]
 ) -> tuple[int, Word | None]:
     """The ticks on which both programs agree; and a trace on which they do not."""
+    bound, never = rule.ticks or 0, excluded(rule)
     choose = random.Random(bound)
     length = 4 * bound + 50
     count = min(DRAWN, max(_FEWEST, _TICKS // length))
     for number in range(count):
         odds = 0.02 if number % 2 else 0.0
         drawn = {name: _drawn(choose, length, bound, odds) for name in atoms}
+        drawn = _possible(drawn, never, length)
         tick = _first_difference(monitor, place, drawn, length)
         if tick is not None:
             return 0, tuple(_rows(drawn, tick + 1))
     return count * length, None
+
+
+def _possible(
+    columns: Mapping[str, Column], excluded: Sequence[Exclusion], length: int
+) -> dict[str, Column]:
+    """The columns with unknown values where they cannot be what they are."""
+    every, found = (1 << length) - 1, dict(columns)
+    for exclusion in excluded:
+        at = every
+        for name, value in exclusion:
+            true, unknown = found[name]
+            at &= true if value else every ^ (true | unknown)
+        for name, _ in exclusion:
+            true, unknown = found[name]
+            found[name] = Column(true & ~at, unknown | at)
+    return found
 
 
 def _first_difference(

@@ -72,6 +72,25 @@ def named(sentence: str, number: int) -> str:
     return re.sub(r"\b[mpqs]\b", lambda name: f"{name[0]}{number % 2}", sentence)
 
 
+CONTRADICTING = "whenever x < 2 the sw shall within 2 ticks satisfy !(x > 3)"
+
+
+def test_no_counterexample_has_comparisons_that_contradict_each_other() -> None:
+    """The edits show at ticks with both as well as at others, or with an unknown x."""
+    text = emitted(CONTRADICTING)
+    for old, new in (
+        ("elif x_lt_2 and x_gt_3:", "elif x_lt_2 and x_gt_3 and not x_lt_2:"),
+        ("if oldest_1 >= 0 and x_gt_3:", "if oldest_1 >= 0 and not x_gt_3:"),
+        ("            if x_lt_2:\n", "            if x_lt_2 and not x_gt_3:\n"),
+        ("since(x_gt_3,", "since(x_lt_2,"),
+    ):
+        outcome = verified(rule(CONTRADICTING), broken(text, old, new))
+        assert outcome.result is not Result.PROVED
+        if outcome.trace is not None:
+            places = [outcome.trace.names.index(name) for name in ("(x < 2)", "(x > 3)")]
+            assert not any(all(row[i] is True for i in places) for row in outcome.trace.rows)
+
+
 @pytest.mark.slow
 @settings(max_examples=12)
 @given(
