@@ -34,10 +34,8 @@ _DENIED: Mapping[e.ComparisonOperator, e.ComparisonOperator] = {
     "<": ">=", "<=": ">", ">": "<=", ">=": "<", "=": "!=", "!=": "=",
 }  # fmt: skip
 _MIRRORED: Mapping[e.ComparisonOperator, e.ComparisonOperator] = {
-    **e.MIRRORED,
-    "=": "=",
-    "!=": "!=",
-}
+    "<": ">", "<=": ">=", ">": "<", ">=": "<=", "=": "=", "!=": "!=",
+}  # fmt: skip
 
 
 @deep
@@ -346,11 +344,11 @@ class _Search:
                 order.add(self._places[less], self._places[more], strict=True)
             elif less.beside == more.beside or None in (less.beside, more.beside):
                 order.add(self._places[less], self._places[more], strict=False)  # as rounded
-        for point in self._places:
+        for point, place in self._places.items():
             arg = _of_magnitude(point) if isinstance(point, _Term) else None
-            if arg is not None:
-                for less in (_ZERO, arg, _negative(arg)):
-                    order.add(self._places[less], self._places[point], strict=False)
+            parts: tuple[_Point, ...] = () if arg is None else (_ZERO, arg, _negative(arg))
+            for part in parts:
+                order.add(self._places[part], place, strict=False)
         spoken = [p for point, p in self._places.items() if _is_word(point)]
         order.apart.extend(combinations(spoken, 2))
         order.choices = tuple(self._choices())
