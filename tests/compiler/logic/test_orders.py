@@ -102,12 +102,13 @@ def test_what_is_computed_is_a_number_of_its_own() -> None:
 
 
 def test_words_of_an_enumerated_signal() -> None:
-    texts = [f"mode {op} {word}" for word in ("a", "b", "c") for op in ("=", "!=")]
+    operators: tuple[e.ComparisonOperator, ...] = ("=", "!=")
     compared = {
-        text: e.Comparison(op, e.Name("mode"), e.Word(word))
-        for text in texts
-        for _, op, word in (text.split(),)
+        f"mode {op} {word}": e.Comparison(op, e.Name("mode"), e.Word(word))
+        for word in ("a", "b", "c")
+        for op in operators
     }
+    texts = tuple(compared)
     every = tuple(product((False, True), repeat=len(texts)))
     found = only_possible(every, texts, exclusions(compared, {}, {"mode": ("a", "b", "c")}))
     made = {
