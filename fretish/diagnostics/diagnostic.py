@@ -61,6 +61,7 @@ class Code(Enum):
     BEFORE_NOTHING = ("F208", "`before` requires nothing when its mode holds at the start")
     NEVER_DECIDED = ("F203", "no run can ever decide the requirement")
     OWN_TRIGGER = ("F209", "a requirement is triggered by what its component commands")
+    NEVER_SO = ("F210", "comparisons contradict each other, or say what is always so")
 
     BAD_BINDINGS = ("F301", "the bindings are not TOML")
     UNKNOWN_BINDING_FIELD = ("F302", "the bindings have a field that fretc does not know")

@@ -14,6 +14,7 @@ from math import gcd
 
 from compiler.files.text_files import sha256
 from compiler.formalization.formalized import Formalized
+from compiler.formalization.letters import excluded, exclusion_in_words
 from compiler.logic import spot as automata
 from compiler.logic.claims import Layer, Outcome, Proof, not_checked, proof
 from compiler.project.interceptor_options import ASSUMED, options, ticks
@@ -117,6 +118,7 @@ def case(rule: Formalized, setup: Setup) -> Case | str:
         options(interception),
         declared,
         assumed.stands,
+        excluded=excluded(rule),
     )
 
 
@@ -178,6 +180,8 @@ def assumptions(
         f"`{assumed.stands}` is false while the wheels are told to move, and true once they have "
         f"had zero for {braking}, or earlier"
     )
+    for exclusion in problem.excluded:
+        yield f"never at one tick: {exclusion_in_words(exclusion)}, for no numbers compare so"
     yield "the wheels have at once what was published last, and keep it while nothing is published"
     yield "at the first tick the robot stands, and nothing has been heard yet"
     yield (

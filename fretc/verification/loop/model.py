@@ -26,6 +26,7 @@ from itertools import product
 from typing import NamedTuple
 
 from compiler.formalization.letters import Valuation
+from compiler.logic.orders import Exclusion, only_possible
 from fretc.verification.interceptor.machine import Event, InterceptorMachine, State
 from fretc.verification.monitor.machine import Stepped
 
@@ -111,11 +112,13 @@ class Environment:
 
     atoms: tuple[str, ...]
     stands: str
+    excluded: tuple[Exclusion, ...] = ()
+    """What the propositions cannot be together."""
 
     def letters(self, stands: bool) -> tuple[Valuation, ...]:
-        """Every valuation with that value of the proposition."""
+        """Every valuation with that value of the proposition that can occur."""
         choices = [(stands,) if name == self.stands else (False, True) for name in self.atoms]
-        return tuple(product(*choices))
+        return only_possible(tuple(product(*choices)), self.atoms, self.excluded)
 
 
 class Loop:

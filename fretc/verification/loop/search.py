@@ -13,6 +13,7 @@ from typing import assert_never
 from compiler.logic import formula as f
 from compiler.logic.claims import Outcome, Trace, not_checked, proved, refuted, vacuous
 from compiler.logic.kripke import Explored, TooManyStatesError, check, explore
+from compiler.logic.orders import Exclusion
 from fretc.verification.interceptor.machine import InterceptorMachine, NotAnInterceptorError
 from fretc.verification.loop.model import Channel, Environment, Loop, Node, Tick
 from fretc.verification.loop.replay import Watched, moments, replayed
@@ -49,6 +50,8 @@ class Case:
     stands: str
     limit: int = 10**6
     """The most states of the exploration."""
+    excluded: tuple[Exclusion, ...] = ()
+    """What the propositions cannot be together."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -106,7 +109,7 @@ class Parts:
             Stepped(requesting, safety.place, atoms),
             None if same else Stepped(watching, observer.place, atoms),
             InterceptorMachine(case.interceptor, case.settings, case.limit),
-            Environment(atoms, case.stands),
+            Environment(atoms, case.stands, case.excluded),
             case.channel,
         )
         return cls(loop, safety, observer)

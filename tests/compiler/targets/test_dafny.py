@@ -271,7 +271,7 @@ def test_methods_call_no_function() -> None:
 def test_names_that_dafny_cannot_read_are_changed_and_told() -> None:
     found = emitted("whenever (map & x > 3) robot shall satisfy (x >= 3 | bv8)", None)
     assert "datatype Tick = Tick(map_: bool, x_gt_3: bool, x_ge_3: bool, bv8_: bool)" in found
-    assert "// map_ is map\n// x_gt_3 is (x > 3)\n// x_ge_3 is (x >= 3)\n" in found
+    assert "// map_ is map\n// x_gt_3 is x > 3\n// x_ge_3 is x >= 3\n" in found
     assert "  (x.map_ && x.x_gt_3)\n" in found
 
 

@@ -65,6 +65,15 @@ def test_a_trigger_that_the_component_itself_commands_is_told(good: Fretc) -> No
     )
 
 
+def test_comparisons_that_contradict_each_other_are_told(good: Fretc) -> None:
+    edited("r1.fret", "whenever near", "whenever near & vx < 1 & vx > 2")
+    run = good("check")
+    assert run.status == 3
+    assert (
+        "F210 warning: `near & vx < 1 & vx > 2` of R1 is never true, whatever is measu" in run.err
+    )
+
+
 def test_a_plan_that_can_give_no_result_is_told(good: Fretc) -> None:
     edited("r1.fret", '["audit"]', '["audit", "ajpf"]')
     run = good("check")

@@ -399,7 +399,7 @@ def test_a_proposition_has_the_modality_of_the_bindings(name: str, atom: str) ->
         "the sw shall for 0 seconds satisfy q",
         "whenever p the sw shall after 3 ticks satisfy q",
         "only in m, the sw shall within 3 ticks satisfy q",
-        "the sw shall always satisfy x > 3",
+        "the sw shall always satisfy Speed > 3",
         "the sw shall always satisfy f(p)",
         "the sw shall always satisfy persisted(2, p)",
         "the sw shall always satisfy occurs(2, p)",
@@ -448,8 +448,8 @@ def test_what_ajpf_cannot_say_is_refused(sentence: str) -> None:
             "AJPF has no next, no past and no time; check it with `--emit monitor`",
         ),
         (
-            "sw shall always satisfy x > 3",
-            "the proposition `(x > 3)`",
+            "sw shall always satisfy f(p)",
+            "the proposition `f(p)`",
             "give it a name of its own that begins with a small letter, and bind that",
         ),
         (
