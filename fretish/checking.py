@@ -126,7 +126,7 @@ def _is_boolean(part: e.Expression, expected: bool) -> bool:
             return expected
         case e.Call(name):
             return expected and name not in _NUMERIC_PREDICATES | _NUMERIC_FUNCTIONS
-        case e.Number() | e.Quantity() | e.Negation() | e.Arithmetic():
+        case e.Number() | e.Quantity() | e.Word() | e.Negation() | e.Arithmetic():
             return False
         case (
             e.Truth()

@@ -52,6 +52,14 @@ class Quantity:
 
 
 @dataclass(frozen=True, slots=True)
+class Word:
+    """A value of an enumerated signal, as the bindings spell it: `docking`."""
+
+    text: str
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
 class Negation:
     """Arithmetic minus: `-x`."""
 
@@ -71,7 +79,7 @@ class Arithmetic:
 
 @dataclass(frozen=True, slots=True)
 class Comparison:
-    """`left op right`, both numbers; the whole is Boolean."""
+    """`left op right`, both numbers, or both words; the whole is Boolean."""
 
     op: ComparisonOperator
     left: Expression
@@ -146,6 +154,7 @@ Expression = (
     | Name
     | Number
     | Quantity
+    | Word
     | Negation
     | Arithmetic
     | Comparison
@@ -177,7 +186,7 @@ def _flat(kind: type[And] | type[Or], arg: Expression) -> tuple[Expression, ...]
 def children(expression: Expression) -> tuple[Expression, ...]:
     """The direct parts, left to right."""
     match expression:
-        case Truth() | Name() | Number() | Quantity():
+        case Truth() | Name() | Number() | Quantity() | Word():
             return ()
         case Not(arg) | Negation(arg) | Persistence(arg):
             return (arg,)
@@ -209,20 +218,35 @@ def with_comparisons(
         case Xor(left, right) | Implies(left, right) | Iff(left, right):
             sides = with_comparisons(left, rewrite), with_comparisons(right, rewrite)
             return replace(expression, left=sides[0], right=sides[1])
-        case Truth() | Name() | Number() | Quantity() | Negation() | Arithmetic():
+        case Truth() | Name() | Number() | Quantity() | Word() | Negation() | Arithmetic():
             return expression
         case _:
             assert_never(expression)
 
 
+def parts(expression: Expression) -> Iterator[Expression]:
+    """The expression, and everything in it, left to right."""
+    waiting = [expression]
+    while waiting:
+        part = waiting.pop()
+        yield part
+        waiting.extend(reversed(children(part)))
+
+
 def names(expression: Expression) -> Iterator[Name]:
     """Every `Name` in it, left to right, with repetitions."""
+    return (part for part in parts(expression) if isinstance(part, Name))
+
+
+def truths(expression: Expression) -> Iterator[Name]:
+    """Every `Name` in it that stands for a truth value; those in calls are left out."""
     waiting = [expression]
     while waiting:
         part = waiting.pop()
         if isinstance(part, Name):
             yield part
-        waiting.extend(reversed(children(part)))
+        elif not isinstance(part, Comparison | Arithmetic | Negation | Call):
+            waiting.extend(reversed(children(part)))
 
 
 def depth(expression: Expression) -> int:

@@ -132,6 +132,8 @@ def _ranked(tree: e.Expression) -> tuple[int, str]:
             return _OPERAND, digits
         case e.Quantity(digits, unit):
             return _OPERAND, f"{digits} {unit}"
+        case e.Word(text):
+            return _OPERAND, identifier(text)
         case e.Call(name, args):
             return _OPERAND, f"{identifier(name)}({', '.join(expression(arg) for arg in args)})"
         case e.Negation(arg):

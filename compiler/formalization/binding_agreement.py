@@ -111,6 +111,8 @@ class _Terms:
         if number is not None:
             return number == _constant(bound)
         match stated, bound:
+            case e.Name(id), e.Word(text):
+                return id == text and self._terms.setdefault(id, bound) == bound
             case e.Name(id), _:
                 plain = not any(_constant(part) is not None for part in _parts(bound))
                 return plain and self._terms.setdefault(id, bound) == bound

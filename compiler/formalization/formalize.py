@@ -51,11 +51,11 @@ def _formalized(
         return None, (_free_text(requirement),)
     written = parse(requirement.wording)
     if isinstance(written, Diagnostic):
-        return None, (written,)
+        return None, mistakes(requirement.wording)
     place = requirement.wording
     sentence = in_own_units(written, declarations, place) if declarations else written
     if isinstance(sentence, Diagnostic):
-        return None, mistakes(requirement.wording)
+        return None, (sentence,)
     ticks = in_ticks(sentence, _clock(declarations))
     if isinstance(ticks, Diagnostic):
         return None, (ticks,)

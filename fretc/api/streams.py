@@ -71,13 +71,15 @@ class Stream:
     def add(self, signal: str, time_ns: int, value: object) -> None:
         """One sample of a signal.
 
-        What its field holds is given, in the unit of the field: a number; for a path with `[:]` or
-        an index, the whole array; None where it is unknown. The signal's `valid`, `invalid` and
-        `reduce` say what that means. A sample of a signal that no requirement reads is passed by.
+        What its field holds is given, in the unit of the field: a number, or a word; for a path
+        with `[:]` or an index, the whole array; None where it is unknown. The signal's `values`,
+        `valid`, `invalid` and `reduce` say what that means. A sample of a signal that no
+        requirement reads is passed by.
 
         Raises:
-            Refusal: there is no such signal, the value is no number, it needs other fields of its
-                message (then use `add_message`), or it comes late. The stream is as it was.
+            Refusal: there is no such signal, the value is no number and no word, it needs other
+                fields of its message (then use `add_message`), or it comes late. The stream is as
+                it was.
         """
         if self._signal(signal) is not None:
             error = self._truths.add(signal, index(time_ns), value)
@@ -97,6 +99,11 @@ class Stream:
         error = self._truths.message(topic, index(time_ns), message)
         if error is not None:
             raise Refusal((error,))
+
+    @property
+    def findings(self) -> tuple[Diagnostic, ...]:
+        """About samples that are unknown: none of the values of their signal, or no truth value."""
+        return self._truths.findings
 
     @property
     def waiting(self) -> tuple[str, ...]:

@@ -7,6 +7,8 @@ from dataclasses import dataclass, field, replace
 from functools import partial
 from statistics import median
 
+import numpy as np
+
 from fretc.audit.evidence.writer import Evidence, health
 from fretc.audit.measurements.judgement import WITHOUT_VIOLATION, Engine, judged
 from fretc.audit.measurements.margins import Margin, margins, worst
@@ -15,13 +17,17 @@ from fretc.audit.measurements.tallies import tally
 from fretc.audit.measurements.trials import Count, Trials
 from fretc.audit.measurements.violations import Demand, Moment, violations
 from fretc.audit.phases.by_shift import Phases, phases
+from fretc.logs import log_diagnostics
 from fretc.logs.likeness import fingerprint
 from fretc.logs.signals.rates import slow_topics
 from fretc.logs.signals.samples import Recording
 from fretc.logs.signals.signals import blind_zones
 from fretc.logs.signals.traces import Timeline, Trace, trace
+from fretc.logs.signals.words import Foreign, shown
+from fretish import expressions as e
 from fretish.bindings.amounts import scaled, shared_unit, value
 from fretish.bindings.declarations import Declarations, Signal
+from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.printer import expression
 from fretish.units import base_name
 from monitors import kernel
@@ -60,14 +66,35 @@ def signals_of(declarations: Declarations, propositions: Sequence[str]) -> tuple
 def examined(
     recording: Recording, declarations: Declarations, propositions: Sequence[str]
 ) -> Recording:
-    """The recording, with what its sensors cannot see and which of its topics are too slow."""
+    """The recording, with further findings about the signals that the propositions read.
+
+    What sensors cannot see, which topics are too slow, and which samples are no truth value.
+    """
     slow = slow_topics(declarations, recording, signals_of(declarations, propositions))
     blind = (
         finding
         for name in propositions
         for finding in blind_zones(declarations.propositions[name], declarations, recording.nearest)
     )
-    return replace(recording, findings=(*recording.findings, *blind, *slow))
+    expressions = [declarations.propositions[name].expression for name in propositions]
+    flags = dict.fromkeys(name.id for each in expressions for name in e.truths(each))
+    untrue = (_untrue(declarations.signals[name], recording) for name in flags)
+    found = (*recording.findings, *filter(None, untrue), *blind, *slow)
+    return replace(recording, findings=found)
+
+
+def _untrue(signal: Signal, recording: Recording) -> Diagnostic | None:
+    """F424 where samples of a signal that stands for a truth value are neither 0 nor 1."""
+    samples = recording.samples.get(signal.name)
+    if samples is None:
+        return None
+    values = samples.values
+    (rows,) = np.nonzero(~np.isnan(values) & (values != 0) & (values != 1))
+    if not len(rows):
+        return None
+    foreign = Foreign(len(rows), int(rows[0]), shown(values[rows[0]]))
+    after = int(samples.times[rows[0]]) - recording.start_ns
+    return log_diagnostics.no_truth(signal, foreign, len(values), after)
 
 
 def audit(

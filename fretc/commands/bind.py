@@ -48,10 +48,10 @@ def bind(
     """Draft bindings from a log, or check what they see in logs.
 
     `--from LOG` prints a bindings.toml: the clock, a signal for each field whose meaning is known,
-    all other numbers as comments, and each proposition that the requirements name and no bindings
-    define, to be filled in. `--check LOG...` tells in how many ticks each proposition was true,
-    false and unknown, and how often it changed. Exit status of a check: 0 each proposition took
-    both values in some log, 3 one did not, 2 bad input.
+    all other numbers and texts as comments, and each proposition that the requirements name and no
+    bindings define, to be filled in. `--check LOG...` tells in how many ticks each proposition was
+    true, false and unknown, and how often it changed. Exit status of a check: 0 each proposition
+    took both values in some log, 3 one did not, 2 bad input.
     """
     if (source is None) == (not check):
         stop(_one_of_both())
@@ -102,16 +102,17 @@ def _project(requirements: str, bindings: str | None, *, given: bool, unread: st
 
 
 def _draft(log: str, project: Project, output: str, *, force: bool) -> None:
-    from fretc.audit.bindings.draft import draft, missing_propositions
+    from fretc.audit.bindings.draft import draft, durations, missing_propositions
     from fretc.logs.reader import look
 
     if output != "-" and not force and os.path.lexists(output):
         stop(_exists(output))
-    contents = look(log)
+    contents = look(log, words=True)
     if isinstance(contents, Diagnostic):
         stop(contents)
     say(contents.recording.findings)
-    deliver({Path(output): draft(contents, missing_propositions(project))}, (log,))
+    text = draft(contents, missing_propositions(project), durations(project))
+    deliver({Path(output): text}, (log,))
     raise SystemExit(SHOWN)
 
 

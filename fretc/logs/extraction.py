@@ -8,7 +8,7 @@ stream.
 from __future__ import annotations
 
 from collections.abc import Container, Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,13 +17,14 @@ from fretc.logs import log_diagnostics
 from fretc.logs.mcap.container import Stream
 from fretc.logs.mcap.damage import LATEST
 from fretc.logs.mcap.payloads import Payloads, Places
-from fretc.logs.messages.decoding import Decode, decoder, is_single, shape, stamp
+from fretc.logs.messages.decoding import Decode, constants, decoder, is_single, shape, stamp
 from fretc.logs.messages.layouts import Group, Layout, Layouts, Location, Shape, Where
 from fretc.logs.messages.probes import trusted
 from fretc.logs.messages.vectorized import nearest, samples, siblings
 from fretc.logs.signals.samples import EXACT, Numbers, Times, Values, widest
 from fretc.logs.signals.signals import RANGE_MIN, FieldError, is_chosen, sample
 from fretc.logs.signals.signals import nearest as nearest_of_one
+from fretc.logs.signals.words import Foreign, shown, word, words
 from fretish.bindings.declarations import Reduce, Signal
 from fretish.diagnostics.diagnostic import Diagnostic
 
@@ -50,6 +51,10 @@ class Extract:
     stamps: Times
     stamped: NDArray[np.bool_]
     nearest: dict[str, float] = field(default_factory=dict)
+    foreign: dict[str, NDArray[np.bool_]] = field(default_factory=dict)
+    """Of a signal of words in which messages it is none of them; absent: in none."""
+    texts: dict[str, tuple[int, str]] = field(default_factory=dict)
+    """The first such message, and what it holds."""
 
     @classmethod
     def empty(cls, count: int, signals: Iterable[Signal], single: Container[str] = ()) -> Extract:
@@ -74,6 +79,35 @@ class Extract:
             self.values[signal.name] = self.values[signal.name].astype(EXACT, copy=False)
         self.values[signal.name][at] = numbers
 
+    def put_word(self, signal: Signal, at: int, word: float | str) -> None:
+        """Store the place of a word, or note a value that is none."""
+        if isinstance(word, str):
+            self._note(signal, np.array([at]), word)
+        else:
+            self.values[signal.name][at] = word
+
+    def put_words(self, signal: Signal, at: Places, numbers: Values) -> None:
+        """Store the words that some numbers mean."""
+        places, foreign = words(signal, numbers)
+        self.values[signal.name][at] = places
+        if foreign.any():
+            self._note(signal, at[foreign], shown(numbers[foreign][0]))
+
+    def _note(self, signal: Signal, at: Places, first: str) -> None:
+        """Note messages, in their order, that hold none of the words of a signal."""
+        rows = self.foreign.setdefault(signal.name, np.zeros(len(self.decoded), bool))
+        rows[at] = True
+        known, _ = self.texts.get(signal.name, (len(rows), ""))
+        if int(at[0]) < known:
+            self.texts[signal.name] = int(at[0]), first
+
+    def foreign_of(self, name: str, usable: NDArray[np.bool_]) -> Foreign | None:
+        """The values of a signal that are none of its words, among the usable messages."""
+        rows = self.foreign[name][usable] if name in self.foreign else np.zeros(0, bool)
+        if not rows.any():
+            return None
+        return Foreign(int(rows.sum()), int(rows.argmax()), self.texts[name][1])
+
     def near(self, signal: Signal, least: float | None) -> None:
         """Note the least distance that some messages state."""
         if least is not None:
@@ -94,6 +128,7 @@ class Extraction:
         """Signals of 32-bit floats."""
         if self._decode is not None:
             self._single = frozenset(s.name for s in signals if is_single(stream, s.path.fields))
+            self._name_numbers(stream)
         self._shape = _shape(stream, self._decode)
         self._sought: tuple[Where, ...] | None = None
         """The fields of the present layouts: fewer, once a signal was refused."""
@@ -126,6 +161,21 @@ class Extraction:
         self.signals.remove(signal)
         self.diagnostics[signal.name] = diagnostic
 
+    def _name_numbers(self, stream: Stream) -> None:
+        """Find the number of each word of a field of numbers, by its message's definition."""
+        for signal in tuple(self.signals):
+            if not signal.values or signal.numbers:
+                continue
+            known = constants(stream, signal.path.fields)
+            if known is None:
+                continue
+            numbers = tuple(known[word] for word in signal.values if word in known)
+            if len(set(numbers)) < len(signal.values):
+                self._refuse(signal, log_diagnostics.no_constant(signal, known))
+            else:
+                named = replace(signal, numbers=numbers)
+                self.signals[self.signals.index(signal)] = named
+
     # By the official decoder
 
     def _one_by_one(self, row: int, payload: bytes, extract: Extract) -> None:
@@ -139,9 +189,11 @@ class Extraction:
             extract.stamped[row] = True
         for signal in tuple(self.signals):
             try:
-                extract.put(
-                    signal, row, sample(signal, message, single=signal.name in self._single)
-                )
+                if signal.values:
+                    extract.put_word(signal, row, word(signal, message))
+                else:
+                    number = sample(signal, message, single=signal.name in self._single)
+                    extract.put(signal, row, number)
             except FieldError as error:
                 self._refuse(signal, log_diagnostics.no_field(signal, error))
                 continue
@@ -232,12 +284,14 @@ class Extraction:
             sibling_values = {name: _numbers(single[name,]) for name in siblings(signal)}
             field = locations[signal.path.fields]
             if field.count is None:
-                values = _matrix(single[signal.path.fields])
-                extract.put(signal, to, samples(signal, values, sibling_values))
+                matrix = _matrix(single[signal.path.fields])
+                values = samples(signal, matrix, sibling_values)
             else:
-                extract.put(
-                    signal, to, self._reduced(signal, payloads, rows, field, sibling_values)
-                )
+                values = self._reduced(signal, payloads, rows, field, sibling_values)
+            if signal.values:
+                extract.put_words(signal, to, values)
+            else:
+                extract.put(signal, to, values)
             if (RANGE_MIN,) in single and signal.reduce in (Reduce.MIN, Reduce.OUTLINE):
                 extract.near(signal, nearest(signal, _numbers(single[RANGE_MIN,])))
         places = _stamp_places(self._shape) if self._shape is not None else ()

@@ -4,16 +4,21 @@ from __future__ import annotations
 
 from fretc.logs.mcap.container import Stream
 from fretc.logs.mcap.messages import Messages, Sink
+from fretc.logs.vocabulary import Vocabulary
 
 _MOST, _MOST_BYTES = 20, 2**20
 """The most messages of a topic, and the most bytes of them."""
 
 
 class Examples:
-    """A sink that passes every message on, and keeps the first ones of topics in JSON."""
+    """A sink that passes every message on, and keeps the first ones of topics in JSON.
 
-    def __init__(self, sink: Sink) -> None:
+    Where a vocabulary is given it takes every message, too.
+    """
+
+    def __init__(self, sink: Sink, vocabulary: Vocabulary | None = None) -> None:
         self._sink = sink
+        self._vocabulary = vocabulary
         self._examples: dict[str, list[bytes]] = {}
 
     def of(self, topic: str) -> tuple[bytes, ...]:
@@ -31,6 +36,8 @@ class Examples:
         examples = self._open(stream)
         if examples is not None and len(payload) <= _MOST_BYTES:
             examples.append(bytes(payload))
+        if self._vocabulary is not None:
+            self._vocabulary.take(stream, payload)
         self._sink.add(stream, log_time, publish_time, payload)
 
     def add_all(self, stream: Stream, messages: Messages) -> None:
@@ -40,6 +47,9 @@ class Examples:
             payloads = messages.payloads
             some = (payloads.payload(i) for i in range(min(len(payloads), _MOST - len(examples))))
             examples += [bytes(payload) for payload in some if len(payload) <= _MOST_BYTES]
+        if self._vocabulary is not None:
+            for i in range(len(messages)):
+                self._vocabulary.take(stream, messages.payloads.payload(i))
         self._sink.add_all(stream, messages)
 
     def wants(self, topic: str) -> bool:

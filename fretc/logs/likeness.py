@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import hashlib
+import json
 
 import numpy as np
 
-from fretc.logs.signals.samples import Recording
+from fretc.logs.signals.samples import Recording, Samples, Values
 
 
 def fingerprint(recording: Recording) -> str | None:
@@ -19,10 +20,22 @@ def fingerprint(recording: Recording) -> str | None:
         return None
     digest = hashlib.sha256()
     for name, samples in sorted(recording.samples.items()):
-        values = samples.values.astype(np.float64)
+        values = _in_order(samples).astype(np.float64)
         values[np.isnan(values)] = np.nan
-        digest.update(f"{name} {len(values)} {samples.scale}\n".encode())
+        words = json.dumps(sorted(samples.words)) if samples.words else ""
+        digest.update(f"{name} {len(values)} {samples.scale}{words}\n".encode())
         digest.update(samples.times.astype("<i8").tobytes())
         digest.update(values.astype("<f8").tobytes())
     digest.update(np.asarray(recording.ticks).astype("<i8").tobytes())
     return digest.hexdigest()
+
+
+def _in_order(samples: Samples) -> Values:
+    """The values; those of words by the words in order: how bindings list them does not count."""
+    if not samples.words:
+        return samples.values
+    ranks = np.array([sorted(samples.words).index(word) for word in samples.words], np.float64)
+    known = ~np.isnan(samples.values)
+    ordered = np.full(len(samples.values), np.nan)
+    ordered[known] = ranks[samples.values[known].astype(np.intp)]
+    return ordered

@@ -6,18 +6,22 @@ are nanoseconds.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+import re
+from collections.abc import Collection, Mapping, Sequence
 
 from fretc.logs.mcap.damage import Damage
 from fretc.logs.messages.decoding import MissingExtra
 from fretc.logs.signals.samples import Gap
 from fretc.logs.signals.signals import FieldError
 from fretc.logs.signals.stamps import STILL
+from fretc.logs.signals.words import Foreign
 from fretc.logs.storage.storage_diagnostics import install
 from fretish.bindings.declarations import Signal, short_type
+from fretish.bindings.words import listed
 from fretish.clock import Clock, TimeSource
 from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity, suggestion
 from fretish.diagnostics.source import Span
+from fretish.reading.toml_text import as_key
 
 _SECOND = 10**9
 _MOST = 20
@@ -181,13 +185,76 @@ def never_stated(signal: Signal, paths: Collection[str]) -> Diagnostic:
     """Every message leaves out the field of the signal, as their type allows."""
     name = ".".join(signal.path.fields)
     numbers = [path.removesuffix("[:]") for path in paths]
+    what = "word" if signal.values else "number"
     near = suggestion(name, numbers)
-    listed = f"they state {', '.join(numbers[:8])}{', ...' if len(numbers) > 8 else ''}"
+    first = f"{', '.join(numbers[:8])}{', ...' if len(numbers) > 8 else ''}"
     return Diagnostic(
         Code.NO_FIELD,
-        f"no message of `{signal.path.topic}` states a number in `{name}`",
+        f"no message of `{signal.path.topic}` states a {what} in `{name}`",
         signal.span,
-        f"did you mean `{near}`?" if near else listed if numbers else "they state no number at all",
+        f"did you mean `{near}`?" if near else f"they state {first or f'no {what} at all'}",
+    )
+
+
+def no_constant(signal: Signal, known: Mapping[str, int]) -> Diagnostic:
+    """F340: the field holds numbers, and the definition of its messages does not name the words."""
+    name = ".".join(signal.path.fields)
+    missing = [word for word in signal.values if word not in known]
+    if not missing:
+        message = f"two values of `{signal.name}` are one number of `{name}`"
+        mend = "take one out"
+    else:
+        near = _constant(missing[0], known)
+        listed = f"it names {', '.join(list(known)[:8])}{', ...' if len(known) > 8 else ''}"
+        message = (
+            f"`{name}` of `{signal.path.topic}` is a number, and the definition of its messages "
+            f"has no constant `{missing[0]}`"
+        )
+        mend = (
+            f"did you mean `{near}`?"
+            if near
+            else f"{listed if known else 'it names none'}; or write the number of each word: "
+            f"`values = {{ {as_key(missing[0])} = 0 }}`"
+        )
+    return Diagnostic(Code.UNKNOWN_WORD, message, signal.span, mend)
+
+
+def _constant(word: str, known: Mapping[str, int]) -> str | None:
+    """The constant that is most likely meant: in capitals, behind a prefix, or misspelt."""
+    low = word.lower()
+    ends = [each for each in known if each.lower() == low or each.lower().endswith(f"_{low}")]
+    return ends[0] if ends else suggestion(word, known)
+
+
+def foreign_value(signal: Signal, foreign: Foreign, count: int, after: int) -> Diagnostic:
+    """F423: some samples are none of the words; the first one came so long after the log began."""
+    near = suggestion(foreign.text, signal.values)
+    is_number = re.fullmatch(r"-?[\d.]+", foreign.text) is not None
+    if is_number and not signal.numbers:
+        mend = "give the number of each word: `values = { drive = 0 }`"
+    elif signal.numbers and not is_number:
+        mend = 'the field holds texts: `values = ["drive"]`'
+    else:
+        mend = f"did you mean `{near}`?" if near else "add it, if it is one of them"
+    return Diagnostic(
+        Code.FOREIGN_VALUE,
+        f"{foreign.count} of {count} samples of `{signal.name}` are none of its values, the first "
+        f"one `{foreign.text}` at {_seconds(after)}: they are unknown",
+        signal.span,
+        f"its values are {listed(signal.values)}; {mend}",
+        Severity.WARNING,
+    )
+
+
+def no_truth(signal: Signal, foreign: Foreign, count: int, after: int) -> Diagnostic:
+    """F424: some samples of a signal that stands for a truth value are neither 0 nor 1."""
+    return Diagnostic(
+        Code.NO_TRUTH,
+        f"`{signal.name}` stands for a truth value, and {foreign.count} of {count} samples are "
+        f"neither 1 nor 0, the first one {foreign.text} at {_seconds(after)}: they are unknown",
+        signal.span,
+        f"is it a number? Then compare it: `{signal.name} > 0`",
+        Severity.WARNING,
     )
 
 

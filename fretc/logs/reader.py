@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import partial, reduce
 from operator import add
 
@@ -19,7 +19,8 @@ from fretc.logs.first_messages import Examples
 from fretc.logs.mcap.container import BrokenError
 from fretc.logs.mcap.damage import Damage
 from fretc.logs.mcap.messages import Sink
-from fretc.logs.messages.decoding import decoder, numbers
+from fretc.logs.messages.decoding import decoder, leaves
+from fretc.logs.messages.leaves import Leaves, numbers
 from fretc.logs.signals.integrity import Checked, Integrity
 from fretc.logs.signals.samples import Gap, Recording, Samples
 from fretc.logs.storage import storage_diagnostics
@@ -30,6 +31,7 @@ from fretc.logs.storage.parts import Numbered, Part, around, widened
 from fretc.logs.storage.splits import ACTIVE, run_name, split
 from fretc.logs.topic_columns import Columns
 from fretc.logs.topics import clocks, never_stated, topic
+from fretc.logs.vocabulary import Vocabulary, Words
 from fretish.bindings.declarations import Declarations, Signal
 from fretish.clock import Clock
 from fretish.diagnostics.diagnostic import Code, Diagnostic
@@ -45,10 +47,20 @@ class Overview:
 
     recording: Recording
     """By log times, without samples."""
-    numbers: Mapping[str, tuple[str, ...] | None]
+    leaves: Mapping[str, Leaves | None]
     """Of each topic the fields that a signal can read; None where its messages cannot be read."""
     reasons: Mapping[str, str]
     """Why not."""
+    words: Mapping[str, Words] = field(default_factory=dict)
+    """Of each topic the words of its texts, where they were asked for."""
+
+    @property
+    def numbers(self) -> Mapping[str, tuple[str, ...] | None]:
+        """Of each topic the paths of its numbers and truth values."""
+        return {
+            topic: None if leaves is None else numbers(leaves)
+            for topic, leaves in self.leaves.items()
+        }
 
 
 def read(
@@ -90,21 +102,23 @@ def _read_log(
     return _too_long(recording, columns.clock, place) or recording
 
 
-def look(path: str) -> Overview | Diagnostic:
+def look(path: str, *, words: bool = False) -> Overview | Diagnostic:
     """Read a log without any bindings: what is in it, and how healthy it is.
 
     Args:
         path: the file, as the user names it.
+        words: whether the words of texts are asked for, too: messages with texts are decoded.
 
     Returns:
         The overview, by log times; or what keeps the whole file from being read.
     """
-    return within(0, Source(shown(path), "").span(), partial(_look, path))
+    return within(0, Source(shown(path), "").span(), partial(_look, path, words))
 
 
-def _look(path: str) -> Overview | Diagnostic:
+def _look(path: str, words: bool) -> Overview | Diagnostic:
     nothing = Declarations(Source("", ""), Clock(None, None), {}, {})
-    found = _opened(path, lambda: Columns(nothing, ()), Integrity.FULL)
+    vocabulary = Vocabulary() if words else None
+    found = _opened(path, lambda: Columns(nothing, ()), Integrity.FULL, vocabulary)
     if isinstance(found, Diagnostic):
         return found
     place, run, columns, examples = found
@@ -112,8 +126,9 @@ def _look(path: str) -> Overview | Diagnostic:
     decoders = {topic: decoder(stream) for topic, stream in streams}
     return Overview(
         _recording(place, run, columns, examples, ()),
-        {topic: numbers(stream, examples.of(topic)) for topic, stream in streams},
+        {topic: leaves(stream, examples.of(topic)) for topic, stream in streams},
         {topic: why for topic, why in decoders.items() if isinstance(why, str)},
+        {topic: vocabulary.of(topic) for topic in columns.streams} if vocabulary else {},
     )
 
 
@@ -138,18 +153,23 @@ _Read = tuple[Span, _Run, Columns, Examples]
 """A log, and what has taken its messages."""
 
 
-def _opened(path: str, new: Callable[[], Columns], integrity: Integrity) -> _Read | Diagnostic:
+def _opened(
+    path: str,
+    new: Callable[[], Columns],
+    integrity: Integrity,
+    vocabulary: Vocabulary | None = None,
+) -> _Read | Diagnostic:
     """The log at a path: a file, standard input, what is at a URL, or a folder of rosbag2."""
     place = Source(shown(path), "").span()
     try:
         if is_folder(path):
-            return _tried(partial(_folder, folder(path)), place, new, integrity)
+            return _tried(partial(_folder, folder(path)), place, new, integrity, vocabulary)
         if not os.path.lexists(path) and (run := split(path)) is not None:
-            return _tried(partial(_folder, run), place, new, integrity)
+            return _tried(partial(_folder, run), place, new, integrity, vocabulary)
         with opened(path, whole=integrity is not Integrity.INDEX) as log:
             if isinstance(log, Diagnostic):
                 return log
-            return _tried(partial(_file, path, log), place, new, integrity)
+            return _tried(partial(_file, path, log), place, new, integrity, vocabulary)
     except OSError as error:
         return storage_diagnostics.unreadable(error, place)
 
@@ -159,15 +179,16 @@ def _tried(
     place: Span,
     new: Callable[[], Columns],
     integrity: Integrity,
+    vocabulary: Vocabulary | None,
 ) -> _Read | Diagnostic:
     """Read a log; once more, in full, where it is not as its index says."""
     columns = new()
-    examples = Examples(columns)
+    examples = Examples(columns, vocabulary)
     try:
         run = use(examples, integrity, place)
     except BrokenError:
         assert integrity is not Integrity.FULL
-        return _tried(use, place, new, Integrity.FULL)
+        return _tried(use, place, new, Integrity.FULL, vocabulary)
     columns.settle()
     return run if isinstance(run, Diagnostic) else (place, run, columns, examples)
 
@@ -269,7 +290,10 @@ def _recording(
     gaps = tuple(sorted({columns.on_clock(gap) for gap in lost}))
     origin = min(start for start, _ in [*run.spans, *lost])
     told = [log_diagnostics.damaged(damage, gap, origin, file) for file, damage, gap in run.damages]
-    samples = {signal.name: Samples(*columns.samples(signal), signal.scale) for signal in wanted}
+    samples = {
+        signal.name: Samples(*columns.samples(signal), signal.scale, signal.values)
+        for signal in wanted
+    }
     start, end = columns.span((min(a for a, _ in run.spans), max(b for _, b in run.spans)))
     return Recording(
         name=place.source.name,

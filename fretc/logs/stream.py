@@ -12,7 +12,7 @@ from __future__ import annotations
 from array import array
 from bisect import bisect_left, bisect_right
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from math import isnan
 from typing import Any
 
@@ -32,6 +32,7 @@ from fretc.logs.signals.signals import (
     sample,
 )
 from fretc.logs.signals.traces import origin, proposition_states
+from fretc.logs.signals.words import UNKNOWN, Foreign, shown, word
 from fretish import expressions as e
 from fretish.bindings.declarations import Declarations, Signal
 from fretish.diagnostics.diagnostic import Code, Diagnostic
@@ -67,7 +68,14 @@ class Stream:
             (lookback(declarations.propositions[name].expression) for name in propositions),
             default=0,
         )
-        self._queues = {name: _Queue(signal) for name, signal in declarations.signals.items()}
+        flags = {
+            name.id
+            for proposition in propositions
+            for name in e.truths(declarations.propositions[proposition].expression)
+        }
+        self._queues = {
+            name: _Queue(signal, name in flags) for name, signal in declarations.signals.items()
+        }
         self._clock_times: list[int] = []
         """Messages of the clock's topic, from the time that has passed on."""
         self._firsts: dict[str, int] = {}
@@ -81,8 +89,10 @@ class Stream:
     # Samples
 
     def add(self, name: str, time: int, value: object) -> Diagnostic | None:
-        """One sample of a signal: what its field holds, a number or an array of them."""
+        """One sample of a signal: what its field holds, a number, an array of them, or a word."""
         signal = self._declarations.signals[name]
+        if signal.numbers and isinstance(value, str) and value in signal.values:
+            value = signal.numbers[signal.values.index(value)]
         if self._declarations.clock.period is None:
             return _needs_messages(self._declarations)
         message = value
@@ -105,7 +115,7 @@ class Stream:
         if wrong is not None:
             return wrong
         read = Message(message)
-        values: list[tuple[_Queue, float, np.dtype[Any] | None]] = []
+        values: list[tuple[_Queue, float, np.dtype[Any] | None, str]] = []
         for signal in signals:
             found = _value(signal, read)
             if isinstance(found, Diagnostic):
@@ -115,8 +125,8 @@ class Stream:
             if wrong is not None:
                 return wrong
             values.append((queue, *found))
-        for queue, value, kind in values:
-            queue.put(time, value, kind)
+        for queue, value, kind, foreign in values:
+            queue.put(time, value, kind, foreign)
         self._firsts[topic] = min(time, self._firsts.get(topic, time))
         self._end = max(self._end, time)
         if topic == self._declarations.clock.topic:
@@ -144,6 +154,15 @@ class Stream:
                 help="let time pass only up to where no message can come any more",
             )
         return None
+
+    @property
+    def findings(self) -> tuple[Diagnostic, ...]:
+        """About samples that are none of the values of their signal, or no truth value: unknown."""
+        return tuple(
+            finding
+            for queue in self._queues.values()
+            if (finding := queue.finding(min(self._firsts.values(), default=0))) is not None
+        )
 
     # Ticks
 
@@ -315,10 +334,25 @@ class _Queue:
     """The samples of one signal, in order of time; equal times in the order in which they came."""
 
     signal: Signal
+    is_flag: bool
+    """Whether it stands for a truth value."""
     times: list[int] = field(default_factory=list)
     values: list[float] = field(default_factory=list)
     kind: np.dtype[Any] | None = None
     """None: every sample is unknown."""
+    count: int = 0
+    """All samples so far."""
+    foreign: Foreign | None = None
+    """Those that are no value of the signal, or no truth value."""
+    first_foreign: int = 0
+    """When the first of them was."""
+
+    def finding(self, start: int) -> Diagnostic | None:
+        """F423 or F424, where samples were foreign; the stream began at `start`."""
+        if self.foreign is None:
+            return None
+        find = log_diagnostics.no_truth if self.is_flag else log_diagnostics.foreign_value
+        return find(self.signal, self.foreign, self.count, self.first_foreign - start)
 
     def refusal(self, kind: np.dtype[Any] | None, passed: int) -> Diagnostic | None:
         """F421: in a wider kind, samples that ticks have seen would compare otherwise."""
@@ -333,8 +367,15 @@ class _Queue:
             help="give all samples of a signal as numbers of one kind",
         )
 
-    def put(self, time: int, value: float, kind: np.dtype[Any] | None) -> None:
-        """One sample, behind those of the same time."""
+    def put(self, time: int, value: float, kind: np.dtype[Any] | None, foreign: str) -> None:
+        """One sample, behind those of the same time; `foreign` shows one that is no value."""
+        if not foreign and self.is_flag and value not in (0, 1) and not isnan(value):
+            foreign = shown(value)
+        if foreign:
+            self.first_foreign = time if self.foreign is None else self.first_foreign
+            one = Foreign(1, self.count, foreign)
+            self.foreign = self.foreign.followed(one) if self.foreign else one
+        self.count += 1
         if kind is not None:
             self.kind = kind if self.kind is None else np.promote_types(self.kind, kind)
         place = bisect_right(self.times, time)
@@ -350,7 +391,8 @@ class _Queue:
     def samples(self) -> Samples:
         """All that are left."""
         values = np.array(self.values, self.kind or np.float32)
-        return Samples(np.array(self.times, np.int64), values, self.signal.scale)
+        times = np.array(self.times, np.int64)
+        return Samples(times, values, self.signal.scale, self.signal.values)
 
 
 _WORDS = {4: "32-bit floats", 8: "64-bit floats", EXACT.itemsize: "whole numbers from 2^53 on"}
@@ -377,6 +419,11 @@ class Message(Sparse):
         declared = getattr(self._message, "get_fields_and_field_types", None)
         return tuple(declared()) if callable(declared) else fields(self._message)
 
+    def constant(self, name: str) -> int | None:
+        """A whole constant of the message's type, as those of ROS have them."""
+        found = getattr(type(self._message), name, None)
+        return found if isinstance(found, int) else None
+
     def field(self, name: str) -> object:
         """The value of a field; arrays of Python's `array` are those of NumPy."""
         if name not in self.names:
@@ -391,18 +438,43 @@ class Message(Sparse):
         return Message(value) if inner else value
 
 
-def _value(signal: Signal, message: Message) -> tuple[float, np.dtype[Any] | None] | Diagnostic:
-    """The sample, and of which kind of number it is; None: it is unknown."""
+def _value(
+    signal: Signal, message: Message
+) -> tuple[float, np.dtype[Any] | None, str] | Diagnostic:
+    """The sample, and of which kind of number it is; None: it is unknown.
+
+    Last, what it is where that is none of the values of its signal; else nothing.
+    """
     single = _is_single(signal, message)
+    signal = _named(signal, message)
     try:
-        value = sample(signal, message, single=single)
+        value = word(signal, message) if signal.values else sample(signal, message, single=single)
     except FieldError as error:
         return log_diagnostics.no_field(signal, error)
+    if isinstance(value, str):
+        return UNKNOWN, None, value
     if isinstance(value, int):
-        return value, EXACT
+        return value, EXACT, ""
     if isnan(value):
-        return value, None
-    return value, np.dtype(np.float32 if single and is_chosen(signal) else np.float64)
+        return value, None, ""
+    return value, np.dtype(np.float32 if single and is_chosen(signal) else np.float64), ""
+
+
+def _named(signal: Signal, message: Message) -> Signal:
+    """The signal with the numbers of its words, where the field's message has such constants."""
+    if not signal.values or signal.numbers:
+        return signal
+    holder: object = message
+    for name in signal.path.fields[:-1]:
+        holder = optional_field(holder, name)
+    if not isinstance(holder, Message) or isinstance(
+        optional_field(holder, signal.path.fields[-1]), str
+    ):
+        return signal
+    numbers = tuple(
+        number for each in signal.values if (number := holder.constant(each)) is not None
+    )
+    return replace(signal, numbers=numbers) if len(set(numbers)) == len(signal.values) else signal
 
 
 def _is_single(signal: Signal, message: Message) -> bool:

@@ -6,8 +6,8 @@ Times are nanoseconds. Only the messages of topics that the bindings name are de
 from __future__ import annotations
 
 from array import array
-from collections.abc import Sequence
-from dataclasses import dataclass, field
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,6 +20,7 @@ from fretc.logs.mcap.messages import Messages, Stamps
 from fretc.logs.mcap.payloads import Payloads
 from fretc.logs.signals.samples import Gap, Series, Times, Values
 from fretc.logs.signals.stamps import JUMP, placed, unset
+from fretc.logs.signals.words import Foreign
 from fretish.bindings.declarations import Declarations, Signal, short_type
 from fretish.clock import TimeSource
 from fretish.diagnostics.diagnostic import Diagnostic
@@ -73,6 +74,8 @@ class Column:
     values: dict[str, Series] = field(default_factory=dict)
     diagnostics: dict[str, Diagnostic] = field(default_factory=dict)
     """Why there are no samples of a signal."""
+    foreign: dict[str, Foreign] = field(default_factory=dict)
+    """Of a signal of words the samples that are none of them."""
     types: dict[str, None] = field(default_factory=dict)
     """The types of its messages, in the order in which they came."""
     pending: Pending | None = None
@@ -97,6 +100,7 @@ class Column:
         self.signals.remove(signal)
         self.diagnostics[signal.name] = diagnostic
         self.values.pop(signal.name, None)
+        self.foreign.pop(signal.name, None)
 
     def raw(self) -> tuple[Times, Times]:
         """Log times, and the times in the messages; in the order of the file."""
@@ -247,11 +251,17 @@ class Columns:
         times, dated = self._times(column, extract, logs, publishes)
         usable = times < LATEST
         column.undecoded += int((~usable).sum())
+        before = len(column.times)
         column.logs.frombytes(logs[usable].tobytes())
         column.times.frombytes(times[usable].tobytes())
         column.timeless.extend((~dated[usable]).tobytes())
         for signal in column.signals:
             column.values.setdefault(signal.name, Series()).add(extract.values[signal.name][usable])
+            foreign = extract.foreign_of(signal.name, usable)
+            if foreign is not None:
+                later = replace(foreign, first=before + foreign.first)
+                earlier = column.foreign.get(signal.name)
+                column.foreign[signal.name] = earlier.followed(later) if earlier else later
 
     def _extract(self, column: Column, stream: Stream, payloads: Payloads) -> Extract:
         """The data of the signals; a signal with a diagnostic gets no samples."""
@@ -341,7 +351,16 @@ class Columns:
         for topic, signal in {signal.path.topic: signal for signal in self._wanted}.items():
             if topic in self.topics:
                 diagnostics += self._oddities(self.topics[topic], signal)
-        return diagnostics
+        return [*diagnostics, *self._foreign_values()]
+
+    def _foreign_values(self) -> Iterator[Diagnostic]:
+        """About samples of signals of words that are none of them."""
+        for signal in self._wanted:
+            column = self.topics.get(signal.path.topic)
+            foreign = column.foreign.get(signal.name) if column else None
+            if column is not None and foreign is not None:
+                after = column.times[foreign.first] - self.span((0, 0))[0]
+                yield log_diagnostics.foreign_value(signal, foreign, column.count, after)
 
     def _problem(self, signal: Signal) -> Diagnostic | None:
         column = self.topics.get(signal.path.topic)

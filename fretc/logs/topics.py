@@ -9,7 +9,8 @@ import numpy as np
 
 from fretc.logs import log_diagnostics
 from fretc.logs.first_messages import Examples
-from fretc.logs.messages.json_messages import message_paths as stated_fields
+from fretc.logs.messages.json_messages import message_leaves
+from fretc.logs.messages.leaves import Kind
 from fretc.logs.signals.samples import Samples, Topic
 from fretc.logs.signals.stamps import JUMP, Stamps, stamps, still
 from fretc.logs.topic_columns import Column, Columns
@@ -27,7 +28,8 @@ def never_stated(
         payloads = examples.of(signal.path.topic)
         if not payloads or not len(values) or not np.isnan(values).all():
             continue
-        known = stated_fields(payloads)
+        leaves = message_leaves(payloads)
+        known = [p for p, leaf in leaves.items() if signal.values or leaf.kind is not Kind.TEXT]
         if ".".join(signal.path.fields) not in {path.removesuffix("[:]") for path in known}:
             found.append(log_diagnostics.never_stated(signal, known))
     return found

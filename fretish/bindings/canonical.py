@@ -68,7 +68,7 @@ def _proposition(proposition: Proposition) -> Any:
 def _signal(signal: Signal) -> Any:
     outline = signal.reduce is Reduce.OUTLINE
     invalid = signal.invalid
-    return {
+    meaning = {
         "path": str(signal.path),
         "unit": [list(signal.unit.dimension), str(signal.unit.factor)],
         "type": short_type(signal.type) if signal.type else None,
@@ -86,6 +86,16 @@ def _signal(signal: Signal) -> Any:
         "max_age": signal.max_age,
         "outline": [signal.footprint, signal.sensor] if outline else None,
     }
+    return meaning | {"values": _values(signal)} if signal.values else meaning
+
+
+def _values(signal: Signal) -> Any:
+    """The words with their numbers in the log; None: those of the message's definition.
+
+    The order of the words means nothing.
+    """
+    numbers = signal.numbers or [None] * len(signal.values)
+    return sorted([word, number] for word, number in zip(signal.values, numbers, strict=True))
 
 
 @deep
@@ -106,6 +116,8 @@ def expression(tree: e.Expression, *, plain: bool = True) -> Any:
             return ["number", str(Fraction(digits))]
         case e.Quantity(digits, name):
             return _quantity(digits, name, plain=plain)
+        case e.Word(text):
+            return ["word", text]
         case e.Arithmetic(op, _, _) | e.Comparison(op, _, _):
             kind = [type(tree).__name__, op]
         case e.Call(name, _):

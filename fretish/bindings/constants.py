@@ -35,8 +35,8 @@ def constants(expression: e.Expression) -> set[Exact]:
 
 
 def constant(expression: e.Expression) -> Exact | None:
-    """What is computed of numbers alone; None for a truth value, and for what is measured."""
-    if any(e.names(expression)):
+    """What is computed of numbers alone; None for a truth, a word, and for what is measured."""
+    if isinstance(expression, e.Word) or any(e.names(expression)):
         return None
     dimension = binding.dimension(expression, {}, Source("", "").span())
     assert not isinstance(dimension, Diagnostic), "the reader of bindings refuses the expression"

@@ -1,7 +1,7 @@
 """`bindings.toml` → clock, signals and propositions.
 
-Two layers: signals (numbers with units, read from messages) feed propositions (truth values,
-what a sentence names).
+Two layers: signals (numbers with units, or words, read from messages) feed propositions (truth
+values, what a sentence names).
 """
 
 from __future__ import annotations
@@ -95,8 +95,11 @@ def path(text: str) -> Path | None:
 
 @dataclass(frozen=True, slots=True)
 class Signal:
-    """A number over time, read from one field of one topic.
+    """A number, or a word, over time, read from one field of one topic.
 
+    `values` are the words that an enumerated signal may be: its samples are their places, from 0
+    on. `numbers` are those by which the messages mean the words, one for each; empty: the field
+    holds the words themselves, or the message's definition says which number each one is.
     `footprint` are the corners of the robot's outline and `sensor` is the pose of the sensor
     (x, y in metres, yaw in radians), both in the robot's frame; for `Reduce.OUTLINE` only.
     `max_age` is in nanoseconds; None: a sample counts until the next one.
@@ -113,6 +116,8 @@ class Signal:
     max_age: int | None = None
     footprint: tuple[tuple[float, float], ...] = ()
     sensor: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    values: tuple[str, ...] = ()
+    numbers: tuple[int, ...] = ()
     span: Span | None = field(default=None, compare=False, repr=False)
 
     @property

@@ -1,7 +1,7 @@
 """Expressions of bindings: text → `Expression`, and their dimensions.
 
-A small language of its own, never Python's: signals, numbers with units, comparisons,
-`and`/`or`/`not`, `abs`, `min`, `max`, and `... for 200 ms`.
+A small language of its own, never Python's: signals, numbers with units, words in quotes,
+comparisons, `and`/`or`/`not`, `abs`, `min`, `max`, and `... for 200 ms`.
 """
 
 from __future__ import annotations
@@ -123,6 +123,9 @@ class _Build(Transformer_NonRecursive[Token, Any]):
     def truth(self, children: list[Token]) -> e.Expression:
         return e.Truth(children[0] == "true")
 
+    def word(self, children: list[Token]) -> e.Expression:
+        return e.Word(str(children[0])[1:-1], self._span(children[0]))
+
     def name(self, children: list[Token]) -> e.Expression:
         return e.Name(str(children[0]), self._span(children[0]))
 
@@ -143,6 +146,9 @@ def dimension(
 ) -> Kind | Diagnostic:
     """What the expression is: a number of some dimension, or a truth value (None).
 
+    A word counts as the plain number that its signal has instead; where one may stand, `words`
+    knows.
+
     Args:
         expression: the expression.
         kinds: what each name in scope is.
@@ -153,7 +159,7 @@ def dimension(
             return None
         case e.Name(id, span):
             return kinds[id] if id in kinds else _unknown_name(id, kinds, span or place)
-        case e.Number():
+        case e.Number() | e.Word():
             return DIMENSIONLESS
         case e.Quantity(_, name, span):
             measure = unit(name)
@@ -187,6 +193,8 @@ def _truths(
         kind = dimension(arg, kinds, place)
         if isinstance(kind, Diagnostic):
             return kind
+        if isinstance(arg, e.Name) and kind == DIMENSIONLESS:
+            continue  # 1 is true, and 0 is false
         if kind is not None:
             return _wrong_kind("a truth value is needed, and this is a number", arg, place)
     return None
@@ -252,7 +260,7 @@ def _wrong_kind(message: str, part: e.Expression, place: Span) -> Diagnostic:
 
 def is_truth(expression: e.Expression) -> bool:
     """Whether it is true or false by its outermost operator; a name may be either."""
-    numbers = (e.Number, e.Quantity, e.Negation, e.Arithmetic, e.Call, e.Name)
+    numbers = (e.Number, e.Quantity, e.Word, e.Negation, e.Arithmetic, e.Call, e.Name)
     return not isinstance(expression, numbers)
 
 

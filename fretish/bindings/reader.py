@@ -30,11 +30,12 @@ from fretish.bindings.declarations import (
 )
 from fretish.bindings.fields import Fields
 from fretish.bindings.interceptor import Loop
+from fretish.bindings.words import words
 from fretish.clock import Clock, End, Rounding, TimeSource
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.source import Source, Span
 from fretish.reading.limits import within
-from fretish.reading.toml_text import Tables, read
+from fretish.reading.toml_text import Tables, as_key, read
 
 _TABLES = ("clock", "signal", "proposition", "variable", "interceptor", "assume")
 _TOPIC = re.compile(r"[A-Za-z_~/]\S*")
@@ -42,7 +43,14 @@ _TOPIC = re.compile(r"[A-Za-z_~/]\S*")
 _CLOCK = ("time", "tick", "phase", "end", "rounding")
 _SIGNAL = (
     "path", "type", "reduce", "unit", "valid", "invalid", "max_age", "footprint", "sensor",
+    "values",
 )  # fmt: skip
+_OF_NUMBERS = ("unit", "valid", "invalid", "reduce", "footprint", "sensor")
+"""Fields of a signal that mean nothing beside `values`."""
+_MOST_WORDS, _LONGEST_WORD = 1000, 100
+_EXACT = 2**53
+"""Numbers of words below it are exact in every field."""
+_NOWHERE = Path("", ())
 _PROPOSITION = ("text", "expr", "role", "agg", "on_unknown", "kind", "modality", "action")
 _INVALID = {
     "nan": "nan",
@@ -84,8 +92,8 @@ class _Reader(Fields):
         self.malformed: set[str] = set()
         self.mistakes: dict[Part, tuple[Diagnostic, ...]] = {}
         self.errors_of_parts = 0
-        self.units: dict[str, units.Unit] = {}
-        """The unit of every signal that has one, even where the signal has other mistakes."""
+        self.signals: dict[str, Signal] = {}
+        """Every signal that has a unit, or words, even where it has other mistakes."""
 
     @property
     def is_usable(self) -> bool:
@@ -233,23 +241,23 @@ class _Reader(Fields):
         at = ("signal", name)
         self._check_keys(table, _SIGNAL, f"[signal.{name}]", *at)
         where = self._path(table, (*at, "path"))
+        if "values" in table:
+            return self._enumerated(name, table, where)
         unit_name = self._field(table, (*at, "unit"), str, "a unit in quotes")
         if unit_name is None and "unit" not in table:
             unit_name = "1"
         unit = units.unit(unit_name) if unit_name is not None else None
         if unit is None and unit_name is not None:
             self.diagnostics.append(units.unknown_unit(unit_name, self.tables.value(*at, "unit")))
-        if unit is not None:
-            self.units[name] = unit
         reduce = self._reduce(table, at, where)
         valid = self._valid(table, (*at, "valid"))
         footprint = self._footprint(table, at, reduce)
-        if where is None or unit is None or unit_name is None:
-            return None
         type_ = self._field(table, (*at, "type"), str, "a message type in quotes")
-        return Signal(
+        if unit is None or unit_name is None:
+            return None
+        signal = Signal(
             name,
-            where,
+            where or _NOWHERE,
             unit,
             "" if unit_name == "1" else unit_name,
             type=type_,
@@ -261,10 +269,130 @@ class _Reader(Fields):
             sensor=self._sensor(table, at),
             span=self.tables.value(*at, "path"),
         )
+        self.signals[name] = signal
+        return signal if where is not None else None
+
+    def _enumerated(self, name: str, table: Mapping[str, Any], where: Path | None) -> Signal | None:
+        """A signal of words."""
+        at = ("signal", name)
+        for key in _OF_NUMBERS:
+            if key in table:
+                self._say(
+                    Code.BAD_BINDING_FIELD,
+                    f"a signal with `values` has no `{key}`: it is a word, and no number",
+                    self.tables.place(*at, key),
+                    "take it out",
+                )
+        if where is not None and where.each:
+            self._say(
+                Code.BAD_BINDING_FIELD,
+                "a signal with `values` is one word, and `[:]` is many",
+                self.tables.value(*at, "path"),
+                "name one element: `[0]`",
+            )
+        values, numbers = self._words(table["values"], (*at, "values"))
+        signal = Signal(
+            name,
+            where or _NOWHERE,
+            units.ONE,
+            "",
+            type=self._field(table, (*at, "type"), str, "a message type in quotes"),
+            max_age=self._max_age(table, at),
+            values=values,
+            numbers=numbers,
+            span=self.tables.value(*at, "path"),
+        )
+        if values:
+            self.signals[name] = signal
+        return signal if where is not None and values else None
+
+    def _words(
+        self, written: object, at: tuple[str, ...]
+    ) -> tuple[tuple[str, ...], tuple[int, ...]]:
+        """The words, and the number of each one; no words where there is a mistake."""
+        before = len(self.diagnostics)
+        if isinstance(written, dict):
+            values, numbers = [*written], [*written.values()]
+            self._check_numbers(written, at)
+        else:
+            values, numbers = written if isinstance(written, list) else [], []
+        if not values:
+            self._say(
+                Code.BAD_BINDING_FIELD,
+                "`values` must be a list of words, or a table of their numbers",
+                self.tables.value(*at),
+                'write `values = ["drive", "docking"]` or `values = { drive = 0, docking = 4 }`',
+            )
+        if len(values) > _MOST_WORDS:
+            self._say(
+                Code.BAD_BINDING_FIELD,
+                f"`values` has {len(values)} words; {_MOST_WORDS} is the most",
+                self.tables.value(*at),
+            )
+        for place, word in enumerate(values[:_MOST_WORDS]):
+            self._check_word(word, values[:place], at)
+        if len(self.diagnostics) > before:
+            return (), ()
+        return tuple(values), tuple(numbers)
+
+    def _check_word(self, word: object, before: list[Any], at: tuple[str, ...]) -> None:
+        if (
+            not isinstance(word, str)
+            or not word.isprintable()
+            or '"' in word
+            or not 0 < len(word) <= _LONGEST_WORD
+        ):
+            message, mend = (
+                f"a word must be a text of 1 to {_LONGEST_WORD} characters on one line, without "
+                "a double quote",
+                'write such as `values = ["drive", "docking"]`',
+            )
+        elif word in before:
+            message, mend = f"`{word}` stands twice in `values`", "take one out"
+        else:
+            return
+        self._say(Code.BAD_BINDING_FIELD, message, self._last_in(at, word), mend)
+
+    def _check_numbers(self, written: Mapping[str, Any], at: tuple[str, ...]) -> None:
+        words: dict[int, str] = {}
+        for word, number in written.items():
+            place = self.tables.value(*at, word)
+            if not isinstance(number, int) or isinstance(number, bool) or abs(number) >= _EXACT:
+                self._say(
+                    Code.BAD_BINDING_FIELD,
+                    f"the number of `{word}` must be a whole number below 2^53",
+                    place,
+                    f"write the one that the messages have for it: `{as_key(word)} = 4`",
+                )
+            elif number in words:
+                self._say(
+                    Code.BAD_BINDING_FIELD,
+                    f"`{words[number]}` and `{word}` are both {number}",
+                    place,
+                    "give each word a number of its own",
+                )
+            else:
+                words[number] = word
+
+    def _last_in(self, at: tuple[str, ...], word: object) -> Span:
+        """Where a text stands in the value of a field, for the last time; else the whole value."""
+        value = self.tables.value(*at)
+        start = value.text.rfind(word) if isinstance(word, str) and word else -1
+        return value.part(start, start + len(str(word))) if start >= 0 else value
 
     def _valid(self, table: Mapping[str, Any], at: tuple[str, ...]) -> e.Expression | None:
         valid = self._expression(table, at)
-        if valid is None or binding.is_truth(valid):
+        if valid is None:
+            return None
+        if any(isinstance(part, e.Word) for part in e.parts(valid)):
+            self._say(
+                Code.BAD_EXPRESSION,
+                "`valid` is about numbers, and this compares a word",
+                self.tables.value(*at),
+                "a signal of words has `values`, and no `valid`",
+            )
+            return None
+        if binding.is_truth(valid):
             return valid
         self._say(
             Code.BAD_EXPRESSION,
@@ -387,12 +515,13 @@ class _Reader(Fields):
                 self.tables.place(*at),
                 'add `expr = "min_range < 5 cm"`',
             )
-        expression = self._expression(table, (*at, "expr"))
-        if expression is None:
+        written = self._expression(table, (*at, "expr"))
+        if written is None:
             return None
-        signals = dict.fromkeys(name.id for name in e.names(expression))
-        self._keep(at, [m for name in signals for m in self.mistakes.get(("signal", name), ())])
-        if not self._is_truth(expression, at):
+        names = dict.fromkeys(name.id for name in e.names(written))
+        self._keep(at, [m for name in names for m in self.mistakes.get(("signal", name), ())])
+        expression = self._truth(written, at)
+        if expression is None:
             return None
         if table.get("agg", Aggregate.LAST) == Aggregate.LAST:
             last = f"proposition {name}: the last sample of a tick counts"
@@ -410,12 +539,19 @@ class _Reader(Fields):
             span=self.tables.value(*at, "expr"),
         )
 
-    def _is_truth(self, expression: e.Expression, at: tuple[str, ...]) -> bool:
+    def _truth(self, written: e.Expression, at: tuple[str, ...]) -> e.Expression | None:
+        """The expression with its words; None where it cannot be a proposition."""
         place = self.tables.value(*at, "expr")
-        unknown = self._tables("signal").keys() - self.units.keys()
-        if any(name.id in unknown for name in e.names(expression)):
-            return False  # the signal has a diagnostic of its own
-        kinds = {name: unit.dimension for name, unit in self.units.items()}
+        unknown = self._tables("signal").keys() - self.signals.keys()
+        if any(name.id in unknown for name in e.names(written)):
+            return None  # the signal has a diagnostic of its own
+        expression = words(written, self.signals, place)
+        if isinstance(expression, Diagnostic):
+            self.diagnostics.append(expression)
+            return None
+        kinds = {name: signal.unit.dimension for name, signal in self.signals.items()}
+        if isinstance(expression, e.Name) and expression.id in kinds:
+            return expression
         kind = binding.dimension(expression, kinds, place)
         if isinstance(kind, Diagnostic):
             self.diagnostics.append(kind)
@@ -427,9 +563,9 @@ class _Reader(Fields):
                 "compare it: `min_range < 5 cm`",
             )
         else:
-            percents = {name for name, unit in self.units.items() if unit == units.PERCENT}
+            percents = {n for n, signal in self.signals.items() if signal.unit == units.PERCENT}
             self.diagnostics.extend(binding.plain_percents(expression, percents, place))
-        return kind is None
+        return expression if kind is None else None
 
     # Variables that are not bound
 

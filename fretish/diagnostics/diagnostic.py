@@ -90,6 +90,8 @@ class Code(Enum):
     WHICH_UNIT = ("F350", "a bare number stands beside signals in several units")
     PROSE_DRIFT = ("F351", "title or text state another number than the requirement")
     AMBIGUOUS_UNIT = ("F339", "a part of a unit is the name of a signal too")
+    UNKNOWN_WORD = ("F340", "a word is none of the values of its signal")
+    AMBIGUOUS_WORD = ("F341", "a word is the name of a signal too")
 
     UNREADABLE_LOG = ("F401", "the log cannot be read")
     NOT_A_LOG = ("F402", "the file is not an MCAP log")
@@ -113,6 +115,8 @@ class Code(Enum):
     STILL_CLOCK = ("F420", "the clock of a topic stands still")
     SEVERAL_TYPES = ("F421", "a topic has messages of several types")
     REINDEXED = ("F422", "a bag was reindexed, and has lost what was being written")
+    FOREIGN_VALUE = ("F423", "samples are none of the values that their signal may have")
+    NO_TRUTH = ("F424", "samples that stand for a truth value are neither 0 nor 1")
 
     PHASE_DEPENDENT = ("F425", "a verdict depends on where the grid of ticks begins")
     PHASES_NOT_JUDGED = ("F426", "a verdict was not computed for all phases of the ticks")

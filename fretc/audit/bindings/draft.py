@@ -1,7 +1,7 @@
 """A draft of `bindings.toml`: what a log offers to bind, and what the requirements still need.
 
 It is text for a person to edit. What is known of a message's type is written out; every other
-number stands there as a comment. Times are nanoseconds.
+number or text stands there as a comment. Times are nanoseconds.
 """
 
 from __future__ import annotations
@@ -9,18 +9,21 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from math import gcd
 
 from compiler.files.edition import __version__
 from compiler.files.templating import render
 from compiler.formalization.formalized import Formalized
 from compiler.project.folder import Project
 from fretc.audit.bindings.quantities import QUANTITIES, Quantity
+from fretc.logs.messages.leaves import Kind, Leaves, numbers
 from fretc.logs.reader import Overview
 from fretc.logs.signals.samples import Topic
+from fretc.logs.vocabulary import Words
 from fretish import expressions as e
 from fretish import syntax as s
 from fretish.bindings.declarations import Role, path, short_type
-from fretish.clock import in_words
+from fretish.clock import NANOSECONDS, in_words
 
 _TICK = 100 * 10**6
 """Where no topic has a rate."""
@@ -28,6 +31,10 @@ _FAST = 220 * 10**6
 """A topic that comes no less often than this can set the tick; slower ones are held."""
 _AGES = 3
 """Periods of its topic up to which a sample counts."""
+_SHORTEST = 10**6
+"""No tick is shorter."""
+_ROUND = (10, 12, 15, 20, 25, 30, 35, 40, 50, 60, 75, 90)
+"""What an age is rounded up to, times a power of ten."""
 _FEW = 10
 """Messages; fewer are events, and have no rate."""
 
@@ -42,6 +49,8 @@ class Drafted:
     quantity: Quantity
     max_age: str
     """Empty: the topic has no rate."""
+    values: tuple[str, ...] = ()
+    """The words that a text has in the log."""
 
     @property
     def path(self) -> str:
@@ -50,12 +59,20 @@ class Drafted:
 
 
 @dataclass(frozen=True, slots=True)
+class Other:
+    """A field that nothing is drafted of, and the words that it may be."""
+
+    path: str
+    values: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
 class TopicDraft:
-    """A topic with its signals, and the paths of its other numbers."""
+    """A topic with its signals, and its other numbers and texts."""
 
     title: str
     signals: tuple[Drafted, ...]
-    others: tuple[str, ...]
+    others: tuple[Other, ...]
     remark: str
     """Why nothing of it can be bound; empty where something can."""
 
@@ -70,14 +87,22 @@ class MissingProposition:
     aggregate: str
 
 
-def draft(overview: Overview, missing: Sequence[MissingProposition]) -> str:
+def draft(
+    overview: Overview, missing: Sequence[MissingProposition], durations: Sequence[int] = ()
+) -> str:
     """The text of a `bindings.toml`.
 
-    Without missing propositions it can be read as it is; each of these is an error until edited.
+    Without missing propositions it can be read as it is; each of these is an error until edited,
+    but for one that is called as a signal that is true or false.
+
+    Args:
+        overview: of a log, with its words.
+        missing: propositions that sentences name and nothing declares.
+        durations: those of the sentences; each is a whole number of ticks.
     """
     topics = _topics(overview)
     signals = [signal for topic in topics for signal in topic.signals]
-    tick, why = _tick(overview, signals)
+    tick, why = _dividing(*_tick(overview, signals), durations)
     return render(
         "bindings/bindings.toml.j2",
         version=__version__,
@@ -86,9 +111,8 @@ def draft(overview: Overview, missing: Sequence[MissingProposition]) -> str:
         why=why,
         topics=topics,
         missing=missing,
-        example=f"{signals[0].name} < 0.5 {signals[0].quantity.unit}".strip()
-        if signals
-        else "x < 5 cm",
+        flags={signal.name for signal in signals if _is_flag(overview, signal)},
+        example=_example(overview, signals),
     )
 
 
@@ -103,7 +127,7 @@ def plain_signals(overview: Overview) -> tuple[Drafted, ...]:
     return tuple(
         _named(_plain(topic, field), taken)
         for name, topic in overview.recording.topics.items()
-        for field in overview.numbers.get(name) or ()
+        for field in numbers(overview.leaves.get(name) or {})
         if topic.count and "[" not in field and _is_worth(field) and path(f"{name}.{field}")
     )
 
@@ -111,6 +135,23 @@ def plain_signals(overview: Overview) -> tuple[Drafted, ...]:
 def _plain(topic: Topic, field: str) -> Drafted:
     name = _word(f"{topic.name}_{field}")
     return Drafted(name, topic.name, short_type(topic.type), Quantity(field, ""), _max_age(topic))
+
+
+def _is_flag(overview: Overview, signal: Drafted) -> bool:
+    leaves = overview.leaves.get(signal.topic) or {}
+    return leaves[signal.quantity.field].kind is Kind.FLAG
+
+
+def _example(overview: Overview, signals: Sequence[Drafted]) -> str:
+    """An expression over the first signal."""
+    if not signals:
+        return "x < 5 cm"
+    first = signals[0]
+    if first.values:
+        return f"{first.name} == '{first.values[0]}'"
+    if _is_flag(overview, first):
+        return first.name
+    return f"{first.name} < 0.5 {first.quantity.unit}".strip()
 
 
 # Propositions
@@ -131,6 +172,13 @@ def missing_propositions(project: Project) -> tuple[MissingProposition, ...]:
             if name not in defined:
                 users.setdefault(name, []).append(rule)
     return tuple(_missing_proposition(name, rules) for name, rules in users.items())
+
+
+def durations(project: Project) -> tuple[int, ...]:
+    """Those of the requirements, in nanoseconds; ticks are none."""
+    timings = [rule.sentence.timing for rule in project.rules]
+    found = [t.duration for t in timings if isinstance(t, s.Within | s.For | s.After)]
+    return tuple(d.amount * NANOSECONDS[d.unit] for d in found if d.unit in NANOSECONDS)
 
 
 def _missing_proposition(name: str, rules: Sequence[Formalized]) -> MissingProposition:
@@ -162,19 +210,26 @@ def _topics(overview: Overview) -> list[TopicDraft]:
     names: set[str] = set()
     drafts = []
     for name, topic in overview.recording.topics.items():
-        numbers = overview.numbers.get(name)
-        drafted = _drafted(topic, numbers or ())
+        leaves, words = overview.leaves.get(name), overview.words.get(name, {})
+        drafted = _drafted(topic, leaves or {}, words)
         signals = tuple(_named(signal, names) for signal in drafted)
         paths_of_signals = {signal.path for signal in signals}
-        paths = [f"{name}.{field}" for field in numbers or () if _is_worth(field)]
+        fields = {
+            f"{name}.{field}": (*leaf.names, *(words.get(field) or ()))
+            for field, leaf in (leaves or {}).items()
+            if _is_worth(field) and (leaf.kind is not Kind.TEXT or words.get(field))
+        }
         others = tuple(
-            each for each in paths if each not in paths_of_signals and path(each) is not None
+            Other(each, values)
+            for each, values in fields.items()
+            if each not in paths_of_signals and path(each) is not None
         )
-        drafts.append(TopicDraft(_title(topic), signals, others, _remark(topic, numbers, paths)))
+        remark = _remark(topic, leaves, [*fields])
+        drafts.append(TopicDraft(_title(topic), signals, others, remark))
     return drafts
 
 
-def _drafted(topic: Topic, numbers: Sequence[str]) -> list[Drafted]:
+def _drafted(topic: Topic, leaves: Leaves, words: Words) -> list[Drafted]:
     """The signals of a topic, where its type is well known; with names that are not yet unique."""
     if not topic.count:
         return []
@@ -187,9 +242,11 @@ def _drafted(topic: Topic, numbers: Sequence[str]) -> list[Drafted]:
             type_,
             quantity,
             _max_age(topic),
+            words.get(quantity.field) or (),
         )
         for quantity in QUANTITIES.get(type_, ())
-        if quantity.field in numbers and path(f"{topic.name}.{quantity.field}") is not None
+        if quantity.field in leaves and path(f"{topic.name}.{quantity.field}") is not None
+        if leaves[quantity.field].kind is not Kind.TEXT or words.get(quantity.field)
     ]
 
 
@@ -216,11 +273,11 @@ def _is_worth(field: str) -> bool:
     return not re.match(r"(?:header|stamp)\.", field) and "covariance" not in field
 
 
-def _remark(topic: Topic, numbers: Sequence[str] | None, paths: Sequence[str]) -> str:
-    if numbers is None:
+def _remark(topic: Topic, leaves: Leaves | None, paths: Sequence[str]) -> str:
+    if leaves is None:
         return f"its messages cannot be read (encoded as `{topic.encoding}`)"
     if not paths:
-        return "no number has a place of its own in its messages"
+        return "no number, and no text of few words, has a place of its own in its messages"
     if path(paths[0]) is None:
         return "no path can name a topic that is called so"
     return ""
@@ -254,7 +311,7 @@ def _period(topic: Topic) -> int | None:
 
 def _max_age(topic: Topic) -> str:
     period = _period(topic)
-    return "" if period is None else in_words(_nice(_AGES * period, (10, 20, 30, 50)))
+    return "" if period is None else in_words(_nice(_AGES * period, _ROUND))
 
 
 def _tick(overview: Overview, signals: Sequence[Drafted]) -> tuple[int, str]:
@@ -268,6 +325,16 @@ def _tick(overview: Overview, signals: Sequence[Drafted]) -> tuple[int, str]:
     slowest = max(fast, key=fast.__getitem__) if fast else min(periods, key=periods.__getitem__)
     tick = _nice(int(periods[slowest] / 1.1), (10, 20, 25, 40, 50))
     return tick, f"{slowest} comes every {_rounded(periods[slowest])}"
+
+
+def _dividing(tick: int, why: str, durations: Sequence[int]) -> tuple[int, str]:
+    """The longest tick, up to the given one, of which each duration is a whole number."""
+    whole = gcd(*durations)
+    steps = (count * _SHORTEST for count in range(tick // _SHORTEST, 0, -1))
+    longest = next((step for step in steps if whole % step == 0), tick)
+    if whole % tick == 0 or longest == tick:
+        return tick, why
+    return longest, f"{why}; the durations of the requirements are whole numbers of ticks"
 
 
 def _nice(least: int, steps: Sequence[int]) -> int:

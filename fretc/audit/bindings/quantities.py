@@ -63,7 +63,8 @@ def _steered(prefix: str) -> tuple[Quantity, ...]:
 
 
 _PLAIN = (Quantity("data", "", note="a plain number: the type says no unit"),)
-_FLAG = (Quantity("data", "", note="true is 1, false is 0: compare with 0.5"),)
+_FLAG = (Quantity("data", "", note="true or false: its name alone is an expression"),)
+_WORD = (Quantity("data", "", note="the words of this log; add those that it lacks"),)
 
 QUANTITIES: Mapping[str, tuple[Quantity, ...]] = {
     "sensor_msgs/LaserScan": (
@@ -121,6 +122,7 @@ QUANTITIES: Mapping[str, tuple[Quantity, ...]] = {
     "ackermann_msgs/AckermannDrive": _steered(""),
     "ackermann_msgs/AckermannDriveStamped": _steered("drive."),
     "std_msgs/Bool": _FLAG,
+    "std_msgs/String": _WORD,
     **{
         f"std_msgs/{kind}": _PLAIN
         for kind in (

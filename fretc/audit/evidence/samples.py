@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 from itertools import pairwise
 from math import inf
-from typing import Annotated, Literal
+from typing import Annotated, Generic, Literal, TypeVar
 
-from compiler.files.records import Meta, Number, Record, Whole, about
+from compiler.files.records import UNSET, Meta, Number, Record, UnsetType, Whole, about
 
 _INFINITE = {"+inf": inf, "-inf": -inf}
 _FEW = Meta(max_length=50)
 
+Word = Annotated[str, Meta(min_length=1, max_length=100)]
+"""A value of an enumerated signal."""
 Reading = Annotated[
     Number | Literal["+inf", "-inf"] | None,
     about("in base units; +inf: nothing in range, -inf: too near to measure, null: unknown"),
@@ -30,10 +32,26 @@ class Series(Record, frozen=True):
 
     def __post_init__(self) -> None:
         """Raise ValueError where it is no series."""
-        if len(self.times_ns) != len(self.values):
-            raise ValueError("Expected as many times as values")
-        if any(late < early for early, late in pairwise(self.times_ns)):
-            raise ValueError("Expected times in their order")
+        _check(self.times_ns, self.values)
+
+
+def _check(times: Sequence[int], values: Sequence[object]) -> None:
+    """Raise ValueError where they are no series."""
+    if len(times) != len(values):
+        raise ValueError("Expected as many times as values")
+    if any(late < early for early, late in pairwise(times)):
+        raise ValueError("Expected times in their order")
+
+
+class WordSeries(Record, frozen=True):
+    """The same of a signal of words."""
+
+    times_ns: Annotated[tuple[Whole, ...], _FEW]
+    words: Annotated[tuple[Word | None, ...], _FEW]
+
+    def __post_init__(self) -> None:
+        """Raise ValueError where it is no series."""
+        _check(self.times_ns, self.words)
 
 
 class Surroundings(Record, frozen=True):
@@ -42,6 +60,9 @@ class Surroundings(Record, frozen=True):
     start_ns: Whole
     end_ns: Whole
     samples: dict[str, Series]
+    words: Annotated[
+        dict[str, WordSeries] | UnsetType, about("of signals of words; left out: there are none")
+    ] = UNSET
 
     def __post_init__(self) -> None:
         """Raise ValueError where it ends before its start."""
@@ -49,16 +70,19 @@ class Surroundings(Record, frozen=True):
             raise ValueError("Expected a stretch of time that ends after its start")
 
 
+T = TypeVar("T", float, str)
+
+
 @dataclass(frozen=True, slots=True)
-class Samples:
+class Samples(Generic[T]):
     """Of one signal: each value holds from its time on; None: unknown."""
 
     times: tuple[float, ...]
     """Seconds from the first tick, not decreasing; before it negative."""
-    values: tuple[float | None, ...]
-    """Of the same number; they may be infinite."""
+    values: tuple[T | None, ...]
+    """Of the same number; numbers may be infinite."""
 
-    def at(self, seconds: float) -> float | None:
+    def at(self, seconds: float) -> T | None:
         """The value in force; None where it is unknown or there is none yet."""
         values = [v for t, v in zip(self.times, self.values, strict=True) if t <= seconds]
         return values[-1] if values else None
@@ -70,7 +94,9 @@ class Window:
 
     start: float
     end: float
-    samples: Mapping[str, Samples]
+    samples: Mapping[str, Samples[float]]
+    words: Mapping[str, Samples[str]] = field(default_factory=dict)
+    """Those of signals of words."""
 
 
 def window(surroundings: Surroundings, first_ns: int) -> Window:
@@ -83,13 +109,19 @@ def window(surroundings: Surroundings, first_ns: int) -> Window:
     return Window(
         (surroundings.start_ns - first_ns) / 1e9,
         (surroundings.end_ns - first_ns) / 1e9,
-        {name: _samples(each, first_ns) for name, each in sorted(surroundings.samples.items())},
+        {
+            name: Samples(_seconds(each.times_ns, first_ns), tuple(map(number, each.values)))
+            for name, each in sorted(surroundings.samples.items())
+        },
+        {
+            name: Samples(_seconds(each.times_ns, first_ns), each.words)
+            for name, each in sorted((surroundings.words or {}).items())
+        },
     )
 
 
-def _samples(series: Series, first_ns: int) -> Samples:
-    times = tuple([(ns - first_ns) / 1e9 for ns in series.times_ns])
-    return Samples(times, tuple(map(number, series.values)))
+def _seconds(times: Sequence[int], first_ns: int) -> tuple[float, ...]:
+    return tuple([(ns - first_ns) / 1e9 for ns in times])
 
 
 def number(reading: float | str | None) -> float | None:

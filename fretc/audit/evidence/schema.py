@@ -32,7 +32,7 @@ from compiler.files.records import (
     replace,
 )
 from fretc.audit.evidence.probabilities import Estimated, Outcomes
-from fretc.audit.evidence.samples import Reading, Surroundings, Window, window
+from fretc.audit.evidence.samples import Reading, Surroundings, Window, Word, window
 from fretc.audit.measurements.tallies import Tally
 from fretc.audit.measurements.trials import Trials
 from fretc.audit.measurements.violations import Moment as Moment
@@ -72,8 +72,8 @@ class Violation(Record, frozen=True):
     ]
     missing: Annotated[str, about("the response that did not come, as the sentence writes it")]
     values: Annotated[
-        dict[str, Number | None],
-        about("each signal at the first tick, in its base unit; null: unknown"),
+        dict[str, Number | Word | None],
+        about("each signal at the first tick, in its base unit, or its word; null: unknown"),
     ]
     surroundings: Annotated[Surroundings | None, about("null after the first 100 violations")] = (
         field(name="window")

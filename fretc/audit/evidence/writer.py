@@ -11,7 +11,7 @@ from typing import TypeVar, cast
 from compiler.files.records import UNSET, UnsetType, decoded, plain
 from compiler.files.templating import to_json
 from fretc.audit.evidence.probabilities import Outcomes
-from fretc.audit.evidence.samples import Reading, Series, Surroundings
+from fretc.audit.evidence.samples import Reading, Series, Surroundings, WordSeries
 from fretc.audit.evidence.schema import (
     Answer,
     Checked,
@@ -40,6 +40,7 @@ from fretc.audit.measurements.violations import Violation as Broken
 from fretc.audit.phases.by_shift import Phases, Stretch
 from fretc.logs.signals.samples import Recording, Samples
 from fretc.logs.signals.samples import Topic as Read
+from fretc.logs.signals.words import word_at
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.diagnostics.rendering import as_json
 from monitors.kernel import Outcome
@@ -290,8 +291,14 @@ def _violation(broken: Broken) -> Violation:
 
 
 def _surroundings(window: Window) -> Surroundings:
-    samples = {name: _series(samples) for name, samples in window.samples.items()}
-    return Surroundings(window.start_ns, window.end_ns, samples)
+    numbers = {name: _series(each) for name, each in window.samples.items() if not each.words}
+    words = {name: _words(each) for name, each in window.samples.items() if each.words}
+    return Surroundings(window.start_ns, window.end_ns, numbers, words or UNSET)
+
+
+def _words(samples: Samples) -> WordSeries:
+    words = (word_at(float(value), samples.words) for value in samples.values)
+    return WordSeries(tuple(samples.times.tolist()), tuple(words))
 
 
 def _series(samples: Samples) -> Series:

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from compiler.files.records import Count, Record, Seconds, Whole
 from fretc.logs.signals.samples import Recording, Samples, Values, scaled
+from fretc.logs.signals.words import word_at
 from monitors.kernel import Outcome
 
 SURROUNDINGS = 10**9
@@ -66,8 +67,9 @@ class Violation:
     """By when the response had to come; None where nothing says so, or after the last tick."""
     missing: str
     """The response that did not come."""
-    values: Mapping[str, float | None]
-    """Each signal of the sentence at the first tick, in base units; None: unknown."""
+    values: Mapping[str, float | str | None]
+    """Each signal of the sentence at the first tick, a number in base units or a word; None:
+    unknown."""
     window: Window | None
     """None for violations after the first `MOST_WINDOWS`."""
 
@@ -130,7 +132,7 @@ def _cause(
 # Signals
 
 
-def value_at(recording: Recording, signal: str, ns: int) -> float | None:
+def value_at(recording: Recording, signal: str, ns: int) -> float | str | None:
     """The last sample of a signal at or before a time; None where there is none or it is unknown.
 
     Infinite values (nothing in range) are None too: JSON has no word for them.
@@ -139,6 +141,8 @@ def value_at(recording: Recording, signal: str, ns: int) -> float | None:
     if samples is None:
         return None
     i = int(np.searchsorted(samples.times, ns, "right")) - 1
+    if samples.words:
+        return word_at(float(samples.values[i]), samples.words) if i >= 0 else None
     value = scaled(float(samples.values[i]), samples.scale) if i >= 0 else float("nan")
     return value if np.isfinite(value) else None
 
@@ -165,7 +169,7 @@ def _around(samples: Samples, start: int, end: int, broken: int) -> Samples:
     upto = int(np.searchsorted(samples.times, end, "right"))
     times, values = samples.times[first:upto], samples.values[first:upto]
     places = _thinned(values, max(0, int(np.searchsorted(times, broken, "right")) - 1))
-    return Samples(times[places], values[places], samples.scale)
+    return Samples(times[places], values[places], samples.scale, samples.words)
 
 
 def _thinned(values: Values, always: int) -> NDArray[np.intp]:

@@ -101,8 +101,10 @@ def _lines(case: Result, signals: Mapping[str, Signal]) -> Iterator[str]:
     bounds = {name: _bounds(case, name, factor) for name, (_, factor) in units.items()}
     for broken in case.violations:
         values = ", ".join(
-            f"{name} = {value(scaled(number, units[name][1]), units[name][0], bounds[name])}"
-            for name, number in broken.values.items()
+            f'{name} = "{known}"'
+            if isinstance(known, str)
+            else f"{name} = {value(scaled(known, units[name][1]), units[name][0], bounds[name])}"
+            for name, known in broken.values.items()
         )
         stretch = f"{broken.start_s:.3f} s to {broken.end_s:.3f} s"
         yield f"{stretch}: {values}" if values else stretch

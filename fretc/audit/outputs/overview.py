@@ -8,6 +8,7 @@ from typing import Any
 
 from compiler.files.records import plain
 from fretc.audit.evidence.writer import health
+from fretc.logs.messages.leaves import Kind, Leaf
 from fretc.logs.reader import Overview
 from fretc.logs.signals.samples import Recording, Topic
 from fretish.diagnostics.rendering import visible
@@ -23,9 +24,12 @@ def as_record(overview: Overview) -> dict[str, Any]:
     recording = overview.recording
     record = plain(health(recording))
     for name, topic in record["topics"].items():
-        numbers = overview.numbers.get(name)
+        leaves = overview.leaves.get(name)
+        paths = {f"{name}.{path}": leaf for path, leaf in (leaves or {}).items()}
         topic["rate_hz"] = _rate(recording.topics[name])
-        topic["signals"] = None if numbers is None else [f"{name}.{path}" for path in numbers]
+        topic["signals"] = None if leaves is None else [*paths]
+        topic["kinds"] = {path: str(leaf.kind) for path, leaf in paths.items()}
+        topic["names"] = {path: dict(leaf.names) for path, leaf in paths.items() if leaf.names}
     return {
         "run": recording.name,
         "sha256": recording.sha256,
@@ -91,11 +95,20 @@ def _oddities(topic: Topic) -> Iterator[str]:
 
 def _fields(overview: Overview, name: str, *, whole: bool) -> Iterator[str]:
     """The fields that a signal can read."""
-    numbers = overview.numbers.get(name)
-    if numbers is None:
+    leaves = overview.leaves.get(name)
+    if leaves is None:
         yield f"cannot be read: {overview.reasons[name]}"
         return
-    listed = numbers if whole else numbers[:_MOST]
+    listed = list(leaves.items())[: None if whole else _MOST]
     if listed:
-        more = f", and {len(numbers) - len(listed)} more" if len(numbers) > len(listed) else ""
-        yield f"{', '.join(f'.{path}' for path in listed)}{more}"
+        more = f", and {len(leaves) - len(listed)} more" if len(leaves) > len(listed) else ""
+        yield f"{', '.join(_field(*each) for each in listed)}{more}"
+
+
+def _field(path: str, leaf: Leaf) -> str:
+    """A field, and what it holds where that is no plain number."""
+    if leaf.names:
+        few = ", ".join(list(leaf.names)[:_MOST])
+        return f".{path} ({few}{', ...' if len(leaf.names) > _MOST else ''})"
+    kinds = {Kind.NUMBER: "", Kind.FLAG: " (true or false)", Kind.TEXT: " (text)"}
+    return f".{path}{kinds[leaf.kind]}"

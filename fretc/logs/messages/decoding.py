@@ -6,7 +6,7 @@ A message definition may be any text, and a payload any bytes.
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import redirect_stderr, redirect_stdout
 from functools import lru_cache
 from io import StringIO
@@ -17,7 +17,9 @@ from fretc.logs.mcap.container import Stream
 from fretc.logs.messages import idl, protobuf
 from fretc.logs.messages import json_messages as jsontext
 from fretc.logs.messages.definitions import TooLargeError, types
-from fretc.logs.messages.layouts import Shape
+from fretc.logs.messages.definitions import constants as constants_of_ros
+from fretc.logs.messages.layouts import Shape, Where
+from fretc.logs.messages.leaves import Kind, Leaf, Leaves
 from fretc.logs.signals.signals import Sparse, fields, optional_field
 from fretish.bindings.declarations import short_type
 
@@ -63,7 +65,7 @@ def decoder(stream: Stream) -> Decode | str:
     try:
         match encoding, schema.encoding if schema is not None else "":
             case "json", "jsonschema" | "":
-                jsontext.schema_paths(schema.data if schema is not None else b"")
+                jsontext.schema_leaves(schema.data if schema is not None else b"")
                 return jsontext.decode
             case "protobuf", "protobuf":
                 return protobuf.decoder(stream)
@@ -107,8 +109,37 @@ def is_single(stream: Stream, where: Sequence[str]) -> bool:
     return field is not None and field.type == "float32"
 
 
+def constants(stream: Stream, where: Sequence[str]) -> Mapping[str, int] | None:
+    """The names that the definition of messages has for the numbers at that place of each.
+
+    Of ROS they are the constants of the type that has the field, of Protobuf those of its enum.
+
+    Args:
+        stream: of messages that can be decoded.
+        where: the names of fields from the message down.
+
+    Returns:
+        None where the field holds no numbers, or only each message tells.
+    """
+    if stream.channel.message_encoding == "protobuf":
+        return protobuf.constants(stream, where)
+    layout, schema = shape(stream), stream.schema
+    holder = layout.holder(tuple(where)) if layout is not None else None
+    if schema is None or holder is None:
+        return None
+    return _constants(schema.encoding, schema.name, schema.data).get(holder, {})
+
+
 _MOST = 256
 """Definitions that are kept: all logs of a robot have the same ones."""
+
+
+@lru_cache(_MOST)
+def _constants(encoding: str, name: str, data: bytes) -> Mapping[str, Mapping[str, int]]:
+    """Of each type that a message is made of; its definition has a shape."""
+    if encoding == "ros2idl":
+        return idl.constants(data.decode())
+    return constants_of_ros(name, data.decode())
 
 
 @lru_cache(_MOST)
@@ -125,8 +156,8 @@ def _shape(encoding: str, name: str, data: bytes) -> Shape | None:
     return Shape(short_type(name), definitions, cdr=not ros1)
 
 
-def numbers(stream: Stream, payloads: Sequence[bytes] = ()) -> tuple[str, ...] | None:
-    """The paths of all numbers in the messages of a stream: `a.b`, and `a.c[:]` for an array.
+def leaves(stream: Stream, payloads: Sequence[bytes] = ()) -> Leaves | None:
+    """The numbers, truth values and texts in the messages of a stream.
 
     Args:
         stream: of messages.
@@ -139,18 +170,38 @@ def numbers(stream: Stream, payloads: Sequence[bytes] = ()) -> tuple[str, ...] |
         return None
     match stream.channel.message_encoding:
         case "json":
-            paths = jsontext.schema_paths(stream.schema.data if stream.schema is not None else b"")
-            return tuple(dict.fromkeys((*paths, *jsontext.message_paths(payloads))))
+            named = jsontext.schema_leaves(stream.schema.data if stream.schema is not None else b"")
+            seen = jsontext.message_leaves(payloads)
+            return named | {path: seen[path] for path in seen if path not in named}
         case "protobuf":
-            return protobuf.numbers(stream)
+            return protobuf.leaves(stream)
     layout = shape(stream)
     if layout is None:
-        return ()
-    fields = ((where, layout.number(where)) for where in layout.numbers())
-    return tuple(
-        f"{'.'.join(where)}{'[:]' if field is not None and field.many else ''}"
-        for where, field in fields
-    )
+        return {}
+    found = dict(_number(stream, layout, where) for where in layout.numbers())
+    return found | {".".join(where): Leaf(Kind.TEXT) for where in layout.texts()}
+
+
+def _number(stream: Stream, layout: Shape, where: Where) -> tuple[str, Leaf]:
+    """The path of a number of ROS, or of an array of them, and what it is."""
+    field = layout.number(where)
+    assert field is not None
+    kind = Kind.FLAG if field.type == "bool" else Kind.NUMBER
+    path = f"{'.'.join(where)}{'[:]' if field.many else ''}"
+    return path, Leaf(kind, _named(stream, layout, where) if "int" in field.type else {})
+
+
+def _named(stream: Stream, layout: Shape, where: Where) -> Mapping[str, int]:
+    """The constants that are most likely meant for a field: ROS does not say.
+
+    They begin with its name; or it is the one whole number of its type.
+    """
+    known = constants(stream, where) or {}
+    begins = f"{where[-1].upper()}_"
+    own = {name: number for name, number in known.items() if name.startswith(begins)}
+    holder = layout.holder(where)
+    whole = [field for field in layout.types[holder] if "int" in field.type] if holder else []
+    return own or (known if len(whole) == 1 else {})
 
 
 @lru_cache(_MOST)

@@ -54,6 +54,11 @@ _FIELD = re.compile(
     r"(?P<array>\[(?:<=)?(?P<count>\d*)\])?\s+(?P<name>[A-Za-z]\w*)(?P<rest>[\s=].*)?"
 )
 
+_CONSTANT = re.compile(
+    r"(?:bool|byte|char|u?int(?:8|16|32|64))\s+(?P<name>[A-Za-z]\w*)\s*=\s*"
+    r"(?P<value>[+-]?(?:0[xX][0-9A-Fa-f]{1,16}|\d{1,20})|[Tt]rue|[Ff]alse)\s*(?:#.*)?"
+)
+"""A constant that is a whole number."""
 
 _MOST_ELEMENTS = 2**20
 """Elements of a message, in all of its arrays of fixed length, nested ones too."""
@@ -103,6 +108,30 @@ def types(name: str, definition: str, *, ros1: bool) -> Types:
         if all_types.setdefault(full, fields) != fields:
             raise DefinitionError(f"the type `{full}` is defined twice")
     return measured(_builtin(ros1=ros1) | all_types)
+
+
+def constants(name: str, definition: str) -> Mapping[str, Mapping[str, int]]:
+    """The constants of each type that are whole numbers, by the type's full name.
+
+    Args:
+        name: of the message; with or without `msg/` in it.
+        definition: its text, as `types` reads it.
+
+    Raises:
+        DefinitionError: it cannot be read.
+    """
+    found: dict[str, dict[str, int]] = {}
+    for full, lines in _sections(short(name), definition):
+        matches = filter(None, map(_CONSTANT.fullmatch, lines))
+        found[full] = {match["name"]: _whole(match["value"]) for match in matches}
+    return found
+
+
+def _whole(text: str) -> int:
+    if text.lower() in ("true", "false"):
+        return int(text.lower() == "true")
+    sign, digits = (-1 if text[0] == "-" else 1), text.lstrip("+-")
+    return sign * int(digits, 16 if digits[:2].lower() == "0x" else 10)
 
 
 def measured(all_types: Types) -> Types:

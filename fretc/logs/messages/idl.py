@@ -9,7 +9,7 @@ Source: MCAP registry, `ros2idl`, https://mcap.dev/spec/registry#ros2idl.
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from typing import Any
 
 from fretc.logs.mcap.container import Stream
@@ -80,6 +80,18 @@ def types(name: str, definition: str) -> Types:
     return measured(all_types)
 
 
+def constants(definition: str) -> Mapping[str, Mapping[str, int]]:
+    """The constants of each type that are whole numbers, by the type's short name.
+
+    Raises:
+        Exception: of many kinds; the definition cannot be read.
+    """
+    return {
+        short(name): {part: int(value) for part, _, value in values if isinstance(value, int)}
+        for name, values, _ in _sections(definition)
+    }
+
+
 def _parsed(definition: str) -> Mapping[str, Any]:
     """The fields of each type, as rosbags has them.
 
@@ -87,21 +99,27 @@ def _parsed(definition: str) -> Mapping[str, Any]:
         DefinitionError: a name is none, a type is defined in two ways, or the definition could
             cost more than it is worth.
     """
+    all_types: dict[str, Any] = {}
+    for name, _, fields in _sections(definition):
+        names = [name, *(field for field, _ in fields)]
+        if not all(_NAME.fullmatch(each) for each in names):
+            raise DefinitionError(f"`{name}` is no type")
+        fields = [(part, _decoder_kind(kind)) for part, kind in fields]
+        if all_types.setdefault(name, fields) != fields:
+            raise DefinitionError(f"the type `{name}` is defined twice")
+    return all_types
+
+
+def _sections(definition: str) -> Iterator[tuple[str, Any, Any]]:
+    """Each type with its constants and its fields, as rosbags has them."""
     from rosbags.typesys import get_types_from_idl
 
     if len(definition) > _LONGEST:
         raise DefinitionError("the definition is too long")
-    all_types: dict[str, Any] = {}
     for section in _SEPARATOR.split(_INCLUDE.sub("", definition)):
         bare = _bare(section)
-        for name, (_, fields) in get_types_from_idl(bare).items() if bare else ():
-            names = [name, *(field for field, _ in fields)]
-            if not all(_NAME.fullmatch(each) for each in names):
-                raise DefinitionError(f"`{name}` is no type")
-            fields = [(part, _decoder_kind(kind)) for part, kind in fields]
-            if all_types.setdefault(name, fields) != fields:
-                raise DefinitionError(f"the type `{name}` is defined twice")
-    return all_types
+        for name, (values, fields) in get_types_from_idl(bare).items() if bare else ():
+            yield name, values, fields
 
 
 def _bare(section: str) -> str:

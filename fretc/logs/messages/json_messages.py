@@ -1,4 +1,4 @@
-"""Messages in JSON, and what a JSON schema says of the numbers in them.
+"""Messages in JSON, and what a JSON schema says of the fields in them.
 
 Each message stands for itself: a schema is no promise, and nothing is checked against it. A field
 that a message leaves out or states as `null` is unknown in that message: `null` is what several
@@ -12,9 +12,11 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from itertools import islice
 from math import isfinite
 from typing import Any
 
+from fretc.logs.messages.leaves import Kind, Leaf
 from fretc.logs.signals.signals import Sparse, UnstatedError
 
 _WORDS = {"NaN": float("nan"), "Infinity": float("inf"), "-Infinity": float("-inf")}
@@ -89,11 +91,11 @@ def _int(text: str) -> int:
     return value
 
 
-# Paths of numbers
+# Fields
 
 
-def schema_paths(schema: bytes) -> tuple[str, ...]:
-    """The paths of all numbers that a JSON schema names: `a.b`, and `a.c[:]` for an array.
+def schema_leaves(schema: bytes) -> dict[str, Leaf]:
+    """The numbers, truth values and texts that a JSON schema names.
 
     Raises:
         ValueError: it is no JSON, or no schema.
@@ -105,28 +107,31 @@ def schema_paths(schema: bytes) -> tuple[str, ...]:
     return _some(_of_schema(root))
 
 
-def message_paths(payloads: Iterable[bytes]) -> tuple[str, ...]:
-    """The paths of all numbers that some messages hold; those that are no messages do not count."""
-    paths: dict[str, None] = {}
+def message_leaves(payloads: Iterable[bytes]) -> dict[str, Leaf]:
+    """Those that some messages hold; payloads that are no messages do not count."""
+    leaves: dict[str, Leaf] = {}
     for payload in payloads:
         try:
             message = decode(payload)
         except (ValueError, RecursionError):
             continue
-        paths.update(dict.fromkeys(_some(_of_value(message, "", 0))))
-    return _some(iter(paths))
+        for path, leaf in _some(_of_value(message, "", 0)).items():
+            leaves.setdefault(path, leaf)
+    return dict(islice(leaves.items(), _MOST))
 
 
-def _some(paths: Iterator[str]) -> tuple[str, ...]:
-    first: dict[str, None] = {}
-    for path in paths:
+def _some(leaves: Iterator[tuple[str, Kind]]) -> dict[str, Leaf]:
+    first: dict[str, Leaf] = {}
+    for path, kind in leaves:
         if len(first) == _MOST:
             break
-        first[path] = None
-    return tuple(first)
+        first.setdefault(path, Leaf(kind))
+    return first
 
 
-def _of_schema(root: Any) -> Iterator[str]:  # a schema is whatever its writer made of it
+def _of_schema(
+    root: Any,
+) -> Iterator[tuple[str, Kind]]:  # a schema is whatever its writer made of it
     """The nearest ones first."""
     queue: list[tuple[Any, str, tuple[int, ...]]] = [(root, "", ())]
     for schema, path, within in queue:
@@ -144,16 +149,26 @@ def _of_schema(root: Any) -> Iterator[str]:  # a schema is whatever its writer m
                 queue.append((part, f"{path}.{name}" if path else name, within))
 
 
-def _own(root: Any, schema: dict[Any, Any], path: str) -> Iterator[str]:
-    """The path, as far as it is itself one of numbers."""
+_KINDS = {
+    "number": Kind.NUMBER,
+    "integer": Kind.NUMBER,
+    "boolean": Kind.FLAG,
+    "string": Kind.TEXT,
+}
+
+
+def _own(root: Any, schema: dict[Any, Any], path: str) -> Iterator[tuple[str, Kind]]:
+    """The path, as far as it is itself a field that can be read."""
     kinds = schema.get("type")
     kinds = kinds if isinstance(kinds, list) else [kinds]
-    if path and any(kind in ("number", "integer", "boolean") for kind in kinds):
-        yield path
+    own = [_KINDS[kind] for kind in kinds if isinstance(kind, str) and kind in _KINDS]
+    if path and own:
+        yield path, own[0]
     if path and "array" in kinds:
         element = _resolved(root, schema.get("items"))
-        if isinstance(element, dict) and element.get("type") in ("number", "integer", "boolean"):
-            yield f"{path}[:]"
+        kind = element.get("type") if isinstance(element, dict) else None
+        if isinstance(kind, str) and _KINDS.get(kind, Kind.TEXT) is not Kind.TEXT:
+            yield f"{path}[:]", _KINDS[kind]
 
 
 def _resolved(root: Any, schema: Any) -> Any:
@@ -169,7 +184,7 @@ def _resolved(root: Any, schema: Any) -> Any:
     return None
 
 
-def _of_value(value: object, path: str, depth: int) -> Iterator[str]:
+def _of_value(value: object, path: str, depth: int) -> Iterator[tuple[str, Kind]]:
     if isinstance(value, Object) and depth < _DEEPEST:
         for name in filter(_is_name, value.names):
             try:
@@ -178,13 +193,15 @@ def _of_value(value: object, path: str, depth: int) -> Iterator[str]:
                 continue
             yield from _of_value(inner, f"{path}.{name}" if path else name, depth + 1)
     elif isinstance(value, int | float):
-        yield path
+        yield path, Kind.FLAG if isinstance(value, bool) else Kind.NUMBER
+    elif isinstance(value, str):
+        yield path, Kind.TEXT
     elif (
         isinstance(value, list)
         and any(isinstance(item, int | float) for item in value)
         and all(item is None or isinstance(item, int | float) for item in value)
     ):
-        yield f"{path}[:]"
+        yield f"{path}[:]", Kind.NUMBER
 
 
 def _is_name(name: object) -> bool:

@@ -92,6 +92,15 @@ class Shape:
             name = field.type
         return None
 
+    def holder(self, where: Where) -> str | None:
+        """The type that has the number, or the numbers, at that place; None: there is none."""
+        if self.number(where) is None:
+            return None
+        name = self.name
+        for part in where[:-1]:
+            name = next(field.type for field in self.types[name] if field.name == part)
+        return name
+
     def has(self, where: Where) -> bool:
         """Whether there is a number at that place of each message."""
         field = self.number(where)
@@ -99,16 +108,24 @@ class Shape:
 
     def numbers(self) -> tuple[Where, ...]:
         """All places at which `number` finds a field."""
-        places: list[Where] = []
+        return tuple(where for where, _ in self._fields_below() if self.number(where) is not None)
+
+    def texts(self) -> tuple[Where, ...]:
+        """The places of all texts, but for those in arrays."""
+        return tuple(
+            where for where, field in self._fields_below() if field.type in TEXTS and not field.many
+        )
+
+    def _fields_below(self) -> Iterator[tuple[Where, Field]]:
+        """Each field that has a place of its own; the nearest ones first."""
         below: list[tuple[Where, str]] = [((), self.name)]
         for where, name in below:
             for field in self.types[name]:
                 at = (*where, field.name)
-                if self.number(at) is not None:
-                    places.append(at)
-                elif field.type in self.types and not field.many:
+                if field.type in self.types and not field.many:
                     below.append((at, field.type))
-        return tuple(places)
+                else:
+                    yield at, field
 
     def layout(self, payload: memoryview, wanted: Sequence[Where]) -> Layout:
         """Where the wanted fields of one payload are.

@@ -9,10 +9,12 @@ Source: https://protobuf.dev/programming-guides/field_presence/.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from itertools import islice
 from typing import Any
 
 from fretc.logs.mcap.container import Stream
+from fretc.logs.messages.leaves import Kind, Leaf
 from fretc.logs.signals.signals import Sparse, UnstatedError
 
 _MOST = 2000
@@ -56,15 +58,10 @@ def decoder(stream: Stream) -> Callable[[bytes], Message]:
     return lambda payload: Message(official(payload))
 
 
-def numbers(stream: Stream) -> tuple[str, ...]:
-    """The paths of all numbers in its messages: `a.b`, and `a.c[:]` for a repeated one."""
+def leaves(stream: Stream) -> dict[str, Leaf]:
+    """The numbers, truth values and texts in its messages; `a.c[:]` for a repeated number."""
     descriptor = _official(stream)(b"").DESCRIPTOR
-    paths: list[str] = []
-    for path in _numbers(descriptor):
-        if len(paths) == _MOST:
-            break
-        paths.append(path)
-    return tuple(paths)
+    return dict(islice(_leaves(descriptor), _MOST))
 
 
 def is_single(stream: Stream, where: Sequence[str]) -> bool:
@@ -76,6 +73,17 @@ def is_single(stream: Stream, where: Sequence[str]) -> bool:
     return field is not None and bool(field.type == field.TYPE_FLOAT)
 
 
+def constants(stream: Stream, where: Sequence[str]) -> Mapping[str, int] | None:
+    """The names of the numbers at that place of each message; None where there are no numbers."""
+    descriptor, field = _official(stream)(b"").DESCRIPTOR, None
+    for name in where:
+        field = descriptor.fields_by_name.get(name) if descriptor is not None else None
+        descriptor = field.message_type if field is not None else None
+    if field is None or field.message_type is not None or field.cpp_type == field.CPPTYPE_STRING:
+        return None
+    return _names(field)
+
+
 def _official(stream: Stream) -> Callable[[bytes], Any]:
     from mcap_protobuf.decoder import DecoderFactory
 
@@ -84,7 +92,7 @@ def _official(stream: Stream) -> Callable[[bytes], Any]:
     return decode
 
 
-def _numbers(descriptor: Any) -> Iterator[str]:
+def _leaves(descriptor: Any) -> Iterator[tuple[str, Leaf]]:
     """The nearest ones first."""
     queue: list[tuple[Any, str, tuple[str, ...]]] = [(descriptor, "", ())]
     for message, path, within in queue:
@@ -97,9 +105,22 @@ def _numbers(descriptor: Any) -> Iterator[str]:
                 if not many:
                     queue.append((field.message_type, where, (*within, message.full_name)))
             elif field.cpp_type != field.CPPTYPE_STRING:
-                yield f"{where}[:]" if many else where
+                yield f"{where}[:]" if many else where, _number(field)
             elif field.type == field.TYPE_BYTES and not many:
-                yield f"{where}[:]"
+                yield f"{where}[:]", Leaf(Kind.NUMBER)
+            elif field.type == field.TYPE_STRING and not many:
+                yield where, Leaf(Kind.TEXT)
+
+
+def _number(field: Any) -> Leaf:
+    flag = field.cpp_type == field.CPPTYPE_BOOL
+    return Leaf(Kind.FLAG if flag else Kind.NUMBER, _names(field))
+
+
+def _names(field: Any) -> Mapping[str, int]:
+    """The names of an enum."""
+    kind = field.enum_type
+    return {} if kind is None else {name: each.number for name, each in kind.values_by_name.items()}
 
 
 def _is_repeated(field: Any) -> bool:

@@ -44,7 +44,7 @@ class Scope:
     `numbers` have shape (length,), or one element for all points; NaN is unknown. Times their
     `scales` (1 where none is given) they are in base units. Quantities are read in `unit` or its
     powers. `persistences` are the states of each `... for 200 ms`, from
-    `fretc.logs.signals.propositions`.
+    `fretc.logs.signals.propositions`. `words` are the values of enumerated signals.
     """
 
     length: int
@@ -52,6 +52,7 @@ class Scope:
     unit: Unit = ONE
     scales: Mapping[str, Fraction] = field(default_factory=dict)
     persistences: Mapping[e.Persistence, NDArray[np.int8]] = field(default_factory=dict)
+    words: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True)
@@ -112,6 +113,8 @@ def term(expression: e.Expression, scope: Scope) -> Term:
             return _arithmetic(op, term(left, scope), term(right, scope))
         case e.Call(name, args, _):
             return _call(name, [term(arg, scope) for arg in args])
+        case e.Word(text):
+            raise ExpressionError(f"a number is needed, and `{text}` is a word")
         case _:
             raise ExpressionError("a number is needed, and this is a truth value")
 

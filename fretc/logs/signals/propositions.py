@@ -86,6 +86,13 @@ def truth(expression: e.Expression, scope: Scope) -> States:
     match expression:
         case e.Truth(value):
             return np.full(scope.length, TRUE if value else FALSE, np.int8)
+        case e.Name(id):
+            return _flag(id, scope)
+        case e.Comparison(op, e.Name(id) as name, e.Word(text)) | e.Comparison(
+            op, e.Word(text), e.Name(id) as name
+        ):
+            place = Fraction(scope.words[id].index(text))
+            return _compared(op, term(name, scope), place, scope.length)
         case e.Comparison(op, left, right):
             return _compared(op, term(left, scope), term(right, scope), scope.length)
         case e.Not(arg):
@@ -106,6 +113,17 @@ def truth(expression: e.Expression, scope: Scope) -> States:
             return scope.persistences[expression]
         case _:
             raise ExpressionError("a truth value is needed, and this is a number")
+
+
+def _flag(id: str, scope: Scope) -> States:
+    """A plain number as a truth value: 1 is true, 0 is false, any other is unknown."""
+    if id not in scope.numbers:
+        raise ExpressionError(f"there is no `{id}`")
+    numbers = scope.numbers[id]
+    states = np.full(len(numbers), UNKNOWN, np.int8)
+    states[numbers == 1] = TRUE
+    states[numbers == 0] = FALSE
+    return states if len(states) == scope.length else np.repeat(states, scope.length)
 
 
 def _compared(op: str, left: Term, right: Term, length: int) -> States:
@@ -136,6 +154,7 @@ class History:
     times: Times
     numbers: Mapping[str, Values]
     scales: Mapping[str, Fraction]
+    words: Mapping[str, tuple[str, ...]]
 
     def with_times(self, times: Sequence[Times]) -> History:
         """The same with further events at these times."""
@@ -151,7 +170,13 @@ class History:
 
     def scope(self, persistences: Mapping[e.Persistence, States] = MappingProxyType({})) -> Scope:
         """What the names stand for at the events."""
-        return Scope(len(self.times), self.numbers, scales=self.scales, persistences=persistences)
+        return Scope(
+            len(self.times),
+            self.numbers,
+            scales=self.scales,
+            persistences=persistences,
+            words=self.words,
+        )
 
 
 def history_of(signals: Mapping[str, Signal], recording: Recording) -> History:
@@ -172,6 +197,7 @@ def history_of(signals: Mapping[str, Signal], recording: Recording) -> History:
         times[first:],
         {name: values[first:] for name, values in numbers.items()},
         {name: samples[name].scale for name in signals},
+        {name: signal.values for name, signal in signals.items()},
     )
 
 

@@ -90,12 +90,14 @@ class Samples:
 
     `times` has shape (n,), nanoseconds that do not decrease; equal times stand in the order of
     the file. `values` has shape (n,), as they were recorded; times `scale` they are in the base
-    unit of the signal's dimension. NaN is unknown.
+    unit of the signal's dimension. NaN is unknown. Of a signal of words the values are places in
+    `words`.
     """
 
     times: Times
     values: Values
     scale: Fraction = Fraction(1)
+    words: tuple[str, ...] = ()
 
     @property
     def base(self) -> Numbers:

@@ -22,7 +22,14 @@ from fretc.logs.signals.propositions import TRUE, truth
 from fretc.logs.signals.samples import EXACT, WHOLE, Values, scaled, widest
 from fretc.logs.signals.thresholds import thresholds
 from fretish import expressions as e
-from fretish.bindings.declarations import Declarations, Proposition, Reading, Reduce, Signal
+from fretish.bindings.declarations import (
+    Declarations,
+    Path,
+    Proposition,
+    Reading,
+    Reduce,
+    Signal,
+)
 from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity, suggestion
 
 RANGE_MIN = "range_min"
@@ -137,9 +144,7 @@ def nearest(signal: Signal, message: object) -> float | None:
 def _field(signal: Signal, message: object) -> float | Values:
     """A number, or the chosen elements of an array, shape (n,), in the unit of the field."""
     path = signal.path
-    value = message
-    for position, name in enumerate(path.fields):
-        value = _attribute(value, name, ".".join(path.fields[:position]))
+    value = field_of(path, message)
     name = ".".join(path.fields)
     if not path.each and path.index is None:
         return _number(value, name)
@@ -150,6 +155,19 @@ def _field(signal: Signal, message: object) -> float | Values:
     if path.index is None:
         return values
     return values[path.index : path.index + 1]
+
+
+def field_of(path: Path, message: object) -> object:
+    """What the field of a message holds; of an array all of it.
+
+    Raises:
+        UnstatedError: the message leaves it out.
+        FieldError: it has no such field.
+    """
+    value = message
+    for position, name in enumerate(path.fields):
+        value = _attribute(value, name, ".".join(path.fields[:position]))
+    return value
 
 
 def _attribute(value: object, name: str, parent: str) -> object:
@@ -266,7 +284,7 @@ def unrounded(signal: Signal, values: Values) -> Values:
 
 def is_chosen(signal: Signal) -> bool:
     """Whether its samples are numbers of the log, and not computed of them."""
-    return signal.reduce not in (Reduce.MEAN, Reduce.OUTLINE)
+    return not signal.values and signal.reduce not in (Reduce.MEAN, Reduce.OUTLINE)
 
 
 def _readings(signal: Signal, values: Values, valid: NDArray[np.bool_]) -> Values | None:

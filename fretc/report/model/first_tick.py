@@ -24,7 +24,9 @@ def reading(signal: str, violation: Violation, result: Result, ages: Mapping[str
     """
     value, limit = _value(signal, violation), ages.get(signal)
     bounds = _bounds(signal, result)
-    text = phrases.value(value, result.units.get(signal, ""), bounds)
+    is_word = isinstance(violation.values[signal], str)
+    measured = phrases.value(value, result.units.get(signal, ""), bounds)
+    text = f'"{value}"' if is_word else measured
     age = _age(signal, violation)
     if value is None or age is None or limit is None or round(age, 9) <= limit:
         return text
@@ -46,19 +48,21 @@ def _bounds(signal: str, result: Result) -> list[float]:
 
 
 def _value(signal: str, violation: Violation) -> float | str | None:
-    """The number in the evidence; an infinite one stands in the window only."""
-    number = violation.values[signal]
-    if number is None and violation.window and signal in violation.window.samples:
+    """The number or the word in the evidence; an infinite number stands in the window only."""
+    known = violation.values[signal]
+    if known is None and violation.window and signal in violation.window.samples:
         sample = violation.window.samples[signal].at(violation.first.seconds)
         if sample is not None and isinf(sample):
             return "+inf" if sample > 0 else "-inf"
-    return number
+    return known
 
 
 def _age(signal: str, violation: Violation) -> float | None:
     """Seconds from its last sample to the first tick; None where no sample is known."""
-    if violation.window is None or signal not in violation.window.samples:
+    window = violation.window
+    samples = (window.samples.get(signal) or window.words.get(signal)) if window else None
+    if samples is None:
         return None
     at = violation.first.seconds
-    times = [time for time in violation.window.samples[signal].times if time <= at]
+    times = [time for time in samples.times if time <= at]
     return at - times[-1] if times else None

@@ -58,6 +58,14 @@ class Panel:
 
 
 @dataclass(frozen=True, slots=True)
+class WordLane:
+    """A signal of words over a timeline: from, to, and the word; None: unknown."""
+
+    signal: str
+    words: tuple[tuple[float, float, str | None], ...]
+
+
+@dataclass(frozen=True, slots=True)
 class Flag:
     """An instant with a name: the trigger, the deadline."""
 
@@ -75,6 +83,7 @@ class Timeline:
     lanes: tuple[Lane, ...]
     text: str
     panels: tuple[Panel, ...] = ()
+    words: tuple[WordLane, ...] = ()
     flags: tuple[Flag, ...] = ()
     broken: SpanMark | None = None
     cause: str = ""

@@ -6,11 +6,21 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
 from fretc.report.model.phrases import decimal, whole
-from fretc.report.model.pictures import Flag, Histogram, Lane, Panel, Piece, Timeline
+from fretc.report.model.pictures import (
+    Flag,
+    Histogram,
+    Lane,
+    Panel,
+    Piece,
+    Timeline,
+    WordLane,
+)
 from fretc.report.pictures.histograms import step
 
 WIDTH, _LEFT, _RIGHT = 720, 92, 30
 _ROW, _BAR, _TOP, _AXIS = 22, 12, 6, 26
+_WORDS = 36
+"""Of a lane of words: its name, and the words."""
 _FLAGS = 30
 """Room above the panels for the names of trigger and deadline."""
 _HEAD, _HIGH = 18, 72
@@ -42,6 +52,16 @@ class DrawnLane:
     kind: str
     y: int
     bars: tuple[Bar, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class DrawnWords:
+    """A lane of words: each stretch with its word, which is empty where it is unknown."""
+
+    name: str
+    y: int
+    bars: tuple[tuple[Bar, str, str], ...]
+    """With the word, and as much of it as fits."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -99,6 +119,7 @@ class Drawing:
     row: int
     bar: int
     panels: tuple[DrawnPanel, ...]
+    words: tuple[DrawnWords, ...]
     lanes: tuple[DrawnLane, ...]
     flags: tuple[DrawnFlag, ...]
     broken: Bar | None
@@ -109,9 +130,10 @@ def drawing(timeline: Timeline, id: str) -> Drawing:
     """The layout of a timeline; the panels stand above the lanes, on the same axis."""
     scale = _Scale(timeline.start, timeline.end)
     top = (_FLAGS if timeline.flags else 0) + _TOP
-    lanes_from = top + (_HEAD + _HIGH) * len(timeline.panels) + (10 if timeline.panels else 0)
+    words_from = top + (_HEAD + _HIGH) * len(timeline.panels) + (10 if timeline.panels else 0)
+    lanes_from = words_from + _WORDS * len(timeline.words)
     axis = lanes_from + _ROW * len(timeline.lanes)
-    broken = timeline.broken if timeline.panels else None
+    broken = timeline.broken if timeline.panels or timeline.words else None
     return Drawing(
         id=id,
         title=timeline.title,
@@ -128,6 +150,9 @@ def drawing(timeline: Timeline, id: str) -> Drawing:
         panels=tuple(
             _panel(panel, top + (_HEAD + _HIGH) * i, scale)
             for i, panel in enumerate(timeline.panels)
+        ),
+        words=tuple(
+            _words(lane, words_from + _WORDS * i, scale) for i, lane in enumerate(timeline.words)
         ),
         lanes=tuple(
             _lane(lane, lanes_from + _ROW * i, scale) for i, lane in enumerate(timeline.lanes)
@@ -168,6 +193,21 @@ def places(start: float, end: float, most: int = _TICKS) -> list[float]:
 def _lane(lane: Lane, y: int, scale: _Scale) -> DrawnLane:
     bars = tuple(scale.bar(mark.start, mark.end) for mark in lane.marks)
     return DrawnLane(lane.name, lane.kind, y, bars)
+
+
+def _words(lane: WordLane, y: int, scale: _Scale) -> DrawnWords:
+    bars = tuple(
+        (bar, word or "", _fitting(word or "unknown", bar.width))
+        for start, end, word in lane.words
+        for bar in [scale.bar(start, end)]
+    )
+    return DrawnWords(lane.signal, y, bars)
+
+
+def _fitting(word: str, width: float) -> str:
+    """As much of a word as fits into a bar; nothing, where that says nothing."""
+    most = int((width - 6) / _LETTER)
+    return word if len(word) <= most else f"{word[: most - 1]}…" if most > 3 else ""
 
 
 def _flags(flags: Sequence[Flag], scale: _Scale) -> Iterator[DrawnFlag]:

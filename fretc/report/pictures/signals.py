@@ -6,11 +6,12 @@ from collections.abc import Iterator, Mapping, Sequence
 from itertools import pairwise
 from math import inf, isinf
 from statistics import median
+from typing import TypeVar
 
 from fretc.audit.evidence.samples import Samples
 from fretc.audit.evidence.schema import Result, Threshold, Violation
 from fretc.audit.measurements.violations import EVEN_SAMPLES
-from fretc.report.model.pictures import Level, Panel, Piece, SpanMark
+from fretc.report.model.pictures import Level, Panel, Piece, SpanMark, WordLane
 from fretish.bindings.amounts import exact
 
 MOST_PANELS = 4
@@ -23,6 +24,7 @@ _EMPTY = 1e-9
 _FAR = 1e300
 """The end of every axis, so that its length is a finite 64-bit float."""
 
+T = TypeVar("T", float, str)
 Known = tuple[float, float, float | None]
 """From, to, and the value in force."""
 
@@ -58,11 +60,31 @@ def panels(
     )
 
 
-def left_out(violation: Violation, drawn: Sequence[Panel]) -> tuple[str, ...]:
-    """Signals of the window that have no panel."""
-    names = {panel.signal for panel in drawn}
+def word_lanes(
+    violation: Violation, ages: Mapping[str, float], start: float, end: float
+) -> tuple[WordLane, ...]:
+    """A lane for each of the first signals of words of the window; arguments as of `panels`."""
+    words = violation.window.words if violation.window else {}
+    return tuple(
+        WordLane(
+            name,
+            tuple((_short(a), _short(b), word) for a, b, word in _merged(stretches)),
+        )
+        for name, samples in list(words.items())[:MOST_PANELS]
+        for stretches in [
+            _stretches(samples, ages.get(name, inf), start, end, violation.first.seconds)
+        ]
+    )
+
+
+def left_out(
+    violation: Violation, drawn: Sequence[Panel], lanes: Sequence[WordLane] = ()
+) -> tuple[str, ...]:
+    """Signals of the window that have no panel, and no lane."""
+    names = {*(panel.signal for panel in drawn), *(lane.signal for lane in lanes)}
     window = violation.window
-    return tuple(name for name in (window.samples if window else ()) if name not in names)
+    known = (*window.samples, *window.words) if window else ()
+    return tuple(name for name in known if name not in names)
 
 
 def _bounds(signal: str, result: Result) -> tuple[Threshold, ...]:
@@ -89,14 +111,14 @@ def _levels(signal: str, bounds: Sequence[Threshold]) -> Iterator[Level]:
 
 
 def _stretches(
-    samples: Samples, age: float, start: float, end: float, broken: float
-) -> list[Known]:
+    samples: Samples[T], age: float, start: float, end: float, broken: float
+) -> list[tuple[float, float, T | None]]:
     """The time of the picture as stretches with one value, or none, in force.
 
     Thinning keeps the last sample up to `broken`: where it is too old then, it ends at its limit.
     """
     longest = _longest(samples, age)
-    stretches: list[Known] = []
+    stretches: list[tuple[float, float, T | None]] = []
     following = (*samples.times[1:], inf)[: len(samples.times)]
     first = samples.times[0] if samples.times else end
     if first > start:
@@ -111,7 +133,7 @@ def _stretches(
     return [(a, b, v) for a, b, v in inside if b - a > _EMPTY or (b == a and v is not None)]
 
 
-def _longest(samples: Samples, age: float) -> float:
+def _longest(samples: Samples[T], age: float) -> float:
     """How long a sample holds; thinned samples hold longer, to bridge what thinning removed."""
     if len(samples.times) < EVEN_SAMPLES:
         return age
@@ -155,9 +177,11 @@ def _range(values: Sequence[float]) -> tuple[float, float]:
     return low - room, high + room
 
 
-def _merged(stretches: Sequence[Known]) -> list[Known]:
+def _merged(
+    stretches: Sequence[tuple[float, float, T | None]],
+) -> list[tuple[float, float, T | None]]:
     """The stretches with neighbours of one value joined."""
-    merged: list[Known] = []
+    merged: list[tuple[float, float, T | None]] = []
     for begin, end, value in stretches:
         if merged and merged[-1][2] == value and begin - merged[-1][1] <= _EMPTY:
             merged[-1] = (merged[-1][0], end, value)

@@ -10,8 +10,8 @@ from types import MappingProxyType
 from fretc.audit.evidence.schema import Moment, Result, Violation
 from fretc.report.model.first_tick import reading
 from fretc.report.model.phrases import joined, seconds, times, value
-from fretc.report.model.pictures import Flag, Lane, Panel, SpanMark, Timeline
-from fretc.report.pictures.signals import left_out, panels
+from fretc.report.model.pictures import Flag, Lane, Panel, SpanMark, Timeline, WordLane
+from fretc.report.pictures.signals import left_out, panels, word_lanes
 
 DETAIL = 400
 """Two marks nearer than this fraction of the picture are one, which bounds their number."""
@@ -56,18 +56,21 @@ def _explained(
 ) -> Timeline:
     """The timeline with signals, trigger, deadline, the violating stretch, and the cause."""
     drawings = panels(violation, result, ages, plain.start, plain.end)
+    lanes = word_lanes(violation, ages, plain.start, plain.end)
     broken = _violated(violation, tick)
     why = cause(violation, result, ages)
     sentences = [
         why,
         plain.text,
         *(_panel_in_words(panel) for panel in drawings),
-        _not_drawn(left_out(violation, drawings)),
+        *(_signal_in_words(lane) for lane in lanes),
+        _not_drawn(left_out(violation, drawings, lanes)),
     ]
     return replace(
         plain,
         text=" ".join(filter(None, sentences)),
         panels=drawings,
+        words=lanes,
         flags=tuple(_flags(violation)),
         broken=_rounded(SpanMark(broken.start, broken.end, 1)),
         cause=why,
@@ -109,6 +112,12 @@ def _panel_in_words(panel: Panel) -> str:
     return f"{', '.join(filter(None, parts))}."
 
 
+def _signal_in_words(lane: WordLane) -> str:
+    """`mode is "drive", "docking" and unknown.`: each word once, in the order in which it came."""
+    found = dict.fromkeys("unknown" if word is None else f'"{word}"' for _, _, word in lane.words)
+    return f"{lane.signal} is {joined(list(found))}." if found else ""
+
+
 def _extent(points: Sequence[tuple[float, float, float]], panel: Panel) -> str:
     if not points:
         return "has no finite value"
@@ -136,7 +145,7 @@ def _around(violation: Violation, tick: float) -> Stretch:
     margin = max(_AROUND * tick, (end - start) / 8, 1e-3)
     stretch = Stretch(max(0.0, start - margin), max(end, start) + margin)
     window = violation.window
-    if window is None or not window.samples:
+    if window is None or not (window.samples or window.words):
         return stretch
     # The evidence has no samples outside the window, and without samples it would look unknown.
     inside = Stretch(max(stretch.start, window.start), min(stretch.end, window.end))

@@ -26,6 +26,9 @@ unit = "m/s"
 [signal.soc]
 path = "/battery.soc"
 unit = "%"
+[signal.state]
+path = "/state.data"
+values = ["drive", "docking"]
 """
 
 
@@ -61,8 +64,13 @@ AGREE = [
     ('"speed <= 1.5"', "speed <= 1.5", "vx <= 1.5 m/s"),
     ("near(drum)", "near(drum)", "vx <= 1.5 m/s"),
     ("slow", "slow", "vx <= 1.5 m/s"),
+    ("state = docking", "(state = docking)", "state = 'docking'"),
+    ("phase = docking", "(phase = docking)", "docking = state"),
 ]
 DIFFER = [
+    ("state = docking", "(state = docking)", "state = 'drive'"),
+    ("state = docking", "(state = docking)", "state != 'docking'"),
+    ("state = vx", "(state = vx)", "state = 'drive'"),
     ("speed <= 1.5", "(speed <= 1.5)", "vx <= 15 m/s"),
     ("speed <= 1.5", "(speed <= 1.5)", "vx < 1.5 m/s"),
     ("speed <= 1.5", "(speed <= 1.5)", "vx >= 1.5 m/s"),
@@ -105,7 +113,7 @@ def test_another_comparison_is_refused(sentence: str, proposition: str, expr: st
 def test_both_places_are_told_and_no_number_is_proposed() -> None:
     (wrong,) = said("p & speed <= 1.5", "(speed <= 1.5)", "vx <= 15 m/s")
     assert wrong.message == (
-        '`(speed <= 1.5)` of r1 is bound to another comparison: "vx <= 15 m/s" (bindings.toml:13:8)'
+        '`(speed <= 1.5)` of r1 is bound to another comparison: "vx <= 15 m/s" (bindings.toml:16:8)'
     )
     assert wrong.span is not None
     assert (wrong.span.source.name, wrong.span.text) == ("r1.fret", "speed <= 1.5")

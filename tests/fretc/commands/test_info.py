@@ -49,12 +49,17 @@ def test_a_program_reads_the_same(fretc: Fretc) -> None:
 def test_every_signal_that_is_named_can_be_bound(fretc: Fretc) -> None:
     (found,) = json.loads(fretc("info", "log.mcap", "--format", "json").out)
     paths = [p for topic in found["topics"].values() for p in topic["signals"] or ()]
+    kinds = {p: kind for topic in found["topics"].values() for p, kind in topic["kinds"].items()}
+    assert kinds["/scan.header.frame_id"] == "text"
     assert len(paths) > 10
     lines = ['[clock]\ntick = "100 ms"']
     for i, path in enumerate(paths):
         reduce = 'reduce = "min"\n' if path.endswith("[:]") else ""
+        is_text = kinds[path] == "text"
+        expr = f"s{i} = lidar" if is_text else f"s{i} < 9"
+        values = 'values = ["lidar"]\n' if is_text else ""
         lines.append(
-            f'[signal.s{i}]\npath = "{path}"\n{reduce}[proposition.p{i}]\nexpr = "s{i} < 9"'
+            f'[signal.s{i}]\npath = "{path}"\n{reduce}{values}[proposition.p{i}]\nexpr = "{expr}"'
         )
     Path("requirements").mkdir()
     Path("requirements/bindings.toml").write_text("\n".join(lines), "utf-8")

@@ -63,6 +63,7 @@ SIGNAL: dict[str, Any] = {
     "valid": read("x < 9"),
     "invalid": REP_117,
     "max_age": 5,
+    "values": ("a", "b"),
 }
 PROPOSITION: dict[str, Any] = {
     "expression": read("x > 2 m"),
@@ -81,7 +82,7 @@ OUTLINE: dict[str, Any] = {
     "sensor": (1.0, 0.0, 0.0),
 }
 APART = {
-    "signal": {"name", "unit_name", "span", *OUTLINE},
+    "signal": {"name", "unit_name", "span", "numbers", *OUTLINE},
     "proposition": {"name", "text", "role", "kind", "modality", "action", "span"},
     "clock": {"rounding"},
 }
@@ -103,6 +104,18 @@ def test_the_outline_counts_where_it_is_measured_from(field: str) -> None:
         other = replace(one, **{field: OUTLINE[field]})
         meanings = [bound(replace(known, signals={"x": each}), ["p"]) for each in (one, other)]
         assert (meanings[0] != meanings[1]) is counts
+
+
+def test_the_number_of_each_word_counts_and_the_order_of_words_does_not() -> None:
+    def meaning(values: tuple[str, ...], numbers: tuple[int, ...]) -> Any:
+        signal = replace(declared().signals["x"], values=values, numbers=numbers)
+        return bound(replace(declared(), signals={"x": signal}), ["p"])
+
+    assert meaning(("a", "b"), ()) == meaning(("b", "a"), ())
+    assert meaning(("a", "b"), (0, 4)) == meaning(("b", "a"), (4, 0))
+    both = ("a", "b")
+    cases = [((), ()), (("a",), ()), (both, ()), (both, (0, 1)), (both, (1, 0))]
+    assert len({str(meaning(*each)) for each in cases}) == len(cases)
 
 
 @pytest.mark.parametrize("field", PROPOSITION)

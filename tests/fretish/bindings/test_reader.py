@@ -305,6 +305,12 @@ def test_a_path_names_a_topic_and_a_field(text: str, expected: Path | None) -> N
         (
             '"min_range < 5 cm"',
             '"min_range"',
+            "F308 {}:21:9",
+            "`min_range` is in m, and a truth value is needed",
+        ),
+        (
+            '"min_range < 5 cm"',
+            '"min_range + 1 m"',
             "F308 {}:21:8",
             "a proposition must be true or false, and this is a number",
         ),

@@ -5,6 +5,7 @@ import tomllib
 import pytest
 
 from compiler.formalization.formalize import duplicates, formalize
+from compiler.project.stated_numbers import disagreements
 from compiler.targets.python import monitor
 from fretish.bindings.declarations import Declarations
 from fretish.bindings.reader import read_bindings
@@ -31,6 +32,7 @@ def diagnostics_of(kind: str, declared: str, example: str) -> list[Diagnostic]:
     for requirement in written:
         rule, remarks = formalize(requirement, beside)
         found.extend(remarks)
+        found.extend(disagreements(rule, rule.declarations) if rule and rule.declarations else ())
         remark = monitor.remark(rule) if rule else None
         found.extend([remark] if remark else [])
     return found

@@ -20,10 +20,12 @@ ROOT = Path(__file__).parents[4]
 LOGS = sorted((ROOT / "traces").glob("*.mcap"))
 
 
-def drafted(path: Path, needs: Sequence[MissingProposition] = ()) -> str:
-    overview = look(str(path))
+def drafted(
+    path: Path, needs: Sequence[MissingProposition] = (), durations: Sequence[int] = ()
+) -> str:
+    overview = look(str(path), words=True)
     assert not isinstance(overview, Diagnostic), overview
-    return draft(overview, needs)
+    return draft(overview, needs, durations)
 
 
 def declared(text: str) -> Declarations:
@@ -134,6 +136,71 @@ def test_a_proposition_that_is_to_be_filled_in_is_an_error_until_it_is(tmp_path:
     assert line == 'expr = "TODO: when is it true? As in: x < 0.5"'
     filled = declared(text.replace(line, 'expr = "x < 0.5"'))
     assert filled.propositions["near"].role == "input"
+
+
+def texts(*seen: str, topic: str = "/mode") -> list[Sent]:
+    name = "std_msgs/msg/String"
+    return [
+        named(topic, name, payload(name, data=text), 1000 * S + i * 500 * MS)
+        for i, text in enumerate(seen)
+    ]
+
+
+def test_the_words_of_a_text_are_those_of_the_log(tmp_path: Path) -> None:
+    path = write(tmp_path / "a.mcap", texts(*["drive", "in motion", "drive"] * 4))
+    mode = declared(drafted(path)).signals["mode"]
+    assert mode.values == ("drive", "in motion")
+    assert mode.max_age == 1500 * MS
+    recording = read(str(path), declared(drafted(path)), ["mode"])
+    assert isinstance(recording, Recording)
+    assert recording.findings == ()
+
+
+@pytest.mark.parametrize("text", ["x" * 41, 'a"b', "a\nb"])
+def test_free_text_is_no_signal(tmp_path: Path, text: str) -> None:
+    assert declared(drafted(write(tmp_path / "a.mcap", texts("a", text)))).signals == {}
+    many = texts(*(f"word {i}" for i in range(21)))
+    assert declared(drafted(write(tmp_path / "b.mcap", many))).signals == {}
+
+
+def test_words_of_other_messages_are_there_as_comments(tmp_path: Path) -> None:
+    sent = [
+        Sent(
+            "/s",
+            "s",
+            b'{"mode": "drive", "level": 3, "header": {"frame_id": "x"}}',
+            S,
+            None,
+            "json",
+        ),
+        Sent("/s", "s", b'{"mode": "dock", "level": 4}', 2 * S, None, "json"),
+    ]
+    lines = drafted(write(tmp_path / "a.mcap", sent)).splitlines()
+    at = lines.index('# path = "/s.mode"')
+    assert lines[at + 1] == '# values = ["drive", "dock"]'
+    assert '# path = "/s.level"' in lines
+
+
+def test_a_proposition_that_is_called_as_a_truth_value_of_the_log_is_that(tmp_path: Path) -> None:
+    flag = "std_msgs/msg/Bool"
+    sent = [named("/docking", flag, payload(flag, data=True))]
+    needs = [MissingProposition("docking", ("R1",), "input", "any")]
+    text = drafted(write(tmp_path / "a.mcap", sent), needs)
+    assert declared(text).propositions["docking"].signals == ("docking",)
+
+
+@pytest.mark.parametrize(
+    ("durations", "tick"),
+    [
+        ((), 200), ((400 * MS,), 200), ((300 * MS,), 150), ((300 * MS, 500 * MS), 100),
+        ((MS // 2,), 200), ((10**30,), 200),
+    ],
+)  # fmt: skip
+def test_durations_are_whole_numbers_of_the_tick(
+    tmp_path: Path, durations: tuple[int, ...], tick: int
+) -> None:
+    text = drafted(write(tmp_path / "a.mcap", every(200 * MS, 12)), (), durations)
+    assert declared(text).clock.period == tick * MS
 
 
 # What requirements still need

@@ -7,7 +7,8 @@ from typing import Any
 
 import pytest
 
-from fretc.logs.messages.json_messages import message_paths, schema_paths
+from fretc.logs.messages.json_messages import message_leaves, schema_leaves
+from fretc.logs.messages.leaves import Kind, Leaf
 from fretc.logs.reader import look
 from fretc.logs.signals.samples import Recording
 from fretish.diagnostics.diagnostic import Code
@@ -24,6 +25,8 @@ path = "{path}"
 [proposition.p]
 expr = "s < 5"
 """
+
+NUMBER = Leaf(Kind.NUMBER)
 
 
 def log(path: Path, payloads: list[bytes], type_: str = "Thing", schema: bytes = b"{}") -> Path:
@@ -155,14 +158,20 @@ def test_the_numbers_of_a_schema_are_listed_through_its_references() -> None:
             "not a name": {"type": "number"},
         },
     }
-    assert schema_paths(json.dumps(schema).encode()) == ("n", "r[:]", "pose.x", "one.x")
+    assert schema_leaves(json.dumps(schema).encode()) == {
+        "n": NUMBER,
+        "name": Leaf(Kind.TEXT),
+        "r[:]": NUMBER,
+        "pose.x": NUMBER,
+        "one.x": NUMBER,
+    }
 
 
 def test_a_schema_that_holds_itself_ends() -> None:
     schema = b'{"properties": {"x": {"type": "number"}, "next": {"$ref": "#"}}}'
-    assert schema_paths(schema) == ("x",)
-    assert schema_paths(b'{"$ref": "#"}') == ()
-    assert schema_paths(b'{"properties": {"a": {"$ref": "#/no/where"}}, "type": 3}') == ()
+    assert schema_leaves(schema) == {"x": NUMBER}
+    assert schema_leaves(b'{"$ref": "#"}') == {}
+    assert schema_leaves(b'{"properties": {"a": {"$ref": "#/no/where"}}, "type": 3}') == {}
 
 
 def test_a_schema_whose_parts_multiply_ends() -> None:
@@ -171,14 +180,17 @@ def test_a_schema_whose_parts_multiply_ends() -> None:
         f"d{n}": {"properties": {k: {"$ref": v["$ref"].format(n + 1)} for k, v in parts.items()}}
         for n in range(19)
     }
-    assert schema_paths(json.dumps({"$defs": levels, "$ref": "#/$defs/d0"}).encode()) == ()
+    assert schema_leaves(json.dumps({"$defs": levels, "$ref": "#/$defs/d0"}).encode()) == {}
 
 
 def test_the_numbers_that_messages_hold_are_listed() -> None:
-    assert message_paths([b'{"a": {"b": 1}, "c": "x"}', b"bad", b'{"d": [1, null], "e": []}']) == (
-        "a.b",
-        "d[:]",
-    )
+    sent = [b'{"a": {"b": 1}, "c": "x", "f": true}', b"bad", b'{"d": [1, null], "e": []}']
+    assert message_leaves(sent) == {
+        "a.b": NUMBER,
+        "c": Leaf(Kind.TEXT),
+        "f": Leaf(Kind.FLAG),
+        "d[:]": NUMBER,
+    }
 
 
 def test_info_lists_what_the_schema_and_the_messages_tell(tmp_path: Path) -> None:

@@ -1,10 +1,10 @@
 from math import inf
 
 from compiler.files.records import replace
-from fretc.audit.evidence.samples import Samples, Window
+from fretc.audit.evidence.samples import Samples, Window, WordSeries
 from fretc.audit.evidence.schema import Instant, Threshold, Violation
 from fretc.report.model.pictures import Level, Piece, SpanMark
-from fretc.report.pictures.signals import left_out, panels
+from fretc.report.pictures.signals import left_out, panels, word_lanes
 from fretc.report.pictures.timeline import cause, timelines
 from tests.fretc.audit.results import moment
 from tests.fretc.audit.results import violation as violation_of
@@ -12,10 +12,11 @@ from tests.fretc.report.pictures.test_timeline import EMPTY, at
 
 NEAR = Threshold("near", "clearance", "<", 0.05, "m", 0.01, 2.0, "crossed", None, Instant(0, 0.0))
 SLOW = Threshold("slow", "abs(vx)", "<=", 0.15, "m/s", 0.0, 0.4, "crossed", None, Instant(0, 0.0))
+S = 10**9
 RESULT = replace(EMPTY, thresholds=(NEAR, SLOW), units={"clearance": "m", "vx": "m/s"})
 
 
-def broken(**samples: Samples) -> Violation:
+def broken(**samples: Samples[float]) -> Violation:
     return violation_of(
         moment(123, 12.3),
         moment(125, 12.5),
@@ -89,6 +90,23 @@ def test_four_signals_are_drawn_those_with_a_threshold_first_and_the_others_name
     drawings = panels(violation, RESULT, {}, 10.0, 12.0)
     assert [panel.signal for panel in drawings] == ["clearance", "a", "b", "c"]
     assert left_out(violation, drawings) == ("d",)
+
+
+def test_a_signal_of_words_is_a_lane_with_what_is_unknown() -> None:
+    series = WordSeries((9 * S, 10_500_000_000, 11 * S), ("drive", "docking", None))
+    violation = broken()
+    assert violation.surroundings is not None
+    around = replace(violation.surroundings, words={"mode": series})
+    violation = replace(violation, surroundings=around)
+    (lane,) = word_lanes(violation, {"mode": 1.2}, 10.0, 13.0)
+    assert lane.words == (
+        (10.0, 10.2, "drive"),
+        (10.2, 10.5, None),
+        (10.5, 11.0, "docking"),
+        (11.0, 13.0, None),
+    )
+    assert left_out(violation, (), (lane,)) == ()
+    assert left_out(violation, ()) == ("mode",)
 
 
 def test_a_violation_without_samples_has_no_panel() -> None:

@@ -1,0 +1,34 @@
+"""The fields of messages that a signal can read: numbers, truth values and texts."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from enum import StrEnum
+
+
+class Kind(StrEnum):
+    """What a field holds."""
+
+    NUMBER = "number"
+    FLAG = "flag"
+    """True or false."""
+    TEXT = "text"
+
+
+@dataclass(frozen=True, slots=True)
+class Leaf:
+    """A field, or the elements of one."""
+
+    kind: Kind
+    names: Mapping[str, int] = field(default_factory=dict)
+    """What the definition of the messages calls its numbers."""
+
+
+Leaves = Mapping[str, Leaf]
+"""By their paths: `a.b`, and `a.c[:]` for an array of numbers."""
+
+
+def numbers(leaves: Leaves) -> tuple[str, ...]:
+    """The paths of all numbers and truth values."""
+    return tuple(path for path, leaf in leaves.items() if leaf.kind is not Kind.TEXT)

@@ -1,0 +1,91 @@
+"""The words that the texts of a log hold: what a signal of words could be."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Mapping
+
+from fretc.logs.mcap.container import Stream
+from fretc.logs.messages.decoding import Decode, decoder, leaves
+from fretc.logs.messages.leaves import Kind
+from fretc.logs.signals.signals import FieldError, UnstatedError, field_of
+from fretish.bindings.declarations import Path
+
+_MOST = 20
+"""Different words of a field; one with more is free text."""
+_LONGEST = 40
+_MOST_MESSAGES, _MOST_BYTES = 20_000, 2**16
+"""Messages of a topic that are decoded, and the bytes of one."""
+_NAMES = ("frame_id", "child_frame_id", "encoding", "distortion_model")
+"""Fields that never change while a robot runs."""
+
+Words = Mapping[str, tuple[str, ...] | None]
+"""Of each text of a topic, by its path, its words in the order in which they came; None: free
+text."""
+
+
+class Vocabulary:
+    """Collects the words of messages, as long as they are few."""
+
+    def __init__(self) -> None:
+        self._words: dict[str, dict[str, dict[str, None] | None]] = {}
+        self._decoders: dict[int, Decode | None] = {}
+        self._counts: Counter[str] = Counter()
+
+    def of(self, topic: str) -> Words:
+        """The words of a topic."""
+        found = self._words.get(topic, {})
+        return {path: None if words is None else tuple(words) for path, words in found.items()}
+
+    def take(self, stream: Stream, payload: memoryview) -> None:
+        """One message."""
+        topic = stream.channel.topic
+        if self._counts[topic] >= _MOST_MESSAGES or len(payload) > _MOST_BYTES:
+            return
+        decode = self._decoder(stream)
+        if decode is None:
+            return
+        self._counts[topic] += 1
+        data = bytes(payload)
+        try:
+            message = decode(data)
+        except Exception:  # the decoder trusts each byte, and each may be wrong
+            return
+        if stream.channel.message_encoding == "json":
+            self._find(stream, (data,))
+        for path, words in self._words[topic].items():
+            if words is not None and not _add(words, path, message):
+                self._words[topic][path] = None
+
+    def _decoder(self, stream: Stream) -> Decode | None:
+        """The decoder of a stream; None where it has no texts whose words are still few."""
+        id, topic = stream.channel.id, stream.channel.topic
+        if id not in self._decoders:
+            found = decoder(stream)
+            self._decoders[id] = None if isinstance(found, str) else found
+            self._find(stream, ())
+        known = self._words[topic]
+        is_open = stream.channel.message_encoding == "json" or any(
+            words is not None for words in known.values()
+        )
+        return self._decoders[id] if is_open else None
+
+    def _find(self, stream: Stream, payloads: tuple[bytes, ...]) -> None:
+        """Note the texts of a stream."""
+        known = self._words.setdefault(stream.channel.topic, {})
+        for path, leaf in (leaves(stream, payloads) or {}).items():
+            *above, last = path.split(".")
+            if leaf.kind is Kind.TEXT and last not in _NAMES and above[:1] != ["header"]:
+                known.setdefault(path, {})
+
+
+def _add(words: dict[str, None], path: str, message: object) -> bool:
+    """Note the word of a message; False where it makes the field free text."""
+    try:
+        text = field_of(Path("", tuple(path.split("."))), message)
+    except (FieldError, UnstatedError):
+        return True
+    if not isinstance(text, str) or not text:
+        return True
+    words[text] = None
+    return len(words) <= _MOST and len(text) <= _LONGEST and text.isprintable() and '"' not in text
