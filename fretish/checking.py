@@ -213,7 +213,7 @@ def _not_formalized(id: str, span: Span | None) -> Diagnostic:
     if id in NUMBERS_BACK:
         consequence, mend = (
             "it stays in the formulas as it is",
-            "a trace must give the comparison's value",
+            "a monitor keeps the number of the tick before; an audit needs a proposition",
         )
     elif id in LOOK_BACK:
         consequence = "PT says what it means, and in FT it stays a proposition"

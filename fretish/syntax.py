@@ -11,9 +11,8 @@ from enum import Enum, StrEnum, auto
 from fractions import Fraction
 from typing import Literal, assert_never
 
-from fretish import expressions
 from fretish.diagnostics.source import Span
-from fretish.expressions import Comparison, ComparisonOperator, Expression
+from fretish.expressions import ComparisonOperator, Expression
 
 
 class ScopeKind(StrEnum):
@@ -333,12 +332,8 @@ def is_eventual(timing: Timing) -> bool:
     return SHAPES[type(timing)] == Shape(Extent.INTERVAL, Quantifier.SOME)
 
 
-def with_comparisons(sentence: Sentence, rewrite: Callable[[Comparison], Expression]) -> Sentence:
-    """The sentence with each comparison in it replaced."""
-
-    def rewritten(expression: Expression) -> Expression:
-        return expressions.with_comparisons(expression, rewrite)
-
+def with_expressions(sentence: Sentence, rewritten: Callable[[Expression], Expression]) -> Sentence:
+    """The sentence with each of its Boolean expressions replaced."""
     scope, condition, timing = sentence.scope, sentence.condition, sentence.timing
     return replace(
         sentence,

@@ -19,6 +19,8 @@ beside it first. `from __future__ import annotations` is an import, too, and can
 it: so generated files have none, and neither have the modules that they are made of."""
 _MODULES = ("verdicts", "columns", "stepping", "outcomes", "tables", "command")
 """The modules of `monitors.kernel`, each after those that it needs."""
+_VARIABLES = ("readings", "variables", "variable_tables", "variable_command")
+"""Those that a monitor needs, too, where it is stepped by variables."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,6 +36,12 @@ class Runtime:
 def kernel() -> Runtime:
     """All modules of the kernel, one after the other, below one head of imports."""
     return _joined("monitors.kernel", _MODULES)
+
+
+@cache
+def kernel_of_variables() -> Runtime:
+    """The same, and what compares variables: its text begins with that of `kernel`."""
+    return _joined("monitors.kernel", (*_MODULES, *_VARIABLES))
 
 
 @cache

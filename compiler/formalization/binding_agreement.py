@@ -68,7 +68,7 @@ def _quoted(name: e.Name) -> e.Comparison | None:
 
 def _agrees(stated: e.Expression, declared: e.Expression, declarations: Declarations) -> bool:
     if not isinstance(stated, e.Comparison):
-        return not any(_constant(part) is not None for part in _parts(stated))
+        return not any(_constant(part) is not None for part in e.parts(stated))
     if not isinstance(declared, e.Comparison):
         return False
     if is_measured(stated, declarations.signals):
@@ -114,7 +114,7 @@ class _Terms:
             case e.Name(id), e.Word(text):
                 return id == text and self._terms.setdefault(id, bound) == bound
             case e.Name(id), _:
-                plain = not any(_constant(part) is not None for part in _parts(bound))
+                plain = not any(_constant(part) is not None for part in e.parts(bound))
                 return plain and self._terms.setdefault(id, bound) == bound
             case e.Negation(arg), e.Negation(other):
                 return self._fits(arg, other)
@@ -148,14 +148,6 @@ def _number(digits: str) -> Fraction | None:
         return units.number(digits)
     except ValueError:
         return None
-
-
-def _parts(expression: e.Expression) -> Iterator[e.Expression]:
-    waiting = [expression]
-    while waiting:
-        part = waiting.pop()
-        yield part
-        waiting.extend(e.children(part))
 
 
 def _drifted(rule: Formalized, name: str, stated: e.Expression, bound: Proposition) -> Diagnostic:

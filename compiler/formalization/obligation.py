@@ -18,6 +18,7 @@ from compiler.logic import formula as f
 from compiler.logic.printing import identifier, is_compound
 from fretish import expressions as e
 from fretish import syntax as s
+from fretish.printer import identifier as quoted
 
 
 class Kind(Enum):
@@ -268,6 +269,8 @@ def atom(expression: e.Expression) -> str:
             return digits
         case e.Quantity(digits, unit):
             return f"{digits} {unit}"
+        case e.Word(text):
+            return quoted(text)
         case e.Truth(value):
             return str(value).upper()
         case _:

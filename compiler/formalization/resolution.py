@@ -15,7 +15,8 @@ from compiler.formalization.obligation import atom, variable
 from fretish import expressions as e
 from fretish import syntax as s
 from fretish.bindings import comparisons
-from fretish.bindings.declarations import Declarations, Part, Proposition
+from fretish.bindings.declarations import Declarations, Part, Proposition, Signal
+from fretish.bindings.words import words
 from fretish.checking import conditions
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.diagnostics.source import Span
@@ -26,20 +27,39 @@ from fretish.syntax import Sentence
 def in_own_units(
     sentence: Sentence, declarations: Declarations, place: Span
 ) -> Sentence | Diagnostic:
-    """The sentence with each unit converted into that of the signals beside it."""
+    """The sentence with the words of its signals as words, and units as those of the signals."""
+    signals = declarations.signals
     mistakes: list[Diagnostic] = []
 
     def converted(comparison: e.Comparison) -> e.Comparison:
-        if not comparisons.is_measured(comparison, declarations.signals):
+        if not comparisons.is_measured(comparison, signals):
             return comparison
-        own = comparisons.in_own_units(comparison, declarations.signals, place)
+        own = comparisons.in_own_units(comparison, signals, place)
         if isinstance(own, e.Comparison):
             return own
         mistakes.append(own)
         return comparison
 
-    own = s.with_comparisons(sentence, converted)
+    def rewritten(expression: e.Expression) -> e.Expression:
+        worded = words(expression, _without(declarations.propositions, signals), place)
+        if isinstance(worded, Diagnostic):
+            mistakes.append(worded)
+            return expression
+        return e.with_comparisons(worded, converted)
+
+    own = s.with_expressions(sentence, rewritten)
     return mistakes[0] if mistakes else own
+
+
+def _without(
+    propositions: Mapping[str, Proposition], signals: Mapping[str, Signal]
+) -> Mapping[str, Signal]:
+    """The signals, but for numbers with the name of a proposition: that is the truth value."""
+    return {
+        name: signal
+        for name, signal in signals.items()
+        if signal.values or name not in propositions
+    }
 
 
 def resolved(rule: Formalized, declarations: Declarations) -> Formalized | Diagnostic:

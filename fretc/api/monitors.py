@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, Protocol, cast
 
 from compiler.formalization.formalize import clashes, duplicates
@@ -10,8 +10,9 @@ from compiler.formalization.formalized import Formalized
 from compiler.targets.python import monitor as python
 from fretc.api.refusal import Refusal, bounded
 from fretish.diagnostics.diagnostic import Code, Diagnostic
-from monitors.kernel.stepping import Row, Standing
-from monitors.kernel.verdicts import Truth, Verdict
+from monitors.kernel.stepping import Standing
+from monitors.kernel.variables import Value
+from monitors.kernel.verdicts import Verdict
 from monitors.loading import load
 
 
@@ -19,17 +20,23 @@ class Monitor(Protocol):
     """A generated monitor; docs/monitors.md says what its methods give."""
 
     PROPOSITIONS: Mapping[str, str]
-    """Each proposition with its parameter of `step`."""
+    """Each proposition with its parameter: of `step`, where no sentence compares numbers."""
 
     @property
     def tick(self) -> int:
         """The last tick; -1 before the first."""
 
-    def step(self, **truth: Truth) -> Verdict | tuple[Verdict, ...]:
-        """One tick; None is unknown. Of several requirements a verdict for each."""
+    def step(self, **values: Value) -> Verdict | tuple[Verdict, ...]:
+        """One tick, by the value of each variable; None is unknown.
 
-    def run(self, rows: Iterable[Row | Mapping[str, Truth]]) -> Verdict | tuple[Verdict, ...]:
-        """Many ticks: the truth of all propositions in their order, or by their names."""
+        Returns:
+            A verdict, or of several requirements one for each.
+        """
+
+    def run(
+        self, rows: Iterable[Sequence[Value] | Mapping[str, Value]]
+    ) -> Verdict | tuple[Verdict, ...]:
+        """Many ticks: the values of all variables in their order, or by their names."""
 
     def standings(self) -> tuple[Standing, ...]:
         """What would be said of each requirement if the trace ended now."""

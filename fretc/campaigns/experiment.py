@@ -157,7 +157,7 @@ class SafetyFunction:
             stands = awaited and self._truth(one, recording, time, unknown=False)
             truths[one.name] = stands
         self._last = time
-        self._monitor.step(**{self._monitor.PROPOSITIONS[name]: t for name, t in truths.items()})
+        self._monitor.advance([truths])
         (signal,) = self._monitor.must.signals()
         self._demanded = bool(signal.trigger or signal.owed)
         return self._demanded

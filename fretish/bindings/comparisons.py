@@ -6,7 +6,7 @@ variables have no units. A unit in a sentence is converted into that, exactly.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 
@@ -50,7 +50,7 @@ _PLAIN = _Measure("", ONE, measured=False)
 
 def is_measured(expression: e.Expression, signals: Mapping[str, Signal]) -> bool:
     """Whether every name in it is a signal, and every call a function of bindings."""
-    parts = list(_parts(expression))
+    parts = list(e.parts(expression))
     names = {part.id for part in parts if isinstance(part, e.Name)}
     calls = {part.name for part in parts if isinstance(part, e.Call)}
     operators = {part.op for part in parts if isinstance(part, e.Arithmetic)}
@@ -185,7 +185,7 @@ class _Writer:
 
     def _constant(self, part: e.Expression, target: _Measure) -> e.Expression:
         """What is made of bare numbers alone."""
-        for each in _parts(part):
+        for each in e.parts(part):
             if isinstance(each, e.Number) and not _is_number(each.digits):
                 raise _MistakeError(_too_long(self._span(each)))
         zero = isinstance(part, e.Number) and number(part.digits) == 0
@@ -279,11 +279,3 @@ def _too_long(place: Span) -> Diagnostic:
         place,
         help="write fewer digits",
     )
-
-
-def _parts(expression: e.Expression) -> Iterator[e.Expression]:
-    waiting = [expression]
-    while waiting:
-        part = waiting.pop()
-        yield part
-        waiting.extend(e.children(part))

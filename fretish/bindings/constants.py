@@ -67,7 +67,13 @@ def number(expression: e.Expression) -> Fraction | None:
 
 
 def computed(op: e.ArithmeticOperator, left: Fraction, right: Fraction) -> Fraction | None:
-    """`left op right`; None where it divides by zero."""
+    """`left op right`; None where it divides by zero.
+
+    `left mod right` has the sign of `right`.
+
+    Raises:
+        ValueError: the exponent of a power is not small and whole, or the power too large.
+    """
     match op:
         case "+":
             return left + right
@@ -77,8 +83,29 @@ def computed(op: e.ArithmeticOperator, left: Fraction, right: Fraction) -> Fract
             return left * right
         case "/":
             return left / right if right else None
-        case _:
-            raise ValueError(f"bindings have no `{op}`")
+        case "mod":
+            return left % right if right else None
+        case "^":
+            exponent = whole_exponent(right)
+            if max(map(int.bit_length, left.as_integer_ratio())) * exponent > _MOST_BITS:
+                raise ValueError("a power is too large")
+            return left**exponent
+
+
+MOST_EXPONENT = 16
+"""Of a power: it is computed as a product."""
+_MOST_BITS = 1 << 16
+
+
+def whole_exponent(exponent: Fraction) -> int:
+    """The exponent of a power.
+
+    Raises:
+        ValueError: it is no whole number from 1 to `MOST_EXPONENT`.
+    """
+    if exponent.denominator != 1 or not 1 <= exponent <= MOST_EXPONENT:
+        raise ValueError(f"an exponent is a whole number from 1 to {MOST_EXPONENT}")
+    return int(exponent)
 
 
 def called(name: str, values: list[Fraction]) -> Fraction:

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import hashlib
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from keyword import iskeyword
 from pathlib import PurePosixPath
@@ -20,6 +20,7 @@ from compiler.files.templating import render
 from compiler.formalization.formalized import Formalized, plain
 from compiler.formalization.obligation import TRAITS, Trait, obligation
 from compiler.logic import printing
+from compiler.targets.python.comparisons import ANNOTATIONS, NAMES, Front, Writer, front
 from compiler.targets.python.program import (
     MARKS,
     Program,
@@ -35,7 +36,7 @@ from fretish.clock import assumed_ticks
 from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
 from fretish.expressions import depth
 from fretish.reading.recursion import deep
-from monitors.source_text import kernel
+from monitors.source_text import kernel, kernel_of_variables
 
 
 def refuse(rule: Formalized) -> Diagnostic | None:
@@ -129,9 +130,12 @@ def text(*rules: Formalized) -> str:
     rules = tuple(map(plain, rules))
     names = tuple(dict.fromkeys(name for rule in rules for name in rule.watched))
     prefixes = prefixes_of([rule.id for rule in rules])
-    parameters = parameters_of(names, prefixes.values())
+    compared = front(rules, names)
+    variables = compared.inputs if compared else {}
+    parameters = parameters_of(names, prefixes.values(), variables)
     code = program({rule.id: rule.watch for rule in rules}, parameters, prefixes)
-    runtime = kernel()
+    runtime = kernel_of_variables() if compared else kernel()
+    lines = _Lines.of(compared, parameters) if compared else None
     inputs = [_Input(name, parameters[name], _is_negated(name, code)) for name in names]
     return render(
         "monitor/monitor.py.j2",
@@ -144,7 +148,8 @@ def text(*rules: Formalized) -> str:
         inputs=inputs,
         row=_tuple([p.name for p in inputs]),
         program=code,
-        digest=_digest(code, rules),
+        front=lines,
+        digest=_digest(code, rules, lines),
         slots=_slots(code),
         requirements=code.requirements,
         marks=MARKS,
@@ -154,10 +159,11 @@ def text(*rules: Formalized) -> str:
     )
 
 
-def _digest(code: Program, rules: Sequence[Formalized]) -> str:
-    """SHA-256 of everything that the meaning of a rail's cells depends on."""
+def _digest(code: Program, rules: Sequence[Formalized], front: _Lines | None) -> str:
+    """SHA-256 of everything that the meaning of what is kept depends on."""
     identities = [(rule.id, rule.fingerprint, rule.ticks) for rule in rules]
-    return hashlib.sha256(repr((__version__, identities, code)).encode()).hexdigest()
+    meaning = (__version__, identities, code, *([front] if front else []))
+    return hashlib.sha256(repr(meaning).encode()).hexdigest()
 
 
 def _tuple(names: Sequence[str]) -> str:
@@ -174,6 +180,53 @@ def _slots(code: Program) -> list[str]:
 def _natural(name: str) -> list[str]:
     """Numbers within names are in their own order."""
     return [part.zfill(9) if part.isdigit() else part for part in re.split(r"(\d+)", name)]
+
+
+@dataclass(frozen=True, slots=True)
+class _Variable:
+    """One variable of a step."""
+
+    variable: str
+    name: str
+    kind: str
+    words: tuple[str, ...]
+    annotation: str
+
+
+@dataclass(frozen=True, slots=True)
+class _Lines:
+    """The text that makes truth values of variables."""
+
+    variables: tuple[_Variable, ...]
+    comparisons: tuple[tuple[str, str, str], ...]
+    """Each proposition that is a comparison, its name, and its text."""
+    earlier: tuple[tuple[str, str, str], ...]
+    """What is looked back at: the name of its value, what it was at first, and its present one."""
+
+    @property
+    def row(self) -> str:
+        """The variables of a tick."""
+        return _tuple([each.name for each in self.variables])
+
+    @property
+    def now(self) -> str:
+        """What the next tick looks back at."""
+        return _tuple([text for _, _, text in self.earlier])
+
+    @classmethod
+    def of(cls, compared: Front, parameters: Mapping[str, str]) -> _Lines:
+        """By the names of its variables and propositions."""
+        writer = Writer({name: parameters[name] for name in compared.inputs})
+        comparisons = tuple(
+            (name, parameters[name], writer.comparison(each))
+            for name, each in compared.comparisons.items()
+        )
+        variables = tuple(
+            _Variable(name, parameters[name], each.kind, each.words, ANNOTATIONS[each.kind])
+            for name, each in compared.inputs.items()
+        )
+        earlier = tuple((name, *texts) for texts, name in writer.earlier.items())
+        return cls(variables, comparisons, earlier)
 
 
 @dataclass(frozen=True, slots=True)
@@ -245,11 +298,18 @@ _RESERVED = frozenset(
 """Names in the generated functions: their locals and the functions that they call."""
 
 
-def parameters_of(names: Iterable[str], prefixes: Iterable[str]) -> dict[str, str]:
-    """A parameter of `step` for each proposition: its name as an identifier, all different."""
+def parameters_of(
+    names: Iterable[str], prefixes: Iterable[str], variables: Iterable[str] = ()
+) -> dict[str, str]:
+    """A parameter for each proposition: its name as an identifier, all different.
+
+    Where a monitor is stepped by variables, one for each of these, too.
+    """
     reserved = {*_RESERVED, *(name for prefix in prefixes for name in marks_of(prefix))}
+    variables = tuple(variables)
+    reserved |= NAMES if variables else set()
     parameters: dict[str, str] = {}
-    for name in names:
+    for name in dict.fromkeys((*names, *variables)):
         parameter = printing.identifier(name) if not printing.is_compound(name) else _spoken(name)
         if not parameter[0].isalpha():
             parameter = f"p_{parameter}"

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from fretc.logs.signals.samples import EXACT, WHOLE, Numbers, Values, scaled
 from fretish import expressions as e
-from fretish.bindings.constants import called, computed
+from fretish.bindings.constants import called, computed, whole_exponent
 from fretish.expressions import MIRRORED
 from fretish.units import ONE, Unit, unit
 
@@ -92,10 +92,11 @@ def term(expression: e.Expression, scope: Scope) -> Term:
 
     What divides by zero is unknown. Infinity is a number: `1 / inf` is 0, `inf - inf` unknown.
     Constants are computed exactly, everything else in 64-bit floats; what has not been computed
-    (`x`, `-x`, `abs(x)`, `min(x, y)`) stays as it was recorded.
+    (`x`, `-x`, `abs(x)`, `min(x, y)`) stays as it was recorded. `x mod y` has the sign of `y`.
 
     Raises:
         ExpressionError: the expression is a truth value, or names what the scope does not hold.
+        ValueError: the exponent of a power is not small and whole.
     """
     match expression:
         case e.Number(digits):
@@ -137,8 +138,8 @@ def together(left: Term, right: Term, op: str = "") -> tuple[Values, Values, Fra
     """Both sides in one unit, and the scale of it: that of the samples, if they have the same one.
 
     A constant becomes the nearest number of the kind of the other side: of 32-bit floats, of
-    64-bit floats, or, beside whole numbers beyond them, a whole number for which `op` says the
-    same.
+    64-bit floats, or, where it is compared and whole numbers are beyond these, a whole number for
+    which `op` says the same.
     """
     if isinstance(left, Fraction):
         if isinstance(right, Fraction):
@@ -171,10 +172,11 @@ _BEYOND = 2**64
 def _substitute(constant: Fraction, measure: Measure, op: str) -> Values:
     """The value to compare in `measure op constant`, in the kind of the measure."""
     exact, kind = constant / measure.scale, measure.values.dtype
-    if not _HALVES <= abs(exact) < (_BEYOND if kind == EXACT else WHOLE) or kind == np.float32:
+    is_between = _HALVES <= abs(exact) < (_BEYOND if kind == EXACT else WHOLE)
+    if not op or not is_between or kind == np.float32:
         return _nearest(exact, kind)
     if exact.denominator != 1 and op in ("=", "!="):
-        return np.array([np.inf], EXACT)  # no whole number is equal to it
+        return np.nextafter(np.zeros(1, EXACT), 1)  # nothing that is recorded is equal to it
     return np.array([ceil(exact) if op in ("<", ">=") else floor(exact)], EXACT)
 
 
@@ -212,8 +214,19 @@ def _arithmetic(op: e.ArithmeticOperator, left: Term, right: Term) -> Term:
             case "/":
                 quotient = np.where(b.plain == 0, np.nan, a.plain / b.plain)
                 return Measure(quotient, a.scale / b.scale)
-            case _:
-                raise ExpressionError(f"bindings have no `{op}`")
+            case "mod":
+                x, y, scale = together(_double(left), _double(right))
+                return Measure(np.where(y == 0, np.nan, np.mod(x, y)), scale)
+            case _:  # `^`; sums are above
+                return _power(a, right)
+
+
+def _power(base: Measure, exponent: Term) -> Measure:
+    """The product of a number with itself, from left to right."""
+    if not isinstance(exponent, Fraction):
+        raise ExpressionError("an exponent is a constant")
+    factors = [base.plain] * whole_exponent(exponent)
+    return Measure(reduce(np.multiply, factors), base.scale ** len(factors))
 
 
 def _double(value: Term) -> Term:

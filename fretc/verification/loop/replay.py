@@ -109,9 +109,7 @@ class _Again:
         self._still = self._channel.stands if stands else self._still
 
     def _step(self, monitor: Monitor, tick: Tick) -> None:
-        values = dict(zip(self._environment.atoms, tick.letter, strict=True))
-        parameters = {p: values[name] for name, p in monitor.PROPOSITIONS.items()}
-        monitor.step(**parameters)  # type: ignore[attr-defined]
+        monitor.advance([dict(zip(self._environment.atoms, tick.letter, strict=True))])
 
     def _send(self, tick: Tick) -> None:
         same = self._channel.edge and tick.requested == self._last_request

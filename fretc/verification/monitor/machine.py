@@ -6,7 +6,7 @@ That is sound only where a step depends on nothing but cells and propositions:
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Sequence
+from collections.abc import Callable, Hashable, Mapping, Sequence
 from typing import Any
 
 from compiler.formalization.letters import Valuation
@@ -54,8 +54,7 @@ class Stepped:
         rail: Any = monitor.must
         self._rail, self._place = rail, place
         self._alone = len(monitor.REQUIREMENTS) == 1
-        self._step: Any = monitor.step  # type: ignore[attr-defined]
-        self._parameters = [(p, atoms.index(name)) for name, p in monitor.PROPOSITIONS.items()]
+        self._step = _stepping(monitor, atoms)
         self._cells = Cells(rail)
         self._fates = [n for n in rail.__slots__ if n.endswith(("_broken", "_doomed"))]
 
@@ -71,7 +70,7 @@ class Stepped:
 
     def step(self, letter: Valuation) -> Judgement:
         """The verdict of the text's own step, and FRET's finite verdict."""
-        verdicts = self._step(**{p: letter[i] for p, i in self._parameters})
+        verdicts = self._step(letter)
         rail = self._rail
         signals, marks = rail.signals()[self._place], rail.marks()[self._place]
         verdict = verdicts if self._alone else verdicts[self._place]
@@ -81,3 +80,21 @@ class Stepped:
         """Whether a demand began at the last tick, and whether one is open after it."""
         signals = self._rail.signals()[self._place]
         return bool(signals.trigger), bool(signals.owed)
+
+
+def _stepping(monitor: Any, atoms: Sequence[str]) -> Callable[[Valuation], Any]:
+    """A step of the monitor by the truth of its propositions, by its own `step` if that takes it.
+
+    A monitor that is stepped by variables makes truth values of them, and advances by these.
+    """
+    parameters = [(p, atoms.index(name)) for name, p in monitor.PROPOSITIONS.items()]
+    if not isinstance(getattr(monitor, "VARIABLES", None), Mapping):
+        return lambda letter: monitor.step(**{p: letter[i] for p, i in parameters})
+    is_alone = len(monitor.REQUIREMENTS) == 1
+
+    def step(letter: Valuation) -> Any:
+        monitor.advance((tuple([letter[i] for _, i in parameters]),))
+        verdicts = monitor.verdicts()
+        return verdicts[0] if is_alone else verdicts
+
+    return step

@@ -15,6 +15,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from compiler.targets.python.monitor import parameters_of, prefixes_of
 from compiler.targets.python.program import MARKS, SIGNALS, locals_of, negation
 from fretc.verification.monitor.column_layout import check_columns
+from fretc.verification.monitor.front_layout import check_front, declared_variables
 from fretc.verification.monitor.statements import (
     StrangeError,
     below_docstring,
@@ -27,7 +28,8 @@ from fretc.verification.monitor.statements import (
 )
 from fretc.verification.monitor.tick_layout import FIXED, Rail, check_advance
 from fretish.reading.text_encoding import is_utf8
-from monitors.source_text import kernel
+from monitors.kernel.variables import Variable
+from monitors.source_text import Runtime, kernel, kernel_of_variables
 
 _OF_RAILS = frozenset({"CELLS", "advance", "signals", "marks"})
 """The other names of a rail."""
@@ -37,11 +39,13 @@ def strange(text: str) -> str | None:
     """Why the text may do more than it seems to; None: it does not."""
     if not is_utf8(text):
         return "it declares another encoding than UTF-8, so Python would read another text"
-    head, runtime, own = text.partition(kernel().text)
+    runtime = _runtime(text)
+    head, found, own = text.partition(runtime.text)
     try:
-        if not runtime or not head.endswith("\n") or not own.startswith("\n") or not _is_head(head):
+        is_alone = head.endswith("\n") and own.startswith("\n")
+        if not found or not is_alone or not reads(ast.parse(head).body, runtime.imports):
             return "the run time in it is not the one of this version of fretc"
-        _check_module(ast.parse(own))
+        _check_module(ast.parse(own), by_variables=runtime is kernel_of_variables())
     except SyntaxError as error:
         return f"it is no Python: {error}"
     except StrangeError as error:
@@ -51,14 +55,16 @@ def strange(text: str) -> str | None:
 
 def own(text: str) -> ast.Module:
     """The part of a monitor's text below the run time; `strange` has checked its layout."""
-    return ast.parse(text.partition(kernel().text)[2])
+    return ast.parse(text.partition(_runtime(text).text)[2])
 
 
-def _is_head(head: str) -> bool:
-    return reads(ast.parse(head).body, kernel().imports)
+def _runtime(text: str) -> Runtime:
+    """That of a monitor that is stepped by variables, where it is in the text; else the other."""
+    longer = kernel_of_variables()
+    return longer if longer.text in text else kernel()
 
 
-def _check_module(module: ast.Module) -> None:
+def _check_module(module: ast.Module, *, by_variables: bool) -> None:
     match module.body:
         case [ast.ClassDef() as rail, ast.ClassDef() as monitor, binding, run]:
             pass
@@ -67,12 +73,14 @@ def _check_module(module: ast.Module) -> None:
     title = rail.name.removesuffix("Rail")
     demand(rail.name == f"{title}Rail" and title != "", rail)
     demand(monitor.name == f"{title}Monitor" and _is_plain(rail) and _is_plain(monitor), monitor)
-    demand([ast.unparse(base) for base in (*rail.bases, *monitor.bases)] == ["Monitor"], monitor)
-    demand(is_one_of(binding, f"MONITOR: type[Monitor] = {monitor.name}"), binding)
+    base = "VariableMonitor" if by_variables else "Monitor"
+    demand([ast.unparse(each) for each in (*rail.bases, *monitor.bases)] == [base], monitor)
+    demand(is_one_of(binding, f"MONITOR: type[{base}] = {monitor.name}"), binding)
     _check_annotations(module, title)
-    demand(is_one_of(run, 'if __name__ == "__main__":\n    sys.exit(main(MONITOR))'), run)
+    main = "main_by_variables" if by_variables else "main"
+    demand(is_one_of(run, f'if __name__ == "__main__":\n    sys.exit({main}(MONITOR))'), run)
     names, advance = _rail(rail)
-    inputs = _monitor(monitor, rail.name, names)
+    inputs = _monitor(monitor, rail.name, names, by_variables=by_variables)
     reserved = {*FIXED, *_OF_RAILS, *locals_of(inputs.values())}
     demand(reserved.isdisjoint(names.cells), rail)
     suffixes = tuple(f"_{name}" for name in (*MARKS, *SIGNALS))
@@ -94,9 +102,12 @@ def _check_annotations(module: ast.Module, title: str) -> None:
 _ANNOTATIONS = frozenset(
     (
         *("None", "bool", "int", "Truth", "Verdict", "tuple[Verdict, ...]", "type[Monitor]"),
+        "type[VariableMonitor]",
         *("tuple[Signals[bool], ...]", "tuple[Signals[int], ...]", "tuple[Marks, ...]"),
         *("ClassVar[tuple[str, ...]]", "ClassVar[Mapping[str, str]]"),
         *("Iterable[Sequence[Any]]", "Iterable[Row | Mapping[str, Truth]]"),
+        *("Number", "str | None", "tuple[Truth, ...]", "ClassVar[Mapping[str, Variable]]"),
+        "Iterable[Sequence[Value] | Mapping[str, Value]]",
     )
 )
 
@@ -180,29 +191,44 @@ def _is_initial(node: ast.expr) -> bool:
             return False
 
 
-def _monitor(node: ast.ClassDef, rail: str, names: Rail) -> Mapping[str, str]:
+def _monitor(
+    node: ast.ClassDef, rail: str, names: Rail, *, by_variables: bool
+) -> Mapping[str, str]:
     """The propositions of a monitor with their parameters, after a check of all of it."""
     body = below_docstring(node)
-    demand(len(body) == 10, node)
+    variables = [body.pop(3), body.pop(7)] if by_variables and len(body) == 12 else []
+    demand(len(body) == 10 and by_variables is bool(variables), node)
     program, requirements, propositions, literals, rail_binding, must, may, step, run, columns = (
         body
     )
     demand(isinstance(program, ast.Assign) and _is_text(program, "PROGRAM"), program)
     _check_requirements(requirements, names.prefixes)
-    inputs = _inputs(propositions, names.prefixes)
+    declared = declared_variables(variables[0]) if variables else {}
+    inputs = _inputs(propositions, names.prefixes, declared)
     literal_names = _literals(literals, inputs)
     demand(is_one_of(rail_binding, f"RAIL = {rail}"), rail_binding)
     demand(is_one_of(must, f"must: {rail}") and is_one_of(may, f"may: {rail}"), must)
-    alone = names.prefixes[0] if len(names.prefixes) == 1 else None
-    verdicts = "" if alone is None else "[0]"
+    if variables:
+        check_front(
+            (variables[1], step, run), declared, tuple(inputs.values()), len(names.prefixes)
+        )
+    else:
+        _check_interface(step, run, tuple(inputs.values()), names.prefixes)
+    check_columns(columns, literal_names)
+    return inputs
+
+
+def _check_interface(
+    step: ast.stmt, run: ast.stmt, inputs: Sequence[str], prefixes: Sequence[str]
+) -> None:
+    """Check how a monitor is stepped by propositions."""
+    verdicts = "[0]" if len(prefixes) == 1 else ""
     rows = "self, rows: Iterable[Row | Mapping[str, Truth]]"
     run_body = f"self.advance(rows)\nreturn self.verdicts(){verdicts}"
     demand(reads(body_of(run, "run", rows), run_body), run)
-    parameters = ", ".join(f"{name}: Truth" for name in inputs.values())
+    parameters = ", ".join(f"{name}: Truth" for name in inputs)
     stepped = body_of(step, "step", f"self, *, {parameters}" if inputs else "self")
-    _check_step(stepped, tuple(inputs.values()), names.prefixes)
-    check_columns(columns, literal_names)
-    return inputs
+    _check_step(stepped, inputs, prefixes)
 
 
 def _check_requirements(node: ast.stmt, prefixes: Sequence[str]) -> None:
@@ -223,14 +249,18 @@ def _check_requirements(node: ast.stmt, prefixes: Sequence[str]) -> None:
     demand(tuple(prefixes_of(ids).values()) == tuple(prefixes), node)
 
 
-def _inputs(node: ast.stmt, prefixes: Sequence[str]) -> Mapping[str, str]:
+def _inputs(
+    node: ast.stmt, prefixes: Sequence[str], variables: Mapping[str, Variable]
+) -> Mapping[str, str]:
     """The parameter of each proposition: the one that the generator derives from its name."""
     match node:
         case ast.AnnAssign(ast.Name("PROPOSITIONS"), _, ast.Dict(keys, values)):
             names = names_in(ast.Tuple([key for key in keys if key is not None]))
             demand(len({*names}) == len(keys) and all(names), node)
-            inputs = parameters_of(names, prefixes)
+            parameters = parameters_of(names, prefixes, variables)
+            inputs = {name: parameters[name] for name in names}
             demand(tuple(inputs.values()) == names_in(ast.Tuple(values)), node)
+            demand(all(v.parameter == parameters[n] for n, v in variables.items()), node)
             return inputs
         case _:
             demand(False, node)

@@ -22,14 +22,16 @@ from compiler.formalization.formalized import Formalized
 from compiler.formalization.letters import atoms_of
 from compiler.logic.claims import Outcome, Trace, not_checked, proved, refuted
 from compiler.targets.python import monitor as target
-from fretc.verification.monitor import rails
+from fretc.verification.monitor import front_terms, rails
 from fretc.verification.monitor.column_terms import Terms
 from fretc.verification.monitor.equivalence import Difference, Equivalence, Judgement, compare
 from fretc.verification.monitor.machine import Stepped
+from fretc.verification.monitor.statements import StrangeError
 from fretc.verification.monitor.text_check import own, strange
 from monitors.kernel import Column, Monitor
 from monitors.kernel.columns import column, truths
 from monitors.kernel.stepping import literals_of
+from monitors.kernel.variables import Variable
 from monitors.kernel.verdicts import Truth
 from monitors.loading import load
 from monitors.source_text import kernel
@@ -96,6 +98,9 @@ def _compared(
         (expected,) = load("generated", generated).REQUIREMENTS
         if tuple(monitor.REQUIREMENTS[place]) != tuple(expected):
             return not_checked("it decides the same, but states another sentence or deadline")
+        fault = _front_compared(rule, text, monitor, atoms, others)
+        if fault is not None:
+            return fault
     ticks, word = _columns_compared(monitor, place, atoms, rule.ticks or 0)
     if word is not None:
         return _disagreement(atoms, word)
@@ -143,20 +148,81 @@ def _in_words(judgement: Judgement) -> str:
 
 
 def _disagreement(
-    atoms: Sequence[str], word: Word, fault: str = "its column program and its steps differ"
+    atoms: Sequence[str],
+    word: Word,
+    fault: str = "its column program and its steps differ",
+    values: str = "",
 ) -> Outcome:
-    """The signals of the monitor are wrong at the last tick of a trace."""
-    return refuted(f"{fault} on a trace", Trace(tuple(atoms), word))
+    """The signals of the monitor are wrong at the last tick of a trace.
+
+    Args:
+        atoms: the propositions.
+        word: their values at each tick.
+        fault: what is wrong.
+        values: of the variables at the last tick, where they matter.
+    """
+    last = f"; at its last tick {values}" if values else ""
+    return refuted(f"{fault} on a trace{last}", Trace(tuple(atoms), word))
 
 
 def _is_generated(text: str, monitor: Monitor, rules: Sequence[Formalized]) -> bool:
     """Whether fretc writes this text for some of these rules, but for comments."""
+    generated = _generated(monitor, rules)
+    return generated is not None and ast.dump(own(generated)) == ast.dump(own(text))
+
+
+def _generated(monitor: Monitor, rules: Sequence[Formalized]) -> str | None:
+    """The text that fretc writes for the requirements of a monitor, where all are known."""
     by_id = {rule.id: rule for rule in rules}
     ids = [requirement.id for requirement in monitor.REQUIREMENTS]
-    if not all(id in by_id for id in ids):
-        return False
-    generated = target.text(*(by_id[id] for id in ids))
-    return ast.dump(own(generated)) == ast.dump(own(text))
+    return target.text(*(by_id[id] for id in ids)) if all(id in by_id for id in ids) else None
+
+
+def _front_compared(
+    rule: Formalized,
+    text: str,
+    monitor: Monitor,
+    atoms: Sequence[str],
+    others: Sequence[Formalized],
+) -> Outcome | None:
+    """Why what it compares is not what the sentence does; None: it is.
+
+    Another requirement in the file may read as a truth value what this one takes for a number:
+    then what fretc writes for all of them counts.
+    """
+    reasons = []
+    for written in (target.text(rule), _generated(monitor, (*others, rule))):
+        reason = None if written is None else _differing(rule, text, written, monitor, atoms)
+        if written is not None and reason is None:
+            return None
+        reasons.append(reason)
+    return next(reason for reason in reversed(reasons) if reason is not None)
+
+
+def _differing(
+    rule: Formalized, text: str, written: str, monitor: Monitor, atoms: Sequence[str]
+) -> Outcome | None:
+    """Why the variables of a text, or what it compares, are not those of the other."""
+    try:
+        actual, expected = front_terms.terms(text), front_terms.terms(written)
+    except StrangeError as error:
+        return not_checked(str(error))
+    names = [name for name in rule.watched if name in expected]
+    if all(actual.get(name) == expected[name] for name in names):
+        return None
+    reference = load("written", written)
+    inputs, others = (getattr(each, "VARIABLES", None) for each in (monitor, reference))
+    if inputs is not None and others is not None and _kinds(inputs) == _kinds(others):
+        found = front_terms.differing(monitor, reference, (text, written), names)
+        if found is not None:
+            word = tuple(tuple(row.get(name) for name in atoms) for row in found.truths)
+            return _disagreement(atoms, word, found.fault, found.values)
+    wrong = next(name for name in names if actual.get(name) != expected[name])
+    return not_checked(f"`{wrong}` is not computed of variables as fretc computes it")
+
+
+def _kinds(variables: Mapping[str, Variable]) -> Mapping[str, object]:
+    return {name: (each.kind, each.words) for name, each in variables.items()}
 
 
 def _compared_with_generated(

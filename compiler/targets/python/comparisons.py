@@ -1,0 +1,397 @@
+"""The comparisons of sentences → Python: the truth of propositions from the variables of a tick.
+
+The numbers of a sentence are in the units of the signals that they meet. Numbers alone are computed
+here, exactly; all else by the functions of `monitors.kernel.readings`, which compute as an audit
+does (`fretc.logs.signals.measures`). A comparison that holds anything else stays a proposition.
+"""
+
+from __future__ import annotations
+
+import itertools
+import re
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from fractions import Fraction
+
+from compiler.files.templating import python
+from compiler.formalization.formalized import Formalized
+from compiler.formalization.obligation import atom, variable
+from compiler.logic.printing import is_compound
+from fretish import expressions as e
+from fretish.bindings.constants import called, computed, whole_exponent
+from fretish.bindings.declarations import Signal
+from fretish.checking import conditions
+from fretish.reading.recursion import deep
+from fretish.units import unit
+
+NUMBER, TRUTH, WORD = "number", "truth", "word"
+"""What a variable is."""
+ANNOTATIONS: Mapping[str, str] = {NUMBER: "Number", TRUTH: "Truth", WORD: "str | None"}
+"""Of the parameter of a variable."""
+
+
+@dataclass(frozen=True, slots=True)
+class Input:
+    """A variable of a step."""
+
+    kind: str
+    words: tuple[str, ...] = ()
+    """What a word may be."""
+
+
+@dataclass(frozen=True, slots=True)
+class Compared:
+    """A comparison, as it is compiled."""
+
+    inputs: Mapping[str, Input]
+    """Its variables."""
+    tree: e.Comparison
+    units: Mapping[str, tuple[str, Fraction]]
+    """The unit of each variable that is a signal, and its factor to base units."""
+    word: str | None = None
+    """What its only variable is compared with, where that is a word."""
+
+
+@dataclass(frozen=True, slots=True)
+class Front:
+    """What turns the variables of a tick into the truth of its propositions."""
+
+    inputs: Mapping[str, Input]
+    comparisons: Mapping[str, Compared]
+    """By the names of their propositions."""
+
+
+@deep
+def front(rules: Sequence[Formalized], propositions: Sequence[str]) -> Front | None:
+    """The variables of monitors, and their comparisons; None where nothing is compared.
+
+    What is a number in one place and a truth value in another stays a proposition in both, and so
+    does a comparison that two rules read in different units.
+
+    Args:
+        rules: those of one monitor.
+        propositions: what the monitor watches.
+    """
+    found: dict[str, Compared] = {}
+    opaque: set[str] = set()
+    for rule in rules:
+        for name, compared in _comparisons(rule).items():
+            if found.setdefault(name, compared) != compared:
+                opaque.add(name)
+    clashing = set(_clashing(rules, found.values()))
+    known = {
+        name: compared
+        for name, compared in found.items()
+        if name in propositions and name not in opaque and clashing.isdisjoint(compared.inputs)
+    }
+    if not known:
+        return None
+    inputs: dict[str, Input] = {}
+    for name in propositions:
+        inputs |= known[name].inputs if name in known else {name: Input(TRUTH)}
+    return Front(inputs, known)
+
+
+def _comparisons(rule: Formalized) -> dict[str, Compared]:
+    """The comparisons of a sentence that can be compiled, by the names of their propositions."""
+    found: dict[str, Compared] = {}
+    for tree in conditions(rule.sentence):
+        for part in _parts(tree):
+            if isinstance(part, e.Comparison):
+                compared = _compared(part, rule)
+                if compared is not None:
+                    found[atom(part)] = compared
+    return found
+
+
+def _parts(tree: e.Expression) -> Iterator[e.Expression]:
+    waiting = [tree]
+    while waiting:
+        part = waiting.pop()
+        yield part
+        waiting.extend(reversed(e.children(part)))
+
+
+def _clashing(rules: Sequence[Formalized], found: Iterable[Compared]) -> Iterator[str]:
+    """The variables that are of two kinds, or of two units."""
+    kinds: dict[str, Input] = {
+        name: Input(TRUTH) for rule in rules for name in rule.propositions if not is_compound(name)
+    }
+    units: dict[str, object] = {}
+    for compared in found:
+        for name, kind in compared.inputs.items():
+            unit = compared.units.get(name)
+            if kinds.setdefault(name, kind) != kind or units.setdefault(name, unit) != unit:
+                yield name
+
+
+def _compared(tree: e.Comparison, rule: Formalized) -> Compared | None:
+    """The comparison with its variables; None where it cannot be compiled."""
+    signals = rule.declarations.signals if rule.declarations else {}
+    names = tuple(dict.fromkeys(name.id for name in e.names(tree)))
+    units = {
+        variable(id): (signals[id].unit_name, signals[id].scale) for id in names if id in signals
+    }
+    spoken = _spoken(tree, signals)
+    if spoken is not None:
+        id, word, words = spoken
+        return Compared({variable(id): Input(WORD, words)}, tree, units, word)
+    compared = Compared({variable(id): Input(NUMBER) for id in names}, tree, units)
+    try:
+        Writer(dict.fromkeys(compared.inputs, "x")).comparison(compared)
+    except NotCompiledError:
+        return None
+    return compared
+
+
+def _spoken(
+    tree: e.Comparison, signals: Mapping[str, Signal]
+) -> tuple[str, str, tuple[str, ...]] | None:
+    """A signal of words, the word that it is compared with by `=` or `!=`, and all its words."""
+    match tree:
+        case e.Comparison("=" | "!=", e.Name(id), e.Word(word)) | e.Comparison(
+            "=" | "!=", e.Word(word), e.Name(id)
+        ) if id in signals:
+            return id, word, signals[id].values
+        case _:
+            return None
+
+
+class NotCompiledError(Exception):
+    """An expression that has no meaning as a number here."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Term:
+    """A number as text; a constant has its exact value, too."""
+
+    text: str
+    scale: Fraction | None = None
+    """From its unit to the base unit; None: it has none, and is in that of what it meets."""
+    exact: Fraction | None = None
+
+
+_UNKNOWN = _Term("None")
+_ARITHMETIC = {"+": "plus", "-": "minus", "*": "times", "/": "over", "mod": "modulo"}
+_CALLS = {
+    name + kind: function
+    for name, function in (("abs", "abs"), ("min", "min"), ("max", "max"))
+    for kind in ("", "Real", "Int")
+}
+_ENDS = {"min": "lesser", "max": "greater"}
+FUNCTIONS = frozenset(
+    "number truth_value word exact compared is_word plus minus times over modulo power negative "
+    "absolute lesser greater in_base first".split()
+)
+"""What the text of a front calls."""
+NAMES = FUNCTIONS | {"kept"}
+"""What no variable in it is called."""
+
+
+@dataclass(slots=True)
+class Writer:
+    """The text of comparisons; what they look back at is kept from tick to tick."""
+
+    parameters: Mapping[str, str]
+    """Of each variable."""
+    units: Mapping[str, tuple[str, Fraction]] = field(default_factory=dict)
+    earlier: dict[tuple[str, str], str] = field(default_factory=dict)
+    """What is looked back at, and what it was before the first tick: the name of its value."""
+
+    def comparison(self, compared: Compared) -> str:
+        """The truth of a comparison.
+
+        Raises:
+            NotCompiledError: it holds what is no number here.
+        """
+        self.units = compared.units
+        op = compared.tree.op
+        if compared.word is not None:
+            (name,) = compared.inputs
+            return f'is_word({self.parameters[name]}, "{op}", {python(compared.word)})'
+        if not compared.units.keys() >= compared.inputs.keys() and _has_unit(compared.tree):
+            raise NotCompiledError  # nothing says in which unit the variable is
+        left, right = self._term(compared.tree.left), self._term(compared.tree.right)
+        if _UNKNOWN in (left, right):
+            return "None"
+        left, right, _ = _in_one_unit(left, right)
+        if left.exact is not None and right.exact is not None:
+            return str(_holds(op, left.exact, right.exact))
+        text = f'compared({left.text}, "{op}", {right.text})'
+        if max(map(_nesting, (text, *itertools.chain(*self.earlier)))) > _MOST_NESTING:
+            raise NotCompiledError
+        return text
+
+    def _term(self, tree: e.Expression) -> _Term:
+        match tree:
+            case e.Number(digits) if _WRITTEN.fullmatch(digits):
+                return _constant(Fraction(digits))
+            case e.Quantity(digits, name) if _WRITTEN.fullmatch(digits):
+                known = unit(name)
+                assert known is not None, "the parser refuses unknown units"
+                return _constant(Fraction(digits), known.factor)
+            case e.Name(id) if variable(id) in self.parameters:
+                name = variable(id)
+                scale = self.units[name][1] if name in self.units else None
+                return _Term(self.parameters[name], scale)
+            case e.Negation(arg):
+                term = self._term(arg)
+                return _applied("negative", term, None if term.exact is None else -term.exact)
+            case e.Arithmetic(op, left, right):
+                return self._arithmetic(op, self._term(left), self._term(right))
+            case e.Call(name, args) if name in ("preInt", "preReal") and len(args) == 2:
+                return self._before(*map(self._term, args))
+            case e.Call(name, args) if name in _CALLS and args:
+                return self._call(_CALLS[name], [self._term(arg) for arg in args])
+            case _:
+                raise NotCompiledError
+
+    def _arithmetic(self, op: e.ArithmeticOperator, left: _Term, right: _Term) -> _Term:
+        if _UNKNOWN in (left, right):
+            return _UNKNOWN
+        if op == "^":
+            return _power(left, right)
+        if op in ("*", "/"):
+            left, right = (_plain(each) for each in (left, right))
+            scale = _combined(op, left.scale, right.scale)
+        else:
+            left, right, scale = _in_one_unit(left, right)
+        if left.exact is not None and right.exact is not None:
+            return _constant(computed(op, left.exact, right.exact), scale)
+        return _Term(f"{_ARITHMETIC[op]}({left.text}, {right.text})", scale)
+
+    def _call(self, name: str, args: Sequence[_Term]) -> _Term:
+        if name == "abs":
+            if len(args) != 1:
+                raise NotCompiledError
+            (term,) = args
+            return _applied("absolute", term, None if term.exact is None else abs(term.exact))
+        found, *rest = args
+        for term in rest:
+            if _UNKNOWN in (found, term):
+                return _UNKNOWN
+            first, second, scale = _in_one_unit(found, term)
+            if first.exact is not None and second.exact is not None:
+                found = _constant(called(name, [first.exact, second.exact]), scale)
+            else:
+                found = _Term(f"{_ENDS[name]}({first.text}, {second.text})", scale)
+        return found
+
+    def _before(self, initial: _Term, term: _Term) -> _Term:
+        """The value of the tick before; at the first tick, the initial one."""
+        if _UNKNOWN in (initial, term):  # a mistake in the sentence: nothing is compared with it
+            raise NotCompiledError
+        before, now, scale = _in_one_unit(initial, term)
+        key = f"first({before.text})", f"first({now.text})" if now.exact is not None else now.text
+        name = self.earlier.setdefault(key, f"_earlier_{len(self.earlier) + 1}")
+        return _Term(name, scale)
+
+
+_WRITTEN = re.compile(r"\d{1,60}(?:\.\d{1,60})?(?:[eE][+-]?\d{1,3})?", re.ASCII)
+"""A number of no more digits than one in the bindings has."""
+
+
+_MOST_BITS = 1 << 13
+"""Of a constant: Python reads no more than 4 300 digits."""
+
+
+def _constant(value: Fraction | None, scale: Fraction | None = None) -> _Term:
+    if value is None:
+        return _UNKNOWN
+    if max(map(int.bit_length, value.as_integer_ratio())) > _MOST_BITS:
+        raise NotCompiledError
+    return _Term(f'exact("{written(value)}")', scale, value)
+
+
+def written(value: Fraction) -> str:
+    """A fraction as text: a decimal where it is a short one, else `25/18`."""
+    for places in range(_MOST_PLACES + 1):
+        digits = value * 10**places
+        if digits.denominator == 1:
+            whole, part = divmod(abs(digits.numerator), 10**places)
+            return f"{'-' * (value < 0)}{whole}" + (f".{part:0{places}}" if places else "")
+    return str(value)
+
+
+_MOST_PLACES = 12
+
+
+def _plain(factor: _Term) -> _Term:
+    """A factor: a constant is in its base unit."""
+    if factor.exact is None or factor.scale is None:
+        return factor
+    return _in_base(factor, factor.scale)
+
+
+def _combined(op: str, left: Fraction | None, right: Fraction | None) -> Fraction | None:
+    """The factor of a product or a quotient."""
+    if left is None and right is None:
+        return None
+    a, b = (Fraction(1) if each is None else each for each in (left, right))
+    return a * b if op == "*" else a / b
+
+
+def _in_one_unit(left: _Term, right: _Term) -> tuple[_Term, _Term, Fraction | None]:
+    """Both in one unit, and the factor of it: that of what is measured."""
+    if left.scale is None or right.scale is None or left.scale == right.scale:
+        return left, right, right.scale if left.scale is None else left.scale
+    if left.exact is not None and right.exact is None:
+        return _constant(left.exact * left.scale / right.scale, right.scale), right, right.scale
+    if right.exact is not None and left.exact is None:
+        return left, _constant(right.exact * right.scale / left.scale, left.scale), left.scale
+    return _in_base(left, left.scale), _in_base(right, right.scale), Fraction(1)
+
+
+def _in_base(term: _Term, scale: Fraction) -> _Term:
+    if term.exact is not None:
+        return _constant(term.exact * scale, Fraction(1))
+    return _Term(f'in_base({term.text}, exact("{scale}"))', Fraction(1))
+
+
+def _applied(function: str, term: _Term, exact: Fraction | None) -> _Term:
+    if term == _UNKNOWN or exact is not None:
+        return _constant(exact, term.scale)
+    return _Term(f"{function}({term.text})", term.scale)
+
+
+def _power(base: _Term, exponent: _Term) -> _Term:
+    if exponent.exact is None:
+        raise NotCompiledError
+    try:
+        times = whole_exponent(exponent.exact)
+        value = None if base.exact is None else computed("^", base.exact, exponent.exact)
+    except ValueError:
+        raise NotCompiledError from None
+    scale = None if base.scale is None else base.scale**times
+    if value is not None:
+        return _constant(value, scale)
+    return _Term(f"power({base.text}, {times})", scale)
+
+
+_MOST_NESTING = 150
+"""Python reads 200 parentheses within each other."""
+
+
+def _nesting(text: str) -> int:
+    """How many parentheses are within each other."""
+    return max(itertools.accumulate((c == "(") - (c == ")") for c in text))
+
+
+def _has_unit(tree: e.Expression) -> bool:
+    return any(isinstance(part, e.Quantity) for part in _parts(tree))
+
+
+def _holds(op: e.ComparisonOperator, left: Fraction, right: Fraction) -> bool:
+    match op:
+        case "<":
+            return left < right
+        case "<=":
+            return left <= right
+        case ">":
+            return left > right
+        case ">=":
+            return left >= right
+        case "=":
+            return left == right
+        case "!=":
+            return left != right

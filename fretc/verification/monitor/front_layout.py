@@ -1,0 +1,168 @@
+"""The layout of what makes truth values of variables: `VARIABLES`, `truths`, `step`, `run`.
+
+It computes by the functions of the run time, of the variables of the tick and of what it kept of
+the one before, and does nothing else.
+"""
+
+from __future__ import annotations
+
+import ast
+import re
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+
+from compiler.targets.python.comparisons import ANNOTATIONS, FUNCTIONS, NUMBER, TRUTH, WORD
+from fretc.verification.monitor.statements import (
+    StrangeError,
+    body_of,
+    constants,
+    demand,
+    is_one_of,
+    reads,
+)
+from fretish.bindings.constants import MOST_EXPONENT
+from monitors.kernel.variables import Variable
+
+_CONSTANT = re.compile(r"-?[0-9]{1,4300}(?:\.[0-9]{1,60}|/[1-9][0-9]{0,4300})?", re.ASCII)
+_SIGNS = frozenset({"<", "<=", ">", ">=", "=", "!="})
+_COMPUTED = FUNCTIONS - {"number", "truth_value", "word", "exact", "power", "compared", "is_word"}
+"""The functions whose arguments are numbers only."""
+
+
+def declared_variables(node: ast.stmt) -> Mapping[str, Variable]:
+    """The variables of a monitor.
+
+    Raises:
+        StrangeError: they are not written as fretc writes them.
+    """
+    found: dict[str, Variable] = {}
+    match node:
+        case ast.AnnAssign(ast.Name("VARIABLES"), _, ast.Dict(keys, values)):
+            for key, value in zip(keys, values, strict=True):
+                match key, value:
+                    case ast.Constant(str(name)), ast.Call(ast.Name("Variable"), args, []):
+                        demand(name not in found, node)
+                        found[name] = _variable(args, node)
+                    case _:
+                        demand(False, node)
+        case _:
+            demand(False, node)
+    demand(bool(found), node)
+    return found
+
+
+def _variable(args: Sequence[ast.expr], node: ast.stmt) -> Variable:
+    match args:
+        case [ast.Constant(str(parameter)), ast.Constant("number" | "truth" as kind)]:
+            return Variable(parameter, kind)
+        case [ast.Constant(str(parameter)), ast.Constant("word"), words]:
+            texts = tuple(word for word in constants(words) if isinstance(word, str))
+            demand(bool(texts) and texts == constants(words), node)
+            return Variable(parameter, WORD, texts)
+        case _:
+            raise StrangeError(f"it is not laid out as fretc writes it: `{ast.unparse(node)}`")
+
+
+def check_front(
+    methods: tuple[ast.stmt, ast.stmt, ast.stmt],
+    variables: Mapping[str, Variable],
+    propositions: Sequence[str],
+    requirements: int,
+) -> None:
+    """The methods make truth values of variables and step by them, and do nothing else.
+
+    Args:
+        methods: `truths`, `step` and `run`.
+        variables: `VARIABLES`.
+        propositions: the names of the truth values.
+        requirements: how many the monitor has.
+
+    Raises:
+        StrangeError: they do something else.
+    """
+    truths, step, run = methods
+    names = [variable.parameter for variable in variables.values()]
+    parameters = ", ".join(f"{v.parameter}: {ANNOTATIONS[v.kind]}" for v in variables.values())
+    verdicts = "self.verdicts()" + "[0]" * (requirements == 1)
+    row = _tuple(names)
+    stepped = body_of(step, "step", f"self, *, {parameters}")
+    demand(reads(stepped, f"self.take(({row},))\nreturn {verdicts}"), step)
+    rows = "self, rows: Iterable[Sequence[Value] | Mapping[str, Value]]"
+    demand(reads(body_of(run, "run", rows), f"self.take(rows)\nreturn {verdicts}"), run)
+    body = body_of(truths, "truths", f"self, {parameters}")
+    given, rest, last = body[: len(names)], body[len(names) : -1], body[-1]
+    demand(reads(given, "\n".join(_given(variables))), truths)
+    demand(is_one_of(last, f"return {_tuple(propositions)}"), last)
+    bound = _check_statements(rest, frozenset(names))
+    demand(bound >= {*propositions}, last)
+
+
+def _tuple(names: Iterable[str]) -> str:
+    return "(" + "".join(f"{name}, " for name in names) + ")"
+
+
+def _given(variables: Mapping[str, Variable]) -> Iterator[str]:
+    """The statements that take the variables."""
+    for name, (parameter, kind, words) in variables.items():
+        function = {NUMBER: "number", TRUTH: "truth_value", WORD: "word"}[kind]
+        more = f", {words!r}" if kind == WORD else ""
+        yield f"{parameter} = {function}({parameter}, {name!r}{more})"
+
+
+def _check_statements(statements: Sequence[ast.stmt], bound: frozenset[str]) -> frozenset[str]:
+    """The names that have a value after the statements."""
+    fixed = FUNCTIONS | {"self", "kept"}
+    for place, statement in enumerate(statements):
+        if place == 0 and is_one_of(statement, "kept = self.kept"):
+            bound |= {"kept"}
+            continue
+        match statement:
+            case ast.Assign([ast.Name(name)], ast.IfExp(_, before, ast.Subscript(_, at)) as value):
+                form = f"{ast.unparse(before)} if kept is None else kept[{ast.unparse(at)}]"
+                demand("kept" in bound and is_one_of(value, form), statement)
+                demand(isinstance(at, ast.Constant) and type(at.value) is int, statement)
+                _check_number(before, bound)
+            case ast.Assign([ast.Name(name)], value):
+                _check_truth(value, bound)
+            case ast.Assign([ast.Attribute(ast.Name("self"), "kept")], ast.Tuple(values)):
+                demand(place == len(statements) - 1 and "kept" in bound, statement)
+                for each in values:
+                    _check_number(each, bound)
+                continue
+            case _:
+                raise StrangeError(
+                    f"it is not laid out as fretc writes it: `{ast.unparse(statement)}`"
+                )
+        demand(name not in fixed and name not in bound, statement)
+        bound |= {name}
+    return bound
+
+
+def _check_truth(node: ast.expr, bound: frozenset[str]) -> None:
+    match node:
+        case ast.Constant(None | True | False):
+            pass
+        case ast.Call(ast.Name("compared" | "is_word"), [left, ast.Constant(str(sign)), right], []):
+            demand(sign in _SIGNS, node)
+            _check_number(left, bound)
+            _check_number(right, bound)
+        case _:
+            demand(False, node)
+
+
+def _check_number(node: ast.expr, bound: frozenset[str]) -> None:
+    match node:
+        case ast.Name(name):
+            demand(name in bound and name != "kept", node)
+        case ast.Constant(str()):
+            pass  # a word
+        case ast.Call(ast.Name("exact"), [ast.Constant(str(text))], []):
+            demand(_CONSTANT.fullmatch(text) is not None, node)
+        case ast.Call(ast.Name("power"), [base, ast.Constant(int(exponent))], []):
+            demand(type(exponent) is int and 1 <= exponent <= MOST_EXPONENT, node)
+            _check_number(base, bound)
+        case ast.Call(ast.Name(name), args, []):
+            demand(name in _COMPUTED, node)
+            for arg in args:
+                _check_number(arg, bound)
+        case _:
+            demand(False, node)

@@ -1,0 +1,86 @@
+"""Reading tables of variables: CSV with a header, or JSON lines; one row a tick."""
+
+import itertools
+import re
+from collections.abc import Iterable, Iterator, Mapping
+from typing import Any
+
+from monitors.kernel.tables import (
+    InputError,
+    _csv_rows,
+    _json_rows,
+    _next_tick,
+    _short,
+    _truth,
+)
+from monitors.kernel.variables import Value, Variable
+
+_NUMBER = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?", re.ASCII)
+_OTHER_NUMBERS = {"nan": None, "inf": float("inf"), "+inf": float("inf"), "-inf": float("-inf")}
+_MOST_DIGITS = 30
+"""Of a whole number that is kept as it is; there are no 64 bits with more."""
+
+
+def read_variables(
+    text: Iterable[str], variables: Mapping[str, Variable], source: str
+) -> Iterator[tuple[Value, ...]]:
+    """The rows of a table of variables, each a column; the rest is as `read_rows` has it.
+
+    A number is written as `17.5`, `-3`, `1e-3`, `inf`; nothing (null in JSON) is unknown, and
+    so is `nan`.
+
+    Raises:
+        InputError: a column is missing, a value is of another kind than its variable, ticks jump.
+    """
+    names = tuple(variables)
+    lines = iter(text)
+    lines = itertools.chain([next(lines, "").removeprefix("\ufeff")], lines)
+    number, first = next(((i, line) for i, line in enumerate(lines, 1) if line.strip()), (0, ""))
+    if not number:
+        raise InputError(f"{source}: the trace is empty")
+    read = _json_rows if re.match(r'\s*\{\s*["}]', first) else _csv_rows
+    tick: int | None = None
+    has_tick: bool | None = None
+    for place, row in read(itertools.chain([first], lines), names, source, number):
+        if "tick" not in variables:
+            if has_tick not in (None, "tick" in row):
+                raise InputError(f"{place}: some rows have a `tick` and some have none")
+            has_tick = "tick" in row
+            if has_tick:
+                tick = _next_tick(row["tick"], tick, place)
+        yield tuple(_value(row[name], name, variables[name], place) for name in names)
+
+
+def _value(value: Any, name: str, variable: Variable, place: str) -> Value:
+    if variable.kind == "truth":
+        return _truth(value, name, place)
+    if value is None or not str(value).strip():
+        return None
+    if variable.kind == "word":
+        return _word(value, name, variable.words, place)
+    return _number(value, name, place)
+
+
+def _word(value: Any, name: str, words: tuple[str, ...], place: str) -> str:
+    text = str(value).strip()
+    if text not in words:
+        raise InputError(
+            f"{place}: column `{name}`: `{_short(text)}` is none of its words; "
+            f"write {', '.join(words)}, or nothing for unknown"
+        )
+    return text
+
+
+def _number(value: Any, name: str, place: str) -> float | None:
+    if isinstance(value, int | float) and not isinstance(value, bool):
+        return value
+    text = str(value).strip()
+    if text.lower() in _OTHER_NUMBERS:
+        return _OTHER_NUMBERS[text.lower()]
+    if not _NUMBER.fullmatch(text):
+        raise InputError(
+            f"{place}: column `{name}`: `{_short(text)}` is no number; "
+            "write it as 17.5 or 1e-3, or nothing for unknown"
+        )
+    whole = text.lstrip("+-").isdigit() and len(text) <= _MOST_DIGITS
+    return int(text) if whole else float(text)
