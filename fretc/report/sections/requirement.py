@@ -38,6 +38,7 @@ from fretish.bindings.words import listed
 from fretish.clock import Clock
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.meaning import meaning
+from fretish.printer import expression as printed
 from fretish.printer import sentence
 
 
@@ -178,16 +179,18 @@ def _proposition(name: str, declared: Declarations | None) -> PropositionView:
         name=name,
         is_bound=True,
         text=bound.text,
-        expression=_expression(declared, name),
+        expression=_expression(declared, bound),
         properties=_properties(bound),
         signals=tuple(_signal(declared.signals[each]) for each in bound.signals),
     )
 
 
-def _expression(declared: Declarations, name: str) -> str:
-    """The expression, as the bindings write it."""
-    data: Mapping[str, Any] = tomllib.loads(declared.source.text)
-    return str(data["proposition"][name]["expr"])
+def _expression(declared: Declarations, bound: Proposition) -> str:
+    """The expression, as the bindings write it; what only a sentence states, in their language."""
+    written: Mapping[str, Any] = tomllib.loads(declared.source.text).get("proposition", {})
+    if bound.name not in written:
+        return printed(bound.expression)
+    return str(written[bound.name]["expr"])
 
 
 def _properties(bound: Proposition) -> str:
