@@ -22,6 +22,7 @@ from fretish.checking import conditions
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.source import Source, Span
 from fretish.parser import parse
+from fretish.printer import identifier
 from fretish.reading.toml_text import as_key
 from fretish.syntax import Sentence
 
@@ -182,8 +183,20 @@ def unbound(rule: Formalized, declarations: Declarations) -> Iterator[Diagnostic
             Code.UNBOUND,
             f"`{name}` of {rule.id} has no binding in {declarations.source.name}",
             place(rule, name),
-            help=f"add `[proposition.{as_key(name)}]` there",
+            help=_way_out(name, declarations),
         )
+
+
+def _way_out(name: str, declarations: Declarations) -> str:
+    """A binding; before it a comparison, where the name is a word that a signal may be."""
+    bind = f"add `[proposition.{as_key(name)}]` there"
+    signal = next((s.name for s in declarations.signals.values() if name in s.values), None)
+    if signal is None:
+        return bind
+    return (
+        f"`{name}` is a word of `{signal}`: write `{signal} = {identifier(name)}` (as a scope "
+        f"`while {signal} = {identifier(name)}`), or {bind}"
+    )
 
 
 def place(rule: Formalized, name: str) -> Span:

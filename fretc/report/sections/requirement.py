@@ -34,7 +34,6 @@ from fretc.report.sections.reviews import review, waiver
 from fretc.report.sections.runs import Run, RunKey
 from fretc.report.traceability.artefacts import Product
 from fretish.bindings.declarations import Declarations, Proposition, Signal
-from fretish.bindings.words import listed
 from fretish.clock import Clock
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.meaning import meaning
@@ -202,7 +201,7 @@ def _properties(bound: Proposition) -> str:
 def _signal(signal: Signal) -> SignalView:
     age = f"{phrases.decimal(signal.max_age / 1e6)} ms" if signal.max_age else ""
     reading = [
-        f"one of {listed(signal.values)}" if signal.values else "",
+        f"one of {', '.join(signal.values)}" if signal.values else "",
         str(signal.reduce) if signal.reduce else "",
         f"unknown when older than {age}" if age else "a sample never grows too old",
     ]
