@@ -88,6 +88,7 @@ class Code(Enum):
     BAD_PHASE = ("F337", "the phase of the clock is not within a tick")
     PLAIN_PERCENT = ("F338", "a plain number stands beside a signal in percent")
     WHICH_UNIT = ("F350", "a bare number stands beside signals in several units")
+    UNIT_IN_SENTENCE = ("F352", "a number of a sentence has a unit, which FRET does not know")
     PROSE_DRIFT = ("F351", "title or text state another number than the requirement")
     AMBIGUOUS_UNIT = ("F339", "a part of a unit is the name of a signal too")
     UNKNOWN_WORD = ("F340", "a word is none of the values of its signal")

@@ -126,7 +126,7 @@ def test_emitted_files_go_to_build_and_are_named(fretc: Fretc) -> None:
         "",
         UNDECIDED + "wrote build/r1_monitor.py\nwrote build/r1.psl\n"
         "next: `python build/r1_monitor.py TRACE.csv` judges a table with a column for each "
-        "proposition\n"
+        "of its names\n"
         "next: `fretc explain r1.fret` shows what is meant, with a picture\n",
     )
     assert sorted(path.name for path in Path("build").iterdir()) == ["r1.psl", "r1_monitor.py"]
