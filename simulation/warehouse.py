@@ -12,14 +12,11 @@ import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import Any
 
 from simulation.nodes import messages as say
 from simulation.recording import Topic, recording
 from simulation.world.motion import Pose, Velocity
-
-if TYPE_CHECKING:
-    from rosbags.typesys.store import Msg
 
 TOPICS = (
     Topic("/odom", "nav_msgs/msg/Odometry"),
@@ -91,7 +88,7 @@ def _mode(plan: Timetable, at: int) -> str:
     return "docking" if at < plan.docked + 500 else "charging"
 
 
-def drive(plan: Timetable) -> Iterator[tuple[str, "Msg", int]]:
+def drive(plan: Timetable) -> Iterator[tuple[str, Any, int]]:
     """Topic, message and time (nanoseconds), in their order."""
     pose, velocity, charge = Pose(1.0, 0.0), Velocity(0.0, 0.0), 0.2595
     for at in range(0, LENGTH_MS + 1, STEP_MS):

@@ -102,7 +102,12 @@ def _project(requirements: str, bindings: str | None, *, given: bool, unread: st
 
 
 def _draft(log: str, project: Project, output: str, *, force: bool) -> None:
-    from fretc.audit.bindings.draft import draft, durations, missing_propositions
+    from fretc.audit.bindings.draft import (
+        draft,
+        durations,
+        missing_propositions,
+        missing_signals,
+    )
     from fretc.logs.reader import look
 
     if output != "-" and not force and os.path.lexists(output):
@@ -111,7 +116,9 @@ def _draft(log: str, project: Project, output: str, *, force: bool) -> None:
     if isinstance(contents, Diagnostic):
         stop(contents)
     say(contents.recording.findings)
-    text = draft(contents, missing_propositions(project), durations(project))
+    text = draft(
+        contents, missing_propositions(project), durations(project), missing_signals(project)
+    )
     deliver({Path(output): text}, (log,))
     raise SystemExit(SHOWN)
 

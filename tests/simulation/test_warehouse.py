@@ -50,7 +50,8 @@ def test_nothing_is_bound_but_signals() -> None:
 
 def test_the_project_passes_its_check(fretc: Fretc) -> None:
     ran = fretc("check", str(AGV))
-    assert (ran.status, ran.err) == (0, "10 requirements: 0 mistakes, 0 warnings\n")
+    assert ran.status == 0
+    assert ran.err.endswith("\n10 requirements: 0 mistakes, 0 warnings\n")
 
 
 def test_the_good_drive_satisfies_all(audit: Audit) -> None:

@@ -13,6 +13,7 @@ from math import gcd
 
 from compiler.files.edition import __version__
 from compiler.files.templating import render
+from compiler.formalization import binding_agreement
 from compiler.formalization.formalized import Formalized
 from compiler.project.folder import Project
 from fretc.audit.bindings.quantities import QUANTITIES, Quantity
@@ -22,7 +23,7 @@ from fretc.logs.signals.samples import Topic
 from fretc.logs.vocabulary import Words
 from fretish import expressions as e
 from fretish import syntax as s
-from fretish.bindings.declarations import Role, path, short_type
+from fretish.bindings.declarations import Declarations, Role, path, short_type
 from fretish.checking import RESERVED
 from fretish.clock import NANOSECONDS, in_words
 
@@ -88,18 +89,30 @@ class MissingProposition:
     aggregate: str
 
 
+@dataclass(frozen=True, slots=True)
+class MissingSignal:
+    """A signal that comparisons of the requirements name and no bindings declare."""
+
+    name: str
+    requirements: tuple[str, ...]
+
+
 def draft(
-    overview: Overview, missing: Sequence[MissingProposition], durations: Sequence[int] = ()
+    overview: Overview,
+    missing: Sequence[MissingProposition],
+    durations: Sequence[int] = (),
+    unread: Sequence[MissingSignal] = (),
 ) -> str:
     """The text of a `bindings.toml`.
 
-    Without missing propositions it can be read as it is; each of these is an error until edited,
-    but for one that is called as a signal that is true or false.
+    With nothing missing it can be read as it is; what is missing is an error until edited, but for
+    a proposition that is called as a signal that is true or false, and a signal of the draft.
 
     Args:
         overview: of a log, with its words.
         missing: propositions that sentences name and nothing declares.
         durations: those of the sentences; each is a whole number of ticks.
+        unread: signals that sentences compare and nothing declares.
     """
     topics = _topics(overview)
     signals = [signal for topic in topics for signal in topic.signals]
@@ -112,6 +125,7 @@ def draft(
         why=why,
         topics=topics,
         missing=missing,
+        unread=[each for each in unread if each.name not in {signal.name for signal in signals}],
         flags={signal.name for signal in signals if _is_flag(overview, signal)},
         example=_example(overview, signals),
     )
@@ -180,9 +194,28 @@ def missing_propositions(project: Project) -> tuple[MissingProposition, ...]:
         if rule.requirement.status == "retired":
             continue
         for name in rule.watched:
-            if name not in defined:
+            if name not in defined and not _unread(rule, name, declared):
                 users.setdefault(name, []).append(rule)
     return tuple(_missing_proposition(name, rules) for name, rules in users.items())
+
+
+def missing_signals(project: Project) -> tuple[MissingSignal, ...]:
+    """The signals that comparisons of the requirements lack."""
+    users: dict[str, dict[str, None]] = {}
+    for rule in project.rules:
+        if rule.requirement.status == "retired":
+            continue
+        for name in rule.watched:
+            for signal in _unread(rule, name, project.declarations):
+                users.setdefault(signal, {})[rule.id] = None
+    return tuple(MissingSignal(name, tuple(ids)) for name, ids in users.items())
+
+
+def _unread(rule: Formalized, name: str, declared: Declarations | None) -> tuple[str, ...]:
+    """The signals that one of its comparisons lacks; none where it is bound itself."""
+    if declared is not None and name in declared.propositions:
+        return ()
+    return binding_agreement.missing_signals(rule, name, declared.signals if declared else {})
 
 
 def durations(project: Project) -> tuple[int, ...]:

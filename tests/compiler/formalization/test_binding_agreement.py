@@ -183,3 +183,14 @@ def test_a_word_in_the_place_of_a_mode_is_told_where_it_belongs() -> None:
         "`docking` is a word of `state`: write `state = docking` (as a scope `while state = "
         "docking`), or add `[proposition.docking]` there"
     )
+
+
+def test_a_comparison_of_a_signal_with_a_mistake_has_that_mistake_alone() -> None:
+    text = HEAD.replace('path = "/state.data"', 'path = "TODO"')
+    declared, wrong = read_bindings(Source("bindings.toml", text))
+    assert declared is not None
+    ((requirement,), _) = requirements(Source("r.fret", "the robot shall satisfy state = docking"))
+    rule, _ = formalize(requirement, declared)
+    assert rule is not None
+    assert rule.declarations is not None
+    assert tuple(unbound(rule, rule.declarations)) == wrong
