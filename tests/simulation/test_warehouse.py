@@ -137,3 +137,11 @@ def test_the_monitors_are_proved(file: str) -> None:
     """A unit, a word, and a unit that is converted; a proof of all ten takes some seconds."""
     proofs = fretc.verify(fretc.read_project(str(AGV / f"{file}.fret")), layers=["monitor"])
     assert [str(proof.result) for proof in proofs] == ["proved"]
+
+
+def test_the_report_shows_what_only_sentences_state(audit: Audit, tmp_path: Path) -> None:
+    evidence = tmp_path / "evidence.json"
+    evidence.write_text(audit.evidence, "utf-8")
+    report = fretc.make_report(fretc.read_project(str(AGV)), str(evidence))
+    assert "abs(speed) &lt;= 1.5 m/s" in report.html
+    assert "AGV-1, AGV-2 and AGV-3 are violated" in report.html
