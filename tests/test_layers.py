@@ -91,6 +91,7 @@ DOORS = {
     "mcap_ros2": {"fretc/logs/messages/decoding.py"},
     "zstandard": {"fretc/logs/mcap/container.py"},
     "lz4": {"fretc/logs/mcap/container.py"},
+    "wcwidth": {"fretc/terminal/screen.py"},
     "click": CLICK,
 }
 """Each library, and the modules that import it."""

@@ -13,7 +13,7 @@ from compiler.formalization.record import wording
 from compiler.logic import printing
 from compiler.logic.claims import Proof
 from compiler.project.folder import Project
-from fretc.attestation.signatures import NO_SIGNATURES, Book
+from fretc.attestation.signatures import NO_SIGNATURES, SignatureBook
 from fretc.report.model import phrases
 from fretc.report.model.assessments import Assessment
 from fretc.report.model.views import (
@@ -49,7 +49,7 @@ def section(
     audited: bool,
     proofs: Sequence[Proof] = (),
     shared_products: Sequence[Product] = (),
-    book: Book = NO_SIGNATURES,
+    book: SignatureBook = NO_SIGNATURES,
 ) -> RequirementView:
     """The view of one requirement.
 

@@ -12,7 +12,7 @@ import jsonschema  # type: ignore[import-untyped]
 import pytest
 from mcap.writer import CompressionType
 
-from tests.command import Fretc, write
+from tests.command import Fretc, untimed, write
 from tests.fretc.audit.measurements.test_count_trials import fillings
 from tests.fretc.logs.logs import MS, S, number
 from tests.fretc.logs.logs import write as write_log
@@ -91,17 +91,23 @@ def test_many_answers_support_it(fretc: Fretc) -> None:
     logs(33, "1000", "0100")
     run = fretc("audit", "runs")
     assert (run.status, run.err) == (0, "wrote build/evidence.json\n")
-    assert run.out.startswith(
+    listed = fretc("audit", "runs", "-v").out
+    assert listed.startswith(
         "runs/000.mcap\n"
         "  ◔ R7  inconclusive  1 of 1 trigger answered: judged over all runs\n"
         "runs/001.mcap\n"
     )
-    assert run.out.partition("R7 over")[2] == (
+    assert untimed(run.out) == (
+        "    run 1          11         21         31\n"
+        "  ✔ R7  ◔◔◔◔◔◔◔◔◔◔ ◔◔◔◔◔◔◔◔◔◔ ◔◔◔◔◔◔◔◔◔◔ ◔◔◔\n"
+        "R7 over"
         " all runs, with probability >= 0.9\n"
         "  ✔ supported     it lies between 0.9022 and 1.0000, so >= 0.9\n"
         "    33 of 33 triggers answered, 0 failed, 0 open, in 33 logs\n"
         "    estimate 1.0000; bounds, by whole logs, at 95 % each: 0.9022 to 1.0000\n"
         f"    {AVERAGE}\n"
+        "33 runs \N{MULTIPLICATION SIGN} 1 requirement: 1 supported over all runs, "
+        "33 counted over all runs\n"
     )
     assert counts() == (33, 0, 0)
 
@@ -109,7 +115,7 @@ def test_many_answers_support_it(fretc: Fretc) -> None:
 def test_a_violated_trigger_alone_is_no_violation_and_its_place_is_kept(fretc: Fretc) -> None:
     logs(40, "1000", "0100")
     log("runs/bad.mcap", "0010000", "0000000")
-    run = fretc("audit", "runs")
+    run = fretc("audit", "runs", "-v")
     assert run.status == 3
     assert "◔ R7  inconclusive  0 of 1 trigger answered, 1 failed: judged over all runs" in run.out
     assert "at least 29 more logs, all triggers answered, would be needed" in run.out
@@ -197,7 +203,7 @@ def test_no_sentence_with_a_probability_ends_an_audit_and_each_is_counted(fretc:
 def test_what_no_run_can_meet_is_failed_at_each_trigger(fretc: Fretc) -> None:
     require("whenever c the robot shall with probability >= 0.9 finally satisfy false")
     logs(3, "1010", "0000")
-    run = fretc("audit", "runs")
+    run = fretc("audit", "runs", "-v")
     assert run.status == 1
     assert "◔ R7  inconclusive  0 of 2 triggers answered, 2 failed: judged over all runs" in run.out
     assert counts() == (0, 6, 0)
@@ -304,7 +310,7 @@ def test_what_was_kept_of_a_stopped_audit_counts(fretc: Fretc) -> None:
 
 def test_without_a_trigger_nothing_is_known(fretc: Fretc) -> None:
     logs(2, "0000", "0100")
-    run = fretc("audit", "runs")
+    run = fretc("audit", "runs", "-v")
     assert run.status == 3
     assert "∅ R7  vacuous" in run.out
     assert "◔ inconclusive  there was no trigger\n" in run.out
@@ -327,7 +333,7 @@ def test_the_stated_confidence_is_used(fretc: Fretc) -> None:
     logs(33, "1000", "0100")
     assert fretc("audit", "runs", "--confidence", "0.99").status == 3
     assert estimate()["confidence"] == 0.99
-    assert " --confidence 0.99 --evidence " in json.dumps(reported(fretc)["commands"])
+    assert " --confidence 0.99 -o " in json.dumps(reported(fretc)["commands"])
     assert fretc("audit", "runs", "--confidence", "0.9").status == 0
     for value in ("0.5", "1", "95", "x"):
         assert fretc("audit", "runs", "--confidence", value).status == 2

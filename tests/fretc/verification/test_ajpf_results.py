@@ -13,7 +13,7 @@ from compiler.formalization.formalized import Formalized
 from compiler.logic.claims import Layer, Outcome, Proof, Result, not_checked, vacuous
 from compiler.targets.ajpf.bundle import emit
 from compiler.targets.target import Options
-from fretc.verification.ajpf_results import evidence, merged, read
+from fretc.verification.ajpf_results import ajpf_proofs, merged, read
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from tests.command import Fretc
 from tests.compiler.targets.ajpf.test_bundle import R1, rule
@@ -41,7 +41,7 @@ def ran(tmp_path: Path) -> Mcapl:
 
 
 def only(mcapl: Mcapl, other: Formalized | None = None) -> Proof:
-    (proof,), diagnostics = evidence([other or rule(R1)], [str(mcapl.bundle / "result.json")])
+    (proof,), diagnostics = ajpf_proofs([other or rule(R1)], [str(mcapl.bundle / "result.json")])
     assert not diagnostics
     return proof
 
@@ -220,7 +220,7 @@ def test_a_wrong_shape_within_is_refused(ran: Mcapl, change: Change) -> None:
 
 
 def test_a_result_about_another_requirement_is_told_and_does_not_count(ran: Mcapl) -> None:
-    lines, (diagnostic,) = evidence([rule(R1, id="R2")], [str(ran.bundle / "result.json")])
+    lines, (diagnostic,) = ajpf_proofs([rule(R1, id="R2")], [str(ran.bundle / "result.json")])
     assert lines == ()
     assert diagnostic.code is Code.FOREIGN_AJPF_RESULT
     assert not diagnostic.is_error

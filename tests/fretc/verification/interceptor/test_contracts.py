@@ -12,7 +12,7 @@ from compiler.targets.python.interceptor import text
 from fretc.verification.interceptor.contracts import contracts
 from fretc.verification.interceptor.file import Core, Head, core, head
 from fretc.verification.interceptor.incoming import COMMAND, RELEASE, RING, SCAN, STOP
-from fretc.verification.interceptor.machine import Gate, NotAnInterceptorError
+from fretc.verification.interceptor.machine import InterceptorMachine, NotAnInterceptorError
 from fretish.bindings.declarations import Form, Interception
 from monitors.interceptor import Options
 from tests.loops import interceptor_options
@@ -369,7 +369,7 @@ def test_a_core_that_may_not_be_pure_is_not_executed(old: str, new: str, why: st
     assert message.startswith("its core is not as fretc can read it: ")
     assert why in message or not new
     with pytest.raises(NotAnInterceptorError) as refused:
-        Gate(changed, interceptor_options())
+        InterceptorMachine(changed, interceptor_options())
     assert str(refused.value) == message
 
 
@@ -390,7 +390,7 @@ def test_a_node_that_changes_the_core_is_told(line: str) -> None:
     changed = mutant(("\n\nclass Gate:", f"\n\n{line}\n\nclass Gate:"))
     assert "the node below it" in reason(changed)
     with pytest.raises(NotAnInterceptorError, match="the node below it"):
-        Gate(changed, interceptor_options())
+        InterceptorMachine(changed, interceptor_options())
 
 
 @pytest.mark.parametrize(

@@ -21,7 +21,7 @@ from fretc.verification.interceptor.contracts import contracts
 from fretc.verification.interceptor.file import Head, core, head, otherwise
 from fretc.verification.interceptor.machine import (
     Event,
-    Gate,
+    InterceptorMachine,
     NotAnInterceptorError,
 )
 from fretish.bindings.declarations import Form, Interception
@@ -178,10 +178,10 @@ def _there(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
 def test_the_loop_does_not_take_it(name: str) -> None:
     taken = True
     try:
-        gate = Gate(TEXTS[name], SETTINGS)
-        states = [gate.initial]
+        machine = InterceptorMachine(TEXTS[name], SETTINGS)
+        states = [machine.initial]
         for state in states:  # grows while it is read
-            reached = (gate.step(state, event)[0] for event in Event)
+            reached = (machine.step(state, event)[0] for event in Event)
             states += [after for after in dict.fromkeys(reached) if after not in states]
     except NotAnInterceptorError:
         taken = False
@@ -261,7 +261,7 @@ def test_neither_engine_takes_a_core_that_shadows_its_node(name: str) -> None:
     text = with_helper(name)
     assert not any(one.result is Result.PROVED for one in contracts(text, OPTIONS))
     with pytest.raises(NotAnInterceptorError):
-        Gate(text, SETTINGS)
+        InterceptorMachine(text, SETTINGS)
 
 
 @pytest.mark.parametrize(

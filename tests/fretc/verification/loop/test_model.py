@@ -139,7 +139,7 @@ def follows(known: Case, rows: list[Row]) -> None:
 
 def _same(wheels: Wheels, row: Row) -> bool:
     fields = tuple(any(v) if isinstance(v, tuple) else v for v in row.fields)
-    return wheels.gate == fields and (wheels.still < 0) == row.moving
+    return wheels.interceptor == fields and (wheels.still < 0) == row.moving
 
 
 @pytest.mark.slow

@@ -1,7 +1,7 @@
-"""Layer LOOP: monitor, interceptor and any environment, under the assumptions of the bindings.
+"""The closed loop of monitor, interceptor and any environment, and its two claims.
 
-It explores the texts themselves: the monitor as the safety function that requests stops, the
-monitor that fretc makes of the sentence as the observer, and the steps of the interceptor. The
+The search explores the texts themselves: the monitor as the safety function that requests stops,
+the monitor that fretc makes of the sentence as the observer, and the steps of the interceptor. The
 model between them is `fretc.verification.loop.model`, and its durations are whole cells, rounded
 up.
 """
@@ -35,8 +35,8 @@ _FINEST = 20
 
 
 @dataclass(frozen=True, slots=True)
-class Named:
-    """A text under verification, and its name in evidence."""
+class NamedText:
+    """A text under verification, and the name that proofs give it."""
 
     name: str
     text: str
@@ -46,14 +46,14 @@ class Named:
 class Setup:
     """The parts of a loop beside the requirement; None: not declared."""
 
-    monitor: Named
-    interceptor: Named | None
+    monitor: NamedText
+    interceptor: NamedText | None
     interception: Interception | None
     assumed: Assumed | None
 
 
-def loop(rule: Formalized, setup: Setup, limits: Limits) -> tuple[Proof, ...]:
-    """Both claims: the requirement is kept, and the stop is released."""
+def loop_proofs(rule: Formalized, setup: Setup, limits: Limits) -> tuple[Proof, ...]:
+    """The proofs of both claims: the requirement is kept, and the stop is released."""
     problem = case(rule, setup)
     if isinstance(problem, str):
         results: Results | Stopped = Stopped(problem)
