@@ -216,7 +216,7 @@ def _at_least(number: Span) -> Mend | None:
 
 LOOK_BACK = frozenset("preBool persisted occurred prevOcc FTP".split())
 LOOK_AHEAD = frozenset("persists occurs nextOcc".split())
-_NUMBERS_BACK = frozenset({"preInt", "preReal"})
+NUMBERS_BACK = frozenset({"preInt", "preReal"})
 
 
 def temporal_predicates(sentence: Sentence) -> Iterator[Diagnostic]:
@@ -224,14 +224,14 @@ def temporal_predicates(sentence: Sentence) -> Iterator[Diagnostic]:
     ids: set[str] = set()
     for expression in conditions(sentence):
         for id, span in _names(expression):
-            if id in ids or id not in LOOK_BACK | LOOK_AHEAD | _NUMBERS_BACK:
+            if id in ids or id not in LOOK_BACK | LOOK_AHEAD | NUMBERS_BACK:
                 continue
             ids.add(id)
             yield _not_formalized(id, span)
 
 
 def _not_formalized(id: str, span: Span | None) -> Diagnostic:
-    if id in _NUMBERS_BACK:
+    if id in NUMBERS_BACK:
         consequence, mend = (
             "it stays in the formulas as it is",
             "a monitor keeps the number of the tick before; an audit needs a proposition",

@@ -104,7 +104,12 @@ def _is_in(diagnostic: Diagnostic, path: str) -> bool:
 
 
 def _draft(log: str, project: Project, output: str, *, force: bool) -> None:
-    from fretc.audit.bindings.draft import draft, durations, missing_propositions
+    from fretc.audit.bindings.draft import (
+        draft,
+        durations,
+        missing_propositions,
+        missing_signals,
+    )
     from fretc.logs.reader import look
 
     if output != "-" and not force and os.path.lexists(output):
@@ -113,7 +118,9 @@ def _draft(log: str, project: Project, output: str, *, force: bool) -> None:
     if isinstance(contents, Diagnostic):
         stop(contents)
     say(contents.recording.findings)
-    text = draft(contents, missing_propositions(project), durations(project))
+    text = draft(
+        contents, missing_propositions(project), durations(project), missing_signals(project)
+    )
     deliver({Path(output): text}, (log,))
     raise SystemExit(SHOWN)
 
