@@ -103,8 +103,12 @@ def test_each_sentence_of_the_page_is_read() -> None:
 
 Use = tuple[str, str, str]
 """A rule of the grammar, its alias, and one part of it."""
-REFUSED = {("duration", "", "MINUS"), ("probability", "", "MINUS")}
-"""What the grammar reads so that the message can be a good one."""
+ELSEWHERE = {
+    ("duration", "", "MINUS"),
+    ("probability", "", "MINUS"),
+    ("value", "", "expression"),
+}
+"""What the grammar reads so that the message can be a good one, and values of variables."""
 
 
 def uses_of(grammar_rule: Rule) -> set[Use]:
@@ -130,12 +134,12 @@ def uses_in(sentences: list[str]) -> set[Use]:
         if isinstance(each, Rule):
             callbacks[each] = noting(each, build)
     for sentence in sentences:
-        grammar.parse(sentence)
+        grammar.parse(sentence, start="start")
     return found
 
 
 def test_each_alternative_of_the_grammar_stands_on_the_page() -> None:
-    every = set[Use]().union(*map(uses_of, GRAMMAR.rules)) - REFUSED
+    every = set[Use]().union(*map(uses_of, GRAMMAR.rules)) - ELSEWHERE
     assert every - uses_in([*SENTENCES, *subjects(TEXT, "picture"), *SPELT]) == set()
 
 
@@ -171,7 +175,7 @@ def test_every_form_is_of_the_kind_that_its_heading_says() -> None:
     [
         (
             "## Predicates about other ticks",
-            checking.LOOK_BACK | checking.LOOK_AHEAD | checking.NUMBERS_BACK,
+            checking.LOOK_BACK | checking.LOOK_AHEAD,
         ),
         ("### Numbers", frozenset(FUNCTIONS)),
     ],
