@@ -5,6 +5,7 @@
 
 import os
 import signal
+import sys
 import warnings
 from collections.abc import Callable
 from pathlib import Path
@@ -18,6 +19,11 @@ with warnings.catch_warnings():
     import spot  # noqa: F401
 
 from tests.command import Fretc, runner
+
+# Bytecode is kept, whatever the shell says: each worker, and each process that a test starts, would
+# compile the same text again, pytest's own forms of the assertions among it.
+sys.dont_write_bytecode = False
+os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
 
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
     # A shell starts what runs in its background so, and every process that a test starts would

@@ -9,16 +9,15 @@ from itertools import takewhile
 from pathlib import Path
 from typing import Any
 
-import jsonschema  # type: ignore[import-untyped]
 import pytest
 
 from fretc.audit import many_logs as auditing
 from fretc.audit.plan import Plan
 from tests.command import Fretc, Run
+from tests.json_schemas import validate
 
 ROOT = Path(__file__).parents[3]
 MISSION = ROOT / "traces/mission-seed15.mcap"
-SCHEMA = json.loads((ROOT / "templates/json/evidence.schema.json").read_text("utf-8"))
 
 
 @pytest.fixture
@@ -60,7 +59,7 @@ def test_the_recorded_mission_shows_r1_with_the_stops_that_a_person_sees_in_it(
 def test_the_evidence_fits_its_schema_and_is_the_same_again(fretc: Fretc) -> None:
     fretc("audit", "run.mcap")
     first = Path("build/evidence.json").read_bytes()
-    jsonschema.validate(evidence(), SCHEMA)
+    validate("evidence.schema.json", evidence())
     fretc("audit", "run.mcap")
     assert Path("build/evidence.json").read_bytes() == first
 
@@ -107,7 +106,7 @@ def test_a_log_that_ends_in_the_middle_shows_what_is_whole_and_satisfies_nothing
         (result,) = evidence()["results"]
         assert result["verdict"] in ("inconclusive", "no data")
         assert result["ticks"] > 0
-        jsonschema.validate(evidence(), SCHEMA)
+        validate("evidence.schema.json", evidence())
 
 
 def test_a_violation_in_a_log_that_ends_in_the_middle_is_a_violation(fretc: Fretc) -> None:
@@ -143,7 +142,7 @@ def test_a_bad_log_beside_a_good_one_is_in_the_evidence_and_in_the_status(fretc:
     assert run.status == 2
     verdicts = [(result["run"], result["verdict"]) for result in evidence()["results"]]
     assert verdicts == [("run.mcap", "satisfied"), ("bad.mcap", "no data")]
-    jsonschema.validate(evidence(), SCHEMA)
+    validate("evidence.schema.json", evidence())
 
 
 def test_a_topic_that_is_not_in_the_log_is_told_at_its_binding(fretc: Fretc) -> None:
@@ -255,7 +254,7 @@ def test_a_log_whose_audit_kills_its_process_is_no_data_and_the_others_are_audit
         "wrote build/evidence.json\n"
     )
     found = evidence()
-    jsonschema.validate(found, SCHEMA)
+    validate("evidence.schema.json", found)
     verdicts = [(result["run"], result["verdict"]) for result in found["results"]]
     assert verdicts == [
         ("run.mcap", "satisfied"),
@@ -315,7 +314,7 @@ def test_verdicts_do_not_depend_on_what_is_looked_at_of_the_log(
     (usual,) = evidence()["results"]
     assert fretc("audit", "run.mcap", "--integrity", integrity).status == 0
     found = evidence()
-    jsonschema.validate(found, SCHEMA)
+    validate("evidence.schema.json", found)
     (result,) = found["results"]
     assert {**result, "health": 0, "hashes": 0} == {**usual, "health": 0, "hashes": 0}
     assert result["health"]["checked"]["by_index"] is (integrity != "full")

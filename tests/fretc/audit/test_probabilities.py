@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree
 
-import jsonschema  # type: ignore[import-untyped]
 import pytest
 from mcap.writer import CompressionType
 
@@ -16,8 +15,8 @@ from tests.command import Fretc, write
 from tests.fretc.audit.measurements.test_count_trials import fillings
 from tests.fretc.logs.logs import MS, S, number
 from tests.fretc.logs.logs import write as write_log
+from tests.json_schemas import validate
 
-ROOT = Path(__file__).parents[3]
 BINDINGS = """
 [clock]
 time = "log_time"
@@ -72,8 +71,7 @@ def logs(count: int, c: str, r: str, folder: str = "runs") -> None:
 
 def evidence() -> Any:
     content = json.loads(Path("build/evidence.json").read_text("utf-8"))
-    schema = json.loads((ROOT / "templates/json/evidence.schema.json").read_text("utf-8"))
-    jsonschema.validate(content, schema)
+    validate("evidence.schema.json", content)
     return content
 
 
@@ -399,8 +397,7 @@ def reported(fretc: Fretc) -> Any:
     run = fretc("report", "--json", "build/report.json")
     assert run.status == 0
     content = json.loads(Path("build/report.json").read_text("utf-8"))
-    schema = json.loads((ROOT / "templates/json/report.schema.json").read_text("utf-8"))
-    jsonschema.validate(content, schema)
+    validate("report.schema.json", content)
     return content
 
 

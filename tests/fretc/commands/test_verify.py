@@ -10,7 +10,6 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
-import jsonschema  # type: ignore[import-untyped]
 import pytest
 
 from compiler.files.templating import template_root
@@ -21,6 +20,7 @@ from fretc.verification.engines import programs as external
 from fretc.verification.engines import sandbox as confined
 from fretc.verification.engines.programs import Ran
 from tests.command import Fretc, Run, write
+from tests.json_schemas import validate
 
 R1 = "whenever p the sw shall within 2 ticks satisfy q"
 LOOKS_BACK = "whenever occurred(2, p) the sw shall always satisfy q"
@@ -185,8 +185,7 @@ def test_the_worst_of_several_is_the_exit_status(fretc: Fretc, r1: str, made: st
 def told(run: Run) -> list[dict[str, Any]]:
     """The evidence on standard output, which fits the schema."""
     content = json.loads(run.out)
-    schema = json.loads((template_root() / "json/verification.schema.json").read_text())
-    jsonschema.validate(content, schema)
+    validate("verification.schema.json", content)
     assert list(content) == ["schema", "fretc", "evidence"]
     evidence: list[dict[str, Any]] = content["evidence"]
     return evidence

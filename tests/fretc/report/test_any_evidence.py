@@ -24,7 +24,7 @@ from fretc.report.forms.sarif import sarif
 from fretc.report.make import Made
 from tests.fretc.report.cases import R1, moment, project, requirement, result
 from tests.fretc.report.cases import made as reported
-from tests.fretc.report.test_make import validate
+from tests.json_schemas import validate
 
 pytestmark = pytest.mark.filterwarnings("ignore:Generating overly large repr")
 

@@ -6,7 +6,6 @@ from typing import Any
 import jsonschema  # type: ignore[import-untyped]
 import pytest
 
-from compiler.files.templating import template_root
 from compiler.project.folder import load
 from fretc.audit.many_logs import Audit, audit_logs
 from fretc.audit.plan import Plan, planned
@@ -26,14 +25,9 @@ from tests.fretc.report.cases import (
     word,
     words,
 )
+from tests.json_schemas import validate
 
 TRACE = "traces/mission-seed15.mcap"
-
-
-def validate(name: str, content: Any) -> None:
-    schema = json.loads((template_root() / "json" / name).read_text(encoding="utf-8"))
-    jsonschema.Draft202012Validator.check_schema(schema)
-    jsonschema.validate(content, schema)
 
 
 # Each verdict ----------------------------------------------------------------------------------

@@ -9,7 +9,6 @@ import sys
 from pathlib import Path
 from typing import Any
 
-import jsonschema  # type: ignore[import-untyped]
 import pytest
 
 from compiler.targets.ajpf.bundle import emit
@@ -22,9 +21,9 @@ from compiler.targets.ajpf.runner import (
     trace,
     verdict,
 )
-from tests.compiler.targets.ajpf.test_bundle import R1, ROOT, rule
+from tests.compiler.targets.ajpf.test_bundle import R1, rule
+from tests.json_schemas import validate
 
-SCHEMA = json.loads((ROOT / "templates/json/ajpf-result.schema.json").read_text("utf-8"))
 SAYS_HOLDS = "====== results\nno errors detected\n====== statistics\n"
 SAYS_VIOLATED = (
     "====== error 1\najpf.MCAPLListener\nAn Accepting Path has been found: \n(MS: 0)\n"
@@ -471,7 +470,7 @@ def test_a_result_is_what_its_schema_says_and_names_what_was_run(mcapl: Mcapl) -
     mcapl.says({"R1.jpf": (ENDING, 0), "R1_mutant.jpf": (RECORDED, 0)})
     assert mcapl.run().returncode == 0
     found = mcapl.result()
-    jsonschema.validate(found, SCHEMA)
+    validate("ajpf-result.schema.json", found)
     assert (found["requirement"], found["verdict"], found["java"]) == ("R1", "shown", "11.0.22")
     assert found["mcapl"] == {"commit": "ab" * 20}
     assert found["agent"] is None
@@ -502,7 +501,7 @@ def test_a_result_that_shows_nothing_is_written_too(
     mcapl.says(answers)
     mcapl.run()
     found = mcapl.result()
-    jsonschema.validate(found, SCHEMA)
+    validate("ajpf-result.schema.json", found)
     assert found["verdict"] == verdict_
 
 

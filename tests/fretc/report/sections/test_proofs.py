@@ -25,7 +25,7 @@ from tests.fretc.report.cases import (
     said,
     words,
 )
-from tests.fretc.report.test_make import validate
+from tests.json_schemas import validate
 
 SENTENCE = "whenever near the robot shall within 30 ticks satisfy stopped"
 
