@@ -224,6 +224,7 @@ def test_nearly_all_wordings_that_fret_accepts_are_formatted_here() -> None:
     assert len(accepted()) > 325
 
 
+@pytest.mark.slow
 def test_a_formatted_sentence_says_the_same_in_stable_words() -> None:
     for text in accepted():
         written, once = tree(text), sentence(tree(text))

@@ -94,6 +94,7 @@ def test_one_changed_byte_in_the_middle_changes_the_hash_and_is_no_pass(fretc: F
     assert run.err.startswith("F404 warning: the log is damaged near byte ")
 
 
+@pytest.mark.slow
 def test_a_log_that_ends_in_the_middle_shows_what_is_whole_and_satisfies_nothing(
     fretc: Fretc,
 ) -> None:
@@ -230,6 +231,7 @@ def test_results_can_be_read_by_other_tools(fretc: Fretc) -> None:
     assert github.out.startswith("::notice file=requirements/r1.fret,line=")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("jobs", ["1", "2"])
 def test_a_log_whose_audit_kills_its_process_is_no_data_and_the_others_are_audited(
     fretc: Fretc, monkeypatch: pytest.MonkeyPatch, jobs: str
@@ -289,6 +291,7 @@ def test_evidence_that_cannot_be_written_is_told_before_the_audit(fretc: Fretc) 
     )
 
 
+@pytest.mark.slow
 def test_what_is_true_of_many_logs_is_told_once(fretc: Fretc) -> None:
     change("requirements/bindings.toml", 'reduce    = "outline"', 'reduce    = "min"')
     alone = fretc("audit", "run.mcap").err
@@ -306,6 +309,7 @@ def test_what_is_true_of_many_logs_is_told_once(fretc: Fretc) -> None:
     assert "  --> 2.mcap\n" in said
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("integrity", ["index", "hash", "full"])
 def test_verdicts_do_not_depend_on_what_is_looked_at_of_the_log(
     fretc: Fretc, integrity: str

@@ -312,6 +312,7 @@ def loop(fretc: Fretc) -> Callable[..., str]:
     return make
 
 
+@pytest.mark.slow
 @pytest.mark.confined
 def test_a_loop_that_keeps_its_requirement(fretc: Fretc, loop: Callable[..., str]) -> None:
     run = fretc("verify", "--layer", "loop", loop(400))
@@ -340,6 +341,7 @@ def test_the_stop_of_r1_is_released(fretc: Fretc) -> None:
     assert (run.status, [line[0] for line in run.out.splitlines()[:2]]) == (3, ["✔", "✘"])
 
 
+@pytest.mark.slow
 def test_a_heartbeat_is_an_assumption(fretc: Fretc, loop: Callable[..., str]) -> None:
     beating = ("lost = 1\n", 'requests = "edge"\nheartbeat = "250 ms"\n')
     run = fretc("verify", "--layer", "loop", loop(300, beating))
@@ -472,6 +474,7 @@ def test_an_interceptor_of_other_bindings_is_not_checked(
     assert "its options are not those that the bindings declare" in run.out
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("old", "new", "reason"),
     [
@@ -528,6 +531,7 @@ def node(fretc: Fretc, loop: Callable[..., str]) -> tuple[str, str]:
     return path, "interceptor.py"
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(find_spec("crosshair") is None, reason="CrossHair is not installed")
 def test_crosshair_is_given_the_core_and_the_limit(
     fretc: Fretc, node: tuple[str, str], monkeypatch: pytest.MonkeyPatch

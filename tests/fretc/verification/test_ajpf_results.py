@@ -83,6 +83,7 @@ def test_what_ajpf_refutes_is_refuted_with_its_run(ran: Mcapl) -> None:
     assert result.trace.cycle == 3
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("said", "expected"),
     [
@@ -130,6 +131,7 @@ def test_a_stale_refutation_is_told_as_one(ran: Mcapl) -> None:
     assert result.reason.startswith("it was refuted; SIF.gwen is not made like that")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "change",
     [
@@ -154,6 +156,7 @@ def test_the_conclusion_of_the_file_is_not_believed(ran: Mcapl) -> None:
     assert isinstance(only(ran).result, Counterexample)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["R1", "R1_reach", "R1_resp", "R1_mutant"])
 def test_a_result_is_held_against_the_logs_that_lie_beside_it(ran: Mcapl, name: str) -> None:
     log = ran.bundle / f"logs/{name}.jpf.txt"
@@ -208,6 +211,7 @@ def test_a_file_that_is_no_result_is_refused(tmp_path: Path, text: str, what: st
     assert what in found.message
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "change",
     [
@@ -247,6 +251,7 @@ def test_what_a_file_of_proofs_says_of_ajpf_gives_way_to_the_result_itself(ran: 
     assert merged([red], []) == (red,)
 
 
+@pytest.mark.slow
 def test_a_weaker_property_does_not_show_the_requirement(ran: Mcapl) -> None:
     made = rule("whenever too_close agilex_agent shall within 3 ticks satisfy stopped")
     for artifact in emit([made], Options(weaken=True)):

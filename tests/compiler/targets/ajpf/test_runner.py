@@ -149,6 +149,7 @@ def test_all_as_expected_is_shown(mcapl: Mcapl) -> None:
     assert (mcapl.bundle / "logs/R1.jpf.txt").read_text() == SAYS_HOLDS
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("answers", "status", "line"),
     [
@@ -211,6 +212,7 @@ def test_a_file_that_was_changed_is_not_verified(mcapl: Mcapl) -> None:
     )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("text", ["", "[]", "{}", '{"files": {}, "checks": []}'])
 def test_a_manifest_that_says_nothing_is_no_success(mcapl: Mcapl, text: str) -> None:
     (mcapl.bundle / "manifest.json").write_text(text)
@@ -224,6 +226,7 @@ def test_a_manifest_without_its_controls_is_no_success(mcapl: Mcapl) -> None:
     assert mcapl.run().returncode == 2
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "name",
     ["my folder", "a,b", "a;b", "a:b", "a$b", "${HOME}", "a\nb", "a\\b", "a'b", "Büro", "#1"],
@@ -235,6 +238,7 @@ def test_a_folder_that_ajpf_cannot_name_is_refused(tmp_path: Path, name: str) ->
     assert "AJPF reads paths of letters, digits and `_ . / + @ ~ -` alone" in done.stderr
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["SIF.gwen", "SIF.psl", "Env.java", "R1.jpf"])
 def test_a_file_that_changes_while_ajpf_is_at_work_leaves_no_result(
     mcapl: Mcapl, name: str
@@ -487,6 +491,7 @@ def test_a_result_is_what_its_schema_says_and_names_what_was_run(mcapl: Mcapl) -
     assert found["checks"][3]["trace"]["cycle"] == 3
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("answers", "verdict_"),
     [

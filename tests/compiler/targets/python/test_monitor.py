@@ -172,6 +172,7 @@ def is_open(timing: str, n: int, begun: int, last: int, q: list[bool]) -> bool:
             return False
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("scope", SCOPES)
 def test_a_demand_is_open_until_its_answer_or_its_deadline(scope: str) -> None:
     for template in templates():
@@ -693,6 +694,7 @@ def test_the_worst_of_several_traces_decides(programs: Path, tmp_path: Path) -> 
     assert call(programs, "within", str(bad), str(tmp_path / "missing.csv")).returncode == 2
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("trace", "message"),
     [

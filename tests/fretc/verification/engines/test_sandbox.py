@@ -48,6 +48,7 @@ def test_what_the_function_raises_is_raised() -> None:
         confined(DEFAULT, fail)
 
 
+@pytest.mark.slow
 def test_time_on_a_processor_is_limited() -> None:
     assert confined(Limits(seconds=1), spin) == Stopped("out of time: more than 1 s of a processor")
     assert multiprocessing.active_children() == []
