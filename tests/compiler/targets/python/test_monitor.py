@@ -264,6 +264,7 @@ def test_what_is_definite_stays_whatever_the_unknown_values_are(scope: str) -> N
                     assert known.verdict in ("no data", full.verdict), (template, columns)
 
 
+@pytest.mark.slow
 @given(
     st.sampled_from(list(templates())),
     three_valued("m", "p", "q", "s"),
@@ -282,6 +283,7 @@ def test_no_unknown_value_contradicts_a_definite_verdict(
         assert known.finite in (None, template.satisfied(cut(filled, length)))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("scope", SCOPES)
 def test_with_all_values_known_everything_is_definite(scope: str) -> None:
     for template in templates((2,)):
