@@ -169,6 +169,7 @@ def interceptor_text(options: core.Options) -> str:
     return text(made, replace(declarations, interceptor=node))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("options", [*TIMED, *EVENTS])
 def test_the_interceptor_does_in_each_state_what_the_core_does(options: core.Options) -> None:
     read = Reader(interceptor_text(options), interceptor=True)
@@ -241,6 +242,7 @@ _NOT_IN_BOTH = (
 )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("pattern", _NOT_IN_BOTH)
 def test_the_text_keeps_to_what_dafny_2_3_and_4_both_read(pattern: str) -> None:
     for found in _every_text():

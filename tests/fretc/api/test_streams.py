@@ -64,6 +64,7 @@ def verdicts(plan: Plan, samples: list[tuple[int, float]]) -> dict[str, str]:
     return {each.requirement: str(each.verdict) for each in evidence}
 
 
+@pytest.mark.slow
 @settings(max_examples=20)  # each makes monitors and looks at all phases of the ticks
 @given(
     st.lists(
@@ -86,6 +87,7 @@ def test_the_verdicts_at_the_end_are_those_of_an_audit(
     assert dict(stream.end().verdicts) == verdicts(plan, samples)
 
 
+@pytest.mark.slow
 def test_a_recorded_run_gives_the_ticks_and_the_verdict_of_its_audit() -> None:
     (log,) = ROOT.joinpath("traces").glob("*.mcap")
     project = fretc.read_project(ROOT / "requirements")

@@ -141,6 +141,7 @@ def test_the_library_itself_reads_and_verifies_the_envelope() -> None:
     assert envelope.payload_type == PAYLOAD_TYPE == "application/vnd.in-toto+json"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", KINDS)
 def test_an_encrypted_key_needs_its_passphrase(kind: str) -> None:
     for form in (PrivateFormat.OpenSSH, PrivateFormat.PKCS8):
@@ -178,6 +179,7 @@ def test_keys_that_do_not_count_are_refused_with_a_reason() -> None:
             private_key(data, nobody)
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(shutil.which("ssh-keygen") is None, reason="there is no ssh-keygen")
 @pytest.mark.parametrize("kind", ["ed25519", "ecdsa -b 256", "ecdsa -b 521", "rsa -b 2048"])
 def test_ssh_keygen_makes_the_keys_and_names_them_alike(kind: str, tmp_path: Path) -> None:

@@ -212,6 +212,7 @@ def test_the_hash_of_a_log_is_no_hash_of_evidence(project: Fretc) -> None:
     assert signed(report(project)[1])["evidence build/evidence.json"][0] == "unauthenticated"
 
 
+@pytest.mark.slow
 def test_a_report_and_proofs_that_are_named_must_be_signed_too(project: Fretc) -> None:
     project("verify", "requirements/r1.fret", "--layer", "monitor")
     assert project("sign", EVIDENCE, "--key", "ada").status == 0
@@ -416,6 +417,7 @@ def test_signatures_that_cannot_be_read_stop_the_report_and_are_never_overwritte
 # Keys and bad use ------------------------------------------------------------------------------
 
 
+@pytest.mark.slow
 def test_a_passphrase_comes_from_the_environment(
     project: Fretc, monkeypatch: pytest.MonkeyPatch
 ) -> None:

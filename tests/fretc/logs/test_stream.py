@@ -147,6 +147,7 @@ def streamed(
     return found + ticks(end.ticks), end
 
 
+@pytest.mark.slow
 @given(declared(expressions=(*EXPRESSIONS, *PAST)), SAMPLES, CUTS)
 @example(bindings("x < 5 for 15 ns", "any"), [Sample("x", 1, 1.0), Sample("x", 25, 9.0)], [22, 60])
 @example(bindings("x < 5"), [Sample("x", 1, 1.0), Sample("x", 11, 9.0)], [11])
@@ -163,6 +164,7 @@ def test_ticks_are_those_of_the_whole_log_however_time_passes(
     assert (found, end.cut) == (rows(whole), whole.cut)
 
 
+@pytest.mark.slow
 @given(
     declared('tick = "/clock"', [e for e in (*EXPRESSIONS, *PAST) if "z" not in e]),
     SAMPLES,

@@ -77,6 +77,7 @@ def test_what_ajpf_refutes_is_refuted_with_its_run(ran: Mcapl) -> None:
     assert result.trace.cycle == 3
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("outputs", "expected"),
     [
@@ -125,6 +126,7 @@ def test_a_stale_refutation_is_told_as_one(ran: Mcapl) -> None:
     assert result.detail.startswith("it was refuted; SIF.gwen is not made like that")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "change",
     [
@@ -149,6 +151,7 @@ def test_the_conclusion_of_the_file_is_not_believed(ran: Mcapl) -> None:
     assert only(ran).result is Result.COUNTEREXAMPLE
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["R1", "R1_reach", "R1_resp", "R1_mutant"])
 def test_a_result_is_held_against_the_logs_that_lie_beside_it(ran: Mcapl, name: str) -> None:
     log = ran.bundle / f"logs/{name}.jpf.txt"
@@ -203,6 +206,7 @@ def test_a_file_that_is_no_result_is_refused(tmp_path: Path, text: str, what: st
     assert what in result.message
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "change",
     [
@@ -241,6 +245,7 @@ def test_what_a_file_of_proofs_says_of_ajpf_gives_way_to_the_result_itself(ran: 
     assert merged([red], []) == (red,)
 
 
+@pytest.mark.slow
 def test_a_weaker_property_does_not_show_the_requirement(ran: Mcapl) -> None:
     formalized = rule("whenever too_close agilex_agent shall within 3 ticks satisfy stopped")
     for artifact in emit([formalized], Options(weaken=True)):

@@ -95,6 +95,7 @@ def test_what_is_said_to_be_certain_is_so_for_all_values_of_the_unknown(scope: s
             assert certain <= right, template
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("sentence", EXACT)
 def test_what_is_certain_is_said_to_be(sentence: str) -> None:
     machine, choose = monitor(sentence), random.Random(sentence)

@@ -97,6 +97,7 @@ def test_r1_is_the_property_of_the_paper_with_its_controls() -> None:
     )
 
 
+@pytest.mark.slow
 def test_every_template_is_emitted_or_refused_for_the_right_reason() -> None:
     """192 of 288 count no ticks; nine of them are constant on infinite runs, and the rest is said.
 
@@ -163,6 +164,7 @@ _sentences = st.builds(
 )
 
 
+@pytest.mark.slow
 @settings(max_examples=120)
 @given(_sentences)
 def test_compound_sentences_keep_their_language(sentence: s.Sentence) -> None:
@@ -225,6 +227,7 @@ def fully_parenthesized(formula: str) -> bool:
     return True
 
 
+@pytest.mark.slow
 def test_ajpf_is_never_asked_for_its_own_grouping() -> None:
     assert fully_parenthesized("((B(a,p)) & (B(a,q))) & (~B(a,r))")
     assert not fully_parenthesized("(B(a,p)) & (B(a,q)) & (B(a,r))")

@@ -112,6 +112,7 @@ def test_a_sentence_that_nothing_violates_is_one_state() -> None:
     assert 'State: 0 "satisfied"\n[t] 0\n' in text_of("the sw shall finally satisfy p")
 
 
+@pytest.mark.slow
 def test_ten_thousand_ticks_take_seconds() -> None:
     start = time.process_time()
     text = text_of("whenever p the sw shall within 10000 ticks satisfy q")

@@ -247,6 +247,7 @@ def test_every_template_runs_as_it_is_defined(scope: str) -> None:
             assert_runs_as_defined(drawn.sentence, 8, 9)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("sentence", SHARING)
 def test_expressions_may_share_propositions(sentence: str) -> None:
     assert_runs_as_defined(sentence.format(n=2), 20, 8)

@@ -101,6 +101,7 @@ def test_the_papers_interceptor_keeps_its_own() -> None:
     assert proofs[0].assumptions[1:] == ("no silence is noticed: form = event in [interceptor]",)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("latching", [False, True])
 def test_the_core_keeps_them_with_all_small_options(latching: bool) -> None:
     alone, _, _ = EMITTED.partition("\n\n# The options ")
@@ -199,6 +200,7 @@ MUTANTS = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", MUTANTS)
 def test_a_mutant_breaks_the_contracts_that_it_should(name: str) -> None:
     changes, broken = MUTANTS[name]
@@ -210,6 +212,7 @@ AT_FIRST = "command_age=options.command_timeout,\n"
 OBEYS = "stop=requested or (options.latching and state.stop)"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("first", "then", "sum_"),
     [
@@ -393,6 +396,7 @@ def test_a_node_that_changes_the_core_is_told(line: str) -> None:
         InterceptorMachine(changed, interceptor_options())
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("changes", "why"),
     [
