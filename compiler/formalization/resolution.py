@@ -15,10 +15,11 @@ from compiler.formalization.obligation import atom, variable
 from fretish import expressions as e
 from fretish import syntax as s
 from fretish.bindings import comparisons
-from fretish.bindings.declarations import Declarations, Part, Proposition, Signal
+from fretish.bindings.declarations import Aggregate, Declarations, Part, Proposition, Signal
+from fretish.bindings.expressions import ticks_back
 from fretish.bindings.words import words
 from fretish.checking import conditions
-from fretish.diagnostics.diagnostic import Diagnostic
+from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.source import Span
 from fretish.printer import expression as printed
 from fretish.syntax import Sentence
@@ -80,8 +81,30 @@ def resolved(rule: Formalized, declarations: Declarations) -> Formalized | Diagn
             if isinstance(bound, Diagnostic):
                 return bound
             span = getattr(part, "span", None) or rule.requirement.wording
-            propositions[name] = Proposition(name, bound, printed(part), span=span)
+            aggregate = _aggregate(bound, declarations.signals, span)
+            if isinstance(aggregate, Diagnostic):
+                return aggregate
+            propositions[name] = Proposition(
+                name, bound, printed(part), aggregate=aggregate, span=span
+            )
     return replace(rule, declarations=extended(declarations, propositions, mistakes))
+
+
+def _aggregate(
+    expression: e.Expression, signals: Mapping[str, Signal], place: Span
+) -> Aggregate | Diagnostic:
+    """How several samples in one tick combine: as the signals that are read declare it."""
+    read = [signals[name.id] for name in e.names(expression) if name.id in signals]
+    kinds = {signal.aggregate for signal in read} or {Aggregate.LAST}
+    if len(kinds) > 1 or (ticks_back(expression) and kinds != {Aggregate.LAST}):
+        names = ", ".join(dict.fromkeys(f"`{signal.name}`" for signal in read))
+        return Diagnostic(
+            Code.SEVERAL_AGGREGATES,
+            f"nothing says which samples of a tick count for {names} together",
+            place,
+            help="give these signals the same `agg`, which is `last` beside an earlier tick",
+        )
+    return kinds.pop()
 
 
 def extended(

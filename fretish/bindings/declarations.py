@@ -102,6 +102,14 @@ class Role(StrEnum):
     MODE = "mode"
 
 
+class Aggregate(StrEnum):
+    """How several samples within one tick combine."""
+
+    ANY = "any"
+    ALL = "all"
+    LAST = "last"
+
+
 @dataclass(frozen=True, slots=True)
 class Signal:
     """A number, or a word, over time, read from one field of one topic.
@@ -112,7 +120,8 @@ class Signal:
     `footprint` are the corners of the robot's outline and `sensor` is the pose of the sensor
     (x, y in metres, yaw in radians), both in the robot's frame; for `Reduce.OUTLINE` only.
     `max_age` is in nanoseconds; None: a sample counts until the next one. `role` is for people and
-    other tools; None: nothing says it.
+    other tools; None: nothing says it. `aggregate` is that of the comparisons of a sentence that
+    read it; a proposition has its own.
     """
 
     name: str
@@ -125,6 +134,7 @@ class Signal:
     invalid: Invalid = Invalid()
     max_age: int | None = None
     role: Role | None = None
+    aggregate: Aggregate = Aggregate.LAST
     footprint: tuple[tuple[float, float], ...] = ()
     sensor: tuple[float, float, float] = (0.0, 0.0, 0.0)
     values: tuple[str, ...] = ()
@@ -135,14 +145,6 @@ class Signal:
     def scale(self) -> Fraction:
         """Factor from samples to base units; a clearance is in base units already."""
         return Fraction(1) if self.reduce is Reduce.OUTLINE else self.unit.factor
-
-
-class Aggregate(StrEnum):
-    """How several samples within one tick combine."""
-
-    ANY = "any"
-    ALL = "all"
-    LAST = "last"
 
 
 class Modality(StrEnum):

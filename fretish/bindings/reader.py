@@ -45,7 +45,7 @@ _TOPIC = re.compile(r"[A-Za-z_~/]\S*")
 _CLOCK = ("time", "tick", "phase", "end", "rounding")
 _SIGNAL = (
     "path", "type", "reduce", "unit", "valid", "invalid", "max_age", "footprint", "sensor",
-    "values", "role",
+    "values", "role", "agg",
 )  # fmt: skip
 _OF_NUMBERS = ("unit", "valid", "invalid", "reduce", "footprint", "sensor")
 """Fields of a signal that mean nothing beside `values`."""
@@ -274,6 +274,7 @@ class _Reader(Fields):
             role=self._choice(table, (*at, "role"), Role, Role.INTERNAL)
             if "role" in table
             else None,
+            aggregate=self._choice(table, (*at, "agg"), Aggregate, Aggregate.LAST),
             span=self.tables.value(*at, "path"),
         )
         self.signals[name] = signal
@@ -307,6 +308,7 @@ class _Reader(Fields):
             max_age=self._max_age(table, at),
             values=values,
             numbers=numbers,
+            aggregate=self._choice(table, (*at, "agg"), Aggregate, Aggregate.LAST),
             span=self.tables.value(*at, "path"),
         )
         if values:

@@ -90,6 +90,10 @@ class Code(Enum):
     PLAIN_PERCENT = ("F338", "a plain number stands beside a signal in percent")
     WHICH_UNIT = ("F350", "a bare number stands beside signals in several units")
     UNIT_IN_SENTENCE = ("F352", "a number of a sentence has a unit, which FRET does not know")
+    SEVERAL_AGGREGATES = (
+        "F353",
+        "samples of a tick combine in several ways",
+    )
     PROSE_DRIFT = ("F351", "title or text state another number than the requirement")
     DEFINITION_CIRCLE = ("F342", "the values of variables lead in a circle")
     DOUBLE_DEFINITION = ("F343", "a name is defined in two ways")
